@@ -176,8 +176,8 @@ TEST(Sarif, HasNoMoreResultsThanCodeHostsTake) {
     ASSERT_EQ(notes.size(), 2U);
     EXPECT_EQ(notes[0]["level"], "warning");
     EXPECT_THAT(notes[0]["message"]["text"].get<std::string>(),
-                testing::AllOf(testing::StartsWith("left out: 1 of the results"),
-                               HasSubstr("--format json has all")));
+                testing::AllOf(testing::StartsWith("omitted: 1 of the results"),
+                               HasSubstr("--format json lists all")));
     // What is left out is the mildest of the last program, a warning with the least shortfall.
     const auto& results = cut["results"];
     EXPECT_EQ(results[24'994], whole["results"][24'994]);
@@ -263,7 +263,7 @@ TEST(Junit, HasACaseForEachProgram) {
     EXPECT_THAT(xml, HasSubstr("&lt;clamp-1&gt; &amp; &quot;more&quot;"));
     EXPECT_THAT(xml, HasSubstr("<error message=\"line 3: G999: no such &lt;code&gt;\""));
     EXPECT_THAT(xml,
-                HasSubstr("<error message=\"was not checked: the batch was stopped first\"/>"));
+                HasSubstr("<error message=\"was not checked: the batch was stopped before it\"/>"));
     EXPECT_THAT(xml, HasSubstr("bell ? and line\nend"));
 }
 

@@ -230,7 +230,7 @@ TEST(BenchText, FitsIntoEightyColumnsAndSaysWhereTheFiguresAre) {
     EXPECT_THAT(text, HasSubstr("1.4  Mesh size 2.0 mm, 2904 points each"));
     EXPECT_THAT(text, HasSubstr("3.1  Mesh size 1.0 mm, 32000 and 12800 points"));
     EXPECT_THAT(text, HasSubstr("grows linearly with the points"));
-    EXPECT_THAT(text, HasSubstr("same distance, to the last bit, in all 53 places"));
+    EXPECT_THAT(text, HasSubstr("same distance, to the last bit, in all 53 cases"));
 }
 
 TEST(BenchText, SaysWhenTheEnginesDisagree) {

@@ -170,7 +170,7 @@ TEST(HtmlReport, ShowsTheTightestBlockWhereNothingWasFound) {
                                      .detail = core::Detail::deciding_pair});
     ASSERT_TRUE(run.findings.empty());
     const std::string page = html_report(run, {});
-    EXPECT_THAT(page, HasSubstr("Nothing was found."));
+    EXPECT_THAT(page, HasSubstr("No findings."));
     EXPECT_EQ(count_of(page, "<article"), 1U);
     EXPECT_THAT(page, HasSubstr(fmt::format("data-block=\"{}\"",
                                             core::value_of(nearest_block(run)->block))));

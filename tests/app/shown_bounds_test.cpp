@@ -117,8 +117,8 @@ TEST(DistanceText, RoundsLowerBoundsDownAndUpperBoundsUp) {
     found.lower = 4.9999999956;
     found.upper = 5.0000000014;
     const std::string text = text_distance(found, "a.stl", "b.stl", false);
-    EXPECT_THAT(text, HasSubstr(" 5.000000 mm, certainly between 4.999999995 and 5.000000002"));
-    EXPECT_THAT(text, HasSubstr(" 5.000000 mm apart at least"));
+    EXPECT_THAT(text, HasSubstr(" 5.000000 mm, guaranteed between 4.999999995 and 5.000000002"));
+    EXPECT_THAT(text, HasSubstr(" closest pair 5.000000 mm apart"));
 }
 
 TEST(Prompt, RoundsLowerBoundsDownAndUpperBoundsUp) {

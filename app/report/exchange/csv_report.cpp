@@ -18,14 +18,14 @@ std::string joined(const std::vector<uint32_t>& lines) {
     return text;
 }
 
-/// The rules of a block in one cell.
+/// The rules of a block, in one cell.
 std::string cell_of(const std::vector<std::string>& rules) {
     std::string text;
     for (const std::string& rule : rules) text += (text.empty() ? "" : " ") + rule;
     return text;
 }
 
-/// From `lower` to `body_z`; all empty for a block that does not move.
+/// The cells from `lower` to `body_z`; all empty for a block without motion.
 std::string clearance_cells(const CheckRun& run, const core::BlockResult& result) {
     constexpr const char* nothing = ",,,,,,,,,,,";
     if (result.motion == core::BlockMotion::none) return nothing;

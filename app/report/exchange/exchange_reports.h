@@ -8,24 +8,24 @@ namespace app {
 
 struct CheckRun;
 
-/// The blocks of a check as comma-separated values (RFC 4180), a row to each, under a row of names.
-/// Columns are those of a block in JSON; a cell is empty where JSON says null. `rules` names the
-/// findings of the block, the worst first, with blanks between.
+/// The blocks of a check as comma-separated values (RFC 4180), one row per block, under a row of
+/// column names. The columns are the JSON fields of a block; a cell is empty where JSON has null.
+/// `rules` lists the rules of the block's findings, worst first, separated by blanks.
 std::string csv_report(const CheckRun& run);
 
-/// A batch as JUnit has it, in XML: a test case for each program, with its errors as a failure; one
-/// that could not be run to its end has an error, one that was not checked was skipped. Warnings
-/// and notes stand in the case's output.
+/// A batch in JUnit's XML format: a test case for each program, with its errors as a failure. A
+/// program that stopped early or was not checked has an error. Warnings and notes are in the output
+/// of the case.
 std::string junit_report(const BatchResult& batch);
 
-/// A batch as SARIF 2.1.0, for code hosts: a result for each finding, at its line; the rules with
-/// their help; a result and a notification for each program that could not be run to its end, or
-/// was not checked. Of more than 25,000 results, which code hosts refuse, the worst: errors first,
-/// and the worst of each program before its others; a notification says how many are left out.
-/// `folder` is the one that relative paths count from, as an absolute path.
+/// A batch as SARIF 2.1.0, for code hosts: the rules with their help; a result for each finding, at
+/// its line; a result and a notification for each program that stopped early or was not checked.
+/// Code hosts refuse more than 25,000 results; if there are more, the worst are kept: errors first,
+/// and within a program the worst first. A notification gives the number omitted. `folder`:
+/// absolute path to which relative paths refer.
 ///
-/// Fingerprints are made of rule, bodies, the block's text without its number, and how often the
-/// same came before: they do not change when blocks are renumbered or inserted.
+/// Fingerprints consist of the rule, the bodies, the block's text without its number, and the
+/// number of equal findings before it. They do not change if blocks are renumbered or inserted.
 std::string sarif_report(const BatchResult& batch, const std::string& folder);
 
 /// A path as a URI reference: special characters are escaped, absolute paths become file:///...

@@ -8,7 +8,7 @@
 namespace app {
 namespace {
 
-/// A character of a text as XML 1.0 has it; most control characters have no place there at all.
+/// A character escaped for XML 1.0, which does not allow most control characters at all.
 std::string xml_character(char c) {
     switch (c) {
     case '&':
@@ -29,11 +29,11 @@ std::string xml_character(char c) {
     }
 }
 
-/// A text in UTF-8 inside of an element.
+/// A UTF-8 text, escaped for the inside of an element.
 std::string xml_text(const std::string& text) {
     std::string safe;
     for (size_t i = 0; i < text.size(); ++i) {
-        // U+FFFE and U+FFFF are no characters of XML.
+        // XML does not allow U+FFFE and U+FFFF.
         const bool is_none =
             text.compare(i, 3, "\xEF\xBF\xBE") == 0 || text.compare(i, 3, "\xEF\xBF\xBF") == 0;
         safe += is_none ? "?" : xml_character(text[i]);
@@ -42,7 +42,7 @@ std::string xml_text(const std::string& text) {
     return safe;
 }
 
-/// The same inside of an attribute, where a line end would be read as a blank.
+/// As xml_text, for an attribute value, where a line end would be read as a blank.
 std::string xml_attribute(const std::string& text) {
     std::string safe;
     for (const char c : xml_text(text))
@@ -60,7 +60,7 @@ std::string finding_text(const StoredFinding& finding) {
     return text + "\n";
 }
 
-/// The findings that count as errors, or the others.
+/// The findings that are errors, or those that are not.
 std::string finding_texts(const ProgramResult& program, bool errors) {
     std::string text;
     for (const StoredFinding& finding : program.findings)
@@ -68,7 +68,7 @@ std::string finding_texts(const ProgramResult& program, bool errors) {
     return text;
 }
 
-/// Folder and name of a program, as the attributes of its case.
+/// Folder and file name of a program, as attributes of its test case.
 std::string name_attributes(const std::string& program) {
     const std::filesystem::path path(program);
     const std::string folder = path.parent_path().string();
@@ -112,9 +112,9 @@ std::string junit_report(const BatchResult& batch) {
     for (const std::string& program : batch.unchecked)
         cases +=
             fmt::format("    <testcase {} time=\"0\">\n      <error message=\"was not checked: "
-                        "the batch was stopped first\"/>\n    </testcase>\n",
+                        "the batch was stopped before it\"/>\n    </testcase>\n",
                         name_attributes(program));
-    errors += batch.unchecked.size(); // nobody is to take a batch that was cut short for a good one
+    errors += batch.unchecked.size(); // so that an incomplete batch does not pass
     const std::string counts =
         fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\"",
                     batch.programs.size() + batch.unchecked.size(), failures, errors, seconds);

@@ -17,13 +17,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of a program that could not be run to its end: no rule of a set-up.
+/// Id for a program that stopped early; not a rule of the set-up.
 constexpr const char* not_run = "not-run-to-its-end";
 
-/// Of one that the check was ended before: hosts go by results, and would show green.
+/// Id for a program that was not checked because the batch was stopped. A result is needed: hosts
+/// show a file without results as passed.
 constexpr const char* not_checked = "not-checked";
 
-/// Code hosts refuse a file that has more.
+/// Code hosts refuse a file with more.
 constexpr size_t most_results = 25'000;
 
 const char* level_of(core::Severity severity) {
@@ -43,12 +44,12 @@ Json rules_json() {
     Json rules = Json::array();
     for (const core::RuleEntry& rule : core::rule_table())
         rules.push_back(rule_json(rule.name, rule.meaning, rule.cure, rule.severity));
-    rules.push_back(rule_json(not_run,
-                              "The program, or its set-up, could not be read or run to its end.",
-                              "Correct what the message says; what comes after it was not checked.",
-                              core::Severity::error));
+    rules.push_back(
+        rule_json(not_run, "The program, or its set-up, could not be read or run to its end.",
+                  "Correct the error in the message. Everything after it was not checked.",
+                  core::Severity::error));
     rules.push_back(rule_json(not_checked, "The run ended before this program was checked.",
-                              "Check it again.", core::Severity::error));
+                              "Check the program again.", core::Severity::error));
     return rules;
 }
 
@@ -57,12 +58,12 @@ size_t index_of(const std::string& rule) {
     const auto found = std::find_if(rules.begin(), rules.end(), [&](const core::RuleEntry& entry) {
         return entry.name == rule;
     });
-    const size_t behind = rule == not_checked ? 1 : 0; // `not_run`, which stands behind the last
+    const size_t behind = rule == not_checked ? 1 : 0; // `not_run` follows the last rule
     return static_cast<size_t>(found - rules.begin()) + behind;
 }
 
-/// A place in a file; the first line where none is known, as code hosts show nothing else. The
-/// bytes of the name are those on the disk.
+/// A location in a file; line 1 if none is known, because code hosts show nothing otherwise. The
+/// file name has the bytes that are on disk.
 Json location_json(const std::string& file, const FileBytes& bytes, uint32_t line,
                    uint32_t column) {
     const std::string uri = uri_of(name_shown_as(file, bytes));
@@ -111,12 +112,12 @@ Json unchecked_json(const std::string& program, const FileBytes& bytes) {
             {"partialFingerprints", {{"feeler/v1", sha256_of(not_checked)}}}};
 }
 
-/// How early a result is told where there are too many: errors first, then how many worse ones its
-/// program has, which come before it.
+/// Order in which results are kept if there are too many: errors first, then by the number of worse
+/// findings in the same program, which are kept before it.
 using Urgency = std::pair<int, size_t>;
 
-/// Of the findings of a program, in their order. What could not be run or was not checked is {0,
-/// 0}.
+/// The urgency of each finding of a program. Programs that stopped early or were not checked have
+/// {0, 0}.
 std::vector<Urgency> urgencies_of(const std::vector<StoredFinding>& findings) {
     std::vector<size_t> worst_first(findings.size());
     std::iota(worst_first.begin(), worst_first.end(), size_t(0));
@@ -134,7 +135,7 @@ std::vector<Urgency> urgencies_of(const std::vector<StoredFinding>& findings) {
     return urgencies;
 }
 
-/// Which results are told, in the order in which results_json comes to them.
+/// Which results to write, in the order of results_json.
 std::vector<bool> told_results(const BatchResult& batch) {
     std::vector<Urgency> all;
     for (const ProgramResult& program : batch.programs) {
@@ -156,7 +157,7 @@ Json results_json(const BatchResult& batch, const std::vector<bool>& is_told) {
     Json results = Json::array();
     size_t next = 0;
     for (const ProgramResult& program : batch.programs) {
-        std::map<std::string, size_t> seen; // by the fingerprint of the first of its kind
+        std::map<std::string, size_t> seen; // by the fingerprint for `before` = 0
         for (const StoredFinding& finding : program.findings) {
             const size_t before = seen[fingerprint_of(finding, 0)]++;
             if (is_told[next++]) results.push_back(finding_json(program, finding, before));
@@ -178,8 +179,8 @@ Json notification_json(const std::string& level, const std::string& text, const 
     return json;
 }
 
-/// A note for each file that was skipped; one for all of many that were for the same reason, as
-/// code hosts refuse what is too long.
+/// A note for each skipped file, or one note for many files skipped for the same reason, because
+/// code hosts refuse very large files.
 void add_skipped(Json& notes, const BatchResult& batch) {
     constexpr size_t few = 100;
     for (const SkippedGroup& group : skipped_groups(batch.skipped)) {
@@ -201,10 +202,9 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_told)
     if (const auto left_out = std::count(is_told.begin(), is_told.end(), false); left_out > 0)
         notes.push_back(notification_json(
             "warning",
-            fmt::format(
-                "left out: {} of the results, as code hosts take no more than {} of one run; "
-                "these are the worst; --format json has all",
-                left_out, most_results)));
+            fmt::format("omitted: {} of the results, because code hosts accept at most {} per run; "
+                        "the worst are listed here; --format json lists all",
+                        left_out, most_results)));
     for (const ProgramResult& program : batch.programs)
         if (program.error) {
             const StoredError& error = *program.error;

@@ -20,9 +20,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int64_t microseconds = 1'000'000; // in a second
+constexpr int64_t microseconds = 1'000'000; // per second
 
-/// The version before one that was checked in the same way; null if there is none.
+/// The previous version checked with the same set-up and options; null if there is none.
 const StoredVersion* before(const std::vector<StoredVersion>& versions, size_t place) {
     const StoredVersion& asked = versions[place];
     while (place-- > 0)
@@ -53,7 +53,7 @@ std::string finding_counts(const ProgramResult& result) {
 
 std::string change_text(const ProgramChange& change) {
     std::string text;
-    constexpr double least = 0.0005; // what would be shown as 0
+    constexpr double least = 0.0005; // below this it would be shown as 0
     if (change.nearer && std::abs(*change.nearer) >= least)
         text += fmt::format("    least margin {:.3f} mm {}\n", std::abs(*change.nearer),
                             *change.nearer > 0.0 ? "less" : "more");

@@ -11,7 +11,7 @@ namespace app {
 /// and changes since the previous version with the same set-up and options.
 std::string history_text(const std::string& program, const std::vector<StoredVersion>& versions);
 
-/// The same as one JSON object, schema 1.
+/// The data of history_text as one JSON object, schema 1.
 std::string history_json(const std::string& program, const std::vector<StoredVersion>& versions);
 
 } // namespace app

@@ -1,4 +1,4 @@
-// The page of many programs: joins counts, rules, filter, table and the program that is open.
+// The page of many programs: connects counts, rules, filter, table and the open program.
 
 const mostCardsPrinted = 40;
 
@@ -49,7 +49,7 @@ function startBatch() {
         button.dataset.sort !== sort.column ? "none" : sort.isDown ? "descending" : "ascending");
   }
 
-  /** Sets one part of the filter, or takes it back if it is set, and shows the table. */
+  /** Sets one field of the filter, or resets it if it has that value, and shows the table. */
   function toggle(id, value, none) {
     by(id).value = by(id).value === value ? none : value;
     filter();
@@ -62,7 +62,7 @@ function startBatch() {
     for (const rule of [...programs.findings.rules].sort()) by("filter-rule").append(new Option(rule, rule));
   }
 
-  /** On paper the programs with errors stand behind the table with all that is known of them. */
+  /** When printing, cards of the programs with errors follow the table. */
   function print() {
     const bad = Array.from(shown).filter((i) => programs.errors[i] > 0 || programs.failure.has(i));
     by("printed").replaceChildren(...bad.slice(0, mostCardsPrinted).map((i) => programCard(programs, i)));
@@ -95,7 +95,7 @@ function startBatch() {
   addEventListener("afterprint", () => by("printed").replaceChildren());
   followTheme(by("theme"), () => {});
   addChoices();
-  by("hint").textContent = "A click opens a program, Esc closes it." + (programs.folder ? " Folders count from " + programs.folder : "");
+  by("hint").textContent = "Click opens a program, Esc closes it." + (programs.folder ? " Folders are relative to " + programs.folder : "");
   showOrder();
   filter();
   document.documentElement.dataset.ready = "true";

@@ -3,7 +3,7 @@
 const motions = ["none", "rapid", "feed", "arc", "cycle"];
 const verdicts = ["clear", "undecided", "violation", "collision"];
 
-/** Units: um, seconds, mm3. `lower` and `width` are -1 where nothing is known. */
+/** Units: um, seconds, mm3. `lower` and `width` are -1 if unknown. */
 function unpackBlocks(data) {
   const count = data.count;
   const time = summed(Float64Array.from(data.time)).map((step) => step * 1e-4);
@@ -34,7 +34,7 @@ function durationOf(blocks, i) {
   return (i + 1 < blocks.count ? blocks.time[i + 1] : blocks.end) - blocks.time[i];
 }
 
-/** What the pair of a block has to keep, um; 0 where there is none. */
+/** Minimum clearance of the deciding pair of a block, um; 0 without a pair. */
 function keepOf(blocks, i) {
   return blocks.pair[i] < 0 ? 0 : blocks.pairs[blocks.pair[i]][2];
 }
@@ -44,27 +44,27 @@ function hasError(blocks, i) {
   return found !== undefined && found.severity === 3;
 }
 
-/** "violation", "near" or "clear"; "" where nothing is known. As the window colours a block. */
+/** "violation", "near" or "clear", the colour of a block in the window; "" if nothing is known. */
 function stateOf(blocks, i) {
   if (blocks.verdict[i] > 0 || hasError(blocks, i)) return "violation";
   if (blocks.lower[i] < 0) return "";
-  // Contact that is allowed, where 0 must be kept, is clear and not near.
+  // Allowed contact (minimum clearance 0) is clear, not near.
   return blocks.width[i] >= 0 && blocks.lower[i] < 2 * keepOf(blocks, i) ? "near" : "clear";
 }
 
-/** How bad a block is: by its verdict, an error like a violation; near is 0.5, nothing known -1. */
+/** Badness of a block: its verdict, at least 2 (violation) for an error, 0.5 if near, -1 if nothing is known. */
 function badnessOf(blocks, i) {
   const state = stateOf(blocks, i);
   if (state === "violation") return Math.max(blocks.verdict[i], hasError(blocks, i) ? 2 : 0);
   return { near: 0.5, clear: 0 }[state] ?? -1;
 }
 
-/** Clearance less allowance, um; infinite where no clearance is known. */
+/** Clearance minus allowance, um; infinite if no clearance is known. */
 function marginOf(blocks, i) {
   return blocks.lower[i] < 0 ? Infinity : blocks.lower[i] - keepOf(blocks, i);
 }
 
-/** Whether block `a` is the one to see of the two: by badness, then by margin. Any but -1 is worse than -1. */
+/** Whether block `a` is worse than `b`: by badness, then by margin. Index -1 (no block) is better than any. */
 function isWorse(blocks, a, b) {
   if (b < 0) return a >= 0;
   if (a < 0) return false;

@@ -1,4 +1,4 @@
-// The chart of clearances: a bar from zero for each pixel, that of the worst block that it covers.
+// The chart of clearances: a bar per pixel, for the worst block that the pixel covers.
 
 const chartMargin = { left: 44, right: 8, top: 8, bottom: 24 };
 
@@ -6,20 +6,20 @@ function colorOf(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 }
 
-/** Steps of 1, 2 or 5 times a power of ten, some `count` of them to a range. */
+/** A step of 1, 2 or 5 times a power of ten that divides `range` into about `count`. */
 function niceStep(range, count) {
   const rough = range / count, power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 5, 10].find((factor) => factor * power >= rough);
 }
 
-/** For each pixel of a range of blocks the worst of those that it covers; -1: of none is anything known. */
+/** For each pixel, the worst block that it covers; -1 if nothing is known of any. */
 function worstPerPixel(blocks, placeOf, width) {
   const worst = new Int32Array(width).fill(-1);
   for (let i = 0; i < blocks.count; ++i) {
     if (badnessOf(blocks, i) < 0) continue;
     const [from, to] = placeOf(i);
     if (to < 0 || from > width) continue;
-    // What takes no time has a pixel too, also where the range ends.
+    // Blocks without duration get a pixel, too, even at the end of the range.
     const first = Math.min(Math.floor(from), width - 1);
     for (let x = Math.max(0, first); x < Math.min(width, Math.max(to, first + 1)); ++x)
       if (isWorse(blocks, i, worst[x])) worst[x] = i;
@@ -27,13 +27,13 @@ function worstPerPixel(blocks, placeOf, width) {
   return worst;
 }
 
-/** Small clearances get most of the height: it goes with the root. */
+/** Square root scale: small clearances get most of the height. */
 function heightShare(um, top) {
   return Math.sqrt(Math.min(1, Math.max(0, um) / top));
 }
 
 class Chart {
-  /** `onChoose(block)` is told of clicks, `onPoint(block)` of the block under the pointer, -1: none. */
+  /** Calls `onChoose(block)` on clicks and `onPoint(block)` for the block under the pointer (-1: none). */
   constructor(canvas, blocks, onChoose, onPoint) {
     Object.assign(this, { canvas, blocks, onChoose, onPoint, axis: "time", range: null, chosen: -1, drag: null, worst: null });
     this.context = canvas.getContext("2d");
@@ -95,7 +95,7 @@ class Chart {
     const { context } = this;
     context.textAlign = "right";
     context.textBaseline = "middle";
-    let last = Infinity; // no label upon another
+    let last = Infinity; // labels must not overlap
     for (const mm of [0, 0.1, 0.5, 1, 2, 5, 10, 20, 50]) {
       const y = this.heightOf(mm * 1000);
       if (mm * 1000 > this.top || last - y < 13) continue;
@@ -115,7 +115,7 @@ class Chart {
     const step = Math.max(niceStep(range[1] - range[0], this.width() / 90), least);
     const text = (value) => (axis === "block" ? String(Math.round(value)) : step < 1 ? value.toFixed(3) + " s" : secondsText(value));
     for (let value = Math.ceil(range[0] / step) * step; value <= range[1]; value += step) {
-      // The last one is moved in from the border as far as it needs.
+      // Keeps the last label inside the right border.
       const label = text(value), most = this.canvas.clientWidth - context.measureText(label).width / 2 - 1;
       context.fillText(label, Math.min(chartMargin.left + this.pixelOf(value), most), chartMargin.top + this.height() + 6);
     }
@@ -133,7 +133,7 @@ class Chart {
     this.context.fillRect(chartMargin.left + x, foot - tall, 1, tall);
   }
 
-  /** What is not clear, or has an error, is drawn upon all else, with a foot where no clearance is known too. */
+  /** Draws blocks that are not clear or have an error on top, with a foot, even if no clearance is known. */
   drawAlarms() {
     const { context, worst, blocks } = this, color = colorOf("violation"), foot = chartMargin.top + this.height();
     for (let x = 0; x < worst.length; ++x) {
@@ -159,7 +159,7 @@ class Chart {
     return Math.max(0, Math.min(this.width() - 1, Math.floor(event.offsetX - chartMargin.left)));
   }
 
-  /** The worst block within reach of a finger or a mouse; -1: none. */
+  /** The worst block within 3 pixels; -1: none. */
   blockNear(pixel) {
     let worst = -1;
     for (let x = Math.max(0, pixel - 3); x <= Math.min(this.width() - 1, pixel + 3); ++x)

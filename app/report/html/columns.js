@@ -1,8 +1,8 @@
-// Columns of numbers as Feeler wrote them, and numbers as text.
+// Unpacking of columns of numbers, and numbers as text.
 
 const severities = ["", "note", "warning", "error"];
 
-/** Runs [value, count, ...] as one number for each block. */
+/** Expands runs [value, count, ...] to one number per block. */
 function unpackRuns(runs, count) {
   const column = new Int32Array(count);
   let next = 0;
@@ -13,7 +13,7 @@ function unpackRuns(runs, count) {
   return column;
 }
 
-/** Each number the sum of all steps up to it. */
+/** Replaces each step by the sum of all steps up to it. */
 function summed(steps) {
   let sum = 0;
   for (let i = 0; i < steps.length; ++i) steps[i] = sum += steps[i];

@@ -1,11 +1,11 @@
-// The command that makes the page of one program, to be copied.
+// The command that makes the page of one program, for copying.
 
-/** A word as a shell takes it. */
+/** A word quoted for a shell. */
 function shellWord(text) {
   return /^[\w@%+=:,./-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 }
 
-/** A path that no command takes for an option. */
+/** A path that no command mistakes for an option. */
 function pathWord(path) {
   return shellWord(path.startsWith("-") ? "./" + path : path);
 }
@@ -17,7 +17,7 @@ function commandText(programs, i) {
     ...(dialect ? ["--dialect " + shellWord(dialect)] : []), "--format html -o " + pathWord(name + ".html")].join(" ");
 }
 
-/** Copies a text; where the browser does not let it, the text is marked, to be copied by hand. */
+/** Copies a text; if the browser refuses, selects it for copying by hand. */
 async function copyText(text, element, button) {
   const say = (word) => {
     button.textContent = word;
@@ -28,7 +28,7 @@ async function copyText(text, element, button) {
     say("Copied");
   } catch {
     getSelection().selectAllChildren(element);
-    say(document.execCommand("copy") ? "Copied" : "Marked");
+    say(document.execCommand("copy") ? "Copied" : "Selected");
   }
 }
 
@@ -37,6 +37,6 @@ function commandPart(programs, i) {
   button.type = "button";
   button.addEventListener("click", () => copyText(text, code, button));
   return make("div", "command-part", make("h4", "", "Pictures, charts, all blocks"),
-    make("p", "notice", "A page of this program alone has them. In the folder of the batch, with its other options:"),
+    make("p", "notice", "The page of a single program shows them. Run this in the folder of the batch, with its other options:"),
     make("div", "command", code, button));
 }

@@ -1,10 +1,10 @@
-// What every page does.
+// Functions used by every page.
 
 function dataIn(id) {
   return JSON.parse(document.getElementById(id).textContent);
 }
 
-/** A button turns light to dark and back; `repaint` is called when the colours have changed. */
+/** Lets a button switch between light and dark; `repaint` is called after the colours change. */
 function followTheme(button, repaint) {
   const prefersDark = matchMedia("(prefers-color-scheme: dark)");
   button.addEventListener("click", () => {

@@ -1,6 +1,6 @@
-// Which rows of the table are shown.
+// Filter of the table of blocks.
 
-/** A word as a question about a block: T3 a tool, L44 a line, anything else text, body or rule. */
+/** Predicate on blocks for a word: T3 is a tool, L44 a line, anything else text, body or rule. */
 function questionOf(word, blocks) {
   const tool = /^t(\d+)$/i.exec(word);
   if (tool) return (i) => blocks.tool[i] === Number(tool[1]);
@@ -18,7 +18,7 @@ function questionOf(word, blocks) {
   };
 }
 
-/** The blocks that pass: all words, the verdict, and nearer than so many mm (0: any). */
+/** The blocks that match all words and the verdict and are nearer than so many mm (0: any). */
 function passedBlocks(blocks, words, verdict, nearer) {
   const questions = words.split(/\s+/).filter(Boolean).map((word) => questionOf(word, blocks));
   if (verdict === "open") questions.push((i) => blocks.verdict[i] > 0);

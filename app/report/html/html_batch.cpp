@@ -37,7 +37,7 @@ std::string batch_html_report(const BatchResult& batch) {
 
 namespace {
 
-/// The programs of a batch, and what they share: texts and findings.
+/// The programs of a batch as columns, with shared tables of texts and findings.
 class ProgramColumns {
 public:
     explicit ProgramColumns(size_t most_findings) : findings_(texts_, most_findings) {}
@@ -118,7 +118,7 @@ std::string columns_json(const BatchResult& batch, size_t most_findings) {
     return columns.json(common_folder(batch));
 }
 
-/// How many findings there are, if of each program at most so many count.
+/// The number of findings kept if each program keeps at most `most`.
 size_t kept_findings(const BatchResult& batch, size_t most) {
     size_t count = 0;
     for (const ProgramResult& program : batch.programs)
@@ -130,7 +130,7 @@ size_t kept_findings(const BatchResult& batch, size_t most) {
 
 std::string batch_columns_json(const BatchResult& batch) {
     constexpr size_t most_bytes = 18'000'000, most_in_all = 200'000;
-    size_t most = 1'000; // of a program
+    size_t most = 1'000; // per program
     while (most > 1 && kept_findings(batch, most) > most_in_all) most /= 2;
     std::string json = columns_json(batch, most);
     for (; most > 1 && json.size() > most_bytes; json = columns_json(batch, most)) most /= 2;
@@ -163,7 +163,7 @@ std::string share(const BatchResult& batch, size_t count) {
     return fmt::format("{} of {}", count, counted(all_programs(batch), "program"));
 }
 
-/// The program with the least margin of all; the number of programs if none has one.
+/// The program with the least margin; the number of programs if none has a margin.
 size_t tightest_program(const BatchResult& batch) {
     const auto margin = [](const ProgramResult& program) {
         return program.tightest->lower - program.tightest->allowance;
@@ -218,7 +218,7 @@ std::string status_text(const BatchResult& batch) {
     return meanings[status_of(batch)];
 }
 
-/// The names of the first ones, and how many more there are.
+/// The first `most` names as a list, and the number of the others.
 std::string list_html(const std::vector<std::string>& names, size_t most) {
     std::string list = "<ul>\n";
     for (size_t i = 0; i < std::min(most, names.size()); ++i)
@@ -280,10 +280,10 @@ std::string html_missing(const BatchResult& batch) {
     std::string html;
     if (!batch.share.empty())
         html += "<p><b>" + html_text(batch.share)
-                + ":</b> the other programs are in the reports of the other shares.</p>\n";
+                + ":</b> the reports of the other shares contain the other programs.</p>\n";
     if (!unchecked.empty())
         html += "<p><b>" + share(batch, unchecked.size())
-                + " not checked:</b> the batch was stopped first.</p>\n"
+                + " not checked:</b> the batch was stopped before them.</p>\n"
                 + list_html(unchecked, shown);
     if (!stopped.empty())
         html +=
@@ -292,7 +292,7 @@ std::string html_missing(const BatchResult& batch) {
             + list_html(stopped, shown);
     if (html.empty()) return html;
     if (!unchecked.empty() || !stopped.empty())
-        html += "<p><button type=\"button\" data-lost=\"true\">Show all of them</button></p>";
+        html += "<p><button type=\"button\" data-lost=\"true\">Show all</button></p>";
     return "<div class=\"missing\" role=\"note\">\n" + html + "</div>\n";
 }
 
@@ -316,7 +316,7 @@ std::string html_batch_summary(const BatchResult& batch) {
            + fact_row(
                "checking took",
                duration_text(sum_of(batch, &ProgramResult::seconds))
-                   + ", all programs together; stored results count with their original time");
+                   + ", summed over all programs; stored results count with their original time");
 }
 
 std::string html_rules(const BatchResult& batch) {
@@ -345,7 +345,7 @@ std::string html_skipped(const BatchResult& batch) {
 
 namespace {
 
-/// The first findings of a program, the worst severities before others.
+/// The first `most` findings of a program, highest severity first.
 std::vector<const StoredFinding*> worst_findings(const ProgramResult& program, size_t most) {
     std::vector<const StoredFinding*> findings;
     for (const StoredFinding& finding : program.findings) findings.push_back(&finding);

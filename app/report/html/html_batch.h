@@ -8,61 +8,61 @@
 
 namespace app {
 
-/// A batch as one HTML file that needs nothing else: no network, no other file.
+/// A batch as one self-contained HTML file that needs no network and no other file.
 ///
-/// Result: what became of it, what is missing said first; a table of all programs, each of which
-///         opens; rules over all programs; skipped files. Under 20 MB for 10,000 programs.
+/// Result: the outcome, with missing programs first; a table of all programs, each of which can be
+///         opened; rules over all programs; skipped files. Under 20 MB for 10,000 programs.
 std::string batch_html_report(const BatchResult& batch);
 
 /// All programs of a batch as columns, for the script of its page: a JSON object. Programs that
-/// were not checked stand behind the others.
+/// were not checked come last.
 ///
-/// Units:  um, ms and mm3, as integers; a lower bound is rounded down and an upper one up.
-/// Result: at most some 18 MB, however much was found: of a program that found very much, only
-///         some of its worst findings are there; `tally` counts all.
-/// Cost:   linear; each different text once.
+/// Units:  um, ms and mm3, as integers; lower bounds are rounded down and upper bounds up.
+/// Result: at most about 18 MB, however many findings there are: of a program with very many, only
+///         some of the worst are included; `tally` counts all.
+/// Cost:   linear; each different text is stored once.
 std::string batch_columns_json(const BatchResult& batch);
 
-/// The folder that the paths of all programs begin with, with its slash; empty if there is none.
+/// The folder common to the paths of all programs, with its slash; empty if there is none.
 std::string common_folder(const BatchResult& batch);
 
 /// "125 programs in parts/".
 std::string batch_title(const BatchResult& batch);
 
-/// What became of a batch, in some words: "3 of 125 programs were not checked to their end".
+/// The outcome of a batch in a few words: "3 of 125 programs were not checked to their end".
 std::string batch_outcome_text(const BatchResult& batch);
 
-/// The class by which the page colours that.
+/// CSS class that colours the outcome.
 const char* batch_outcome_class(const BatchResult& batch);
 
-/// What is missing, before anything else is said: programs that were not checked, or not to their
-/// end. As HTML; empty when all is there.
+/// HTML that lists programs that were not checked, or not to their end, for the top of the page;
+/// empty if all were checked.
 std::string html_missing(const BatchResult& batch);
 
-/// A button for each outcome that some program has, with their number, as HTML.
+/// HTML with a button for each outcome that occurs and its number of programs.
 std::string html_outcomes(const BatchResult& batch);
 
-/// What is said of a batch as a whole, as rows of an HTML table.
+/// Facts about the batch as a whole, as rows of an HTML table.
 std::string html_batch_summary(const BatchResult& batch);
 
-/// The rules that were found, as rows of an HTML table, each with a button.
+/// The rules with findings, as rows of an HTML table, each with a button.
 std::string html_rules(const BatchResult& batch);
 
-/// The files that were skipped, by the reason, as HTML.
+/// The skipped files as HTML, grouped by reason.
 std::string html_skipped(const BatchResult& batch);
 
-/// The findings of many programs as columns, one program behind the other.
+/// The findings of many programs as columns, one program after the other.
 class FindingColumns {
 public:
-    /// Texts go into a table that others use as well. At most so many findings of each program are
-    /// kept, the worst severities before others.
+    /// Stores texts in `texts`, which others may share. Keeps at most `most` findings of each
+    /// program, highest severity first.
     FindingColumns(TextTable& texts, size_t most) : texts_(texts), most_(most) {}
 
     void add(const ProgramResult& program);
 
-    /// A JSON object. `count` says how many of each program there are; `tally` has rule, severity
-    /// and number for each kind of finding of each program, `kinds` how many of these it has: they
-    /// count all findings.
+    /// A JSON object. `count`: number of findings kept for each program. `tally`: rule, severity
+    /// and number for each kind of finding of each program, counting all findings; `kinds`: number
+    /// of kinds for each program.
     std::string json() const;
 
 private:
@@ -76,10 +76,10 @@ private:
     std::vector<int64_t> tally_;
 };
 
-/// The names of two bodies as a page shows them; empty if there are none.
+/// The names of two bodies as the page shows them; empty if there are none.
 std::string pair_name(const std::array<std::string, 2>& pair);
 
-/// The number of a text of any bytes and any length in a table, as a page shows it.
+/// The index in the table of a text as the page shows it. Accepts any bytes and any length.
 int64_t shown_text(TextTable& texts, const std::string& text);
 
 } // namespace app

@@ -15,7 +15,7 @@ namespace {
 using viewer::FindingGroup;
 using viewer::FindingStretch;
 
-constexpr size_t most_places = 12; // of a card; the table has them all
+constexpr size_t most_places = 12; // per card; the table of blocks has all
 
 const BlockView* view_of(const ReportViews& views, size_t block) {
     for (const BlockView& view : views.views)
@@ -23,7 +23,7 @@ const BlockView* view_of(const ReportViews& views, size_t block) {
     return nullptr;
 }
 
-/// "line 23", or "O1000.nc, line 23" in a subprogram's file.
+/// "line 23"; in a subprogram's file "O1000.nc, line 23".
 std::string line_of(const CheckedBlock& block) {
     const std::string line = fmt::format("line {}", block.line);
     return block.file.empty() ? line : html_text(block.file) + ", " + line;
@@ -99,7 +99,7 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
     return card + places_of(run, group) + "</article>\n";
 }
 
-/// The block that comes nearest, where nothing was found of any.
+/// Card of the block with the least margin, for a program without findings.
 std::string tightest_card(const CheckRun& run, const ReportViews& views) {
     const CheckedBlock* nearest = nearest_block(run);
     if (!nearest) return "";
@@ -150,7 +150,7 @@ std::string html_cards(const CheckRun& run, const ReportViews& views) {
     std::string cards;
     const auto groups = finding_groups(run);
     for (const FindingGroup& group : groups) cards += card_of(run, group, views);
-    if (groups.empty()) cards = R"(<p class="none">Nothing was found.</p>)";
+    if (groups.empty()) cards = R"(<p class="none">No findings.</p>)";
     const bool has_block = std::any_of(groups.begin(), groups.end(),
                                        [](const auto& group) { return !group.stretches.empty(); });
     return has_block ? cards : cards + tightest_card(run, views);

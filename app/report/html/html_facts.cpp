@@ -42,7 +42,8 @@ std::string tightest_text(const CheckRun& run) {
                        core::value_of(block->block), block->line);
 }
 
-/// The widest interval of all pairs that decide a block, mm; empty if none was measured.
+/// The widest interval between bounds of a deciding pair in any block, mm; empty if none was
+/// measured.
 std::optional<double> widest_interval(const CheckRun& run) {
     std::optional<double> widest;
     for (const CheckedBlock& block : run.blocks) {

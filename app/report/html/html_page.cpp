@@ -59,7 +59,7 @@ std::string declarations(render::ColorScheme theme) {
         const render::Color color = render::color(theme, variable.role);
         text += fmt::format("--{}:#{:02x}{:02x}{:02x};", variable.name, color.r, color.g, color.b);
     }
-    // Yellow letters on white cannot be read.
+    // Yellow letters are unreadable on white.
     const render::Color near = render::color(theme, Role::near);
     const render::Color letters =
         theme == render::ColorScheme::light ? render::mixed(near, {0, 0, 0}, 0.4) : near;

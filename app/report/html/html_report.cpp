@@ -17,7 +17,7 @@
 namespace app {
 namespace {
 
-/// The class by which the page colours the outcome.
+/// CSS class that colours the outcome.
 const char* verdict_of(const CheckRun& run) {
     const bool is_worse = run.stopped || run.has_errors();
     return run.verdict == core::Verdict::clear && is_worse ? "error" : core::name_of(run.verdict);
@@ -41,7 +41,7 @@ std::string notice_of(const ReportViews& views) {
     };
     if (!views.no_pictures.empty()) say("There are no pictures: " + views.no_pictures);
     if (view_bundle().empty())
-        say("This Feeler was built without its 3D view (npm was not there): the report has "
+        say("This Feeler was built without the 3D view (npm was missing): the report has "
             "pictures only.");
     return notice;
 }
@@ -79,7 +79,7 @@ std::string html_report(const CheckRun& run, const ReportViews& views) {
 
 namespace {
 
-/// The pairs that decide blocks, with what they must keep.
+/// The pairs that decide blocks, with their minimum clearances.
 class PairTable {
 public:
     explicit PairTable(const core::Setup& setup) : setup_(setup) {}
@@ -151,7 +151,7 @@ std::string blocks_json(const CheckRun& run) {
     TextTable texts, files;
     PairTable pairs(run.setup);
     int64_t last_time = 0, last_removed = 0;
-    double removed = 0.0; // so far: rounded as a whole, so that small pieces add up
+    double removed = 0.0; // running total: rounding this keeps small amounts
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         columns.line.add(block.line);

@@ -10,22 +10,22 @@
 
 namespace app {
 
-/// A text of any bytes as it may stand in HTML, between tags and in quoted attributes: UTF-8, no
-/// control characters, nothing that a browser would read as more than text.
+/// A text of any bytes, escaped for HTML between tags and in quoted attributes: valid UTF-8, no
+/// control characters, no markup.
 std::string html_text(std::string_view text);
 
-/// A string of JSON of any bytes, quotes included, that nothing ends early in a `script` element.
+/// A text of any bytes as a quoted JSON string that is safe inside a `script` element.
 std::string script_string(std::string_view text);
 
-/// Bytes by 64 characters, as data URIs have them.
+/// Base64, as in data URIs.
 std::string base64(std::string_view bytes);
 
-/// The bounds of a clearance as "1.999 to 2.003 mm", as "1.999 mm" where they are a um apart at
-/// most, or "1.999 mm or more" where no upper one is known. An upper one that is less than what
-/// must be kept is never shown as that.
+/// The bounds of a clearance as "1.999 to 2.003 mm", as "1.999 mm" if they differ by at most one
+/// um, or "1.999 mm or more" without an upper bound. An upper bound below the minimum clearance
+/// `keep` is never rounded up to it.
 std::string bounds_text(double lower, std::optional<double> upper, double keep);
 
-/// Numbers of which many follow that are the same, as JSON: "[value,count,value,count,...]".
+/// Run-length encoded numbers, as JSON: "[value,count,value,count,...]".
 class NumberRuns {
 public:
     void add(int64_t value);
@@ -39,7 +39,7 @@ private:
     std::vector<Run> runs_;
 };
 
-/// The same of the steps from each number to the next, the first one from 0.
+/// Run-length encoded differences between consecutive numbers; the first is relative to 0.
 class StepRuns {
 public:
     void add(int64_t value) {
@@ -59,7 +59,7 @@ std::string number_array(std::span<const int64_t> numbers);
 /// A JSON array of strings, as script_string writes them.
 std::string string_array(std::span<const std::string> texts);
 
-/// Each different text once, and where it is in the table.
+/// Stores each different text once and gives its index.
 class TextTable {
 public:
     int64_t index_of(const std::string& text);
@@ -70,16 +70,16 @@ private:
     std::vector<std::string> texts_;
 };
 
-/// What is certainly kept, as whole um, where that many mm are known to be.
+/// A length in whole um, rounded down as by core::units_below.
 int64_t um_below(double mm);
 
-/// The same of a clearance, which is never below 0: what overlaps has none.
+/// As um_below for a clearance, but at least 0, the clearance of overlapping bodies.
 int64_t clearance_um(double lower);
 
-/// Whole um that are certainly no less than that many mm.
+/// A length in whole um, rounded up as by core::units_above.
 int64_t um_above(double mm);
 
-/// How many steps a number is, rounded.
+/// The number of steps in a value, rounded to the nearest.
 int64_t steps_of(double value, double step);
 
 } // namespace app

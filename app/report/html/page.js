@@ -1,4 +1,5 @@
-// The page: joins findings, view, chart and table. A block chosen in one is shown in all.
+// The page of one program: connects findings, view, chart and table. A block selected in one is
+// shown in all.
 
 function captionOf(blocks, i) {
   const words = ["Block " + i, "line " + lineText(blocks, i), blocks.texts[blocks.text[i]]];
@@ -9,13 +10,13 @@ function captionOf(blocks, i) {
   return words.join(" \u00b7 ");
 }
 
-/** The picture of a block, in the card that has it. */
+/** The picture of a block, if a card has one. */
 function pictureOf(block) {
   const image = document.querySelector('.shot[data-block="' + block + '"] img');
   return image ? image.src : "";
 }
 
-/** The 3D view, or the pictures where there is no WebGL; null where there is neither. */
+/** The 3D view, or the pictures without WebGL; null if there is neither. */
 function makeView(panel, data) {
   const stage = panel.querySelector(".stage"), buttons = panel.querySelector(".buttons");
   const known = new Map(data.views.map((view) => [view.block, view.scene]));

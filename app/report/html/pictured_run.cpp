@@ -51,7 +51,7 @@ std::string numbers(const core::Vec3& p) {
     return number(p.x) + "," + number(p.y) + "," + number(p.z);
 }
 
-/// Its three rows.
+/// The three rows of the matrix.
 std::string numbers(const core::Transform& transform) {
     std::string text;
     for (int row = 0; row < 3; ++row) {
@@ -65,11 +65,11 @@ std::string numbers(const core::Transform& transform) {
 template <typename Number>
 void append(std::string& bytes, Number value) {
     char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value); // browsers and all machines that Feeler runs on agree
+    std::memcpy(raw, &value, sizeof value); // little-endian, as in browsers
     bytes.append(raw, sizeof value);
 }
 
-/// A piece of the path that is drawn in one way.
+/// A piece of the path drawn in one style.
 struct Stretch {
     bool rapid = false, current = false;
     std::vector<std::string> places;
@@ -80,7 +80,7 @@ std::string json_of(const Stretch& stretch) {
                        stretch.current, fmt::join(stretch.places, ","));
 }
 
-/// The way of the tip, with the pieces of a block by themselves.
+/// The path of the tool tip, with the pieces of the given block separate.
 std::string path_json(const render::ToolPath& path, uint32_t block) {
     std::vector<std::string> pieces;
     Stretch stretch;
@@ -126,14 +126,14 @@ std::string mesh_json(const render::TriangleMesh& mesh) {
 }
 
 struct SceneWriter::State {
-    /// The number of a mesh; empty when nothing is left of it.
+    /// The index of a mesh; empty if the mesh has no triangles left.
     std::optional<size_t> mesh_of(const render::SharedMesh& mesh);
     std::optional<size_t> stock_of(const render::StockBricks& bricks);
     std::optional<size_t> put(const render::TriangleMesh& mesh);
     std::string bodies_json(const render::Scene& scene);
 
     std::vector<std::string> meshes;
-    std::vector<render::SharedMesh> kept; // so that no other mesh gets their addresses
+    std::vector<render::SharedMesh> kept; // keeps their addresses from being reused
     std::map<const render::TriangleMesh*, std::optional<size_t>> known;
     std::vector<std::pair<render::StockBricks, std::optional<size_t>>> stocks;
 };
@@ -221,7 +221,7 @@ constexpr size_t most_views = 12;
 constexpr render::Viewport picture_size{600, 400};
 constexpr int picture_quality = 82;
 
-/// What draws without a window.
+/// Renders without a window.
 struct Camera {
     render::Offscreen context;
     render::Renderer renderer;
@@ -240,7 +240,7 @@ struct Camera {
     }
 };
 
-/// A program that has been run to its end, as the window would show it.
+/// A program that has run to its end, in the state that the window would show.
 struct Stage {
     WorkerSession session{[] { return false; }, [] { return false; }};
     ViewModel model;
@@ -254,7 +254,8 @@ struct Stage {
         return {};
     }
 
-    /// Stands at the moment at which a block comes nearest, and looks there.
+    /// Moves to the time at which the given block has its least clearance, and aims the camera at
+    /// the witness.
     void go_to(size_t block) {
         viewer::go_to_witness(model, block);
         session.show({block, model.cursor.share >= 1.0});
@@ -265,7 +266,7 @@ struct Stage {
         model.camera = viewer::witness_camera(model, picture_size);
     }
 
-    /// What is seen there, with as much of the path as tells how the tool gets there.
+    /// The scene at that time, with only the nearby part of the path.
     render::Scene scene() const {
         render::Scene scene = viewer::scene_of(model);
         if (scene.path && scene.current_block)
@@ -303,7 +304,7 @@ core::Result<CheckRun> run_pictured_check(const CheckJob& job, ReportViews& view
     std::optional<CheckRun> judged;
     CheckJob recorded = job;
     if (job.engine == Engine::coprocessor) {
-        // A record has the exact engine's places; they are the same.
+        // A recorded run measures with the exact engine; its poses are valid for every engine.
         FEELER_TRY(judged, run_check(job));
         if (judged->stopped) return *std::move(judged);
         recorded.engine = Engine::exact;

@@ -17,21 +17,21 @@ struct CheckJob;
 struct CheckRun;
 struct ReportViews;
 
-/// As run_check, and adds what a report shows of the worst blocks: pictures, if there is OpenGL,
-/// and scenes. The program is run once; places are had again from the record.
+/// As run_check, and adds what a report shows of the worst blocks: pictures, if OpenGL works, and
+/// scenes. Runs the program once; poses come from the record.
 ///
 /// Errors: as run_check.
-/// Cost:   some 0.2 s for each picture, on top of the check.
+/// Cost:   about 0.2 s per picture, in addition to the check.
 core::Result<CheckRun> run_pictured_check(const CheckJob& job, ReportViews& views);
 
-/// Writes scenes for the 3D view of a page. What several of them share is written once.
+/// Writes scenes for the 3D view of a page. Meshes shared by several scenes are written once.
 class SceneWriter {
 public:
     SceneWriter();
     ~SceneWriter();
 
-    /// A JSON object: bodies with their places, the path, the current block's by itself, the
-    /// witness, the camera. Bodies of the machine are left out, unless they are one of the pair.
+    /// A JSON object: bodies with their poses, the path, that of the current block separately, the
+    /// witness, the camera. Machine bodies are omitted unless they belong to the pair.
     ///
     /// Frame: that of the stock, mm.
     std::string add(const render::Scene& scene, const render::Camera& camera);
@@ -44,8 +44,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// A mesh as a JSON object: places as 16-bit steps across its box, normals and tints as 8-bit
-/// numbers, corners, all in one base64 text.
+/// A mesh as a JSON object: vertex positions as 16-bit steps across its box, normals and tints as
+/// 8-bit numbers, and triangle indices, all in one base64 text.
 std::string mesh_json(const render::TriangleMesh& mesh);
 
 } // namespace app

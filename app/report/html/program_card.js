@@ -1,8 +1,8 @@
-// What is known of one program.
+// The card of one program.
 
-const mostPlaces = 300; // of one finding
+const mostPlaces = 300; // listed per finding
 
-/** An element with its class and what is in it. */
+/** An element with a class and content. */
 function make(tag, name, ...inside) {
   const made = document.createElement(tag);
   if (name) made.className = name;
@@ -10,7 +10,7 @@ function make(tag, name, ...inside) {
   return made;
 }
 
-/** "4, 7\u20139 and 3 more": the numbers in order, the first ranges of them. */
+/** "4, 7\u20139 and more": the sorted numbers as ranges, at most twelve. */
 function rangesText(numbers) {
   const ranges = [], sorted = [...new Set(numbers)].sort((a, b) => a - b);
   for (const number of sorted) {
@@ -21,7 +21,7 @@ function rangesText(numbers) {
   return shown.join(", ") + (ranges.length > shown.length ? " and more" : "");
 }
 
-/** Findings of a program that say the same of several blocks: lists of their numbers. */
+/** Groups findings of a program that are equal except for their block: lists of indices. */
 function findingGroups(findings, i) {
   const { severity, rule, message, cure, pair, file } = findings, groups = new Map();
   for (let k = findings.starts[i]; k < findings.starts[i + 1]; ++k) {
@@ -60,8 +60,8 @@ function findingsPart(programs, i) {
   const all = programs.errors[i] + programs.warnings[i] + programs.notes[i], kept = findings.starts[i + 1] - findings.starts[i];
   const part = make("div", "", make("h4", "", "Findings"),
     make("div", "cards", ...groups.map((group) => findingCard(programs, group))));
-  if (all === 0) part.append(make("p", "notice", programs.outcome[i] < firstLost ? "None." : "None up to there."));
-  if (all > kept) part.append(make("p", "notice", "and " + (all - kept) + " more, which a check of this program alone names"));
+  if (all === 0) part.append(make("p", "notice", programs.outcome[i] < firstLost ? "None." : "None up to that point."));
+  if (all > kept) part.append(make("p", "notice", "and " + (all - kept) + " more; check this program alone to list them"));
   return part;
 }
 
@@ -119,7 +119,7 @@ function cardHeader(programs, i) {
 function programCard(programs, i) {
   const card = make("article", "program", cardHeader(programs, i));
   if (programs.outcome[i] === outcomes.length - 1) {
-    card.append(make("p", "notice", "This program was not checked: the batch was stopped first."), commandPart(programs, i));
+    card.append(make("p", "notice", "This program was not checked: the batch was stopped before it."), commandPart(programs, i));
     return card;
   }
   card.append(...stoppedPart(programs, i), findingsPart(programs, i), factsPart(programs, i),

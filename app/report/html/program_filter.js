@@ -1,12 +1,12 @@
-// Which programs are shown, and in which order.
+// Filter and order of the table of programs.
 
-/** Whether a text has the word, for each text of the batch. */
+/** For each text of the batch, whether it contains the word. */
 function textsWith(programs, word) {
   programs.lowered ||= programs.texts.map((text) => text.toLowerCase());
   return programs.lowered.map((text) => text.includes(word));
 }
 
-/** A word as a question about a program: its name, verdict, rules, and what it says of what was found. */
+/** Predicate on programs for a word: matches name, verdict, rules and the texts of findings. */
 function programQuestion(word, programs) {
   const wanted = word.toLowerCase(), has = (text) => text.toLowerCase().includes(wanted);
   const texts = textsWith(programs, wanted), rules = programs.findings.rules.map(has);
@@ -23,7 +23,7 @@ function programQuestion(word, programs) {
   };
 }
 
-/** The programs that pass: all words; "all", "lost", "bad" or the number of an outcome; a rule, "": any. */
+/** The programs that match all words; `outcome` is "all", "lost", "bad" or a number; rule "" matches any. */
 function passedPrograms(programs, words, outcome, rule) {
   const questions = words.split(/\s+/).filter(Boolean).map((word) => programQuestion(word, programs));
   if (outcome === "lost") questions.push((i) => programs.outcome[i] >= firstLost);
@@ -38,7 +38,7 @@ function passedPrograms(programs, words, outcome, rule) {
   return passed;
 }
 
-/** For each program its place among all names, so that 9 comes before 10. */
+/** The rank of each program in natural order of names: 9 before 10. */
 function nameRanks(programs) {
   const { compare } = new Intl.Collator("en", { numeric: true });
   const ranks = new Int32Array(programs.count);
@@ -47,10 +47,10 @@ function nameRanks(programs) {
   return ranks;
 }
 
-/** What a click on a column asks for first: names from A on, small margins, much of all else. */
+/** Columns that sort in ascending order at the first click: names from A, small margins. */
 const startsLow = ["program", "margin"];
 
-/** Sorts programs by a column; those of which it says nothing come last. */
+/** Sorts programs by a column; programs without a value come last. */
 function sortedPrograms(programs, passed, column, isDown) {
   programs.ranks ||= nameRanks(programs);
   const keys = column === "program" ? programs.ranks : programs[column], way = isDown ? -1 : 1;

@@ -18,7 +18,7 @@ function nearestText(programs, i) {
   return programs.pair[i] < 0 ? "" : programs.texts[programs.pair[i]] + ", " + programs.line[i];
 }
 
-/** A number of the kind that had better be zero. */
+/** A count that should be zero; `alarm` is the class if it is not. */
 function countCell(count, isKnown, alarm) {
   return cell(isKnown ? String(count) : "", "right " + (count > 0 ? alarm : "zero"));
 }

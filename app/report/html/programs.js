@@ -1,9 +1,9 @@
-// The programs of a batch and what was found in them, unpacked once.
+// The programs of a batch and their findings, unpacked once.
 
 const outcomes = ["clear", "undecided", "errors", "violation", "collision", "stopped", "not run", "not checked"];
-const firstLost = 5; // from here on a program was not checked to its end
+const firstLost = 5; // outcomes from here on: not checked to the end
 
-/** For each entry where its part of another column begins, and where the last one ends. */
+/** Start indices of consecutive groups with these counts, and the end of the last one. */
 function startsOf(counts) {
   const starts = new Int32Array(counts.length + 1);
   for (let i = 0; i < counts.length; ++i) starts[i + 1] = starts[i] + counts[i];
@@ -24,7 +24,7 @@ function unpackFindings(data, programs) {
   };
 }
 
-/** What was found in a program, all of it: [{ rule, severity, count }]. */
+/** The number of all findings of a program by rule: [{ rule, severity, count }]. */
 function talliesOf(findings, i) {
   const tallies = [];
   for (let k = findings.kinds[i]; k < findings.kinds[i + 1]; ++k)
@@ -38,8 +38,8 @@ function countsOf(findings, programs, severity) {
 }
 
 /**
- * Units: um, ms, mm3. `pair` is -1 where nothing came near, `margin` then NaN. So are the numbers of a
- * program that was not checked, but for its outcome.
+ * Units: um, ms, mm3. `pair` is -1 if no clearance was measured; `margin` is then NaN. All numbers of a program
+ * that was not checked are NaN, except its outcome.
  */
 function unpackPrograms(data) {
   const count = data.count, findings = unpackFindings(data.findings, count);
@@ -62,13 +62,13 @@ function unpackPrograms(data) {
   };
 }
 
-/** A path as folder and name, the folder without what all have in common. */
+/** Splits a path into folder, relative to the common folder, and name. */
 function partsOf(programs, i) {
   const path = programs.path[i].slice(programs.folder.length), at = path.lastIndexOf("/") + 1;
   return { folder: path.slice(0, at), name: path.slice(at) };
 }
 
-/** How an outcome is coloured. */
+/** CSS class that colours an outcome. */
 function toneOf(outcome) {
   return outcome >= firstLost ? "lost" : ["clear", "undecided"][outcome] || "";
 }

@@ -1,8 +1,8 @@
-// A table of many rows. Only those in sight exist, so that its length does not count.
+// A table for any number of rows: only visible rows exist.
 
 const rowHeight = 26;
 const headHeight = 30;
-const tallest = 8e6; // px: browsers do not lay out much more
+const tallest = 8e6; // px: browsers lay out little more
 const mostPrinted = 400;
 
 function cell(text, name) {
@@ -23,7 +23,7 @@ function row(state, cells) {
 }
 
 class Table {
-  /** `rowOf(i)` makes the row of an entry, `onChoose(i, isClick)` is told of clicks and keys. */
+  /** `rowOf(i)` makes the row of an entry; `onChoose(i, isClick)` is called on clicks and keys. */
   constructor(grid, rowOf, onChoose) {
     const shown = new Int32Array(0); // entries, in the order of their rows
     Object.assign(this, { grid, rowOf, onChoose, shown, chosen: -1 });
@@ -40,10 +40,10 @@ class Table {
     addEventListener("afterprint", () => this.fromPaper());
   }
 
-  /** Rows that fit into sight. */
+  /** Number of visible rows. */
   room() { return Math.max(1, Math.floor((this.grid.clientHeight - headHeight) / rowHeight)); }
   height() { return Math.min(this.shown.length * rowHeight, tallest); }
-  /** Rows to a pixel of scrolling: beyond `tallest` a pixel is more than a pixel of rows. */
+  /** Rows per pixel of scrolling; larger than 1 / rowHeight if the table is higher than `tallest`. */
   ratio() {
     const way = this.height() - this.room() * rowHeight;
     return way > 0 ? (this.shown.length - this.room()) / way : 0;
@@ -76,7 +76,7 @@ class Table {
     this.draw();
   }
 
-  /** Marks an entry and brings its row into sight, if it is shown. */
+  /** Marks an entry and scrolls to its row, if it is shown. */
   choose(entry) {
     this.chosen = entry;
     const at = this.shown.indexOf(entry), ratio = this.ratio();
@@ -94,11 +94,11 @@ class Table {
     const step = steps[event.key];
     if (step === undefined || shown.length === 0) return;
     event.preventDefault();
-    const next = at < 0 ? 0 : at + step; // where none is chosen, the first
+    const next = at < 0 ? 0 : at + step; // the first, if none is chosen
     this.onChoose(shown[Math.max(0, Math.min(shown.length - 1, next))]);
   }
 
-  /** On paper there is nothing to scroll: the first rows stand there, and how many are missing. */
+  /** Paper does not scroll: prints the first rows and the number of the others. */
   toPaper() {
     const { rows, shown } = this;
     rows.replaceChildren(...Array.from(shown.slice(0, mostPrinted), this.rowOf));

@@ -1,4 +1,4 @@
-// What each tool does with its time.
+// Time of each tool by kind of motion.
 
 function addToolTimes(body, blocks) {
   const tools = new Map();

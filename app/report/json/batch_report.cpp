@@ -19,7 +19,7 @@ constexpr const char* batch_column_names =
     "program,setup,sha256,dialect,verdict,status,errors,warnings,notes,blocks,cycle_time,removed,"
     "tightest_line,lower,upper,allowance,part,body,seconds,error\r\n";
 
-/// From `tightest_line` to `body`.
+/// The cells from `tightest_line` to `body`.
 std::string tightest_cells(const std::optional<Tightest>& tightest) {
     if (!tightest) return ",,,,,";
     return fmt::format("{},{},{},{},{},{}", tightest->line, tightest->lower,
@@ -50,7 +50,8 @@ std::string row_of(const ProgramResult& program) {
 } // namespace
 
 std::string batch_json_report(const BatchResult& batch) {
-    // The programs are texts already: to read them in again would cost more than to make them.
+    // The programs are JSON texts already: parsing them again would cost more than writing them
+    // did.
     std::string text =
         fmt::format("{{\"feeler\":\"{}\",\"schema\":1,\"status\":{},\n\"programs\":[", version,
                     status_of(batch));

@@ -39,8 +39,8 @@ void add_pair(Json& json, const CheckRun& run, const core::PairClearance& pair, 
         found ? Json::array({array_of(pair.on_tool), array_of(pair.on_body)}) : Json(nullptr);
 }
 
-/// A motion of which no pair came within the limit or had to be measured, or of which nothing can
-/// be said.
+/// For a motion without a measured pair: none came within the search limit, none had to be
+/// measured, or nothing is known.
 void add_no_pair(Json& json, const CheckRun& run, const core::BlockResult& result) {
     json["clearance"] = {{"lower", least_clearance(run.setup, result)}, {"upper", nullptr}};
     for (const char* key : {"allowance", "pair", "at", "witness"}) json[key] = nullptr;
@@ -108,7 +108,7 @@ Json statistics_json(const CheckRun& run) {
     Json json;
     json["points"] = run.points;
     json["lines"] = run.lines;
-    json["sphere_tests"] = 0; // this engine compares boxes and exact shapes instead
+    json["sphere_tests"] = 0; // this engine tests boxes and exact shapes instead
     json["point_tests"] = 0;
     json["model_bytes"] = run.memory;
     json["box_tests"] = run.statistics.box_tests;
@@ -152,7 +152,7 @@ Json saved_json(const SavedStock& saved) {
             {"lost_points", saved.lost}};
 }
 
-/// What is said of the program as a whole, before its blocks.
+/// Facts about the program as a whole, written before its blocks.
 Json heading_json(const CheckRun& run) {
     Json json;
     json["feeler"] = version;
@@ -171,14 +171,14 @@ Json heading_json(const CheckRun& run) {
     return json;
 }
 
-/// What is said after them.
+/// Part, saved stock and statistics, written after blocks and findings.
 void add_ending(Json& json, const CheckRun& run) {
     if (run.comparison) json["part"] = part_json(run);
     if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
     json["statistics"] = statistics_json(run);
 }
 
-// Programs hold bytes of any code page: what is no UTF-8 is replaced, never an exception.
+// Programs contain bytes of any code page: invalid UTF-8 is replaced, without an exception.
 std::string dumped(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -14,7 +14,7 @@ namespace {
 
 using core::Severity;
 
-constexpr int red = 31, green = 32, yellow = 33; // of ANSI terminals
+constexpr int red = 31, green = 32, yellow = 33; // ANSI colour codes
 
 int colour_of(Outcome outcome) {
     if (outcome == Outcome::clear) return green;
@@ -33,8 +33,8 @@ std::string nonzero_counts(const ProgramResult& result) {
     return text;
 }
 
-/// A line for each rule that was found, with its lines in the program and the message of its worst
-/// finding; the worst rule first.
+/// A line for each rule with findings: its line numbers and the message of its worst finding; the
+/// worst rule first.
 std::string rule_lines(const ProgramResult& result, const BatchStyle& style) {
     struct Group {
         const StoredFinding* worst;
@@ -73,7 +73,7 @@ std::string error_line(const ProgramResult& result) {
     return place_of(*result.error, result.program) + ": " + result.error->message;
 }
 
-/// The same below the line of the program, which need not be named again.
+/// The error for a line below that of the program: as error_line, but without the program's name.
 std::string own_error_line(const ProgramResult& result) {
     const StoredError& error = *result.error;
     const bool is_own = error.file.empty() || error.file == result.program;
@@ -118,7 +118,7 @@ std::string slowest_text(const BatchResult& batch) {
     return text;
 }
 
-/// The first lines of a list, or all of them.
+/// The first lines of a list; all of them if verbose.
 std::string list_text(const std::vector<std::string>& lines, const BatchStyle& style) {
     constexpr size_t shown = 10;
     const size_t most = style.verbose ? lines.size() : std::min(lines.size(), shown);
@@ -129,7 +129,7 @@ std::string list_text(const std::vector<std::string>& lines, const BatchStyle& s
     return text;
 }
 
-/// A line for each file that was skipped, or for each reason that many files share.
+/// A line for each skipped file, or for each reason that many files share.
 std::vector<std::string> skipped_lines(const BatchResult& batch, const BatchStyle& style) {
     constexpr size_t few = 3;
     std::vector<std::string> lines;
@@ -145,7 +145,7 @@ std::vector<std::string> skipped_lines(const BatchResult& batch, const BatchStyl
     return lines;
 }
 
-/// Programs that were not run to their end, and why; those that were not checked; what was skipped.
+/// Programs that stopped early, and why; programs that were not checked; skipped files.
 std::string missing_text(const BatchResult& batch, const BatchStyle& style) {
     std::vector<std::string> stopped, unchecked;
     for (const ProgramResult& program : batch.programs)
@@ -192,7 +192,7 @@ std::string batch_text(const BatchResult& batch, const BatchStyle& style) {
 
 namespace {
 
-/// Sorts errors first.
+/// Sort key that puts errors first.
 using Key = std::pair<int, std::string>;
 
 Key key_of(core::Severity severity, const std::string& rule) {

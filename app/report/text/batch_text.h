@@ -25,7 +25,7 @@ std::string batch_summary(const BatchResult& batch, double seconds, const BatchS
 /// All programs in order, and the summary without times.
 std::string batch_text(const BatchResult& batch, const BatchStyle& style);
 
-/// How often a rule was found, with one severity.
+/// The number of findings of a rule with one severity.
 struct RuleTally {
     core::Severity severity = core::Severity::off;
     std::string rule;
@@ -34,10 +34,10 @@ struct RuleTally {
     bool operator==(const RuleTally&) const = default;
 };
 
-/// Of one program; errors first, then by the names of the rules.
+/// Of one program; errors first, then by rule name.
 std::vector<RuleTally> rule_tallies(const ProgramResult& program);
 
-/// Of all programs, in the same order.
+/// Of all programs, in that order.
 std::vector<RuleTally> rule_tallies(const BatchResult& batch);
 
 /// Files that were skipped for one reason.
@@ -46,7 +46,7 @@ struct SkippedGroup {
     std::vector<std::string> files; // in their order
 };
 
-/// The reasons for which files were skipped: that of most files first.
+/// The skipped files by reason; the reason with most files first.
 std::vector<SkippedGroup> skipped_groups(const std::vector<SkippedFile>& skipped);
 
 } // namespace app

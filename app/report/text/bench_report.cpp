@@ -14,19 +14,19 @@ namespace {
 
 const char* const preface =
     "The tables behind the figures of Uddin and Yamazaki, Study of Distance Computation between "
-    "Objects Represented by Discrete Boundary Model (2010), and what the paper leaves out.";
+    "Objects Represented by Discrete Boundary Model (2010), and cases that the paper omits.";
 
 const char* const figures =
     "  Figures 6, 7, 8   table 1.1: error and time by mesh size, time by points\n"
     "  Figures 9, 10     table 1.2: tests and error by gap, at 0.5 mm\n";
 
 const char* const legend =
-    "gap: between the surfaces. distance: of the closest pair of points. tests and ms: of the "
-    "paper's engine, spheres with one point to a leaf. fast: our engine, ratio: how many times "
-    "faster it is. Times are CPU time of one query, without the building of trees and without a "
-    "first guess, the least of several runs.";
+    "gap: between the surfaces. distance: between the closest points. tests and ms: paper's "
+    "engine, a sphere tree with one point per leaf. fast: our engine; ratio: its speed-up. Times "
+    "are CPU times of one query without an initial guess, excluding the building of trees; best of "
+    "several runs.";
 
-/// What the paper counted on its spheres.
+/// The number of points that the paper gives for its spheres; empty for other mesh sizes.
 std::string paper_points(double mesh_size) {
     constexpr std::pair<double, int> counted[] = {
         {0.5, 47119}, {1.0, 11780}, {1.5, 5233}, {2.0, 2904}};
@@ -54,7 +54,7 @@ std::string means_text(const std::vector<BenchMeans>& means, bool with_the_paper
 std::string growth_text(const std::vector<BenchMeans>& means) {
     const LineFit fit = time_by_points(means);
     return wrapped(fmt::format("The paper's time grows linearly with the points: {:.1f} ns for "
-                               "each point and {:.3f} ms (R2 = {:.4f}).",
+                               "each point plus {:.3f} ms (R2 = {:.4f}).",
                                1e9 * fit.slope, 1e3 * fit.start, fit.r_squared),
                    2);
 }
@@ -108,10 +108,10 @@ std::string agreement_text(const std::vector<BenchTable>& tables) {
         }
     if (same == rows)
         return wrapped(fmt::format("Both engines found the same distance, to the last bit, in "
-                                   "all {} places.",
+                                   "all {} cases.",
                                    rows),
                        0);
-    return wrapped(fmt::format("THE ENGINES DISAGREE in {} of {} places: one of them is wrong.",
+    return wrapped(fmt::format("THE ENGINES DISAGREE in {} of {} cases: one of them is wrong.",
                                rows - same, rows),
                    0);
 }
@@ -177,9 +177,9 @@ std::string text_distance(const BodyPairDistance& found, const std::string& a, c
         text += "  distance      0: they touch or overlap\n";
     else
         text +=
-            fmt::format("  distance      {:.6f} mm, certainly between {} and {}\n", found.upper,
+            fmt::format("  distance      {:.6f} mm, guaranteed between {} and {}\n", found.upper,
                         core::clearance_at_least(found.lower, 9), core::at_most(found.upper, 9));
-    text += fmt::format("  scan points   {} mm apart at least, of {} and {} points\n",
+    text += fmt::format("  scan points   closest pair {} mm apart, of {} and {} points\n",
                         core::at_least(found.distance, 6), found.points_a, found.points_b);
     text += fmt::format("  nearest       ({:.4f}, {:.4f}, {:.4f}) and ({:.4f}, {:.4f}, {:.4f})",
                         found.on_a.x, found.on_a.y, found.on_a.z, found.on_b.x, found.on_b.y,

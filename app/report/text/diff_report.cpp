@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t few = 12; // blocks of a kind, unless all are wanted
+constexpr size_t few = 12; // blocks listed per kind without --blocks
 
 std::string known_clearance(const BlockMeasure& block) {
     if (!block.margin) return "not known";
@@ -26,8 +26,8 @@ std::string pair_text(const BlockMeasure& block) {
     return block.pair[0].empty() ? "" : trimmed(block.pair[0]) + " / " + trimmed(block.pair[1]);
 }
 
-/// "3.200 -> 0.120 mm, 3.080 nearer, holder / clamp-1". Between two pairs of bodies, which may have
-/// to keep different distances, margins are compared.
+/// "3.200 -> 0.120 mm, 3.080 nearer, holder / clamp-1". If the deciding pairs differ, so may their
+/// minimum clearances; then margins are compared.
 std::string change_text(const ChangedBlock& changed) {
     const BlockMeasure &was = changed.before, &is = changed.after;
     const double change = std::abs(changed.nearer);

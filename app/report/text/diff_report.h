@@ -14,13 +14,13 @@ namespace app {
 /// and resolved findings. `all` lists every block instead of the worst dozen.
 std::string diff_text(const ProgramDiff& diff, bool all);
 
-/// The same as one JSON object, schema 1, with every block.
+/// The differences as one JSON object, schema 1, with every block.
 std::string diff_json(const ProgramDiff& diff);
 
 /// "error near-miss, line 17: G0 X10.".
 std::string finding_line(const StoredFinding& finding);
 
-/// Rule, severity, line, message and so on of each, as the JSON of a program's result has them.
+/// The findings (rule, severity, line, message and so on) in the format of a program's JSON result.
 nlohmann::ordered_json findings_json(const std::vector<StoredFinding>& findings);
 
 } // namespace app

@@ -15,7 +15,7 @@
 namespace app {
 namespace {
 
-/// Findings that say the same of several blocks: the same rule about the same pair.
+/// Findings of several blocks with the same rule and the same pair.
 struct FindingGroup {
     const core::Finding* worst = nullptr;
     std::vector<uint32_t> lines;
@@ -72,7 +72,7 @@ std::string block_clearance(const CheckRun& run, const core::BlockResult& result
 }
 
 std::string blocks_text(const CheckRun& run) {
-    std::string text = " line move  tool   clearance mm near what         verdict   block\n";
+    std::string text = " line move  tool   clearance mm bodies            verdict   block\n";
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         if (result.motion == core::BlockMotion::none) continue;
@@ -135,7 +135,7 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
     return text + assumptions_text(run.assumptions, told);
 }
 
-/// Whether a text has a name that is not a part of another word.
+/// Whether a text contains the name as a whole word.
 bool has_word(const std::string& text, const std::string& name) {
     const auto ends_word = [&](size_t at) {
         return at >= text.size()
@@ -170,7 +170,7 @@ std::string text_report(const CheckRun& run, const TextOptions& options) {
 }
 
 std::string error_text(const core::Error& error) {
-    // Messages about a file as a whole name it themselves.
+    // Messages about a file as a whole contain its name.
     const bool is_named = error.where.line == 0 && has_word(error.message, error.file);
     std::string text = is_named ? std::string() : error.file;
     if (error.where.line > 0) text += fmt::format(":{}", error.where.line);

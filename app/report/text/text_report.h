@@ -14,10 +14,10 @@ struct CheckRun;
 /// Options of the text report.
 struct TextOptions {
     bool blocks = false;                // the table of all blocks that move
-    std::vector<std::string> told = {}; // assumptions that are on the screen already
+    std::vector<std::string> told = {}; // assumptions already shown on the terminal
 };
 
-/// The report of a check for a person at an 80-column terminal: findings first.
+/// The report of a check for an 80-column terminal: findings first.
 std::string text_report(const CheckRun& run, const TextOptions& options);
 
 /// The verdict of a run, or why there is none.

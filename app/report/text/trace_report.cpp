@@ -25,7 +25,7 @@ std::string_view direction_name(core::SpindleDirection direction) {
 
 struct Keys {
     JsonLine& json;
-    std::string& text; // that the line is part of
+    std::string& text; // receives the line
 
     template <typename Number>
     void add_number(std::string_view key, const std::optional<Number>& number) const {
@@ -164,7 +164,7 @@ void append_trace_json(const gcode::BlockCommands& block, std::string& text) {
 
 namespace {
 
-/// Whether a text stands in JSON as it is.
+/// Whether a text needs no escaping in JSON.
 bool is_plain(std::string_view text) {
     return std::all_of(text.begin(), text.end(),
                        [](char c) { return c >= ' ' && c < 0x7F && c != '"' && c != '\\'; });
@@ -243,8 +243,8 @@ void JsonLine::add_position(std::string_view key, const gcode::Position& positio
 
 namespace {
 
-constexpr uint64_t said_places = 10;     // of one message
-constexpr size_t most_messages = 10'000; // that are told from each other
+constexpr uint64_t said_places = 10;     // printed per message
+constexpr size_t most_messages = 10'000; // distinct messages that are counted
 
 } // namespace
 

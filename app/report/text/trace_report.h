@@ -11,15 +11,15 @@
 
 namespace app {
 
-/// Appends the commands of a block, one a line: `6: straight_feed x=20 y=10 feed=150`.
+/// Appends the commands of a block, one per line: `6: straight_feed x=20 y=10 feed=150`.
 void append_trace_text(const gcode::BlockCommands& block, std::string& text);
 
-/// Appends the commands of a block as JSON, one a line, keys as the design of the command line has
-/// them. Lengths and angles to the last bit; bytes that are no UTF-8 are replaced.
+/// Appends the commands of a block as JSON, one object per line. Lengths and angles are written to
+/// the last bit; invalid UTF-8 is replaced.
 void append_trace_json(const gcode::BlockCommands& block, std::string& text);
 
-/// Writes one JSON object at the end of a text, on one line, key by key. For what comes by the
-/// million: nothing is kept but the text.
+/// Appends one JSON object on one line to a text, key by key. Made for millions of objects: builds
+/// no tree.
 class JsonLine {
 public:
     explicit JsonLine(std::string& text) : text_(text) { text_ += '{'; }
@@ -35,7 +35,7 @@ public:
     /// A key whose value the caller appends to the text.
     void begin(std::string_view key);
 
-    /// Appends a number, null where it is not finite, as JSON has none such.
+    /// Appends a number; null if it is not finite, because JSON has no such numbers.
     void append(double value);
 
     void finish() { text_ += "}\n"; }
@@ -45,19 +45,19 @@ private:
     bool is_first_ = true;
 };
 
-/// What is said about the warnings of a run, so that one that comes at every line does not bury
-/// the others: the first ten places of each message, and how many more there were.
+/// Limits the printed warnings of a run, so that one repeated on every line does not bury the
+/// others: prints the first ten of each message, then the number of the rest.
 class WarningLog {
 public:
-    /// The line to print for a warning: `file:line:column: message`. Empty when it is only counted.
+    /// The line to print for a warning: `file:line:column: message`. Empty if it is only counted.
     std::string line_for(const gcode::Warning& warning, std::string_view file);
 
-    /// The lines to print at the end; empty when everything was said.
+    /// The lines to print at the end; empty if no warning was suppressed.
     std::string rest() const;
 
 private:
     std::map<std::string, uint64_t, std::less<>> counts_; // by message
-    uint64_t others_ = 0; // whose messages were too many to remember
+    uint64_t others_ = 0; // warnings beyond the limit of distinct messages
 };
 
 } // namespace app

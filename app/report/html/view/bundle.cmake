@@ -1,13 +1,13 @@
-# Makes the script of the 3D view a C++ source: cmake -D SOURCE=folder -D WORK=folder -D NPM=npm
-# -D OUTPUT=file.cpp -P bundle.cmake. Where npm or what it should fetch is missing, the script is
-# empty, and reports have pictures only: the build goes on.
+# Makes the script of the 3D view a C++ source: cmake -D SOURCE=folder -D WORK=folder -D NPM=npm -D
+# OUTPUT=file.cpp -P bundle.cmake. If npm or the packages are missing, the script is empty and
+# reports have pictures only; the build continues.
 cmake_minimum_required(VERSION 3.25)
 
-# A build without a network must not wait: npm gives up at once, and is ended after two minutes.
+# A build without a network must not hang: npm does not retry, and is killed after two minutes.
 function(bundle result)
   set(${result} "" PARENT_SCOPE)
   if(NOT NPM)
-    message("reports without a 3D view: there is no npm")
+    message("reports without a 3D view: npm not found")
     return()
   endif()
   file(GLOB sources ${SOURCE}/*.js ${SOURCE}/package.json ${SOURCE}/package-lock.json)

@@ -1,4 +1,4 @@
-// From what Feeler wrote of a block to a scene of three.js. Frame: that of the stock, Z up, mm.
+// Builds a three.js scene from the data of a block. Frame: that of the stock, Z up, mm.
 
 import {
   BufferAttribute, BufferGeometry, CylinderGeometry, DoubleSide, EdgesGeometry, Group, Line, LineBasicMaterial,
@@ -12,8 +12,8 @@ function bytesOf(text) {
 }
 
 /**
- * A mesh as it was written: places as steps of 16 bits across a box, normals and tints of 8 bits,
- * corners of 16 or 32 bits.
+ * Unpacks a mesh: positions as 16-bit steps across a box, normals and tints of 8 bits, triangle indices of
+ * 16 or 32 bits.
  */
 export function geometryOf(mesh) {
   const count = mesh.count, bytes = bytesOf(mesh.data);
@@ -37,7 +37,7 @@ export function geometryOf(mesh) {
   return geometry;
 }
 
-/** The colours of raw and cut stock, corner by corner. */
+/** Sets the colour of each vertex: raw or cut stock. */
 function tint(geometry, raw, cut) {
   const tints = geometry.userData.tints, colors = new Float32Array(3 * tints.length);
   for (let i = 0; i < tints.length; ++i) (tints[i] ? cut : raw).toArray(colors, 3 * i);
@@ -50,7 +50,7 @@ function bodyOf(body, geometry, color) {
   const opacity = seeThrough[body.role] || 1;
   const material = new MeshStandardMaterial({
     roughness: 0.8, metalness: 0, side: DoubleSide, transparent: opacity < 1, opacity, depthWrite: opacity === 1,
-    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, // so that edges lie before faces
+    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, // so that edges are drawn in front of faces
   });
   if (body.role === "stock") {
     tint(geometry, color("stock"), color("stock-cut"));
@@ -76,7 +76,7 @@ const creaseDegrees = 30;
 
 function edgesOf(body, geometry, color) {
   geometry.userData.edges ||= new EdgesGeometry(geometry, creaseDegrees);
-  const opacity = body.state ? 0.9 : body.role === "stock" ? 0.2 : 0.4; // a coarse stock has edges that are none
+  const opacity = body.state ? 0.9 : body.role === "stock" ? 0.2 : 0.4; // a coarse stock model has spurious edges
   const material = new LineBasicMaterial({ color: color(body.state || "edge"), transparent: true, opacity });
   return new LineSegments(geometry.userData.edges, material);
 }
@@ -92,7 +92,7 @@ function pathOf(stretch, color) {
   return line.computeLineDistances();
 }
 
-/** The nearest pair: two balls and a rod, as large on the screen from near and far. */
+/** The nearest pair: two balls and a rod, with a constant size on the screen. */
 export class WitnessMark extends Group {
   constructor(ends, color) {
     super();

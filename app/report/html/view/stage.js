@@ -1,4 +1,4 @@
-// Camera, light and hands: draws only when something has changed.
+// Camera, light and input. Draws only after a change.
 
 import { Box3, Color, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -6,7 +6,7 @@ import { geometryOf, sceneOf } from "./scene.js";
 
 const directions = { Iso: [1, -1, 0.9], Top: [0, -1e-4, 1], Front: [0, -1, 0], Right: [1, 0, 0], Back: [0, 1, 0], Left: [-1, 0, 0] };
 
-/** A renderer, or null where there is no WebGL. */
+/** A renderer; null without WebGL. */
 function makeRenderer() {
   try {
     return new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -68,7 +68,7 @@ class Stage {
     this.draw();
   }
 
-  /** The whole scene from a side; the pair stays what the view turns about. */
+  /** Shows the whole scene from a side. */
   lookFrom(direction) {
     const ball = new Box3().setFromObject(this.shown.group).getBoundingSphere({ center: new Vector3(), radius: 0 });
     const away = new Vector3(...direction).normalize().multiplyScalar((1.1 * ball.radius) / Math.sin((15 * Math.PI) / 180));
@@ -131,7 +131,7 @@ class Stage {
   }
 }
 
-/** The view with its buttons; null without WebGL. `colorOf(name)` is a colour of the page. */
+/** The view with its buttons; null without WebGL. `colorOf(name)` gives a colour of the page. */
 export function makeStage(element, buttons, meshes, colorOf) {
   const renderer = makeRenderer();
   if (!renderer) return null;
