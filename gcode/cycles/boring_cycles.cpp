@@ -28,7 +28,7 @@ void warn_of_direction(Drilling& hole) {
         Severity::note);
 }
 
-/// Shifts the tool off centre, or with -1 back to it.
+/// Shifts the tool off centre; with -1 back to the centre.
 void shift(Drilling& hole, double sign) {
     const std::array<double, 2> by = shift_of(hole);
     Position end = hole.execution.modal().position;

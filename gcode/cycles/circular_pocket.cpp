@@ -70,7 +70,7 @@ void add_arc(Execution& execution, const CircularPocket& pocket, double centre_x
     execution.emit(ArcFeed{end, Plane::xy, {centre_x, y}, pocket.turn, pocket.feed});
 }
 
-/// Spiral of half circles: outwards, a full circle, outwards to the next circle, and back.
+/// Spiral of half circles: out, a full circle, out to the next circle, and finally back.
 void mill_circles(Execution& execution, const CircularPocket& pocket) {
     const double x = *execution.modal().position[0], y = *execution.modal().position[1];
     double side = 1.0, before = 0.0;

@@ -20,8 +20,8 @@ bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.
 
 bool taps(int code) { return code == tenths(74) || code == tenths(84); }
 
-/// The factor by which Fanuc's scaling stretches the drilling axis. Q and the retract of G73 and
-/// G83 are not scaled.
+/// The factor by which Fanuc's scaling scales the drilling axis. Q and the retract of G73 and G83
+/// are not scaled.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Scaling", invalid scaling.
 double stretch_along(const Execution& execution, size_t normal) {
@@ -144,7 +144,7 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
     return {};
 }
 
-/// A tap synchronised with the spindle does not need the spindle to turn already.
+/// A tap synchronised with the spindle may start with the spindle stopped.
 core::Result<double> cycle_rate(const Execution& execution, const CannedCycle& cycle) {
     const ModalState& modal = execution.modal();
     const bool with_spindle =
@@ -174,7 +174,7 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
 }
 
-/// G83 retracts out of the hole after each peck, G73 only a little.
+/// G83 retracts out of the hole after each peck, G73 only a short distance.
 void peck(Drilling& hole, bool out_of_the_hole) {
     const double stretch = stretch_along(hole.execution, hole.normal);
     const double back = hole.execution.dialect.peck_clearance / stretch;
@@ -200,7 +200,7 @@ void bore_with_stop(Drilling& hole) {
     hole.execution.emit(Spindle{modal.spindle, modal.speed});
 }
 
-/// G85 and G89 feed out the way they fed in; on some controls only up to R.
+/// G85 and G89 retract at feed; on some controls only up to R.
 void feed_out(Drilling& hole) {
     const bool only_bores = hole.cycle.code == tenths(85);
     const Dialect& rules = hole.execution.dialect;
@@ -281,7 +281,7 @@ void approach(Drilling& hole, const Position& target) {
     if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
 }
 
-/// The next hole of L with G91: the same step again, or the same polar words about the origin.
+/// The next of L holes with G91: the same step again, or the same polar words about the origin.
 core::Result<Position> next_hole(const Execution& execution, Position target,
                                  const Position& step) {
     if (execution.statement.polar_radius || execution.statement.polar_angle)
@@ -312,8 +312,8 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     if (repeats == 0) return {};
     FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
 
-    // RS274/NGC 3.5.16: an axis below R first goes up to R. On other controls the move to the hole
-    // is made at the current level.
+    // RS274/NGC 3.5.16: from below R the axis first moves up to R. On other controls the move to
+    // the hole is made at the current level.
     const bool rs274 = execution.dialect.cycles_are_rs274;
     const std::optional<double> level = rs274 ? cycle.initial_level : modal.position[normal];
     const bool is_low = level && *level < hole.r;

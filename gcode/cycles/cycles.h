@@ -6,7 +6,7 @@
 
 namespace gcode {
 
-/// The same result with a position in the program where its error has none.
+/// The result; an error without a position gets the given position in the program.
 template <typename T>
 core::Result<T> placed(core::Result<T> result, core::SourceSpan where) {
     if (!result && result.error().where.line == 0) result.error().where = where;
@@ -74,29 +74,30 @@ bool works_from_the_back(const Dialect& dialect, int code);
 /// G73, G81 to G89.
 core::Result<void> run_canned_cycle(Execution& execution);
 
-/// G12, G13: the tool goes down in the middle, out by a half circle, round, and back to the middle,
-/// where it stays. With K and Q more circles follow, each Q larger. Where on the circle the control
-/// begins is not published and changes nothing of what is cut.
+/// G12, G13: the tool plunges at the centre, moves out by a half circle, cuts a full circle, and
+/// returns to the centre, where it stays. With K and Q more circles follow, each larger by Q. The
+/// start angle on the control is not published and does not affect the material removed.
 ///
 /// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
 core::Result<void> mill_circular_pocket(Execution& execution);
 
-/// G5 and G5.1: curves of X and Y, as straight feeds within 0.001 mm of them.
+/// G5 and G5.1: curves in X and Y, as straight feed moves within 0.001 mm of them.
 core::Result<void> follow_spline(Execution& execution);
 
-/// G5.2: another control point of a curve.
+/// G5.2: adds a control point to a curve.
 core::Result<void> gather_control_point(Execution& execution);
 
-/// G5.3: along the curve, as straight feeds within 0.001 mm of it. Afterwards no motion is active.
+/// G5.3: follows the curve by straight feed moves within 0.001 mm of it. Then no motion code is
+/// active.
 core::Result<void> finish_spline(Execution& execution);
 
-/// LinuxCNC's G76: a thread in passes.
+/// G76 of LinuxCNC: a thread in several passes.
 ///
 /// Errors: those of threading_moves; syntax for rotary axes and cutter radius compensation;
-///         missing_value for a spindle that stands still and for a start that is not known.
+///         missing_value for a stopped spindle and for an unknown start.
 core::Result<void> cut_thread(Execution& execution);
 
-/// LinuxCNC's G70, G71 and G72: along a contour that a subprogram describes, Q its number.
+/// G70, G71 and G72 of LinuxCNC: turns a contour that is described by a subprogram, with number Q.
 ///
 /// Errors: those of finishing_moves and roughing_moves, and those of the subprogram's blocks.
 core::Result<void> turn_contour(Execution& execution);

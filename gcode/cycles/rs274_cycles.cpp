@@ -43,7 +43,7 @@ core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cy
     return {};
 }
 
-/// G87 needs all three words once; they stay for the blocks that follow.
+/// G87 needs all three words once; they are modal in the following blocks.
 core::Result<void> check_shift(const Execution& execution, const CannedCycle& cycle) {
     const bool is_first = !execution.modal().cycle->bottom;
     if (cycle.code != tenths(87) || !is_first) return {};
@@ -93,7 +93,7 @@ void shift_off_middle(Drilling& hole, double sign) {
     hole.execution.traverse(end);
 }
 
-/// A feed move of a tap. LinuxCNC 2.9 swaps the axes of G18 and G19, so the tool leaves its hole,
+/// A feed move of a tap. LinuxCNC 2.9 swaps the axes in G18 and G19, so the tool leaves its hole,
 /// and continues as if it had not.
 void feed_tapping(Drilling& hole, std::optional<double> level) {
     Position& position = hole.execution.modal().position;
@@ -116,7 +116,7 @@ void warn_of_plane(Drilling& hole) {
 }
 
 void enable_overrides(Execution& execution, bool enabled) {
-    // They are switched off after M49 too: G76 leaves the feed override on.
+    // They are also switched off after M49; G76 then leaves the feed override on.
     if (!enabled || execution.modal().feed_override)
         execution.emit(EnableOverride{OverrideKind::feed, enabled});
     if (!enabled || execution.modal().speed_override)

@@ -7,12 +7,12 @@ namespace gcode {
 /// Checks whether a canned cycle of LinuxCNC can run with the words of its block.
 ///
 /// Errors: syntax for cutter radius compensation, axes outside the plane and a block without axis
-///         words; missing_value for P of the cycles that dwell, for I, J and K of G87, and for a
-///         spindle that does not turn as the cycle needs; invalid_value for a negative time.
+///         words; missing_value for P of cycles that dwell, for I, J and K of G87, and for a
+///         spindle that does not run as the cycle needs; invalid_value for a negative time.
 /// Source: NISTIR 6556 (RS274/NGC v3), 3.5.16; behaves as LinuxCNC 2.9.
 core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle);
 
-/// Set exact path mode for a cycle, and restore the previous mode.
+/// Sets exact path mode for a cycle, and restores the previous mode.
 void begin_exact_path(Execution& execution);
 void end_exact_path(Execution& execution);
 

@@ -185,8 +185,8 @@ std::vector<SplinePoint> chords_of_span(const NurbsCurve& curve, int span, int c
 }
 
 /// Whether chords stay within the tolerance of the curve. Between knots a curve of this order bends
-/// only a few times, so testing one of many chords at its quarter points is enough; half of the
-/// tolerance is reserved for what lies between them.
+/// only a few times, so testing each of many chords at its quarter points is enough; half of the
+/// tolerance is reserved for deviations between these points.
 bool are_near(const NurbsCurve& curve, int span, SplinePoint from,
               const std::vector<SplinePoint>& ends, double tolerance) {
     const auto count = static_cast<double>(ends.size());

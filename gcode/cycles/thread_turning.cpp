@@ -11,8 +11,8 @@ namespace {
 
 using core::ErrorCode;
 
-/// Passes run at the programmed feed. The control leaves the override on afterwards, even where M49
-/// or M50 had switched it off.
+/// Passes run at the programmed feed. Afterwards the control leaves the override on, even if M49 or
+/// M50 had switched it off.
 void enable_feed_override(Execution& execution, bool enabled) {
     execution.emit(EnableOverride{OverrideKind::feed, enabled});
 }

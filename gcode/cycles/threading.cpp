@@ -10,7 +10,7 @@ namespace {
 
 using core::ErrorCode;
 
-/// A thread relative to its drive line: heights count from there towards the material.
+/// A thread relative to its drive line: heights are measured from there towards the material.
 struct ThreadPath {
     TurningPoint start, end;
     double inward;       // X per height: +1 for an internal thread, -1 for an external one

@@ -37,16 +37,16 @@ struct Outline {
     bool turned = false, x_mirrored = false, z_mirrored = false;
 };
 
-/// Points closer than this are the same, program units (as LinuxCNC).
+/// Points closer than this are equal, program units (as in LinuxCNC).
 constexpr double zx_tolerance = 1e-6;
 
-/// Rotates the outline by 90 degrees, so that X takes the place of Z.
+/// Rotates the outline by 90 degrees, so that X and Z change roles.
 void turn(Outline& outline);
 
 /// Mirrors the outline so that it leads from large Z and small X to small Z and large X.
 void face_cutting_direction(Outline& outline);
 
-/// Transforms a point from the outline's frame to the lathe's frame.
+/// Converts a point from the outline's frame to the lathe's frame.
 ZxPoint lathe_from_outline(const Outline& outline, ZxPoint place);
 
 /// Whether mirroring has reversed the direction of arcs.
@@ -71,8 +71,8 @@ core::Result<void> shape_corners(Outline& outline);
 /// Source: behaves as LinuxCNC's offset, which proceeds in steps of half the smallest segment.
 core::Result<void> offset_outline(Outline& outline, double distance);
 
-/// The Z values at which a segment has an X: none, one or two, in the direction of the segment if
-/// it is level, else the greater first.
+/// The Z values at which a segment crosses an X: none, one or two. A level segment gives its ends
+/// in its own direction; otherwise the greater Z comes first.
 std::vector<double> crossings(const OutlinePiece& piece, double x);
 
 namespace {
@@ -95,7 +95,7 @@ struct MoveWriter {
         moves.push_back({to_mm(at), rapid});
     }
     void arc(const OutlinePiece& piece, ZxPoint end) {
-        constexpr double same = 1e-4; // program units: LinuxCNC leaves such an arc out
+        constexpr double same = 1e-4; // program units: LinuxCNC omits shorter arcs
         const ZxPoint to = lathe_from_outline(outline, end);
         if (std::abs((to - at).real()) < same && std::abs((to - at).imag()) < same) return;
         at = to;
@@ -157,8 +157,8 @@ tl::unexpected<core::Error> endless() {
                       "a contour without arcs that turn back");
 }
 
-/// Roughing: cuts levels from the lead-in on, `depth` apart, then follows the contour upwards until
-/// it descends into a pocket, where the same starts again.
+/// Roughing: cuts levels from the lead-in, `depth` apart, then follows the contour upwards until it
+/// descends into a pocket, where cutting levels starts again.
 struct Roughing {
     const std::vector<OutlinePiece>& pieces;
     MoveWriter& out;
@@ -170,7 +170,7 @@ struct Roughing {
     size_t piece = 0;
     double level = 0.0; // X of the next cut
     bool follows_pockets = false;
-    std::int64_t budget = 20'000'000; // segment visits, to guarantee an end
+    std::int64_t budget = 20'000'000; // segment visits, to guarantee termination
 };
 
 void go(Roughing& roughing, ZxPoint end, bool rapid) {
@@ -221,7 +221,7 @@ PassResult dive_along_arc(Roughing& roughing, const OutlinePiece& piece, double 
         go_round(roughing, piece, piece.end, false);
     else if (places.front() >= top)
         go_round(roughing, piece, {places.front(), level}, false);
-    return PassResult::done; // also where only the far side is reached: the level comes down to it
+    return PassResult::done; // also if only the far side is reached: the level comes down to it
 }
 
 /// Moves down along a segment to a level, or to its end if that is higher.
@@ -273,7 +273,7 @@ void climb_across(Roughing& roughing) {
         go(roughing, piece.end, false);
 }
 
-/// One cut at the level of the tool, to the first segment in the way, and back.
+/// One cut at the level of the tool to the first segment in its way, and back.
 void cut_level(Roughing& roughing) {
     const ZxPoint from = roughing.at;
     for (size_t i = roughing.piece; i < roughing.pieces.size(); ++i) {
@@ -301,9 +301,9 @@ void cut_level(Roughing& roughing) {
     }
 }
 
-/// Leaves a level below which the contour does not go: up along it to the next pocket.
+/// Leaves a level below which the contour does not go: follows the contour up to the next pocket.
 ///
-/// Result: whether there is one.
+/// Result: whether there is another pocket.
 core::Result<bool> follow_to_pocket(Roughing& roughing) {
     const size_t count = roughing.pieces.size();
     if (roughing.pockets == PocketCutting::none) {
@@ -459,7 +459,7 @@ namespace {
 constexpr double vanishing = 1e-3;   // program units: smaller segments are removed
 constexpr double gap_for_arc = 1e-2; // program units: a wider gap at a corner gets an arc
 
-/// An offset step below half of this moves no arc past its own centre.
+/// An offset by less than half of this does not move an arc past its centre.
 double size_of(const OutlinePiece& piece) {
     const double length = std::abs(piece.start - piece.end);
     return piece.is_arc() ? std::min(length, std::abs(piece.start - piece.centre)) : length;
@@ -578,7 +578,7 @@ void drop_vanishing(std::vector<OutlinePiece>& pieces) {
     std::erase_if(pieces, [](const OutlinePiece& piece) { return size_of(piece) < vanishing; });
 }
 
-/// Fills the gaps that an offset by `step` opens at outside corners with arcs about them.
+/// Fills the gaps that an offset by `step` opens at outside corners with arcs around the corners.
 void fill_gaps(std::vector<OutlinePiece>& pieces, double step, bool outwards) {
     for (size_t i = 0; i + 1 < pieces.size(); ++i) {
         if (!((pieces[i].end - pieces[i + 1].start).real() > gap_for_arc)) continue;
@@ -592,8 +592,9 @@ void fill_gaps(std::vector<OutlinePiece>& pieces, double step, bool outwards) {
     }
 }
 
-/// Joins all consecutive segments. A segment that the offset has reversed, or its smaller
-/// predecessor, is removed. After a removal it continues with the second segment, as LinuxCNC does.
+/// Joins all consecutive segments. A segment that the offset has reversed is removed, or its
+/// predecessor if that is smaller. After a removal it continues with the second segment, as
+/// LinuxCNC does.
 core::Result<void> join_all(std::vector<OutlinePiece>& pieces) {
     const auto drop = [&](size_t i) {
         pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(i));

@@ -27,7 +27,7 @@ struct TurningSegment {
     double corner_size = 0.0;                // radius of the fillet, or leg of the chamfer
 };
 
-/// A contour. Its first segment leads from the tool to the first point that is cut.
+/// A contour. Its first segment leads from the tool to the first point of the cut.
 using TurningContour = std::vector<TurningSegment>;
 
 struct TurningMove {
@@ -43,7 +43,7 @@ using TurningMoves = std::vector<TurningMove>;
 /// How roughing treats the pockets of a contour: the last digit of G71.n and G72.n.
 enum class PocketCutting : uint8_t { all, none, rest };
 
-/// The words of G71 and G72, lengths in mm. G7 halves none of them.
+/// The words of G71 and G72, lengths in mm. G7 does not halve any of them.
 struct RoughingWords {
     bool facing = false; // G72: cuts along X; G71: along Z
     PocketCutting pockets = PocketCutting::all;
@@ -60,19 +60,19 @@ struct FinishingWords {
     double passes = 1.0;         // P; only its whole part is used
 };
 
-/// Highest number of contour segments, and of moves in finishing, that is accepted.
+/// Maximum number of contour segments, and of moves in finishing.
 constexpr size_t greatest_contour = 10'000;
 constexpr size_t greatest_turning_moves = 1'000'000;
 
 /// The moves of G71 or G72 from `start`, to which the caller has moved the tool with a rapid.
 ///
-/// The contour starts at `start` too; a contour of one segment gives no moves. `mm_per_unit` is
-/// 25.4 with G20, as the tolerances of LinuxCNC are in program units.
+/// The contour also starts at `start`; a contour of one segment gives no moves. `mm_per_unit` is
+/// 25.4 with G20, because the tolerances of LinuxCNC are in program units.
 ///
 /// Result: the same moves as LinuxCNC 2.9. After the last one the tool is at the end of the contour
 ///         or above it.
 /// Errors: I not positive; a contour that turns back against its main direction (LinuxCNC: not
-///         monotonic); an allowance for which its lines or corners have no room; and every case in
+///         monotonic); an allowance that leaves no room for its lines or corners; and every case in
 ///         which LinuxCNC would loop forever or run past the end of its lists.
 core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningContour& contour,
                                           const RoughingWords& words, double mm_per_unit = 1.0);
@@ -84,9 +84,9 @@ core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningConto
 core::Result<TurningMoves> finishing_moves(TurningPoint start, const TurningContour& contour,
                                            const FinishingWords& words, double mm_per_unit = 1.0);
 
-/// The arc of a block with R instead of a centre: the shorter arc, whatever the sign of R.
+/// The arc of a block with R instead of a centre: the shorter arc, regardless of the sign of R.
 ///
-/// Errors: R is less than half the distance.
+/// Errors: R is less than half the distance between the ends.
 core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoint end,
                                                  double radius, bool counterclockwise);
 

@@ -20,7 +20,7 @@ namespace {
 using core::ErrorCode;
 using enum FlowKind;
 
-/// One flow statement, with what it needs of the program around it.
+/// Executes one flow statement, using the program around it.
 class Flowing {
 public:
     explicit Flowing(const FlowStep& step)
@@ -65,7 +65,7 @@ private:
     core::Result<void> while_statement();
     core::Result<void> repeat_statement();
     core::Result<void> end_repeat_statement();
-    /// The end of the loop that `word`, break or continue, is in.
+    /// The end of the loop that contains `word`, break or continue.
     core::Result<const FlowMark*> end_of_loop(std::string_view word);
     core::Result<void> leave_loop();
     core::Result<void> continue_loop_early();
@@ -91,7 +91,7 @@ core::Result<void> Flowing::find_name() {
     return {};
 }
 
-/// The nearest statement of the same name that this one belongs to.
+/// The nearest statement with the same name that forms a pair with this one.
 core::Result<const FlowMark*> Flowing::partner(std::initializer_list<FlowKind> kinds, bool ahead,
                                                std::string_view wanted) const {
     const FlowMark* found = ahead ? index_.next(line_, scope_, name_, kinds)
@@ -111,7 +111,8 @@ core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> ki
     return {};
 }
 
-/// The lines of a subprogram are run when it is called, not when they are come across.
+/// A subprogram is executed when it is called; when the program reaches its definition, it is
+/// skipped.
 core::Result<void> Flowing::skip_sub() {
     const FlowMark* first = index_.first(sub, name_);
     if (first->line != line_)
@@ -136,7 +137,7 @@ core::Result<void> Flowing::skip_sub() {
     return {};
 }
 
-/// O words are read in what is skipped as well: the first that cannot be is refused.
+/// O words in skipped lines are parsed too; the first that is malformed is an error.
 core::Result<void> Flowing::check_skipped(uint32_t up_to) const {
     for (const FlowMark& mark : index_.marks) {
         if (mark.line <= line_ || mark.kind != none) continue;
@@ -154,7 +155,7 @@ core::Result<Block> Flowing::read_line(uint32_t line) const {
     return block;
 }
 
-/// A label may be used by one statement of a program or subprogram.
+/// Warns if the label is already used: a label may only be used once in a program or subprogram.
 void Flowing::warn_of_second_use() const {
     const FlowMark* other =
         index_.previous(line_, scope_, name_, {if_branch, while_loop, do_loop, repeat});
@@ -216,7 +217,7 @@ core::Result<void> Flowing::give_back() {
     return {};
 }
 
-/// From `if` to the branch whose condition holds.
+/// Goes from `if` to the first branch whose condition is true.
 core::Result<void> Flowing::take_branch() {
     FEELER_TRY(bool taken, holds(step_.block));
     if (taken) return {};
@@ -236,12 +237,12 @@ core::Result<void> Flowing::take_branch() {
     }
 }
 
-/// `endif`, and `elseif` and `else` after a branch that was run.
+/// `endif`; also `elseif` and `else` at the end of a branch that was executed.
 core::Result<void> Flowing::end_if_statement() {
     if (!index_.previous(line_, scope_, name_, {if_branch}))
         return refuse(fmt::format("'if' of {} is missing before this line", name_));
     if (step_.block.flow.kind == end_if) return {};
-    // The control works the condition out even when it does not need it.
+    // The control evaluates the condition even when it is not needed.
     if (step_.block.flow.kind == else_if) {
         FEELER_TRY(const bool unused, holds(step_.block));
         (void)unused;
@@ -249,7 +250,7 @@ core::Result<void> Flowing::end_if_statement() {
     return go_behind_partner({end_if}, true, "endif");
 }
 
-/// The head of a loop, or the end of a do loop.
+/// The head of a while loop, or the end of a do loop.
 core::Result<void> Flowing::while_statement() {
     FEELER_TRY(const bool goes_on, holds(step_.block));
     const FlowMark* self = index_.at(line_);
@@ -297,7 +298,7 @@ core::Result<void> Flowing::continue_loop_early() {
     return {};
 }
 
-/// GOTO: the block number is looked for from here to the end, then from the beginning.
+/// GOTO: searches the block number from here to the end, then from the start.
 core::Result<void> Flowing::jump() {
     if (step_.block.flow.kind == if_go_to) {
         FEELER_TRY(const bool taken, holds(step_.block));
@@ -362,7 +363,7 @@ core::Result<void> Flowing::run() {
         return {};
     }
     default:
-        return {}; // statements that only mark a place
+        return {}; // statements that only mark a position
     }
 }
 
@@ -372,7 +373,7 @@ core::Result<void> run_iso_flow(const FlowStep& step) {
     switch (step.block.flow.kind) {
     case do_loop:
     case program_number:
-        return {}; // says where something is; not worth an index of all lines
+        return {}; // only marks a position; not worth an index of all lines
     default:
         return Flowing(step).run();
     }
@@ -382,7 +383,7 @@ namespace {
 
 bool is_program_number(char c) { return upper(c) == 'O' || c == ':'; }
 
-/// Reads only the head of an O word whose line has an error later on.
+/// Reads only the head of an O word in a line with an error after it.
 bool parse_head(Lexer lexer, const Dialect& dialect, Block& block) {
     if (!dialect.has_o_words || upper(lexer.peek()) != 'O') return false;
     block = {};
@@ -409,7 +410,7 @@ FlowIndex iso_index(const Program& program, const Dialect& dialect) {
         if (is_program_number(lexer.peek()) && !dialect.has_o_words) {
             ++lexer.at;
             if (const auto name = lexer.number()) {
-                // Loops and branches do not reach into the next program of the file.
+                // Loops and branches do not extend into the next program of the file.
                 scope = line;
                 index.marks.push_back(
                     {FlowKind::program_number, label_of(name->value), line, scope});
@@ -418,7 +419,7 @@ FlowIndex iso_index(const Program& program, const Dialect& dialect) {
         }
         if (!parse_line(program.line(number), line, dialect, block)
             && !parse_head(lexer, dialect, block)) {
-            // Refused when it is skipped.
+            // An error only if the line is skipped.
             if (dialect.has_o_words && upper(lexer.peek()) == 'O')
                 index.marks.push_back({FlowKind::none, {}, line, scope});
             continue;

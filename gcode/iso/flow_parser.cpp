@@ -17,7 +17,7 @@ struct FlowKeyword {
     FlowKind kind;
 };
 
-// Of two that begin alike, the longer one comes first.
+// Of two with the same beginning, the longer one comes first.
 constexpr FlowKeyword o_keywords[] = {{"SUB", FlowKind::sub},
                                       {"ENDSUB", FlowKind::end_sub},
                                       {"CALL", FlowKind::call},

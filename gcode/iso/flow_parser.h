@@ -7,12 +7,12 @@
 namespace gcode {
 
 /// Reads a flow statement if one begins here: an O word of LinuxCNC, or IF, WHILE, DO, END and GOTO
-/// of Fanuc. Says whether there was one; the lexer stays where it is when there was none.
+/// of Fanuc. Returns whether there was one; if not, the lexer does not move.
 ///
-/// Errors: syntax with the column at fault.
+/// Errors: syntax with the column of the mistake.
 core::Result<bool> parse_flow(Lexer& lexer, const Dialect& dialect, Block& block);
 
-/// Reads only the label and the keyword of an O word, whatever follows.
+/// Reads only the label and the keyword of an O word, ignoring the rest of the line.
 core::Result<bool> parse_flow_head(Lexer& lexer, const Dialect& dialect, Block& block);
 
 } // namespace gcode

@@ -10,7 +10,7 @@ namespace gcode {
 struct FlowIndex;
 struct LanguageFunctions;
 
-/// The language of ISO 6983: letters with numbers, with the macros of LinuxCNC and Fanuc.
+/// The language of ISO 6983: letters with numbers, with the macro languages of LinuxCNC and Fanuc.
 extern const LanguageFunctions iso_language;
 
 core::Result<void> parse_iso(std::string_view text, uint32_t line, const Dialect& dialect,
@@ -20,7 +20,7 @@ FlowIndex iso_index(const Program& program, const Dialect& dialect);
 
 core::Result<void> run_iso_flow(const FlowStep& step);
 
-/// Carries out a block of codes and words, each kind in its turn, and checks the rules on modes.
+/// Executes a block of codes and words in the prescribed order, and checks the modal rules.
 ///
 /// Source: NISTIR 6556 (RS274/NGC v3), 3.8, order of execution.
 core::Result<void> execute_iso(Execution& execution, const ModalState& before);

@@ -43,14 +43,15 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     return {};
 }
 
-/// Whether the block has a motion code without an end, which is a move to the current position.
+/// Whether the block has a motion code without an end point, which is a move to the current
+/// position.
 bool stands_alone(const Execution& execution) {
     const CodeWord* motion = execution.statement.of(ModalGroup::motion);
     return execution.dialect.motion_codes_move && motion
            && (is_straight(motion->code->motion()) || is_arc(motion->code->motion()));
 }
 
-/// Refuses G2 or G3 without any words of the arc.
+/// Reports G2 or G3 without any arc words as an error.
 core::Result<void> refuse_lone_arc(const Execution& execution) {
     const Statement& statement = execution.statement;
     const CodeWord* motion = statement.of(ModalGroup::motion);
@@ -65,7 +66,7 @@ core::Result<void> refuse_lone_arc(const Execution& execution) {
                       motion->word->span);
 }
 
-/// Whether the block has words that make the active motion move.
+/// Whether the block has words that make the active motion code move.
 bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     if (!statement.has_axis_word() && stands_alone(execution)) return true;
@@ -77,13 +78,13 @@ bool has_motion_words(const Execution& execution) {
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
 }
 
-/// Whether a motion code is for its block only: G5, G5.1, G5.3, G70 to G72.
+/// Whether a motion code applies to its block only: G5, G5.1, G5.3, G70 to G72.
 bool acts_once(int code) {
     return code == tenths(5) || code == tenths(5, 1) || code == tenths(5, 3)
            || (code >= tenths(70) && code < tenths(73));
 }
 
-/// Activates a motion code, or none.
+/// Sets the active motion code, or clears it.
 void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     std::optional<MotionCode>& active = state.modal.motion;
     if (active == MotionCode::spline_control_point && motion != active)
@@ -91,20 +92,20 @@ void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     active = motion;
 }
 
-/// Another cycle begins with words of its own, but counts from the same level.
+/// Resets the words of the active cycle for another cycle, keeping the initial level.
 void forget_words(CannedCycle& cycle) {
     CannedCycle fresh;
     fresh.initial_level = cycle.initial_level;
     cycle = fresh;
 }
 
-/// Codes that other ones may not share a block with, even without axis words.
+/// Whether a code cannot share its block with motion codes even without axis words.
 bool wants_axes_alone(const CodeWord& taker) {
     constexpr int codes[] = {tenths(10), tenths(28), tenths(30), tenths(52), tenths(92)};
     return std::find(std::begin(codes), std::end(codes), taker.code->tenths) != std::end(codes);
 }
 
-/// G0 to G3 and the cycles become modal, even when another code takes the axis words.
+/// Makes G0 to G3 and the cycles modal, even when another code takes the axis words.
 core::Result<void> set_motion_mode(Execution& execution) {
     const Statement& statement = execution.statement;
     ModalState& modal = execution.modal();
@@ -141,7 +142,7 @@ core::Result<void> set_motion_mode(Execution& execution) {
     return {};
 }
 
-/// Before the first motion code: the one that the control begins with.
+/// Handles axis words before the first motion code: uses the power-on default of the control.
 core::Result<void> move_without_mode(Execution& execution) {
     for (const Word& word : execution.block.words) {
         if (axis_letters.find(word.letter) == std::string_view::npos) continue;
@@ -161,8 +162,8 @@ core::Result<void> move_without_mode(Execution& execution) {
     return {};
 }
 
-/// RS274/NGC 3.5.14: G53 is for this block, and goes with G0 and G1 only. On Fanuc controls it is a
-/// rapid whatever the motion code, and under G91 it is passed over.
+/// RS274/NGC 3.5.14: G53 applies to its block only, with G0 or G1. On Fanuc controls it is a rapid
+/// whatever the motion code; with G91 it is ignored.
 core::Result<void> move_to_machine_place(Execution& execution) {
     ModalState& modal = execution.modal();
     const CodeWord* action = execution.statement.of(ModalGroup::action);
@@ -177,7 +178,7 @@ core::Result<void> move_to_machine_place(Execution& execution) {
     return move_straight(execution, modal.motion == MotionCode::rapid);
 }
 
-/// G53 in a block that does not move.
+/// Reports G53 in a block without a move as an error.
 core::Result<void> refuse_lone_machine_place(const Execution& execution) {
     if (!execution.dialect.machine_move_needs_motion || !in_machine_coordinates(execution))
         return {};

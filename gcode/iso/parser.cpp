@@ -16,8 +16,8 @@ namespace gcode {
 
 /// A comment that the control acts on.
 struct ActiveComment {
-    std::string_view text; // behind its keyword
-    bool has_parameters;   // whether they are written out
+    std::string_view text; // after its keyword
+    bool has_parameters;   // whether their values are inserted
 };
 
 /// (MSG, ...), (DEBUG, ...), (PRINT, ...) and (LOG, ...); empty for any other comment.
@@ -29,7 +29,7 @@ using core::ErrorCode;
 
 constexpr std::string_view word_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Two or more letters in a row are a keyword of some control, which deserves a better message.
+/// Two or more letters in a row are a keyword of some other control, so the message says so.
 core::Error missing_number(const Lexer& lexer, size_t begin) {
     size_t end = begin;
     while (end < lexer.line.size() && is_letter(lexer.line[end])) ++end;
@@ -59,7 +59,8 @@ public:
     }
 
 private:
-    /// A jump or a loop shares its block with its number only; assignments follow THEN.
+    /// A jump or loop must be alone in its block, except for a block number; assignments follow
+    /// THEN.
     core::Result<void> check_flow() const {
         const FlowKind kind = block_.flow.kind;
         if (!dialect_.has_fanuc_flow || kind == FlowKind::none || kind == FlowKind::if_then)
@@ -97,8 +98,8 @@ private:
         return stray(c);
     }
 
-    /// `/` stands first, or right after the N word; on some controls also before the words that it
-    /// leaves out. `/10` is no switch.
+    /// `/` comes first, or right after the N word; on some controls also before the words to be
+    /// skipped. `/10` is not a block delete.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
         int number = 1;
@@ -120,7 +121,7 @@ private:
         return {};
     }
 
-    /// What follows a tape mark on its line is the name some controls put there.
+    /// Text after a tape mark on its line is the name that some controls put there.
     core::Result<void> tape_mark() {
         if (!block_.words.empty())
             return core::fail(ErrorCode::syntax, "'%' must be at the start of the line",
@@ -268,7 +269,7 @@ private:
     Lexer lexer_;
     const Dialect& dialect_;
     Block& block_;
-    size_t arguments_ = 0; // the first word that belongs to a macro call
+    size_t arguments_ = 0; // index of the first argument of a macro call
 };
 
 } // namespace
@@ -282,7 +283,8 @@ core::Result<void> parse_iso(std::string_view text, uint32_t line, const Dialect
 
 namespace {
 
-/// The value of the parameter at this `#` as text; the text itself if there is no parameter.
+/// The value of the parameter at this `#` as text: as written if it is not a parameter, ######
+/// if it has no value.
 std::string parameter_text(Lexer& lexer, const ProgramParameters& parameters, int decimals) {
     const size_t begin = lexer.at++;
     core::Result<Value> value = Value{};
@@ -302,8 +304,8 @@ std::string parameter_text(Lexer& lexer, const ProgramParameters& parameters, in
     return fmt::format("{:.{}f}", **value, decimals);
 }
 
-/// The text of `(DEBUG, ...)` and `(PRINT, ...)`: parameters are written out with six digits, until
-/// `%d` (none), `%f` (four) or `%.3f` sets another number from there on.
+/// The text of `(DEBUG, ...)` and `(PRINT, ...)`: values of parameters are inserted with six
+/// decimals, until `%d` (none), `%f` (four) or `%.3f` sets another number of decimals.
 std::string written_out(std::string_view text, const ProgramParameters& parameters) {
     std::string out;
     int decimals = 6;

@@ -7,14 +7,14 @@ namespace {
 
 constexpr uint32_t bit_of(char letter) { return 1u << (letter - 'A'); }
 
-/// The letters of which a block may have several words.
+/// The letters that may occur several times in a block.
 uint32_t repeatable_letters(const Dialect& dialect) {
     const uint32_t codes = bit_of('G') | bit_of('M');
     const uint32_t offsets = bit_of('I') | bit_of('J') | bit_of('K');
     return dialect.offset_words_may_repeat ? codes | offsets : codes;
 }
 
-/// O words are flow, and what follows a macro call counts in another way.
+/// O words are flow statements, and words after a macro call are arguments.
 bool needs_a_closer_look(char letter, double value, const Dialect& dialect) {
     if (letter == 'O') return true;
     return letter == 'G' && dialect.has_fanuc_flow && value >= 65.0 && value < 67.0;

@@ -5,11 +5,11 @@
 
 namespace gcode {
 
-/// Reads a line of letters with numbers, as most lines are, into an empty block; false if it has
-/// anything else or a mistake, and the block is then unusable.
+/// Reads a line of letters with numbers, as most lines are, into an empty block. Returns false for
+/// anything else or a mistake; the block is then unusable.
 ///
-/// The words are those that the general parser gives.
-/// Cost: about a tenth of the general parser's.
+/// The words are the same as those of the general parser.
+/// Cost: about a tenth of the general parser.
 bool read_plain_words(std::string_view text, uint32_t line, const Dialect& dialect, Block& block);
 
 } // namespace gcode

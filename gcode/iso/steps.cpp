@@ -28,8 +28,8 @@ constexpr uint64_t groups(std::initializer_list<ModalGroup> these) {
     return bits;
 }
 
-/// The step for one kind of words. It runs only if the block has one of its groups or letters. A
-/// step with neither always runs, or when the state makes it due.
+/// The step for one kind of word. It runs only if the block has one of its groups or letters. A
+/// step with neither always runs, or when the state requires it.
 struct ExecutionStep {
     core::Result<void> (*take)(Execution&);
     uint64_t groups = 0;
@@ -61,7 +61,8 @@ bool may_call(const Execution& execution) {
 
 using enum ModalGroup;
 
-// NISTIR 6556, table 8: the order in which a block's words take effect, however they are written.
+// NISTIR 6556, table 8: the order in which the words of a block take effect, regardless of how they
+// are written.
 constexpr ExecutionStep execution_steps[] = {
     {check_words},
     {note_assumed_units, 0, 0, lacks_units},
@@ -111,7 +112,7 @@ constexpr size_t steps_for_all =
     std::count_if(std::begin(execution_steps), std::end(execution_steps),
                   [](const ExecutionStep& step) { return step.concerns_all(); });
 
-/// The steps of a block that only moves.
+/// The steps for a block with moves only.
 constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
     std::array<ExecutionStep, steps_for_all> found{};
     std::copy_if(std::begin(execution_steps), std::end(execution_steps), found.begin(),
@@ -123,7 +124,7 @@ constexpr std::array<ExecutionStep, steps_for_all> steps_of_moves = [] {
 
 namespace {
 
-/// G290 after G291: the program continues in native Siemens.
+/// G290 after G291: the program continues in the Siemens language.
 core::Result<void> leave_iso(Execution& execution) {
     if (!execution.statement.of(ModalGroup::other)) return {};
     for (const CodeWord& entry : execution.statement.codes())

@@ -16,7 +16,7 @@ namespace {
 using core::ErrorCode;
 using enum CommandKind;
 
-/// Whether the block has a code of a group that takes effect at the start of the block.
+/// Whether a code of a group takes effect at the start of the block.
 bool begins_block(const Execution& execution, ModalGroup group, int last_tenths) {
     const CodeWord* entry = execution.statement.of(group);
     return entry && entry->code->tenths != last_tenths;
@@ -87,7 +87,8 @@ bool is_motion(CommandKind kind) {
     return kind >= straight && kind <= tangent_polar && kind != pole;
 }
 
-/// M99 calls once; M89 calls after each motion from its own on, until M99 or another cycle.
+/// M99 calls the cycle once; M89 calls it after each motion from its block on, until M99 or another
+/// cycle.
 core::Result<void> call_cycle(Execution& execution) {
     const Command& command = execution.block.command;
     KlartextState& klartext = writable_klartext(execution.state);
@@ -178,7 +179,7 @@ double radius_of(const Execution& execution, int number) {
     return entry == lengths.end() ? 0.0 : entry->second.diameter / 2.0 + entry->second.radius_wear;
 }
 
-/// Activates the length of the tool and shows its size to the program.
+/// Activates the length of the tool and sets the Q parameters with its size.
 void use_length(Execution& execution, int number, const Word& tool) {
     const std::optional<double> length =
         number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, number);
@@ -204,7 +205,7 @@ void use_length(Execution& execution, int number, const Word& tool) {
     parameters.set_numbered(q_length_of_tool, from_mm(offsets.tool[normal], unit));
 }
 
-/// Warns if the program gives a tool another length than the set-up.
+/// Warns if the length of a tool in the program differs from the set-up.
 void warn_of_other_length(Execution& execution, int number, double length, const Word& word) {
     const auto known = length_under(*execution.state.tables, number);
     if (!known || std::abs(*known - length) < 1e-6) return;

@@ -110,7 +110,7 @@ void drill_universal(KlartextHole& hole) {
         hole.rapid(hole.above);
 }
 
-/// Cycle 202: off the wall with the spindle stopped.
+/// Cycle 202: moves off the wall with the spindle stopped.
 void bore(KlartextHole& hole) {
     const core::SpindleDirection turning = hole.execution.modal().spindle;
     hole.feed(hole.bottom);
@@ -367,7 +367,7 @@ namespace {
 
 constexpr double most_places = 10000.0;
 
-/// The holes of a full or partial circle (220), or of rows rotated about the first hole (221).
+/// The holes of a full circle or arc (220), or of rows rotated about the first hole (221).
 core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };

@@ -66,7 +66,7 @@ core::Result<void> read_begin(KlartextReader& reader) {
     return {};
 }
 
-/// Tilted planes: PLANE RESET is accepted, all others are refused.
+/// Tilted planes: PLANE RESET is accepted, all others are an error.
 core::Result<void> read_plane(KlartextReader& reader) {
     if (!reader.accept("RESET"))
         return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
@@ -291,13 +291,12 @@ core::Result<void> read_repeats(KlartextReader& reader) {
     if (!reader.accept("REP")) return {};
     FEELER_TRY(reader.block.flow.condition, reader.operand());
     reader.block.flow.has_condition = true;
-    if (!reader.lexer.accept('/')) return {}; // repetitions left, shown by the control
+    if (!reader.lexer.accept('/')) return {}; // remaining repetitions, shown by the control
     if (auto left = reader.operand(); !left) return tl::unexpected(std::move(left).error());
     return {};
 }
 
-/// Reads the path of a program, such as `TNC:\dir
-/// ame.h`, as written.
+/// Reads the path of a program, such as `TNC:\dir\name.h`, as written.
 core::Result<void> read_program_name(KlartextReader& reader) {
     reader.next();
     const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);

@@ -36,7 +36,7 @@ struct KlartextReader {
     tl::unexpected<core::Error> refuse(std::string message, size_t from,
                                        core::ErrorCode code = core::ErrorCode::syntax);
 
-    /// The error that the text at this position is not allowed in this statement.
+    /// The error for text that is not allowed at this position of the statement.
     tl::unexpected<core::Error> stray();
 };
 

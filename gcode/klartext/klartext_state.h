@@ -22,14 +22,14 @@ struct DefinedCycle {
     double dwell_above = 0.0;      // Q210
     double dwell_below = 0.0;      // Q211
     double retract_feed = 0.0;     // Q208
-    double decrement = 0.0;        // Q212: reduction of each peck
+    double decrement = 0.0;        // Q212: reduction per peck
     double breaks = 0.0;           // Q213: chip breaks before the tool retracts from the hole
     double least_peck = 0.0;       // Q205
     double break_back = 0.0;       // Q256
     double break_every = 0.0;      // Q257
     double stop_above =
         0.0; // Q258: distance above the last depth at which a rapid ends, first peck
-    double stop_below = 0.0;  // Q259: the same, last peck
+    double stop_below = 0.0;  // Q259: as Q258, for the last peck
     double start_depth = 0.0; // Q379
     double disengage = 0.0;   // Q214
     double pitch = 0.0;       // Q239

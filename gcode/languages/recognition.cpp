@@ -12,14 +12,14 @@
 namespace gcode {
 namespace {
 
-/// A look at one line: the dialect it gives away, and how.
+/// The dialect that a line indicates, with the evidence; empty if it indicates none.
 using Clue = std::optional<Recognition>;
 
 Recognition found(DialectId dialect, size_t line, std::string_view what) {
     return {dialect, fmt::format("line {} {}", line, what)};
 }
 
-/// Languages that are no G-code give themselves away before any word can be read.
+/// Languages other than G-code, recognised before words are parsed.
 Clue foreign_clue(std::string_view text, size_t line) {
     const size_t first = text.find_first_not_of(" \t");
     if (first == std::string_view::npos) return std::nullopt;
@@ -29,12 +29,12 @@ Clue foreign_clue(std::string_view text, size_t line) {
         after_number == std::string_view::npos ? "" : rest.substr(after_number);
     for (const std::string_view word : {"BEGIN PGM", "TOOL CALL", "TOOL DEF", "BLK FORM"})
         if (words.starts_with(word))
-            return found(DialectId::heidenhain, line, fmt::format("says {}", word));
+            return found(DialectId::heidenhain, line, fmt::format("contains {}", word));
     return std::nullopt;
 }
 
-/// Features that only native Siemens has: keywords after the block number, headers, values after
-/// `=`.
+/// Features found only in the Siemens language: keywords after the block number, headers, values
+/// after `=`.
 Clue siemens_clue(std::string_view text, size_t line) {
     std::string words;
     for (const char c : text) words.push_back(upper(c));
@@ -54,7 +54,7 @@ Clue siemens_clue(std::string_view text, size_t line) {
           "SUPA",    "TRAORI",   "TRAFOOF",  "STOPRE",   "WORKPIECE(", "TRANS X",
           "ATRANS ", "G500",     "CYCLE800", "HOLES1(",  "HOLES2("})
         if (words.starts_with(word))
-            return found(DialectId::siemens, line, fmt::format("says {}", word));
+            return found(DialectId::siemens, line, fmt::format("contains {}", word));
     const size_t behind_r = words.find_first_not_of("0123456789 ", 1);
     if (words.size() > 2 && words[0] == 'R' && is_digit(words[1]) && behind_r < words.size()
         && words[behind_r] == '=')
@@ -63,19 +63,19 @@ Clue siemens_clue(std::string_view text, size_t line) {
          {" CR=", "=AC(", "=IC(", "T=\"", " GOTOF ", " GOTOB ", " TURN=", " SUPA ", " AP=", " RP="})
         if (words.find(word) != std::string::npos)
             return found(DialectId::siemens, line,
-                         fmt::format("says {}", word.substr(word.find_first_not_of(' '))));
+                         fmt::format("contains {}", word.substr(word.find_first_not_of(' '))));
     return std::nullopt;
 }
 
-/// What the name of the file says: programs of Siemens are .MPF and .SPF.
+/// Evidence from the file name: Siemens programs end in .MPF and .SPF.
 Clue name_clue(const std::string& file) {
     std::string ending = file.substr(std::min(file.find_last_of('.'), file.size()));
     for (char& c : ending) c = upper(c);
     if (ending != ".MPF" && ending != ".SPF") return std::nullopt;
-    return Recognition{DialectId::siemens, fmt::format("its name ends in {}", ending)};
+    return Recognition{DialectId::siemens, fmt::format("the file name ends in {}", ending)};
 }
 
-/// `@5` or `^30`, not in a comment. `letters` has no blanks.
+/// Whether there is a `@5` or `^30` outside comments. `letters` has no blanks.
 bool has_polar_word(std::string_view letters) {
     const size_t code_end = std::min(letters.find('('), letters.find(';'));
     const std::string_view code = letters.substr(0, code_end);
@@ -84,7 +84,7 @@ bool has_polar_word(std::string_view letters) {
     return is_digit(code[mark + 1]) || std::string_view("+-.[#").find(code[mark + 1]) < 5;
 }
 
-/// Things only LinuxCNC reads, which the parser of this version refuses.
+/// Features of LinuxCNC that the parser of this version does not accept.
 Clue linuxcnc_clue(std::string_view text, size_t line) {
     std::string letters;
     for (const char c : text)
@@ -108,7 +108,7 @@ Clue linuxcnc_clue(std::string_view text, size_t line) {
 constexpr std::array candidates = {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas,
                                    DialectId::grbl};
 
-/// What the whole program has or lacks.
+/// Features of the whole program.
 struct Habits {
     std::array<size_t, candidates.size()> first_unknown{}; // line of a G code not in that dialect
     std::array<size_t, candidates.size()> unknown_count{}; // of G codes
@@ -143,7 +143,7 @@ void observe(const Block& block, Habits& habits) {
     remember(habits.first_crowd, homes && moves, block.line);
 }
 
-/// A program of a control that is not read here: the dialect that knows most of its codes.
+/// For a program of an unsupported control: the dialect that has most of its codes.
 Recognition clue_of_foreign_codes(const Habits& habits) {
     const bool fanuc = habits.unknown_count[1] < habits.unknown_count[0];
     const size_t index = fanuc ? 1 : 0;
@@ -153,7 +153,7 @@ Recognition clue_of_foreign_codes(const Habits& habits) {
                     dialect(candidates[index]).name));
 }
 
-/// A G code that only some dialects have rules out the others.
+/// A G code that only some dialects have excludes the others.
 Clue clue_of_codes(const Habits& habits) {
     const auto [linuxcnc, fanuc, haas, grbl] = habits.first_unknown;
     if (linuxcnc && fanuc && haas && grbl) return clue_of_foreign_codes(habits);
@@ -175,11 +175,12 @@ Recognition judge(const Habits& habits) {
         return found(DialectId::fanuc, habits.first_length_offset, "has G43 with H");
     const bool grbl_knows_all = habits.first_unknown.back() == 0;
     if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark || !grbl_knows_all)
-        return {DialectId::linuxcnc, "nothing in it is specific to one control"};
-    return {DialectId::grbl, "it has no tools, no expressions, no % marks and only codes of Grbl"};
+        return {DialectId::linuxcnc, "nothing in the program is specific to one control"};
+    return {DialectId::grbl,
+            "the program has no tools, no expressions, no % marks and only codes of Grbl"};
 }
 
-/// What only Fanuc's family of controls has: the number or name of a program, jumps and loops.
+/// Features of the Fanuc family: number or name of a program, jumps and loops.
 Clue family_clue(const Block& block) {
     if (!block.words.empty() && block.words.front().letter == 'O')
         return found(DialectId::fanuc, block.line,
@@ -191,7 +192,8 @@ Clue family_clue(const Block& block) {
     return std::nullopt;
 }
 
-/// What Haas controls have and Fanuc's have not. M97 without P is another code of Fanuc's.
+/// Codes that Haas controls have and Fanuc controls do not. On Fanuc, M97 without P is a different
+/// code.
 Clue haas_clue(const Block& block) {
     const auto is_place = [](const Word& word) { return word.letter == 'P'; };
     const bool has_place = std::any_of(block.words.begin(), block.words.end(), is_place);
@@ -217,7 +219,7 @@ Clue language_clue(std::string_view text, size_t line) {
 } // namespace
 
 Recognition recognise(const Program& program) {
-    constexpr size_t enough_lines = 10000; // that say something
+    constexpr size_t enough_lines = 10000; // that are not empty
     if (Clue clue = name_clue(program.file)) return *clue;
     Habits habits;
     Block block;
@@ -228,7 +230,7 @@ Recognition recognise(const Program& program) {
         const std::string_view text = program.line(number);
         if (!family)
             if (Clue clue = language_clue(text, number)) return *clue;
-        // Fanuc's is the widest of the languages whose lines hold words.
+        // Of the languages with letters and numbers, Fanuc's accepts the most.
         if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
             continue;
         lines += !block.is_empty();

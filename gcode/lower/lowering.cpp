@@ -19,7 +19,7 @@ bool is_known(const core::AxisPosition& position) {
 constexpr double chord_error = 0.001;
 
 /// The axis of an arc in the machine (0 X, 1 Y, 2 Z) and whether the arc keeps its direction; empty
-/// when the offsets tilt it away from these axes.
+/// when the offsets tilt the arc out of these planes.
 struct ArcAxis {
     int normal;
     bool is_mirrored;
@@ -37,7 +37,7 @@ std::optional<ArcAxis> arc_axis(const Offsets& offsets, const PlaneAxes& axes) {
         if (linear[axis][normal] != 0.0 || linear[normal][axis] != 0.0) return std::nullopt;
     const double a = linear[first][first], b = linear[second][first];
     const double c = linear[first][second], d = linear[second][second];
-    // A circle stays a circle if both directions stay perpendicular and are scaled alike.
+    // A circle stays a circle if both directions stay perpendicular and have the same scale.
     if (std::abs(a * b + c * d) > 1e-12 || std::abs(a * a + c * c - b * b - d * d) > 1e-12)
         return std::nullopt;
     return ArcAxis{normal, a * d - b * c < 0.0};
@@ -65,7 +65,8 @@ core::ArcPath arc_path(const ArcFeed& command, const Offsets& offsets, ArcAxis a
     return path;
 }
 
-/// The ends of chords that follow an arc within `chord_error`, in program coordinates.
+/// The end points of chords that approximate an arc to within `chord_error`, in program
+/// coordinates.
 std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
     const PlaneAxes axes = axes_of(command.plane);
     const double angle = angle_of(command, from);
@@ -114,7 +115,7 @@ struct Visitor {
         }
     }
 
-    /// The path of the tip relative to the work, if both of its ends are known.
+    /// Adds the path of the tip relative to the work, if both of its ends are known.
     void follow_tip(core::Motion& motion) const {
         const Offsets& offsets = lowering.offsets;
         if (!offsets.machine) return;
@@ -135,7 +136,7 @@ struct Visitor {
         motion.kind = kind;
         motion.from = lowering.machine;
         Position there = machine_from_program(lowering.offsets, end);
-        // An axis that does not move keeps its value exactly.
+        // An axis that does not move must keep its exact value.
         const Position here = program_from_machine(lowering.offsets, lowering.machine);
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const bool stays = here[axis] == end[axis] || is_fixed_to_work(lowering.offsets);

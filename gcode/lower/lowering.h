@@ -14,19 +14,18 @@ struct Lowering {
     Position machine;                   // gauge line
     double spindle_speed = 0.0;         // rev/min
     std::optional<size_t> other_axis{}; // first axis that moved but that the machine does not have
-    bool moved_tilted = false;          // moved with the tool tilted, in a way that is not known
+    bool moved_tilted = false;          // moved with the tool tilted in an unknown way
 
     /// The events of a command in machine coordinates; empty for most modes and for messages. A
     /// program stop is a dwell of zero length: the machine comes to rest.
-    ///
     /// An arc keeps its shape. An arc whose ends are not all known becomes a feed move between the
     /// known coordinates; one whose plane the offsets tilt or distort becomes chords within 0.001
-    /// mm of it. If the machine is known, rotary axes that take the short way do so, and tool
-    /// centre point control gives paths of the tip.
+    /// mm of it. If the machine is known, its rotary axes take the short way if they are built so,
+    /// and tool centre point control gives paths of the tip.
     std::vector<core::Event> lower(const CanonicalCommand& command);
 };
 
-/// The state before the first command, or of a run that starts in a state.
+/// The state before the first command, or that of a run that starts in a given state.
 Lowering initial_lowering(const InterpreterState& state);
 Lowering initial_lowering(const Environment& environment);
 

@@ -10,8 +10,8 @@ namespace gcode {
 /// are rounded to a millionth; unknown coordinates are left out.
 std::string to_text(const CanonicalCommand& command);
 
-/// The commands of a program, one on each line after its line number, then the warnings of each
-/// block and the error that stopped it: the format of golden files.
+/// The commands of a program, one per line after the line number, followed by the warnings of each
+/// block and the error that stopped the program. This is the format of golden files.
 std::string to_text(const Run& run);
 
 } // namespace gcode

@@ -30,7 +30,7 @@ core::Result<void> say(Execution& execution) {
         FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), part));
         text += fmt::format("{:.12g}", value);
     }
-    if (text.empty()) return {}; // clears the last one from the screen
+    if (text.empty()) return {}; // clears the previous message from the screen
     execution.column = use->span.column;
     execution.emit(Message{std::move(text)});
     return {};
@@ -278,7 +278,7 @@ namespace {
 using core::OffsetNumber;
 using core::ToolNumber;
 
-/// The number of T="NAME": the name itself if it is a number, else its number in order of
+/// The number of T="NAME": the name itself if it is a number, else a number assigned in order of
 /// appearance.
 int number_of_name(Execution& execution, const SiemensArgument& name) {
     int number = 0;
@@ -299,7 +299,7 @@ int number_of_name(Execution& execution, const SiemensArgument& name) {
     return number;
 }
 
-/// Applies the length of the active edge along the normal of the plane.
+/// Activates the length of the active edge along the normal of the plane.
 void use_length(Execution& execution, core::SourceSpan where) {
     ModalState& modal = execution.modal();
     const int edge = siemens_of(execution.state).edge;
@@ -334,7 +334,7 @@ void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {
         turn_siemens_spindle(execution, 5);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
-    // MD20270 as delivered: the first edge is active after a tool change.
+    // Default MD20270: the first edge is active after a tool change.
     const Word* edge = execution.statement.word('D');
     writable_siemens(execution.state).edge = 1;
     if (!edge) use_length(execution, where);
@@ -399,7 +399,7 @@ core::Result<void> use_siemens_edge(Execution& execution) {
 core::Result<void> set_siemens_radius(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
     if (!entry && execution.modal().compensation == Side::none) return {};
-    // D is the cutting edge here, not the number of an offset.
+    // D is the cutting edge here, not an offset number.
     Statement without = execution.statement;
     without.words['D' - 'A'] = nullptr;
     Execution shared{execution.library, execution.environment, execution.dialect, execution.block,

@@ -21,7 +21,7 @@ bool changes_levels_in_siemens(const Statement& statement, const InterpreterStat
 /// The value of a system variable such as `$aa_im[x]`; empty if it is not supported.
 std::optional<Value> siemens_variable(const InterpreterState& state, std::string_view name);
 
-// Parts of a block.
+// Steps of a block.
 core::Result<void> use_siemens_words(Execution& execution);     // unused words, units, feed
 core::Result<void> use_siemens_tool(Execution& execution);      // T, M6
 core::Result<void> use_siemens_edge(Execution& execution);      // D
@@ -44,7 +44,7 @@ core::Result<std::vector<std::optional<double>>> cycle_values(Execution& executi
 /// The block's keyword of a kind; null when it has none.
 const SiemensKeywordUse* use_of(const Execution& execution, SiemensAction action);
 
-/// The flow step of the block, for values of arguments and for calls.
+/// The flow step of the block, for evaluating arguments and for calls.
 FlowStep flow_step_of(Execution& execution);
 
 /// Sets the spindle as with M3, M4 or M5; other numbers act as M5.

@@ -86,7 +86,7 @@ size_t first_mode_of(int number) {
     }
 }
 
-/// Refuses modes that are not implemented.
+/// Reports modes that are not implemented as an error.
 core::Result<void> check_modes(const Execution& execution, const SiemensKeywordUse& use,
                                const Values& values, int number) {
     const size_t first = first_mode_of(number);

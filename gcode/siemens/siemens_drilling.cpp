@@ -137,7 +137,7 @@ core::Result<void> tap_hole(SiemensHole& hole) {
     return {};
 }
 
-/// CYCLE86: off the wall with the spindle stopped, out, and back to the centre.
+/// CYCLE86: moves off the wall with the spindle stopped, out, and back to the centre.
 void bore_hole(SiemensHole& hole) {
     const SiemensDrilling& cycle = hole.cycle;
     Execution& execution = hole.execution;

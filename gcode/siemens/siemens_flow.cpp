@@ -21,7 +21,7 @@ tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string messag
     return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
 }
 
-/// A flow statement with the parts of the program that it needs.
+/// Executes a flow statement, using the program around it.
 class SiemensFlowing {
 public:
     explicit SiemensFlowing(const FlowStep& step)
@@ -147,7 +147,7 @@ core::Result<void> SiemensFlowing::begin_loop(std::string_view end) {
     return go_behind(line);
 }
 
-/// FOR, whose variable has its first value, or ENDFOR, which increments it.
+/// FOR, whose variable has been set to its first value, or ENDFOR, which increments it.
 core::Result<void> SiemensFlowing::count_on() {
     ProgramParameters parameters(step_.state, step_.environment);
     const bool begins = step_.block.flow.kind == for_loop;

@@ -10,7 +10,7 @@ core::Result<void> run_siemens_flow(const FlowStep& step);
 /// The lines of the program to which a line belongs: a file may hold several programs, each after a
 /// header.
 struct ProgramLines {
-    uint32_t begin = 1, end = UINT32_MAX; // the end is not part of it
+    uint32_t begin = 1, end = UINT32_MAX; // first line and the line after the last
 };
 ProgramLines lines_around(const FlowIndex& index, uint32_t line);
 

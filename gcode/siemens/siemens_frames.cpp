@@ -20,7 +20,7 @@ bool is_additive(SiemensAction action) {
 core::Mat3 rotation_of_words(const Execution& execution) {
     if (const Word* word = execution.statement.word('Q'))
         return turned_about(static_cast<int>(axes_of(execution.modal().plane).normal), word->value);
-    // RPY, as delivered: about Z, then the new Y, then the new X.
+    // RPY, the default: about Z, then the new Y, then the new X.
     core::Mat3 turn(1.0);
     for (int axis = 2; axis >= 0; --axis)
         if (const Word* word = execution.statement.word(axis_letters[static_cast<size_t>(axis)]))
@@ -28,7 +28,7 @@ core::Mat3 rotation_of_words(const Execution& execution) {
     return turn;
 }
 
-/// The transformation of one statement; for TRANS also along the axes beyond Z.
+/// The transformation of one statement; for TRANS also along the axes other than X, Y and Z.
 core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction action,
                                    AxisValues& others) {
     ProgramFrame step;
@@ -63,7 +63,7 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
     return step;
 }
 
-/// Activates the frame. A shift alone is the local offset and needs no frame.
+/// Activates the frame. A shift alone becomes the local offset and needs no frame.
 void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues& others) {
     writable_siemens(execution.state).frame = frame;
     Offsets offsets = execution.modal().offsets;

@@ -355,8 +355,7 @@ core::Result<void> move_in_siemens(Execution& execution) {
         statement.has_axis_word()
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
-    if (!modal.motion)
-        modal.motion = MotionCode::straight; // as delivered: G1 is active at the start
+    if (!modal.motion) modal.motion = MotionCode::straight; // default: G1 is active at the start
     const Position start = modal.position;
     if (auto moved = move_by_mode(execution); !moved) return moved;
     remember_direction(execution, start);

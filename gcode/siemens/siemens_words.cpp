@@ -90,7 +90,7 @@ core::Result<void> set_siemens_feed(Execution& execution) {
     return {};
 }
 
-/// Sets the feed mode that comes with the codes of constant surface speed: G95 with G96 and G97,
+/// Sets the feed mode that belongs to the codes of constant surface speed: G95 with G96 and G97,
 /// G94 with G961 and G971.
 void set_mode_of_surface_speed(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
@@ -114,7 +114,7 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
-/// CYCLE800 is accepted if it leaves the plane unchanged; tilted planes are refused.
+/// CYCLE800 is accepted if it leaves the plane unchanged; tilted planes are an error.
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
     // FR, TC, ST, MODE, X0 Y0 Z0, A B C, X1 Y1 Z1, DIR, FR_I, DMODE; the name in TC is not a
