@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Closes the real window at many moments of a long check: it ends at once, with status 0, and
-# nothing is said. Under the address sanitizer that also means that nothing is used after its end and
-# nothing of ours leaks. Arguments: the program feeler, the folder of assets, a folder for pictures
-# (kept), the folder of drop_files and await_frames. FEELER_CLOSE_BLOCKS: length of the program.
+# Closes the real window at many moments of a long check: it must end at once, with status 0 and
+# without output. Run with the address sanitizer, this also shows that nothing is used after it is
+# freed and that feeler leaks nothing. Arguments: the program feeler, the folder of assets, a folder
+# for pictures (kept), the folder of drop_files and await_frames. FEELER_CLOSE_BLOCKS: length of the
+# program.
 set -euo pipefail
 feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
 source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
 
-# A raster over a plate, some 60,000 blocks.
+# A raster over a plate, about 60,000 blocks.
 raster() {
     printf 'G21 G90 G17 G54\nT1 M6\nM3 S9000\nG43 H1 Z20.\nG0 X0. Y0.\nG1 Z-1. F3000.\n'
     awk -v blocks="$1" 'BEGIN {
@@ -41,7 +42,7 @@ close() {
     press ctrl+q
     ended "$1"
 }
-running() { kill -0 "$view" 2>/dev/null || die "the window is still there: $1"; }
+running() { kill -0 "$view" 2>/dev/null || die "the window stays open: $1"; }
 
 for seconds in 0 0.1 0.3 1 3; do
     open_raster
@@ -50,7 +51,7 @@ for seconds in 0 0.1 0.3 1 3; do
 done
 
 open_raster
-expect 'the path of all blocks is there' 'of [0-9]{4,}\)'
+expect 'the path of all blocks is shown' 'of [0-9]{4,}\)'
 picture 01-checking
 press bracketright bracketright bracketright bracketright bracketright space
 expect 'it plays while it is checked' 'block [1-9][0-9]+ of'
@@ -58,20 +59,20 @@ picture 02-playing
 close 'while it plays and is checked'
 
 open_window "$work/raster.nc" --setup "$work/raster.toml" --coprocessor
-expect 'the coprocessor is at work beside the check' 'coprocessor: running'
+expect 'the coprocessor runs during the check' 'coprocessor: running'
 sleep 2
 press d d d
-close 'while the coprocessor is run'
+close 'while the coprocessor runs'
 
 open_raster
 expect 'is open' 'block 0 of'
 press End
-close 'on the way to the last block'
+close 'while it goes to the last block'
 
 open_raster
 expect 'is open' 'block 0 of'
 press n
-close 'while it looks for the next violation'
+close 'while it searches for the next violation'
 
 open_raster
 expect 'is open' 'block 0 of'
@@ -79,8 +80,8 @@ for _ in 1 2 3 4; do
     press ctrl+r
     sleep 0.2
 done
-running 'read again and again'
-close 'while it is read again'
+running 'after several reloads'
+close 'while it is reloaded'
 
 open_raster
 expect 'is open' 'block 0 of'
@@ -93,7 +94,7 @@ close 'after the file has changed'
 open_raster
 expect 'is open' 'block 0 of'
 "$tools/drop_files" "$window" 700 400 "$work/short.nc" "$work/raster.toml"
-expect 'another program takes the place of one that is checked' 'short.nc, line .* of 30[0-9]\)'
+expect 'another program replaces the one being checked' 'short.nc, line .* of 30[0-9]\)'
 "$tools/drop_files" "$window" 700 400 "$work/raster.nc" "$work/raster.toml"
 close 'after two drops'
 

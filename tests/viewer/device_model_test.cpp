@@ -72,7 +72,7 @@ TEST(DeviceModel, GoesRoundTheBlocksThatStopTheMachine) {
     }
     ViewModel calm = model_with({viewer_test::permitted(1.0)});
     perform(calm, Command::next_stop, 0.0);
-    EXPECT_EQ(calm.message, "The machine has to wait for no block");
+    EXPECT_EQ(calm.message, "No block is late or refused");
     calm.device.study = nullptr;
     perform(calm, Command::next_stop, 0.0);
     EXPECT_NE(calm.message.find("has not answered"), std::string::npos);

@@ -34,7 +34,7 @@ TEST(DeviceSheet, TellsTheSlackOfWhatIsPermitted) {
     EXPECT_EQ(sheet.tone, Tone::plain);
     EXPECT_EQ(sheet.answer, "Permitted in time");
     EXPECT_EQ(sheet.exact, "The exact engine agrees: clear, 5.00 mm");
-    EXPECT_EQ(value_of(sheet, "asked at"), "250.0 ms");
+    EXPECT_EQ(value_of(sheet, "requested at"), "250.0 ms");
     EXPECT_EQ(value_of(sheet, "permitted"), "+750.0 ms");
     EXPECT_EQ(value_of(sheet, "due"), "+875.0 ms");
     EXPECT_EQ(value_of(sheet, "cycles"), "1000");
@@ -53,7 +53,7 @@ TEST(DeviceSheet, NamesThePairOfWhatIsRefused) {
     const DeviceSheet sheet = sheet_of(viewer_test::refused());
     EXPECT_EQ(sheet.number, "refused");
     EXPECT_EQ(sheet.tone, Tone::bad);
-    EXPECT_EQ(sheet.answer, "flutes / stock come nearer than they may");
+    EXPECT_EQ(sheet.answer, "flutes / stock come closer than allowed");
     EXPECT_EQ(sheet.exact, "The exact engine agrees: violation, 5.00 mm");
     EXPECT_EQ(value_of(sheet, "STOP"), "violation");
     EXPECT_EQ(value_of(sheet, "STOP_SEQ"), "4");
@@ -69,11 +69,11 @@ TEST(DeviceSheet, NamesTheFaultOfADeviceThatHasStopped) {
 
 TEST(DeviceSheet, SaysWhyABlockCannotBeAsked) {
     const DeviceSheet sheet = sheet_of(viewer_test::not_asked());
-    EXPECT_EQ(sheet.number, "not asked");
+    EXPECT_EQ(sheet.number, "not checked");
     EXPECT_EQ(sheet.tone, Tone::bad);
     EXPECT_EQ(sheet.answer, "Not permitted: a body turns");
     EXPECT_EQ(value_of(sheet, "refused"), "0 of 1");
-    EXPECT_EQ(value_of(sheet, "not asked"), "1 of 1");
+    EXPECT_EQ(value_of(sheet, "not checked"), "1 of 1");
     EXPECT_EQ(sheet.exact, "The exact engine says clear, 5.00 mm");
 }
 
@@ -90,7 +90,7 @@ TEST(DeviceSheet, SaysHowLateAPermitCame) {
 TEST(DeviceSheet, GivesNoSlackWhereThereIsNothingToAsk) {
     const DeviceSheet sheet = sheet_of(viewer_test::nothing());
     EXPECT_EQ(sheet.number, "\xE2\x80\x94");
-    EXPECT_EQ(sheet.answer, "Permitted: there is nothing to ask");
+    EXPECT_EQ(sheet.answer, "Permitted: the block moves nothing");
     EXPECT_EQ(value_of(sheet, "due"), "\xE2\x80\x94");
     EXPECT_EQ(sheet.exact, "The exact engine agrees: clear, 5.00 mm");
 }
@@ -122,13 +122,13 @@ TEST(DeviceSheet, SaysWhereTheTwoEnginesDiffer) {
 TEST(DeviceSheet, LeadsToTheBlockBeforeWhichTheMachineStands) {
     const ViewModel model = model_with({viewer_test::nothing(), viewer_test::permitted(-1.0),
                                         viewer_test::refused(), viewer_test::refused()});
-    const auto stands = line_named(sheet_at(model, 0), "stands before");
+    const auto stands = line_named(sheet_at(model, 0), "stopped before");
     ASSERT_TRUE(stands);
     EXPECT_EQ(stands->block, 2U);
     EXPECT_EQ(stands->value, "block 2, line 12");
     EXPECT_EQ(value_of(sheet_at(model, 0), "refused"), "2 of 4");
     EXPECT_EQ(sheet_at(model, 2).parts[0].title, "Time");
-    EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, past what was refused");
+    EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, after a refused block");
 }
 
 TEST(DeviceStatus, TellsWhatGoesOn) {
@@ -137,11 +137,11 @@ TEST(DeviceStatus, TellsWhatGoesOn) {
     model.device.is_running = true;
     model.device.share = 0.5;
     EXPECT_EQ(device_status(model), "") << "the answers are there";
-    EXPECT_EQ(value_of(device_sheet(model), "would do"), "looked for: 50 %");
+    EXPECT_EQ(value_of(device_sheet(model), "sufficient"), "searching: 50 %");
     model.device.study = nullptr;
-    EXPECT_EQ(device_status(model), "Brings the stock into the device \xE2\x80\xA6");
+    EXPECT_EQ(device_status(model), "Loading the stock into the device \xE2\x80\xA6");
     model.device.blocks = 7;
-    EXPECT_EQ(device_status(model), "Asks for block 7 \xE2\x80\xA6 50 %");
+    EXPECT_EQ(device_status(model), "Checking block 7 \xE2\x80\xA6 50 %");
     model.device.failure = core::Error{core::ErrorCode::invalid_value, {3, 1}, "must be above 0"};
     model.device.failure->file = "device.toml";
     EXPECT_EQ(device_status(model), "device.toml, line 3: must be above 0");
@@ -156,7 +156,7 @@ TEST(SlackWords, AreShortEnoughForATooltip) {
     EXPECT_EQ(slack_words(model, 0), "slack 125.0 ms");
     EXPECT_EQ(slack_words(model, 1), "late by 2.00 s");
     EXPECT_EQ(slack_words(model, 2), "refused: flutes / stock");
-    EXPECT_EQ(slack_words(model, 3), "not asked: a body turns");
+    EXPECT_EQ(slack_words(model, 3), "not checked: a body turns");
     EXPECT_EQ(slack_words(model, 4), "");
     EXPECT_EQ(slack_words(model, 99), "");
     EXPECT_EQ(slack_words(ViewModel(), 0), "") << "without a run";

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Files that change under the real window, and files that cannot be read: a program, a set-up and a
-# mesh, each explained, each opened again once it is mended. Arguments: the program feeler, the folder
-# of assets, a folder for pictures (kept), the folder of await_frames.
+# Files that change while the real window shows them, and files that cannot be read: a program, a
+# set-up and a mesh. Each error is explained, and each file is opened again once it is corrected.
+# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), the folder of
+# await_frames.
 set -euo pipefail
 feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
@@ -12,12 +13,12 @@ program=$work/programs/clamped_plate_low.nc setup=$work/setups/clamped_plate.tom
 mesh=$(find "$work/meshes" -name "$(grep -o '[a-z_]*\.stl' "$setup" | head -1)")
 for file in "$program" "$setup" "$mesh"; do cp "$file" "$file.good"; done
 
-# broken FILE WHAT PICTURE: the file has just been spoilt; it is mended when that was explained.
+# broken FILE WHAT PICTURE: the file was just damaged. Waits for the explanation and restores it.
 broken() {
     expect "$2 is explained" 'could not be opened'
-    shows "$3" "$2 is explained in the colour of violations" has_color "$3" '#FF5A36' 20
+    shows "$3" "$2 is shown in the colour of violations" has_color "$3" '#FF5A36' 20
     cp "$1.good" "$1"
-    expect "$2 is opened again when it is mended" 'clamped_plate_low.nc, line'
+    expect "$2 is opened again when it is corrected" 'clamped_plate_low.nc, line'
 }
 
 open_window "$program" --setup "$setup"
@@ -36,14 +37,14 @@ press n
 expect 'N again' 'line 44 \(block 38'
 press 2
 xdotool mousemove 720 30
-shows 01-before 'what collides is marked in the view' has_color 01-before '#FF5A36' 2800
+shows 01-before 'colliding bodies are marked in the view' has_color 01-before '#FF5A36' 2800
 still 01-before
 
-# The last line but one changes: place, camera and breakpoint stay.
+# The last line but one changes: current line, camera and breakpoint stay.
 sed -i 's/^M30$/G4 P0.2\nM30/' "$program"
-expect 'a saved program is read again, at the same place' 'line 44 \(block 38 of 46, violation\)'
+expect 'a saved program is reloaded at the same line' 'line 44 \(block 38 of 46, violation\)'
 convert "$pictures/01-before.png" -crop 760x600+380+110 "$work/before.png"
-# Once the check has come there and the message is gone.
+# True once the check has reached the block and the message is gone.
 is_as_before() {
     convert "$pictures/02-after.png" -crop 760x600+380+110 "$work/after.png"
     (($(compare -metric AE "$work/before.png" "$work/after.png" null: 2>&1 || true) <= 2000))
@@ -54,13 +55,13 @@ expect 'Home' 'block 0 of'
 press F5
 expect 'the breakpoint stays' 'line 30 \(block 25'
 
-# A line above: the place is that of the same text, as far as it can be told.
+# The original again, one line shorter.
 cp "$program.good" "$program"
-expect 'and again' 'block [0-9]+ of 45'
+expect 'the original is reloaded' 'block [0-9]+ of 45'
 
 printf 'G21\nG0 X1\nG1 [[[\n' >"$program"
-expect 'a program that stops half way says so' 'of 1\), stopped at line 3'
-shows 03-stopped 'where the program stops is shown loudly' has_color 03-stopped '#FF5A36' 5000
+expect 'the title says that the program stops early' 'of 1\), stopped at line 3'
+shows 03-stopped 'a large warning shows where the program stops' has_color 03-stopped '#FF5A36' 5000
 printf 'GARBAGE[[[' >"$program"
 broken "$program" 'a corrupted program' 03-program
 head -c 4000 /dev/urandom >"$program"
@@ -68,20 +69,20 @@ broken "$program" 'a program of random bytes' 04-random
 sed -i 's/^mesh_size.*/mesh_size = "much"/' "$setup"
 broken "$setup" 'a wrong value in the set-up' 05-setup
 printf '[[[\n' >"$setup"
-broken "$setup" 'a set-up that is no TOML' 06-toml
+broken "$setup" 'a set-up that is not TOML' 06-toml
 head -c 700 "$mesh.good" >"$mesh"
-broken "$mesh" 'a mesh that is cut off' 07-mesh
+broken "$mesh" 'a truncated mesh' 07-mesh
 head -c 4000 /dev/urandom >"$mesh"
 broken "$mesh" 'a mesh of random bytes' 08-random-mesh
 rm "$program"
 sleep 1
 cp "$program.good" "$program"
-expect 'a program that was away for a while is back' 'clamped_plate_low.nc, line'
+expect 'a program that was deleted for a while is opened again' 'clamped_plate_low.nc, line'
 rm "$program"
-expect 'that what is shown is of a file that is gone is said' 'gone or empty'
-shows 09-gone 'and loudly' has_color 09-gone '#FF5A36' 5000
+expect 'the title says that the file is missing' 'missing or empty'
+shows 09-gone 'and a large warning is shown' has_color 09-gone '#FF5A36' 5000
 cp "$program.good" "$program"
-expect 'and taken back' 'clamped_plate_low.nc, line [0-9]+ \(block [^)]*\) - feeler'
+expect 'the warning goes when the file is back' 'clamped_plate_low.nc, line [0-9]+ \(block [^)]*\) - feeler'
 
 press ctrl+q
 ended 'by Ctrl+Q'

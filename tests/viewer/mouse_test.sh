@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# What the mouse does in the real window: files dropped through the window system, breakpoints set in
-# the gutter, the timeline dragged, lines found by clicks on the path and on what was cut, a section.
-# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), the folder of drop_files
-# and await_frames.
+# The mouse in the real window: drops files through the window system, sets breakpoints in the
+# gutter, drags the timeline, finds lines by clicks on the path and on cut surfaces, makes a section.
+# Arguments: the program feeler, the folder of assets, a folder for pictures (kept), the folder of
+# drop_files and await_frames.
 set -euo pipefail
 feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
@@ -44,7 +44,7 @@ shank = [[14, 14, 23]]
 holder = [[32, 40, 30]]
 TOML
 
-drop() { "$tools/drop_files" "$window" 700 400 "$@" || die "a drop of $* is taken"; }
+drop() { "$tools/drop_files" "$window" 700 400 "$@" || die "a drop of $* is accepted"; }
 
 # shellcheck disable=SC2119
 open_window
@@ -56,7 +56,7 @@ still 02-dropped
 # The list: rows of 20 pixels from y = 114 on; the gutter is left of x = 34.
 row_y() { printf '%s' $((104 + 20 * $1)); }
 click 22 "$(row_y 9)"
-[[ $(title) =~ 'block 0 of' ]] || die 'a click into the gutter does not move'
+[[ $(title) =~ 'block 0 of' ]] || die 'a click in the gutter does not go to another block'
 picture 03-gutter
 press F5
 expect 'F5 stops at the line whose gutter was clicked' 'line 9 \(block 8 of'
@@ -64,9 +64,9 @@ click 22 "$(row_y 9)"
 press Home
 expect 'Home' 'block 0 of'
 press F5
-expect 'a second click takes the breakpoint away' 'block 16 of 16'
+expect 'a second click removes the breakpoint' 'block 16 of 16'
 
-# The timeline: the bars of 17 blocks stand between x = 12 and x = 1428.
+# The timeline: the bars of 17 blocks are between x = 12 and x = 1428.
 bar_x() { printf '%s' $((12 + (1416 * (2 * $1 + 1)) / 34)); }
 xdotool mousemove "$(bar_x 14)" 800 mousedown 1
 expect 'a press on the timeline goes to its block' 'block 14 of'
@@ -82,7 +82,7 @@ xdotool mouseup 1
 frames
 xdotool mousemove "$(bar_x 2)" 830
 frames
-[[ $(title) =~ 'block 11 of' ]] || die 'the timeline stays when the button is up'
+[[ $(title) =~ 'block 11 of' ]] || die 'the timeline does not move when the button is up'
 
 # The view: from the top, without perspective, tool and machine.
 press End
@@ -116,7 +116,7 @@ click 800 310
 picture 06-raw
 [[ $(title) =~ 'block 16 of' ]] || die 'a click on raw stock goes nowhere'
 
-# The section: a face in the stock's colour, hatched, where the half before it was.
+# The section: a hatched face in the colour of the stock where it is cut open.
 face='#99A3AE'
 press 0
 press a
@@ -125,12 +125,12 @@ shows 07-whole 'there is no face without a section' has_no_color 07-whole "$face
 press x
 shows 08-section 'a section shows a face' has_color 08-section "$face" 10000
 click 1000 500
-[[ $(title) =~ 'block 16 of' ]] || die 'what the section has taken away is not clicked'
+[[ $(title) =~ 'block 16 of' ]] || die 'a click misses what the section has removed'
 xdotool mousemove 720 30
 press Escape
 shows 09-whole 'Escape ends the section' has_no_color 09-whole "$face"
 
-# The camera: a drag turns, the wheel goes nearer, and neither moves the place.
+# The camera: a drag turns, the wheel zooms in, and neither changes the current block.
 xdotool mousemove 900 600
 frames
 xdotool mousedown 2
@@ -148,17 +148,17 @@ frames
 xdotool click 4 click 4
 frames
 xdotool mousemove 720 30
-shows 11-nearer 'the wheel goes nearer' differ 10-turned 11-nearer 20000
-[[ $(title) =~ 'block 16 of' ]] || die 'the camera does not move the place'
+shows 11-nearer 'the wheel zooms in' differ 10-turned 11-nearer 20000
+[[ $(title) =~ 'block 16 of' ]] || die 'the camera does not change the current block'
 
-# Another program by a drop, and what is dropped in vain.
+# Another program by a drop, and drops that open nothing.
 cp "$assets/programs/clamped_plate_low.nc" "$work/plate.nc"
 sed 's/^X110\.$/&\n(TWICE)/' "$work/grooves.nc" >"$work/a program with blanks.nc"
 drop "$work/plate.nc"
 expect 'another program is opened by a drop, at its beginning' 'plate.nc, line 2 \(block 0 of'
 picture 12-another
 drop "$work/a%20program%20with%20blanks.nc"
-expect 'a name with blanks is understood' 'a program with blanks.nc, line 1 \(block 0 of'
+expect 'a file name with blanks is opened' 'a program with blanks.nc, line 1 \(block 0 of'
 printf 'solid\nendsolid\n' >"$work/part.stl"
 drop "$work/part.stl"
 picture 13-mesh

@@ -145,7 +145,7 @@ TEST(Navigation, SaysThatThereIsNoViolationOnlyOfAProgramThatWasCheckedToItsEnd)
     model.stopped->where.line = 320;
     EXPECT_NE(no_violation(model).find("line 320"), std::string::npos);
     model.is_recorded = false;
-    EXPECT_EQ(no_violation(model), "No violation is known yet");
+    EXPECT_EQ(no_violation(model), "No violation found yet");
 }
 
 TEST(Navigation, StepsByTool) {
@@ -268,11 +268,11 @@ TEST(SetupSummary, SpellsOutWhatWasInferred) {
     EXPECT_TRUE(inferred_summary(model).empty()) << "a set-up says it";
     opened.is_inferred = true;
     model.program = std::make_shared<const OpenedProgram>(opened);
-    EXPECT_EQ(
-        inferred_summary(model),
-        (std::vector<std::string>{"Inferred set-up: E edits it", "Stock 120.00 x 80.00 x 10.00 mm",
-                                  "T1 flat, D6.00 mm", "T2 flat, D6.00 mm", "T3 flat, D6.00 mm",
-                                  "and 2 more tools", "No fixtures are known"}));
+    EXPECT_EQ(inferred_summary(model),
+              (std::vector<std::string>{"Inferred set-up: press E to edit",
+                                        "Stock 120.00 x 80.00 x 10.00 mm", "T1 flat, D6.00 mm",
+                                        "T2 flat, D6.00 mm", "T3 flat, D6.00 mm",
+                                        "and 2 more tools", "No fixtures are known"}));
 }
 
 TEST(Playback, TakesAsLongAsTheMachine) {

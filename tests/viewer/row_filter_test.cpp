@@ -76,7 +76,7 @@ TEST(RowFilter, SaysWhatOnlyTheControlKnows) {
     for (const auto& [text, name] :
          {std::pair{"rapid and plane = ZX", "plane"}, {"#100 > 5", "#100"}, {"x < 5", "x"}}) {
         const RowFilter filter(text);
-        EXPECT_THAT(filter.refusal(), HasSubstr(std::string("Only the control knows ") + name));
+        EXPECT_THAT(filter.refusal(), HasSubstr(std::string("The list cannot filter by ") + name));
         EXPECT_TRUE(filter.empty());
     }
 }

@@ -1,16 +1,16 @@
 # shellcheck shell=bash
-# A screen of its own with the real window on it, for the tests that drive it as a person would. To
-# be sourced, after `feeler`, `assets`, `pictures` and `tools` are set: the program, the folder of
+# A separate virtual screen with the real window on it, for tests that drive it with keys and mouse.
+# To be sourced after `feeler`, `assets`, `pictures` and `tools` are set: the program, the folder of
 # assets, a folder for pictures (kept), the folder of await_frames and drop_files. FEELER_PATIENCE:
-# seconds after which a test gives up waiting for anything.
+# seconds after which a test gives up waiting.
 #
-# Nothing here sleeps for a fixed time until something must have happened: `frames` waits until the
-# window has drawn what it was told, `expect` and `shows` until what is expected is there.
+# Nothing here sleeps for a fixed time: `frames` waits until the window has processed and drawn all
+# input, `expect` and `shows` until the expected state is reached.
 
 : "${feeler:?}" "${assets:?}" "${pictures:?}" "${tools:?}"
 for command in Xvfb xdotool import; do
     if ! command -v "$command" >/dev/null; then
-        printf 'skipped: there is no %s\n' "$command"
+        printf 'skipped: %s is not installed\n' "$command"
         exit 77
     fi
 done
@@ -32,7 +32,7 @@ cleanup() {
     rm -rf "$work"
 }
 trap cleanup EXIT
-# wait_for COMMAND...: until it succeeds. False if it does not in time.
+# wait_for COMMAND...: waits until the command succeeds. False if it does not in time.
 wait_for() {
     local end=$((SECONDS + patience))
     until "$@"; do
@@ -41,7 +41,7 @@ wait_for() {
     done
 }
 if ! wait_for test -s "$work/display"; then
-    printf 'failed: the screen starts\n'
+    printf 'failed: Xvfb starts\n'
     exit 1
 fi
 DISPLAY=:$(tr -d '\n' <"$work/display")
@@ -61,7 +61,7 @@ has_window() {
     [[ -n $window ]]
 }
 has_window_or_ended() { has_window || has_ended; }
-# open_window WORDS...: feeler view with these words. FEELER_PRELOAD: a library loaded before it.
+# open_window ARGUMENTS...: starts feeler view. FEELER_PRELOAD: a library to preload.
 open_window() {
     LD_PRELOAD=${FEELER_PRELOAD:-} "$feeler" view "$@" 2>"$work/errors" &
     view=$!
@@ -69,38 +69,38 @@ open_window() {
     [[ -n $window ]] || die 'the window opens'
 }
 
-# ended: the window has been told to close, and does so in time, with status 0 and no word said.
+# ended WHEN: the window, which was told to close, ends in time, with status 0 and without output.
 ended() {
     wait_for has_ended || die "closing ends: $1"
     local status=0
     wait "$view" || status=$?
     view=''
     [[ $status == 0 ]] || die "closing ends with status $status: $1"
-    [[ ! -s $work/errors ]] || die "nothing is said on standard error: $1"
+    [[ ! -s $work/errors ]] || die "nothing is written to standard error: $1"
 }
 
-# expect WHAT PATTERN: the title comes to match in time.
+# expect WHAT PATTERN: waits until the title matches the pattern.
 expect() {
     wait_for title_matches "$2" || die "$1"
 }
 title_matches() { [[ $(title) =~ $1 ]]; }
-# Waits until the window has taken in everything that was done so far, and has drawn it.
-frames() { "$tools/await_frames" "$window" 4 || die 'the window goes on'; }
+# Waits until the window has processed all input so far and has drawn the result.
+frames() { "$tools/await_frames" "$window" 4 || die 'the window keeps drawing'; }
 picture() {
     frames
     import -window root "$pictures/$1.png"
 }
-# shows NAME WHAT CONDITION...: a picture of that name comes to meet a condition in time.
+# shows NAME WHAT CONDITION...: takes pictures of this name until one meets the condition.
 shows() {
     local name=$1 what=$2
     shift 2
     wait_for picture_meets "$name" "$@" || die "$what"
 }
-# still NAME: a picture of that name, once nothing has changed for two seconds: work in the background
-# has come to its end.
+# still NAME: takes a picture once nothing has changed for two seconds, so that background work is
+# complete.
 still() {
     picture "$1"
-    wait_for is_still "$1" || die "the window comes to rest: $1"
+    wait_for is_still "$1" || die "the window stops changing: $1"
 }
 is_still() {
     for _ in 1 2 3 4; do
@@ -117,19 +117,19 @@ picture_meets() {
     picture "$1"
     "${@:2}"
 }
-# How many pixels of two pictures differ, and how many of one have a colour.
+# The number of pixels in which two pictures differ; the number of pixels of a colour in one.
 differing() { printf '%.0f' "$(compare -metric AE "$pictures/$1.png" "$pictures/$2.png" null: 2>&1 || true)"; }
 of_color() {
     convert "$pictures/$1.png" -fill black +opaque "$2" -fill white -opaque "$2" \
         -format '%[fx:round(mean*w*h)]' info:
 }
-# Conditions: more than so many pixels of two pictures differ; more than so many of one have a colour,
-# or none has.
+# Conditions: two pictures differ in more than N pixels; a picture has more than N pixels of a
+# colour, or none.
 differ() { (($(differing "$1" "$2") > ${3:-0})); }
 has_color() { (($(of_color "$1" "$2") > $3)); }
 has_no_color() { [[ $(of_color "$1" "$2") == 0 ]]; }
 press() { xdotool key --window 0 --clearmodifiers "$@"; }
-# click X Y; the button is up before the mouse goes on.
+# click X Y: clicks, and waits until the release has been processed.
 click() {
     xdotool mousemove "$1" "$2"
     frames

@@ -5,7 +5,7 @@ set -euo pipefail
 feeler=$1 assets=$2 pictures=$3
 unset DISPLAY WAYLAND_DISPLAY
 if ! command -v identify >/dev/null; then
-    printf 'skipped: there is no identify (imagemagick)\n'
+    printf 'skipped: identify (imagemagick) is not installed\n'
     exit 77
 fi
 mkdir -p "$pictures"
@@ -25,18 +25,18 @@ shot() {
         --setup "$assets/setups/clamped_plate.toml" -o "$pictures/$name" "$@"
 }
 size_of() { identify -format '%wx%h' "$pictures/$1"; }
-# Colours of a picture: an empty one has few.
-is_rich() { (($(identify -format '%k' "$pictures/$1") > 400)) || die "$1 shows next to nothing"; }
+# Fails if a picture has few colours, as an empty one does.
+is_rich() { (($(identify -format '%k' "$pictures/$1") > 400)) || die "$1 is almost empty"; }
 differ() { ! cmp -s "$pictures/$1" "$pictures/$2" || die "$1 and $2 are the same"; }
 
 shot worst.png --worst
-[[ $(size_of worst.png) == 1440x900 ]] || die 'the usual size'
+[[ $(size_of worst.png) == 1440x900 ]] || die 'the default size'
 is_rich worst.png
 shot again.png --worst
 cmp "$pictures/worst.png" "$pictures/again.png" || die 'the same picture every time'
 
 shot light.png --worst --theme light --size 1000x700
-[[ $(size_of light.png) == 1000x700 ]] || die 'the size that was asked for'
+[[ $(size_of light.png) == 1000x700 ]] || die 'the requested size'
 is_rich light.png
 shot finding.png --finding 2 --view witness --no-ui --size 800x600
 is_rich finding.png
@@ -60,14 +60,14 @@ shot steps.png --from 18 --to 18 --no-ui --size 320x200
 if command -v ffmpeg >/dev/null; then
     printf mine >"$pictures/film-0001.png"
     shot film.mp4 --from 18 --to 18 --no-ui --size 320x200
-    [[ -s $pictures/film.mp4 ]] || die 'a film'
-    [[ $(cat "$pictures/film-0001.png") == mine ]] || die "somebody's picture stays"
+    [[ -s $pictures/film.mp4 ]] || die 'a video'
+    [[ $(cat "$pictures/film-0001.png") == mine ]] || die "pictures of others are not overwritten"
     cp "$pictures/film.mp4" "$pictures/film.xyz"
     status=0
     shot film.xyz --from 18 --to 18 --no-ui --size 320x200 2>"$work/errors" || status=$?
-    [[ $status == 2 && -s $work/errors ]] || die 'no film of a kind that nobody knows'
-    cmp "$pictures/film.mp4" "$pictures/film.xyz" || die 'what was there stays'
-    [[ -z $(find "$pictures" -name '.unfinished*') ]] || die 'nothing is left over'
+    [[ $status == 2 && -s $work/errors ]] || die 'refuses an unknown video format'
+    cmp "$pictures/film.mp4" "$pictures/film.xyz" || die 'an existing file is not changed'
+    [[ -z $(find "$pictures" -name '.unfinished*') ]] || die 'no temporary files remain'
 fi
 
 refused() {
@@ -88,6 +88,6 @@ refused --from 9 --to 3
 status=0
 "$feeler" view "$assets/programs/TEST_G90.NC" 2>"$work/errors" || status=$?
 [[ $status == 2 ]] || die 'without a display the window ends with 2'
-[[ $(wc -l <"$work/errors") == 1 ]] || die 'and says so in one line'
+[[ $(wc -l <"$work/errors") == 1 ]] || die 'and prints one line'
 grep -q 'feeler shot' "$work/errors" || die 'and proposes feeler shot'
 printf 'passed\n'

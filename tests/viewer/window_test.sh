@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Drives the real window with keys and clicks on a screen of its own, as a person would, and reads
-# from its title where it stands. Arguments: the program feeler, the folder of assets, a folder for
-# pictures (kept), the folder of await_frames.
+# Drives the real window with keys and clicks on a separate virtual screen, and reads the current
+# block from its title. Arguments: the program feeler, the folder of assets, a folder for pictures
+# (kept), the folder of await_frames.
 set -euo pipefail
 feeler=$1 assets=$2 pictures=$3 tools=$4
 # shellcheck source=tests/viewer/screen.sh
@@ -31,7 +31,7 @@ press n
 expect 'N goes to the first violation' 'line 44 \(block 38 of 45, violation\)'
 still 03-violation
 press f
-shows 04-closest-pair 'F looks at the closest pair' differ 03-violation 04-closest-pair
+shows 04-closest-pair 'F shows the closest pair' differ 03-violation 04-closest-pair
 press F3
 expect 'F3 goes to the next' 'line 45 '
 press shift+n
@@ -65,11 +65,11 @@ xdotool mousemove 1198 810 click 1
 expect 'a click on the timeline goes to its block' 'block 38 of 45, violation'
 xdotool mousemove 640 810 mousedown 1 mousemove 500 810 mousemove 400 810 mouseup 1
 expect 'dragging scrubs back' 'block 1[23] of 45'
-frames # the button is up before the mouse goes on
+frames # process the release before the mouse moves on
 click 200 340
-expect 'a click into the list goes to its line' 'line 16 '
+expect 'a click in the list goes to its line' 'line 16 '
 
-[[ $(of_color 06-filter-cleared '#FFFFFF') -lt 5000 ]] || die 'it begins dark'
+[[ $(of_color 06-filter-cleared '#FFFFFF') -lt 5000 ]] || die 'it starts with the dark theme'
 press t
 shows 07-light 'T changes the theme: panels are white' has_color 07-light '#FFFFFF' 100000
 press question
@@ -78,14 +78,14 @@ press Escape
 press w
 picture 09-what-if
 press Escape
-# Whether the last row but one of a window of 900x600 is drawn.
+# Whether the last but one row of pixels is drawn in a window of 900x600.
 is_filled() { [[ $(convert "$pictures/$1.png" -crop 900x1+0+598 -format '%[fx:mean>0.5]' info:) == 1 ]]; }
 xdotool windowsize "$window" 900 600
 shows 10-small 'a smaller window is filled to its edge' is_filled 10-small
 xdotool windowsize "$window" 1440 900
 shows 10-large 'a larger window is drawn' differ 10-small 10-large 100000
 click 1198 810
-expect 'after a change of size clicks meet what is there' 'block 38 of 45, violation'
+expect 'clicks hit the right block after a change of size' 'block 38 of 45, violation'
 press 1
 picture 11-top
 press F12
@@ -103,7 +103,7 @@ still 14-before
 press v
 shows 14-findings 'V shows the findings' differ 14-before 14-findings
 press ctrl+Down
-expect 'Ctrl+Down goes to the first of them' 'block 3[0-9] of 45'
+expect 'Ctrl+Down goes to the first finding' 'block 3[0-9] of 45'
 press v
 press Home
 expect 'Home' 'block 0 of'
@@ -116,17 +116,17 @@ shows 17-small 'Escape closes it' differ 16-setup-small 17-small
 xdotool windowsize "$window" 1440 900
 
 sed -i '6a (ANOTHER LINE)\nG4 P0.1' "$work/plate.nc"
-expect 'a saved file is read again' 'of 4[67]\)'
+expect 'a saved file is reloaded' 'of 4[67]\)'
 printf 'GARBAGE[[[' >"$work/plate.nc"
 expect 'a program that cannot be run is explained' 'could not be opened'
 picture 12-garbage
 head -c 3000 /dev/urandom >"$work/plate.nc"
-expect 'what cannot be read is explained' 'could not be opened'
+expect 'a file that cannot be read is explained' 'could not be opened'
 picture 13-error
 cp "$assets/programs/clamped_plate.nc" "$work/plate.nc"
-expect 'and opens again when it is mended' 'plate.nc, line'
+expect 'and opens again when it is corrected' 'plate.nc, line'
 
 press ctrl+q
 ended 'by Ctrl+Q'
-grep -q 'theme = "light"' "$work/config/feeler/view.toml" || die 'the theme is remembered'
+grep -q 'theme = "light"' "$work/config/feeler/view.toml" || die 'the theme is saved'
 printf 'passed\n'

@@ -23,19 +23,19 @@ struct CheckedBlock;
 
 namespace app::viewer {
 
-/// A block as executed, as the panels show it. Plain data that can be passed between threads.
+/// An executed block as the panels show it. Plain data that can be passed between threads.
 struct BlockRow {
     uint32_t line = 0;
     std::string text;
-    std::string file;   // of a subprogram's file; empty for the main program
-    uint32_t depth = 0; // of calls
+    std::string file;   // of the subprogram; empty for the main program
+    uint32_t depth = 0; // of subprogram calls
     core::BlockMotion motion = core::BlockMotion::none;
-    std::optional<core::ToolNumber> tool; // in the spindle after it
-    double time = 0.0;                    // of its start, seconds
+    std::optional<core::ToolNumber> tool; // in the spindle after the block
+    double time = 0.0;                    // at its start, seconds
     double duration = 0.0;                // seconds
     double removed = 0.0;                 // mm3
-    bool is_known = false;                // checked; all members below are empty until then
-    bool is_judged = true;                // false: it moves, but could not be checked
+    bool is_known = false; // true once checked; until then all members below are empty
+    bool is_judged = true; // false: the block moves, but could not be checked
     core::Verdict verdict = core::Verdict::clear;
     std::optional<double> lower, upper;   // clearance, mm; upper is empty beyond the search limit
     std::optional<double> allowance;      // of the deciding pair, mm
@@ -43,7 +43,7 @@ struct BlockRow {
     core::Vec3 on_tool = core::Vec3(0.0); // witness, frame of the stock
     core::Vec3 on_body = core::Vec3(0.0);
     double witness_time = 0.0;                  // seconds after the block's start
-    core::Severity worst = core::Severity::off; // of the findings about it
+    core::Severity worst = core::Severity::off; // of the findings about the block
 
     bool has_pair() const { return upper.has_value(); }
     bool has_witness() const { return upper.has_value(); }
@@ -52,22 +52,22 @@ struct BlockRow {
 /// The row of a checked block.
 BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked);
 
-/// The facts of a row for conditions: of pairs only the deciding one, no findings (the window has a
+/// The facts of a row for conditions: only the deciding pair, no findings (the window has a
 /// separate list of them) and no values of the control.
 BlockFacts facts_of(const BlockRow& row, size_t block);
 
 /// Whether the block moves anything.
 inline bool moves(const BlockRow& row) { return row.motion != core::BlockMotion::none; }
 
-/// Whether N stops at it: it has an error, or is not proven clear.
+/// Whether the key N stops at the block: it has an error, or is not proven clear.
 inline bool is_offending(const BlockRow& row) {
     return row.worst == core::Severity::error || row.verdict != core::Verdict::clear;
 }
 
-/// Whether its clearance is between the allowance and twice the allowance.
+/// Whether the clearance is between the allowance and twice the allowance.
 bool is_near(const BlockRow& row);
 
-/// The state that gives its colour everywhere.
+/// The state that gives the block its colour in all panels.
 render::ClearanceState state_of(const BlockRow& row);
 
 } // namespace app::viewer

@@ -17,7 +17,7 @@ using hwsim::Counter;
 
 const std::string no_value = "\xE2\x80\x94";
 
-/// The block that is shown, and what is known of it.
+/// The block shown by the panel, and its data.
 struct Subject {
     const DeviceStudy& study;
     size_t index = 0;
@@ -44,27 +44,28 @@ std::string place_words(const DeviceStudy& study, size_t block) {
 
 std::string number_of(const Subject& subject) {
     if (subject.answer() == DeviceAnswer::refused) return "refused";
-    if (subject.answer() == DeviceAnswer::not_asked) return "not asked";
+    if (subject.answer() == DeviceAnswer::not_asked) return "not checked";
     const auto slack = slack_of(&subject.study, subject.index);
     return slack ? time_text(*slack) : no_value;
 }
 
 std::string answer_words(const Subject& subject) {
-    // Only of a block that the run has come to.
+    // Only valid for blocks that the run has reached.
     const auto why = [&] { return refusal(*subject.study.result, subject.index); };
     switch (subject.answer()) {
     case DeviceAnswer::unknown:
         return "The run ended before this block";
     case DeviceAnswer::nothing:
-        return "Permitted: there is nothing to ask";
+        return "Permitted: the block moves nothing";
     case DeviceAnswer::permitted:
-        return slack_of(&subject.study, subject.index) ? "Permitted in time"
-                                                       : "Permitted; the machine stands until then";
+        return slack_of(&subject.study, subject.index)
+                   ? "Permitted in time"
+                   : "Permitted; the machine is stopped until then";
     case DeviceAnswer::late:
         return "Permitted too late: the machine brakes and waits";
     case DeviceAnswer::refused:
         return subject.block().permit.stop == hwsim::Stop::violation
-                   ? why() + " come nearer than they may"
+                   ? why() + " come closer than allowed"
                    : "The device has stopped: " + why();
     case DeviceAnswer::not_asked:
         return "Not permitted: " + why();
@@ -72,7 +73,8 @@ std::string answer_words(const Subject& subject) {
     return {};
 }
 
-/// Verdict and clearance of the exact engine, as the inspector may have no room beside the device.
+/// Verdict and clearance of the exact engine. Repeated here because the inspector may be hidden
+/// when the coprocessor panel is open.
 std::string exact_words(const ViewModel& model, const Subject& subject) {
     std::string verdict = core::name_of(subject.exact().verdict);
     const BlockRow& row = model.row();
@@ -81,14 +83,14 @@ std::string exact_words(const ViewModel& model, const Subject& subject) {
                        length_at_least(model, *row.lower, row.upper ? 2 : 0), length_unit(model));
 }
 
-/// How the exact engine stands to the answer.
+/// Compares the result of the exact engine with the answer of the device.
 void compare(const Subject& subject, const std::string& exact, DeviceSheet& sheet) {
     EngineAgreement both;
     add(both, subject.block().permit, subject.exact());
     const bool is_undecided = subject.exact().verdict == core::Verdict::undecided;
     sheet.exact = "The exact engine says " + exact;
     if (both.missed > 0) {
-        sheet.exact += ": this must not be permitted";
+        sheet.exact += ": the block must not be permitted";
         sheet.exact_tone = Tone::bad;
     } else if (both.not_asked > 0 || is_undecided) {
         sheet.exact_tone = Tone::near;
@@ -103,15 +105,16 @@ void compare(const Subject& subject, const std::string& exact, DeviceSheet& shee
 DevicePart time_part(const Subject& subject) {
     const BlockTiming& timing = subject.timing();
     DevicePart part{subject.study.held && subject.index > *subject.study.held
-                        ? "Time, past what was refused"
+                        ? "Time, after a refused block"
                         : "Time",
                     {}};
-    // All are there for every block, so that nothing moves when somebody steps.
+    // Every block has all lines, so that nothing jumps when the user steps.
     const auto after = [&](const char* name, double time) {
         part.lines.push_back(
             {name, std::isfinite(time) ? "+" + time_text(time - timing.asked) : no_value});
     };
-    part.lines.push_back({"asked at", timing.asked > 0.0 ? time_text(timing.asked) : "the start"});
+    part.lines.push_back(
+        {"requested at", timing.asked > 0.0 ? time_text(timing.asked) : "the start"});
     after(subject.block().permit.permitted ? "permitted" : "answered", timing.permitted);
     after("due", timing.due);
     after("entered", timing.entered);
@@ -134,7 +137,7 @@ DevicePart work_part(const Subject& subject) {
 DevicePart register_part(const Subject& subject) {
     const hwsim::DeviceReport& report = subject.block().permit.report;
     const bool stopped = report.stop != hwsim::Stop::none;
-    DevicePart part{"Registers behind it",
+    DevicePart part{"Registers after the block",
                     {{"PERMIT_SEQ", fmt::format("{}", report.permitted)},
                      {"STOP", name_of(report.stop), stopped ? Tone::bad : Tone::plain}}};
     part.lines.push_back({"STOP_SEQ", fmt::format("{}", report.stop_sequence)});
@@ -144,7 +147,7 @@ DevicePart register_part(const Subject& subject) {
     return part;
 }
 
-/// What the threads did in the meantime.
+/// What the threads of the device did since the last block.
 DevicePart share_part(const Subject& subject) {
     const DeviceShares shares =
         shares_between(subject.before(), subject.block().after, subject.study.result->file.device);
@@ -158,7 +161,7 @@ DevicePart share_part(const Subject& subject) {
             true};
 }
 
-/// Blocks that are not permitted, and how many are late.
+/// Adds the number of blocks that are refused or late, and where the machine stops.
 void add_stops(const DeviceStudy& study, DevicePart& part) {
     const EngineAgreement& both = *study.agreement;
     const auto count = [&](const char* name, size_t blocks) {
@@ -166,10 +169,10 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
                               blocks == 0 ? Tone::plain : Tone::bad});
     };
     count("refused", both.refused - both.not_asked);
-    if (both.not_asked > 0) count("not asked", both.not_asked);
+    if (both.not_asked > 0) count("not checked", both.not_asked);
     if (study.held)
         part.lines.push_back(
-            {"stands before", place_words(study, *study.held), Tone::bad, *study.held});
+            {"stopped before", place_words(study, *study.held), Tone::bad, *study.held});
     const size_t late = study.result->timing.missed;
     part.lines.push_back({"late", late == 0 ? "none" : fmt::format("{}", late),
                           late == 0 ? Tone::plain : Tone::bad});
@@ -189,9 +192,9 @@ DevicePart run_part(const ViewModel& model) {
     const hwsim::DeviceConfig& device = study.result->file.device;
     DevicePart part{"Whole run", {}};
     add_stops(study, part);
-    part.lines.push_back({"latency", time_text(study.figures->p50)});
-    part.lines.push_back({"at most", time_text(study.figures->longest)});
-    part.lines.push_back({"at work", percent(study.figures->busy_share)});
+    part.lines.push_back({"latency p50", time_text(study.figures->p50)});
+    part.lines.push_back({"latency max", time_text(study.figures->longest)});
+    part.lines.push_back({"device busy", percent(study.figures->busy_share)});
     if (study.agreement->missed > 0)
         part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
     part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});
@@ -200,11 +203,11 @@ DevicePart run_part(const ViewModel& model) {
     const auto best = smallest(study.result->fits);
     std::string enough = "none of those tried";
     if (model.device.is_running)
-        enough = fmt::format("looked for: {:.0f} %", 100.0 * model.device.share);
+        enough = fmt::format("searching: {:.0f} %", 100.0 * model.device.share);
     if (best)
         enough = fmt::format("{} element{}, {} MHz", best->elements, best->elements == 1 ? "" : "s",
                              *best->clock_mhz);
-    part.lines.push_back({"would do", enough, best ? Tone::plain : Tone::dim});
+    part.lines.push_back({"sufficient", enough, best ? Tone::plain : Tone::dim});
     return part;
 }
 
@@ -234,8 +237,8 @@ DeviceSheet device_sheet(const ViewModel& model) {
 std::string device_status(const ViewModel& model) {
     const DeviceModel& device = model.device;
     if (!model.changes.empty())
-        return "A what-if is in effect. The device runs what the files say: take it back, or put "
-               "it into the set-up.";
+        return "A what-if is in effect, but the device runs the program as the files describe it. "
+               "Undo the what-if, or enter the change in the set-up.";
     if (device.failure) {
         std::string words = device.failure->message;
         if (device.failure->where.line > 0)
@@ -243,10 +246,10 @@ std::string device_status(const ViewModel& model) {
         if (!device.failure->file.empty()) words = device.failure->file + ", " + words;
         return words;
     }
-    if (!model.program) return "Waits for the program \xE2\x80\xA6";
+    if (!model.program) return "Waiting for the program \xE2\x80\xA6";
     if (!device.is_running || device.study) return {};
-    if (device.blocks == 0) return "Brings the stock into the device \xE2\x80\xA6";
-    return fmt::format("Asks for block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
+    if (device.blocks == 0) return "Loading the stock into the device \xE2\x80\xA6";
+    return fmt::format("Checking block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
                        100.0 * device.share);
 }
 
@@ -259,7 +262,7 @@ std::string slack_words(const ViewModel& model, size_t block) {
     case DeviceAnswer::refused:
         return "refused: " + refusal(*study->result, block);
     case DeviceAnswer::not_asked:
-        return "not asked: " + refusal(*study->result, block);
+        return "not checked: " + refusal(*study->result, block);
     case DeviceAnswer::late:
         return "late by " + time_text(-*slack_of(study, block));
     case DeviceAnswer::permitted:

@@ -20,10 +20,10 @@ constexpr auto progress_interval = std::chrono::milliseconds(100);
 
 } // namespace
 
-/// What is to be run.
+/// A program to run, and the device.
 struct DeviceJob {
     CheckJob check;
-    std::string file; // of the device; empty: the default one
+    std::string file; // path of the device file; empty: the default device
 };
 
 class DeviceWorker::Thread {
@@ -49,7 +49,7 @@ private:
     std::optional<DeviceJob> wanted_;
     DeviceUpdate news_;
     std::atomic<bool> stopping_ = false;
-    std::atomic<uint64_t> runs_ = 0; // that were begun or ended
+    std::atomic<uint64_t> runs_ = 0; // counts starts and stops; the current run has this number
     std::thread thread_;             // last: it uses all of the above
 };
 
@@ -93,7 +93,7 @@ void DeviceWorker::Thread::deliver(DeviceUpdate news) {
     {
         const std::lock_guard lock(mutex_);
         if (is_over(news.run)) return;
-        // What nobody has looked at yet is not lost.
+        // Keep a study that the window has not taken yet.
         if (!news.study) news.study = std::move(news_.study);
         news_ = std::move(news);
         news_.has_news = true;
@@ -180,7 +180,7 @@ DeviceUpdate DeviceWorker::take() { return thread_->take(); }
 
 namespace {
 
-/// Set points between permit and need below which slack is little.
+/// A slack below this number of servo periods is shown as small.
 constexpr double near_periods = 10.0;
 
 TimelineCell slack_cell(const DeviceStudy& study, size_t block) {

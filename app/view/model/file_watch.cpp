@@ -13,7 +13,7 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
     return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
 }
 
-/// What stands between quotes on each line.
+/// All texts between quotes, line by line.
 std::vector<std::string> quoted_in(const std::string& path) {
     std::ifstream file(path);
     std::vector<std::string> found;
@@ -38,7 +38,7 @@ bool is_setup_file(const std::string& path) { return has_ending(path, {".toml"})
 
 std::vector<std::string> files_of_setup(const std::string& setup) {
     std::vector<std::string> files{setup};
-    // A machine names files, too; no set-up names another one.
+    // A machine file names meshes, too; a set-up never names another set-up.
     for (size_t i = 0; i < files.size(); ++i) {
         if (!is_setup_file(files[i])) continue;
         const std::filesystem::path folder = std::filesystem::path(files[i]).parent_path();
@@ -81,7 +81,7 @@ bool FileWatch::has_changed() {
     const bool rests = now == last_;
     last_ = now;
     if (!rests) return false;
-    // An editor that replaces a file takes it away for a moment.
+    // Editors that replace a file delete it for a moment.
     look_for_missing(now);
     if (now == known_ || !missing_.empty()) return false;
     known_ = std::move(now);

@@ -10,8 +10,8 @@ namespace app::viewer {
 bool is_mesh_file(const std::string& path);
 bool is_setup_file(const std::string& path);
 
-/// The set-up and the files it names: meshes, and the machine file with its meshes. Works even if
-/// the set-up has errors.
+/// The set-up file and the files that it names: meshes, and the machine file with its meshes. Works
+/// even if the set-up has errors.
 std::vector<std::string> files_of_setup(const std::string& setup);
 
 /// Polls files for changes.
@@ -19,10 +19,10 @@ class FileWatch {
 public:
     void set(std::vector<std::string> paths);
 
-    /// Whether a file changed since the last call and is the same in two calls in a row, so that it
-    /// is not read while it is being written.
+    /// Whether a file has changed and was then the same in two calls in a row, so that it is not
+    /// read while it is being written.
     bool has_changed();
-    /// The first file that existed and is now deleted or empty, as of the last call; or empty.
+    /// The first file that existed and was deleted or empty in the last call; empty: none.
     const std::string& missing() const { return missing_; }
 
 private:

@@ -13,7 +13,7 @@
 namespace app::viewer {
 namespace {
 
-/// Whether nothing moves between two blocks.
+/// Whether no block between two blocks moves.
 bool follow_each_other(const std::vector<BlockRow>& rows, size_t before, size_t after) {
     for (size_t block = before + 1; block < after; ++block)
         if (moves(rows[block])) return false;
@@ -34,7 +34,7 @@ void take_worst(FindingStretch& stretch, size_t block, const BlockRow& row,
     stretch.cure = finding.cure;
 }
 
-/// The findings of a group come in the order of their blocks.
+/// Adds a finding to its group. Findings must come in the order of their blocks.
 void add(FindingGroup& group, const std::vector<BlockRow>& rows, const core::Finding& finding) {
     group.severity = std::max(group.severity, finding.severity);
     if (!finding.block || core::value_of(*finding.block) >= rows.size()) {
@@ -52,13 +52,13 @@ void add(FindingGroup& group, const std::vector<BlockRow>& rows, const core::Fin
     }
     FindingStretch& stretch = group.stretches.back();
     take_worst(stretch, block, rows[block], finding);
-    if (stretch.count > 0 && stretch.last == block) return; // told twice
+    if (stretch.count > 0 && stretch.last == block) return; // a second finding for the same block
     stretch.last = block;
     ++stretch.count;
     ++group.count;
 }
 
-/// How much is missing at the worst place.
+/// The largest shortfall in the group, mm.
 double shortfall_of(const FindingGroup& group) {
     return group.stretches.empty() ? 0.0 : group.stretches[group.worst].shortfall;
 }
@@ -128,14 +128,14 @@ namespace {
 
 using Notes = std::vector<FindingNote>;
 
-/// The note on a stretch, or the end.
+/// The note on a stretch, or the end of the list.
 template <typename NoteList>
 auto find_note(NoteList& notes, const std::string& program, const FindingGroup& group,
                const BlockRow& first) {
     const auto distance = [&](const FindingNote& note) {
         return note.line > first.line ? note.line - first.line : first.line - note.line;
     };
-    const std::string code = utf8_text(first.text), file = utf8_text(first.file); // as kept
+    const std::string code = utf8_text(first.text), file = utf8_text(first.file); // as stored
     auto found = notes.end();
     for (auto note = notes.begin(); note != notes.end(); ++note) {
         const bool is_same = note->program == program && note->rule == group.rule
@@ -178,7 +178,7 @@ void write_note(Notes& notes, const std::string& program, const FindingGroup& gr
 Notes notes_in(const std::string& text) {
     Notes notes;
     const auto root = parsed_toml(text);
-    if (!root) return notes; // as if there was no file
+    if (!root) return notes; // as if there were no file
     const toml::array* list = (*root)["note"].as_array();
     if (!list) return notes;
     for (const toml::node& node : *list) {
@@ -190,7 +190,7 @@ Notes notes_in(const std::string& text) {
 }
 
 std::string text_of(const Notes& notes) {
-    std::string text = "# What was written on findings in the window of feeler.\n";
+    std::string text = "# Notes on findings, written by feeler view.\n";
     for (const FindingNote& note : notes)
         text += fmt::format(
             "\n[[note]]\nprogram = {}\nrule = {}\npart = {}\nbody = {}\nfile = {}\nline = {}\n"

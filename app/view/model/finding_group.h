@@ -8,33 +8,33 @@
 
 namespace app::viewer {
 
-/// Findings of one rule about one pair in successive blocks; blocks without motion do not
-/// interrupt.
+/// Findings of one rule about one pair in successive blocks; blocks without motion in between do
+/// not end the stretch.
 struct FindingStretch {
     size_t first = 0, last = 0;      // blocks
     size_t count = 0;                // blocks that have the finding
     size_t worst = 0;                // the block with the largest shortfall
-    std::optional<double> clearance; // there, mm; empty: not about a clearance
-    double shortfall = 0.0;          // there, mm
-    std::string message, cure;       // there
+    std::optional<double> clearance; // in the worst block, mm; empty: not about a clearance
+    double shortfall = 0.0;          // in the worst block, mm
+    std::string message, cure;       // of the finding in the worst block
 };
 
 /// All findings of one rule about one pair of bodies.
 struct FindingGroup {
     std::string rule;
-    std::array<std::string, 2> pair; // empty if it is about none
+    std::array<std::string, 2> pair; // empty if the rule is not about a pair
     core::Severity severity = core::Severity::off;
-    std::vector<FindingStretch> stretches; // in order; empty if it is about the program as a whole
-    size_t worst = 0;                      // of the stretches
+    std::vector<FindingStretch> stretches; // in program order; empty if about the whole program
+    size_t worst = 0;                      // index of the worst stretch
     size_t count = 0;                      // blocks
-    std::string message, cure;             // of one about the program as a whole
+    std::string message, cure;             // if about the whole program
 };
 
 /// The findings of a program in groups, sorted by severity, then by shortfall, then by block.
 std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
                                   const std::vector<core::Finding>& findings);
 
-/// The indices of a stretch.
+/// The indices of a group and of a stretch in it.
 struct StretchPlace {
     size_t group = 0, stretch = 0;
 
@@ -55,16 +55,16 @@ struct FindingNote {
     std::string program; // path of the file
     std::string rule;
     std::array<std::string, 2> pair;
-    std::string file; // of a subprogram
+    std::string file; // of the subprogram; empty: main program
     uint32_t line = 0;
-    std::string code; // of that line
+    std::string code; // text of that line
     std::string text;
 
     bool operator==(const FindingNote&) const = default;
 };
 
-/// The note on a stretch; among several lines with the same text, that of the nearest line. Empty:
-/// none.
+/// The note on a stretch; if several lines have the same text, that of the nearest line. Empty: no
+/// note.
 std::string note_on(const std::vector<FindingNote>& notes, const std::string& program,
                     const FindingGroup& group, const BlockRow& first);
 
@@ -72,7 +72,7 @@ std::string note_on(const std::vector<FindingNote>& notes, const std::string& pr
 void write_note(std::vector<FindingNote>& notes, const std::string& program,
                 const FindingGroup& group, const BlockRow& first, const std::string& text);
 
-/// Parses notes; entries with errors are left out.
+/// Parses notes; skips invalid entries.
 std::vector<FindingNote> notes_in(const std::string& text);
 
 std::string text_of(const std::vector<FindingNote>& notes);

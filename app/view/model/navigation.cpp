@@ -12,8 +12,8 @@
 namespace app::viewer {
 namespace {
 
-/// Slow motion through a minimum: down to a fifth of the speed where the allowance is not kept
-/// twice.
+/// The factor for slow motion near obstacles: a fifth of the speed where the clearance is less than
+/// twice the allowance.
 double slowing(const ViewModel& model) {
     if (!model.playback.slow_near) return 1.0;
     const BlockRow& row = model.row();
@@ -61,7 +61,7 @@ void go_to_witness(ViewModel& model, size_t block) {
 void step(ViewModel& model, int blocks) {
     if (!model.has_rows()) return;
     model.playback.running = false;
-    // In the middle of a block its own end comes first.
+    // In the middle of a block, the first step goes to its end.
     if (blocks > 0 && model.cursor.share < 1.0) --blocks;
     go_to(model, stepped(model, blocks));
 }
@@ -164,7 +164,7 @@ void show_findings(ViewModel& model, bool shown) {
 
 std::string notes_key(const ViewModel& model) {
     if (!model.program) return {};
-    std::error_code failure; // where there is no folder to begin from the path stays as it is
+    std::error_code failure; // without a current folder the path stays relative
     const auto path = std::filesystem::absolute(model.program->program, failure);
     return utf8_text(failure ? model.program->program : path.lexically_normal().string());
 }

@@ -21,10 +21,10 @@ constexpr double drawing_error = 0.02;
 
 /// A program before it is checked: its blocks in order and the path of the tool tip.
 ///
-/// Frame: path in that of the stock.
+/// Frame: the path is in the frame of the stock.
 class ProgramTrack {
 public:
-    /// Starts at block `first` with this tool in the spindle. The set-up must outlive it.
+    /// Starts at block `first` with `tool` in the spindle. The set-up must outlive the track.
     explicit ProgramTrack(const core::Setup& setup, size_t first = 0,
                           std::optional<core::ToolNumber> tool = {});
 
@@ -44,7 +44,7 @@ private:
     double time_ = 0.0;
 };
 
-/// The values of all axes, 0 for axes that the machine lacks; empty if one is not known.
+/// The values of all axes, 0 for axes that the machine lacks; empty if one is unknown.
 std::optional<core::AxisValues> known_values(const core::Machine& machine,
                                              const core::AxisPosition& position);
 

@@ -14,8 +14,8 @@ namespace {
 
 using FindingsOfBlock = std::map<size_t, std::vector<const core::Finding*>>;
 
-/// Whether a text that is no condition was meant as one: it compares, joins, or has nothing but
-/// words of the language.
+/// Whether an invalid condition was meant as one: it has a comparison or a logical operator, or
+/// consists only of keywords.
 bool is_meant_as_condition(const std::string& text) {
     if (text.find_first_of("<>=~&|") != std::string::npos) return true;
     std::istringstream words(lowered(text));
@@ -50,9 +50,10 @@ RowFilter::RowFilter(const std::string& text) {
     if (condition && !condition->asks_control()) {
         condition_ = *std::move(condition);
     } else if (condition) {
-        refusal_ = fmt::format("Only the control knows {}, and the list does not keep it. Shift+F9 "
-                               "stops where it is so; ~ \"{}\" finds it in the lines.",
-                               condition->control_value(), wanted);
+        refusal_ =
+            fmt::format("The list cannot filter by {}, a value of the control. Shift+F9 sets a "
+                        "breakpoint on it; ~ \"{}\" searches the lines for the text.",
+                        condition->control_value(), wanted);
     } else if (is_meant_as_condition(wanted)) {
         refusal_ =
             fmt::format("Column {}: {}", condition.error().where.column, condition.error().message);

@@ -21,7 +21,7 @@ std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
 
 namespace {
 
-/// The view of the cursor's block; an older one while the worker makes it.
+/// The view of the current block, or an older one while the worker still makes it.
 const PlaceView* view_of(const ViewModel& model) {
     return model.place ? model.place.get() : nullptr;
 }
@@ -56,7 +56,7 @@ void mark_pair(const BlockRow& row, std::vector<render::Body>& bodies) {
     }
 }
 
-/// The tool where the hovered block ends, on machines whose tool does not turn.
+/// Adds the tool at the end of the hovered block. Only on machines without rotary axes.
 void add_ghost(const ViewModel& model, const PlaceView& view, const core::AxisValues& values,
                const std::vector<render::Body>& tool, render::Scene& scene) {
     if (!model.hovered || *model.hovered == model.cursor.block || !model.path || tool.empty())
@@ -96,7 +96,7 @@ void add_bodies(const ViewModel& model, const PlaceView& view, render::Scene& sc
     scene.stock = view.stock;
 }
 
-/// What is known before the first view is there: the raw stock and the fixtures.
+/// Adds what is known before the first view arrives: the raw stock and the fixtures.
 void add_raw_bodies(const SceneSetup& known, render::Scene& scene) {
     std::optional<core::AxisValues> home = core::AxisValues{};
     scene.bodies = render::setup_bodies(known.setup, known.meshes, *home, {});
@@ -124,7 +124,7 @@ std::optional<core::Vec3> tip_now(const ViewModel& model) {
 
 std::optional<render::Witness> witness_of(const ViewModel& model) {
     if (!model.has_rows() || !model.settings.shown.witness) return {};
-    // While the worker makes another view the tool stands where the last one has it.
+    // Until the worker has made the new view, the tool is drawn at its position in the old one.
     if (model.place && model.place->block != model.cursor.block) return {};
     const BlockRow& row = model.row();
     if (!row.has_witness()) return {};
@@ -173,10 +173,10 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
 
 namespace {
 
-/// How much is seen round the pair at least, mm.
+/// Smallest margin of the view around the pair, mm.
 constexpr double least_room = 22.0;
 
-/// Whether something that is not seen through stands between the eye and a point.
+/// Whether something opaque is between the eye and a point.
 bool is_hidden(const render::Scene& scene, const render::Camera& camera, const core::Vec3& point) {
     const core::Vec3 eye = render::eye(camera);
     const double far = glm::length(point - eye);
@@ -188,7 +188,7 @@ bool is_hidden(const render::Scene& scene, const render::Camera& camera, const c
     return body && body->at.distance < reach;
 }
 
-/// The camera's direction first, then those that turn it more and more.
+/// Views in increasing order of their turn from the camera.
 std::vector<render::Camera> sides(const render::Camera& camera) {
     std::vector<render::Camera> all;
     for (const double pitch : {std::clamp(camera.pitch, 0.15, 0.9), 0.25, 0.6, 1.1})
@@ -220,8 +220,7 @@ render::Camera witness_camera(const ViewModel& model, const render::Viewport& si
     }
     box.extend(row.on_tool);
     box.extend(row.on_body);
-    // Where a part passes through a body the pair may lie anywhere along the way: the tip is shown
-    // as well.
+    // In a collision the witness may be anywhere along the motion, so the tip is framed as well.
     if (const auto tip = tip_now(model); tip && row.verdict == core::Verdict::collision)
         box.extend(*tip);
     const double apart = glm::length(row.on_tool - row.on_body);
@@ -256,7 +255,7 @@ std::string tool_line(const ViewModel& model, const SheetTool& tool) {
 std::vector<std::string> inferred_summary(const ViewModel& model) {
     if (!model.program || !model.program->is_inferred || !model.program->sheet) return {};
     const SetupSheet& sheet = *model.program->sheet;
-    std::vector<std::string> lines = {"Inferred set-up: E edits it", stock_line(model, sheet)};
+    std::vector<std::string> lines = {"Inferred set-up: press E to edit", stock_line(model, sheet)};
     for (size_t i = 0; i < std::min(sheet.tools.size(), most_tools); ++i)
         lines.push_back(tool_line(model, sheet.tools[i]));
     if (sheet.tools.size() > most_tools)

@@ -24,7 +24,7 @@ struct SceneSetup {
 
 std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup);
 
-/// The scene at the cursor. Cheap: large parts are shared.
+/// The scene at the cursor. Cheap, because large data is shared.
 render::Scene scene_of(const ViewModel& model);
 
 /// Everything that the picture of a scene depends on: equal keys give equal pictures.
@@ -32,7 +32,7 @@ struct SceneKey {
     uint64_t opening = 0, place = 0;
     const void* path = nullptr;
     size_t block = 0;
-    double share = 1.0; // of the block
+    double share = 1.0; // of the block's time
     render::Camera camera;
     Shown shown;
     render::ColorScheme theme = render::ColorScheme::dark;
@@ -48,20 +48,20 @@ struct SceneKey {
 
 SceneKey key_of(const ViewModel& model, const render::Viewport& size);
 
-/// The position of the tool tip, frame of the stock. Empty: not known.
+/// The position of the tool tip, frame of the stock; empty if unknown.
 std::optional<core::Vec3> tip_now(const ViewModel& model);
 
 /// The witness of the current block, if it has one and its view is loaded.
 std::optional<render::Witness> witness_of(const ViewModel& model);
 
-/// A camera that shows the closest pair of the current block unobstructed, if possible, with the
-/// smallest turn. Without a pair the whole block is framed.
+/// A camera that shows the closest pair of the current block unobstructed, if possible, and turns
+/// the view as little as possible. Without a pair it frames the whole block.
 ///
-/// Cost: a ray through the scene for each of some dozens of directions.
+/// Cost: one ray through the scene for each of up to 48 directions.
 render::Camera witness_camera(const ViewModel& model, const render::Viewport& size);
 
 /// The inferred set-up in short lines: the stock, the tools, and that no fixtures are known. Empty
-/// with a set-up file or without a program.
+/// if there is a set-up file, or no program.
 std::vector<std::string> inferred_summary(const ViewModel& model);
 
 } // namespace app::viewer

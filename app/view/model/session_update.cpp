@@ -19,7 +19,7 @@ void RowsUpdate::append(RowsUpdate later) {
         count = std::max(*count, later.first + later.rows.size());
     if (later.rows.empty()) return;
     if (rows.empty() || later.first <= first) {
-        // What came before and reaches beyond stays true.
+        // Earlier rows beyond the end of the later ones stay valid.
         const size_t end = first + rows.size(), later_end = later.first + later.rows.size();
         if (!rows.empty() && end > later_end && later_end >= first)
             later.rows.insert(later.rows.end(),
@@ -54,7 +54,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.place, later.place);
     take(news.walk, later.walk);
     take(news.breakpoints, later.breakpoints);
-    if (later.changes) news.stopped.reset(); // it goes another way
+    if (later.changes) news.stopped.reset(); // the program takes another course now
     take(news.changes, later.changes);
     take(news.failure, later.failure);
     take(news.refusal, later.refusal);
@@ -143,13 +143,13 @@ void SessionPublisher::begin_again(size_t block, const std::vector<render::PathP
     points_.insert(points_.end(), points.begin(), points.end());
     durations_.resize(std::min(durations_.size(), block));
     states_.resize(std::min(states_.size(), block));
-    findings_ = std::numeric_limits<size_t>::max(); // send them again
+    findings_ = std::numeric_limits<size_t>::max(); // forces sending them again
     is_whole_ = false;
     last_path_ = {};
 }
 
 size_t SessionPublisher::first_changed(const CheckRun& run) const {
-    // A time is settled when `look_ahead` motions have come after it, at the latest at the end.
+    // A block's time is final once `look_ahead` motions follow it, at the latest at the end.
     size_t first = durations_.size(), motions_after = 0;
     if (is_whole_) return first;
     for (size_t i = first; i-- > 0 && motions_after <= core::look_ahead;) {

@@ -26,20 +26,20 @@ namespace app::viewer {
 
 struct SceneSetup;
 
-/// The axis positions at a moment of a block.
+/// The axis positions at one moment of a block.
 struct Pose {
     double time = 0.0; // seconds after the block's start
     core::AxisValues values{};
 };
 
-/// The poses of a block in order of time, covering every motion; empty if nothing moves or the
-/// position of an axis is not known.
+/// The poses of a block in order of time, through all its motions; empty if nothing moves or the
+/// position of an axis is unknown.
 std::vector<Pose> poses_of(const core::Machine& machine, std::span<const core::Event> events);
 
-/// The axis positions at a share of a block's time, 0..1.
+/// The axis positions at a fraction of a block's time, 0..1.
 std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double share);
 
-/// A named value, and whether the block changed it.
+/// A named value, and whether the block has changed it.
 struct ShownValue {
     std::string name, text;
     bool changed = false;
@@ -49,22 +49,22 @@ struct ShownValue {
 std::vector<ShownValue> compared(const std::vector<NamedValue>& before,
                                  const std::vector<NamedValue>& after);
 
-/// A block with the state before or after it, for the window. Never changes.
+/// A block and the state before or after it, for the window. Never changes.
 struct PlaceView {
     size_t block = 0;
     bool at_end = true; // true: the stock after the block; false: before it
     std::shared_ptr<const SceneSetup> scene;
     std::vector<Pose> poses;                  // of the block
-    std::optional<core::AxisValues> standing; // axis positions after it
-    std::optional<core::ToolNumber> tool;     // used in it
+    std::optional<core::AxisValues> standing; // axis positions after the block
+    std::optional<core::ToolNumber> tool;     // used in the block
     std::vector<bool> fixtures_there;
     render::StockBricks stock;
     std::vector<ShownValue> modal, axes, offsets, parameters;
     std::vector<ShownValue> watched;
-    uint64_t serial = 0; // number of the view
+    uint64_t serial = 0; // consecutive number of the view
 };
 
-/// A program as it was opened.
+/// The facts about a program when it was opened.
 struct OpenedProgram {
     std::string program, setup; // paths; setup is empty if inferred
     std::string dialect;
@@ -80,10 +80,10 @@ struct OpenedProgram {
 struct RowsUpdate {
     size_t first = 0;
     std::vector<BlockRow> rows;
-    std::optional<size_t> count; // of all rows, if it changed
+    std::optional<size_t> count; // total number of rows, if it changed
 
     bool empty() const { return rows.empty() && !count; }
-    /// Merges a later update.
+    /// Merges a later update into this one.
     void append(RowsUpdate later);
 };
 
@@ -96,7 +96,7 @@ struct ShowRequest {
     bool at_end = true; // the state after the block; false: before it
 };
 
-/// Writes a set-up file, whole or not at all; the same as app::FileWriter.
+/// Writes a file completely or not at all; the same type as app::FileWriter.
 using SetupWriter =
     std::function<core::Result<void>(const std::string& path, const std::string& text)>;
 
@@ -109,12 +109,12 @@ struct SetupSaved {
 
 /// Where a walk ended.
 struct WalkEnd {
-    uint64_t walk = 0; // its number
+    uint64_t walk = 0; // number of the walk
     size_t block = 0;  // the next block
     Stop stop;
 };
 
-/// Everything new since the last update.
+/// What is new since the last update.
 struct SessionUpdate {
     uint64_t opening = 0; // number of the opened program
     std::shared_ptr<const OpenedProgram> opened;
@@ -126,7 +126,7 @@ struct SessionUpdate {
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
     std::optional<core::Error> failure;              // the program could not be opened
-    std::optional<std::string> refusal;              // of a request, as a sentence
+    std::optional<std::string> refusal;              // why a request was refused, as a sentence
     std::optional<SetupSaved> saved;
     std::optional<core::Error> stopped; // the program could not be run to its end
     double share = 0.0;                 // of the program, checked so far
@@ -136,10 +136,10 @@ struct SessionUpdate {
     bool has_news = false;
 };
 
-/// Merges a later update into one that was not read yet.
+/// Merges a later update into one that has not been read yet.
 void merge(SessionUpdate& news, SessionUpdate later);
 
-/// Turns the growth of a record into updates, and keeps the whole path.
+/// Publishes the new blocks of a growing record as updates. Keeps the whole path.
 class SessionPublisher {
 public:
     /// Starts with another program.
@@ -147,7 +147,7 @@ public:
     /// Restarts from a block after a change.
     void begin_again(size_t block, const std::vector<render::PathPoint>& points, size_t rows);
 
-    /// Adds everything that is new in the record since the last call.
+    /// Adds to `news` what is new in the record since the last call.
     void publish(const DebugSession& session, SessionUpdate& news);
 
 private:
@@ -161,8 +161,8 @@ private:
     size_t first_changed(const CheckRun& run) const;
 
     std::vector<render::PathPoint> points_;
-    std::vector<double> durations_;              // as they were sent
-    std::vector<render::ClearanceState> states_; // of blocks, without their findings
+    std::vector<double> durations_;              // as last sent
+    std::vector<render::ClearanceState> states_; // of blocks, regardless of findings
     size_t rows_ = 0;                            // known to the window
     size_t findings_ = 0;
     bool is_whole_ = false;

@@ -24,12 +24,12 @@ namespace app::viewer {
 
 namespace {
 
-/// How long a slice of the record takes, seconds: a request waits for one at most.
+/// Duration of one slice of recording, seconds. A request waits for one slice at most.
 constexpr double slice = 0.01;
 constexpr auto walk_slice = std::chrono::milliseconds(30);
 constexpr auto publish_interval = std::chrono::milliseconds(60);
 
-/// Blocks beyond these are only known once they are checked.
+/// Blocks beyond this number appear only once they are checked.
 constexpr size_t most_early_blocks = 2'000'000;
 
 OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
@@ -48,7 +48,7 @@ OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     return opened;
 }
 
-/// The way of a program before its stock is modelled, to its end or its first error.
+/// The path of a program before its stock is modelled, up to its end or first error.
 ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
                       const std::function<bool()>& is_closing) {
     const gcode::Environment& environment = check.file.environment;
@@ -62,7 +62,7 @@ ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
     return track;
 }
 
-/// The tool that a block moves: the one that it changes to, if it does.
+/// The tool that a block moves: the new one if the block changes tools.
 std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
                                         std::optional<core::ToolNumber> before) {
     for (const core::Event& event : events)
@@ -174,7 +174,7 @@ void WorkerSession::show(const ShowRequest& request) {
     view->poses = poses_of(view->scene->setup.machine, events);
     view->tool = tool_of(events, session_->tool());
     if (!request.at_end) surface_->update(session_->state().machine.stock);
-    // A block that the control refuses has nothing behind it: the view is then that before it.
+    // If the control refuses the block there is no state after it: show the one before it.
     if (ahead) static_cast<void>(session_->go_to(view->block + 1));
     const RunState& after = session_->state();
     if (request.at_end) surface_->update(after.machine.stock);
@@ -241,7 +241,7 @@ void WorkerSession::save_setup(const CheckJob& job, const std::string& path, boo
     SetupSaved saved{path, {}, false};
     const auto done = app::save_setup(job, path, may_replace, write);
     if (!done) {
-        std::error_code ignored; // of a name that no file can have, which the refusal tells of
+        std::error_code ignored; // an invalid file name: the refusal reports it
         saved.refusal = done.error();
         saved.exists = !may_replace && std::filesystem::exists(path, ignored);
     }
@@ -284,7 +284,7 @@ SessionUpdate WorkerSession::take_news() {
     return news;
 }
 
-/// What the threads share.
+/// State shared by the two threads.
 struct SessionWorker::State {
     using Task = std::function<void(WorkerSession&)>;
 
@@ -306,8 +306,8 @@ struct SessionWorker::State {
     SessionUpdate news_;
     std::atomic<bool> stopping_ = false;
     std::atomic<uint64_t> walks_ = 0;       // requested
-    std::atomic<uint64_t> interrupted_ = 0; // up to this one
-    uint64_t walking_ = 0;                  // the last one begun, in the worker's thread
+    std::atomic<uint64_t> interrupted_ = 0; // walks up to this number
+    uint64_t walking_ = 0;                  // last one begun; used by the worker's thread only
     std::thread thread_ = std::thread([this] { run(); }); // last: it uses all of the above
 };
 

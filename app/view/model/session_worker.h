@@ -22,25 +22,26 @@ namespace app::viewer {
 
 class ProgramTrack;
 
-/// A debugging session and its updates for the window, in one thread.
+/// A debugging session and its updates for the window, used by one thread.
 class WorkerSession {
 public:
-    /// `is_interrupted` is called on long walks, `is_closing` while a program is opened.
+    /// `is_interrupted` is polled during long walks, `is_closing` while a program is opened.
     WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing);
     ~WorkerSession();
 
-    /// Opens a program; calls `publish` when its path is known, before the stock model is made.
+    /// Opens a program. Calls `publish` at the start, and when the path is known, before the stock
+    /// model is made.
     void open(const CheckJob& job, const std::function<void()>& publish);
     /// The record so far; null: no program is open.
     const CheckRun* checked() const;
     /// Whether there is more to record.
     bool has_work() const;
-    /// Continues the requested walk, else the record, for one slice.
+    /// Continues the requested walk, or else the recording, for one slice.
     void record();
-    /// Whether the record is long enough for a view.
+    /// Whether the record already contains the block of a view.
     bool can_show(const ShowRequest& request) const;
     void show(const ShowRequest& request);
-    /// Starts a walk; `record` continues it, so that updates are published on the way.
+    /// Starts a walk. `record` continues it, so updates are published meanwhile.
     void walk(Walk walk, size_t block, uint64_t number);
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
@@ -60,9 +61,9 @@ private:
     void fail(const core::Error& error);
     void show_early(ProgramTrack track);
     void refuse(const core::Error& error);
-    /// The drawn set-up in effect for a block.
+    /// The set-up in effect for a block, for drawing.
     std::shared_ptr<const SceneSetup> scene_at(size_t block);
-    /// Reads the path ahead again after a change.
+    /// Reads the path from the current block on again after a change.
     void follow_anew();
     std::vector<ShownValue> watched_values(const gcode::InterpreterState& control) const;
 
@@ -75,7 +76,7 @@ private:
     std::vector<Breakpoint> breakpoints_;
     SessionUpdate news_;
     uint64_t openings_ = 0, views_ = 0;
-    /// A walk in progress, and its next block.
+    /// A walk in progress and its next block.
     struct WalkOnItsWay {
         Walk walk = Walk::go_on;
         size_t block = 0;
@@ -86,35 +87,35 @@ private:
     Clock::time_point last_publish_ = {};
 };
 
-/// Owns a debugging session in a thread of its own. Requests return at once; their results come in
-/// a later update. Between requests the worker continues the check in slices of some 10 ms, so that
-/// a request waits for one slice at most.
+/// Owns a debugging session in a separate thread. Requests return at once; their results come in a
+/// later update. Between requests the worker continues the check in slices of about 10 ms, so a
+/// request waits for one slice at most.
 class SessionWorker {
 public:
     /// `wake` is called from the thread whenever there is an update.
     explicit SessionWorker(std::function<void()> wake);
-    /// Ends the check, however far it is.
+    /// Aborts the check.
     ~SessionWorker();
 
     void open(const CheckJob& job);
     /// Only the last of several waiting requests is answered.
     void show(const ShowRequest& request);
-    /// Walks on from a block, starting with the block after it. The result comes as a WalkEnd with
-    /// the number that is returned.
+    /// Walks on from a block, starting with the block after it. Returns the number of the walk; the
+    /// result comes as a WalkEnd with this number.
     uint64_t walk(Walk walk, size_t block);
-    /// Ends the walks requested so far.
+    /// Interrupts the walks requested so far.
     void interrupt();
     void set_breakpoints(const std::vector<Breakpoint>& breakpoints);
-    /// Expressions whose values every view includes.
+    /// Sets the expressions whose values every view includes.
     void watch(const std::vector<std::string>& expressions);
-    /// Applies a change before a block.
+    /// Applies a change that takes effect from a block on.
     void change(const WhatIf& change, size_t block);
     void take_back();
-    /// As app::save_setup.
+    /// See app::save_setup.
     void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                     const SetupWriter& write);
 
-    /// Everything new since the last call.
+    /// What is new since the last call.
     SessionUpdate take();
 
 private:

@@ -35,7 +35,7 @@ void take_within(const toml::table& table, std::string_view name, int& value, in
 Settings settings_in(const std::string& text) {
     Settings settings;
     const auto parsed = parsed_toml(text);
-    if (!parsed) return settings; // as if there was no file
+    if (!parsed) return settings; // as if there were no file
     const toml::table& table = *parsed;
     std::string word;
     take(table, "theme", word);
@@ -69,7 +69,7 @@ Settings settings_in(const std::string& text) {
 std::string text_of(const Settings& s) {
     const Shown& shown = s.shown;
     return fmt::format(
-        "# The window of feeler, as it was closed last.\n"
+        "# Settings of feeler view, saved when the window was last closed.\n"
         "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nscale = {:.2f}\nmouse = {}\n"
         "width = {}\nheight = {}\nx = {}\ny = {}\nmaximised = {}\n"
         "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
@@ -91,7 +91,7 @@ Settings read_settings(const std::filesystem::path& file) {
 
 void write_settings(const Settings& settings, const std::filesystem::path& file) {
     if (file.empty()) return;
-    std::error_code ignored; // there is nobody left to be told
+    std::error_code ignored; // no one is left to report it to: the window is closing
     std::filesystem::create_directories(file.parent_path(), ignored);
     std::ofstream(file) << text_of(settings);
 }

@@ -9,7 +9,7 @@
 
 namespace app::viewer {
 
-/// Which buttons of the mouse turn and move the view. Left turns and right moves in all of them.
+/// Which mouse buttons turn and move the view. In all presets left turns and right moves.
 enum class MousePreset : uint8_t {
     middle_orbits,      // Shift+middle pans
     middle_pans,        // Shift+middle orbits
@@ -27,16 +27,16 @@ struct Shown {
     bool operator==(const Shown&) const = default;
 };
 
-/// The settings that the window stores.
+/// The settings that the window saves.
 struct Settings {
     render::ColorScheme theme = render::ColorScheme::dark;
     bool inch = false;
-    double scale = 1.0; // on top of the scale of the screen
+    double scale = 1.0; // multiplied with the scale of the screen
     MousePreset mouse = MousePreset::middle_orbits;
     render::Projection projection = render::Projection::perspective;
     Shown shown;
-    int width = 1440, height = 900; // of the window, in the screen's coordinates
-    int x = -1, y = -1;             // of its corner; -1: where the system puts it
+    int width = 1440, height = 900; // of the window, screen coordinates
+    int x = -1, y = -1;             // of its corner; -1: left to the system
     bool maximised = false;
     double list_width = 372.0, inspector_width = 272.0, timeline_height = 152.0; // at scale 1
     double device_width = 300.0;
@@ -46,7 +46,7 @@ struct Settings {
 
 constexpr double least_scale = 0.6, largest_scale = 3.0;
 
-/// Parses settings; missing or invalid ones have their defaults.
+/// Parses settings; missing or invalid ones get their defaults.
 Settings settings_in(const std::string& text);
 
 std::string text_of(const Settings& settings);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double least_width = 10.0;
 
-/// A range of this width, moved into the program.
+/// The range from `first` with this width, clamped to the program.
 TimelineRange within(double first, double width, size_t blocks) {
     const double count = std::max(static_cast<double>(blocks), 1.0);
     width = std::clamp(width, std::min(least_width, count), count);

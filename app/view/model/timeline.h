@@ -6,11 +6,11 @@
 
 namespace app::viewer {
 
-/// A stretch of blocks as a column of the timeline.
+/// A stretch of blocks, as one column of the timeline.
 struct TimelineCell {
-    double least = core::infinity; // margin, mm, or slack, s; infinite: nothing is near
-    bool moves = false;            // any of them
-    bool known = false;            // any of them is checked
+    double least = core::infinity; // least margin, mm, or slack, s; infinite: none
+    bool moves = false;            // at least one block does
+    bool known = false;            // at least one block is checked
     bool near = false;
     bool offending = false;
 
@@ -20,14 +20,14 @@ struct TimelineCell {
 TimelineCell cell_of(const BlockRow& row);
 TimelineCell merged(const TimelineCell& a, const TimelineCell& b);
 
-/// The cell of any stretch of blocks in logarithmic time, while the check continues.
+/// Gives the cell of any stretch of blocks in logarithmic time, also while the check adds blocks.
 class MinimumTree {
 public:
-    /// New blocks are empty.
+    /// Sets the number of blocks; new ones are empty.
     void resize(size_t count);
     size_t size() const { return count_; }
     void set(size_t block, const TimelineCell& cell);
-    /// Of blocks first .. last - 1.
+    /// The cell of blocks first .. last - 1.
     TimelineCell over(size_t first, size_t last) const;
 
 private:
@@ -44,36 +44,36 @@ struct TimelineRange {
     bool operator==(const TimelineRange&) const = default;
 };
 
-/// All of it.
+/// The range of the whole program.
 TimelineRange whole(size_t blocks);
 
-/// Zoomed in (factor below 1) or out, with the block at a share of the width fixed. At least ten
-/// blocks, at most all.
+/// The range zoomed in (factor below 1) or out; the block at fraction `at` of the width stays in
+/// place. Shows at least ten blocks, at most all.
 TimelineRange zoomed(const TimelineRange& range, size_t blocks, double at, double factor);
 
-/// Moved by a share of its width, within the program.
+/// The range moved by a fraction of its width, within the program.
 TimelineRange moved(const TimelineRange& range, size_t blocks, double by);
 
-/// Moved as little as possible so that a block is in it.
+/// The range moved as little as possible so that it contains a block.
 TimelineRange showing(const TimelineRange& range, size_t blocks, size_t block);
 
-/// The block at a share of the width; beyond the end, the last one. There must be blocks.
+/// The block at a fraction of the width; beyond the end, the last one. There must be blocks.
 size_t block_at(const TimelineRange& range, size_t blocks, double at);
 
-/// The middle of a block as a share of the width.
+/// The middle of a block, as a fraction of the width.
 double place_of(const TimelineRange& range, size_t block);
 
-/// A cell for each pixel, with the least value of all blocks that the pixel covers, so that no
-/// block is lost.
+/// A cell for each pixel with the least value of all blocks that it covers, so that no block is
+/// lost.
 std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& range,
                                   size_t pixels);
 
-/// The height of the bar for a slack, as a share of its row: logarithmic, from `least_slack` to
+/// The height of the bar for a slack, as a fraction of the row: logarithmic, from `least_slack` to
 /// `most_slack` seconds.
 double slack_height(double seconds);
 constexpr double least_slack = 1e-4, most_slack = 100.0;
 
-/// Successive blocks with one tool in the spindle.
+/// Successive blocks with the same tool in the spindle.
 struct ToolBand {
     size_t first = 0, last = 0; // one past the last
     std::optional<core::ToolNumber> tool;

@@ -13,7 +13,7 @@
 namespace app::viewer {
 namespace {
 
-/// A length in the unit that is shown.
+/// A length in the unit of the window.
 struct ShownLength {
     double value = 0.0;
     int decimals = 0;
@@ -23,7 +23,7 @@ struct ShownLength {
           decimals(model.settings.inch ? decimals_of_mm + 2 : decimals_of_mm) {}
 };
 
-/// What was said of one program says nothing of another.
+/// Drops what applies to one program only, before another one is opened.
 void forget_place(ViewModel& model) {
     model.resume.reset();
     model.cursor = {};
@@ -34,7 +34,7 @@ void forget_place(ViewModel& model) {
     model.camera_placed = false;
 }
 
-/// Another program, or the same one read again: what a person has said of it stays.
+/// Prepares for a new opening. If it is the same program, what the user has entered stays.
 void start_anew(ViewModel& model, uint64_t opening) {
     if (model.opening != 0 && model.has_rows()) model.resume = model.row();
     if (std::exchange(model.opens_another, false)) forget_place(model);
@@ -61,7 +61,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.device.study = nullptr;
 }
 
-/// How bad the findings about each block are: they come and go until the check is complete.
+/// Sets the worst severity of each row. Findings come and go until the check is complete.
 void mark_rows(ViewModel& model) {
     std::vector<core::Severity> worst(model.rows.size(), core::Severity::off);
     for (const core::Finding& finding : model.findings) {
@@ -101,7 +101,7 @@ void take_rows(ViewModel& model, RowsUpdate& update) {
         go_to(model, model.rows.size() - 1);
 }
 
-/// To the line at which the program stood before it was read again.
+/// Goes to the line that was current before the program was read again.
 void resume(ViewModel& model) {
     const auto before = std::exchange(model.resume, std::nullopt);
     if (!before) return;
@@ -122,9 +122,9 @@ std::string sentence_of(const Stop& stop) {
     case StopReason::watch:
         return stop.message;
     case StopReason::end:
-        return "The program ends here";
+        return "End of the program";
     case StopReason::beginning:
-        return "The program begins here";
+        return "Beginning of the program";
     case StopReason::error:
         return "The control would stop here";
     case StopReason::interrupted:
@@ -137,7 +137,7 @@ std::string sentence_of(const Stop& stop) {
 }
 
 void end_walk(ViewModel& model, const WalkEnd& end, double now) {
-    // Who has gone elsewhere meanwhile is not called back.
+    // Ignore a walk that the user has cancelled by going elsewhere.
     if (model.walking != end.walk || !model.has_rows()) return;
     model.walking.reset();
     const bool is_past = end.block >= model.rows.size();
@@ -178,7 +178,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (news.breakpoints) model.breakpoints = *std::move(news.breakpoints);
     if (news.changes) {
         model.changes = *std::move(news.changes);
-        model.stopped.reset(); // it goes another way
+        model.stopped.reset(); // the program takes another course now
     }
     if (news.failure) model.failure = news.failure;
     if (news.stopped) model.stopped = news.stopped;
@@ -194,15 +194,15 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
 }
 
 std::string no_violation(const ViewModel& model) {
-    if (!model.is_recorded) return "No violation is known yet";
+    if (!model.is_recorded) return "No violation found yet";
     const bool is_judged = std::all_of(model.rows.begin(), model.rows.end(), [](const auto& row) {
         return !moves(row) || (row.is_known && row.is_judged);
     });
     if (model.stopped)
-        return fmt::format("No violation as far as it was checked, which is to line {}",
+        return fmt::format("No violation up to line {}, where the check stopped",
                            model.stopped->where.line);
     return is_judged ? "There is no violation"
-                     : "No violation in what was checked; blocks with ? were not";
+                     : "No violation in the checked blocks; blocks marked ? cannot be checked";
 }
 
 void say(ViewModel& model, const std::string& text, double now) {
@@ -244,12 +244,12 @@ const char* length_unit(const ViewModel& model) { return model.settings.inch ? "
 
 namespace {
 
-/// A device runs what the files say; a program that goes another way than they do is not asked.
+/// Whether the device can run the program. It uses the files, so not while a what-if is in effect.
 bool can_run(const ViewModel& model) {
     return model.program && !model.failure && model.changes.empty();
 }
 
-/// Of which program answers are wanted; 0: of none.
+/// The number of the opened program for which answers are wanted; 0: none.
 uint64_t wanted_opening(const ViewModel& model) {
     const DeviceModel& device = model.device;
     if (!can_run(model)) return 0;

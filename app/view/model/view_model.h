@@ -26,39 +26,40 @@ struct DeviceUpdate;
 class DeviceWorker;
 struct ViewModel;
 
-/// The state of the coprocessor in the window, and what the user requested.
+/// The state of the coprocessor in the window, and what the user has requested.
 struct DeviceModel {
-    std::string file;     // of the device; empty: the default one
-    bool shown = false;   // its panel; while shown, the open program is run
-    uint64_t opening = 0; // of the program that is or was run; 0: none
-    uint64_t run = 0;     // its number
+    std::string file;     // path of the device file; empty: the default device
+    bool shown = false;   // its panel; while shown, the open program is run with it
+    uint64_t opening = 0; // number of the program that is or was run; 0: none
+    uint64_t run = 0;     // number of the run
     bool is_running = false;
-    bool is_fitting = false; // all blocks are answered, other devices are tried
+    bool is_fitting = false; // all blocks are answered; trying other devices
     double share = 0.0;
     size_t blocks = 0; // answered so far
     std::shared_ptr<const DeviceStudy> study;
     std::optional<core::Error> failure;
 };
 
-/// Shows or hides the panel. Results stay on the timeline; a run without results ends.
+/// Shows or hides the panel. When it is hidden, results stay on the timeline, but a run without
+/// results is aborted.
 void show_device(ViewModel& model, bool shown);
 
-/// Ends the run and drops its results.
+/// Aborts the run and drops its results.
 void switch_off_device(ViewModel& model);
 
-/// Applies an update of the worker; ignores those of earlier runs.
+/// Applies an update of the worker; ignores updates of earlier runs.
 void take_in(ViewModel& model, DeviceUpdate news);
 
-/// Starts and ends runs as the model requires. The run is of the open program, from its files and
-/// the edits of the set-up. True if a run was started or ended.
+/// Starts and stops runs as the model requires. A run uses the open program, from its files and the
+/// edits of the set-up. True if a run was started or stopped.
 bool send_device_orders(ViewModel& model, DeviceWorker& worker,
                         const std::optional<CheckJob>& check);
 
-/// Goes to the next or previous block for which the machine waits or that it may not run, wrapping
-/// around at the ends. False: none is known.
+/// Goes to the next or previous block that is late or not permitted, wrapping around at the ends.
+/// False: none is known.
 bool go_to_stop(ViewModel& model, bool forward);
 
-/// The current block, and the share of its time, 0..1.
+/// The current block, and the fraction of its time, 0..1.
 struct Cursor {
     size_t block = 0;
     double share = 1.0;
@@ -110,16 +111,16 @@ struct ViewModel {
     MinimumTree least;
     std::vector<ToolBand> bands;
     std::vector<core::Finding> findings;
-    std::vector<FindingGroup> groups; // of them
-    std::vector<size_t> offending;    // blocks, in order
+    std::vector<FindingGroup> groups; // of `findings`
+    std::vector<size_t> offending;    // blocks, in program order
     size_t near_count = 0;
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const PlaceView> place;
     std::vector<std::string> changes;
-    std::shared_ptr<const SetupEdits> edits; // of the set-up, when opened; null: none
-    std::optional<SetupSaved> saved;         // result of the last request to save
+    std::shared_ptr<const SetupEdits> edits; // of the set-up, as last opened; null: none
+    std::optional<SetupSaved> saved;         // result of the last request to save the set-up
     std::optional<core::Error> failure, stopped;
-    std::string missing; // a file that was read, but is now deleted or empty
+    std::string missing; // a file that was read, but has since been deleted or emptied
     double share = 0.0;
     bool is_recorded = false, is_busy = false;
     DeviceModel device;
@@ -137,13 +138,13 @@ struct ViewModel {
     bool shows_findings = false, note_wants_focus = false;
     Settings settings;
     TimelineRange range;
-    bool follows_timeline = true; // the whole program, as it grows
+    bool follows_timeline = true; // shows the whole program while it grows
     render::Camera camera;
     bool camera_placed = false;
     std::optional<size_t> hovered;    // block under the mouse in the last frame
     std::optional<size_t> pointed_at; // in this frame
-    std::optional<BlockRow> resume;   // where to return to after the program is read again
-    bool opens_another = false;       // the next opening is of another program
+    std::optional<BlockRow> resume;   // row to return to when the program is read again
+    bool opens_another = false;       // the program to be opened next is a different one
     std::optional<render::SectionPlane> section;
     Measuring measuring;
     Popup popup = Popup::none;
@@ -151,7 +152,7 @@ struct ViewModel {
     double message_until = 0.0;
     bool awaits_offending = false;   // go to the next violation once one is found
     std::optional<uint64_t> walking; // number of the walk whose end is awaited
-    bool wants_interrupt = false;    // of walks no longer awaited
+    bool wants_interrupt = false;    // of walks that are no longer awaited
     bool list_follows = true;        // the list scrolls to the cursor in the next frame
     bool filter_wants_focus = false;
 
@@ -175,13 +176,13 @@ struct ViewModel {
     const BlockRow& row() const { return rows[cursor.block]; }
 };
 
-/// Cancels the awaited walk and the search for a violation.
+/// Cancels the current walk and the search for a violation.
 void stay(ViewModel& model);
 
-/// Applies an update of the worker. `now`: seconds, for the time of messages.
+/// Applies an update of the worker. `now`: seconds, for the display of messages.
 void take_in(ViewModel& model, SessionUpdate news, double now);
 
-/// The message that there is no violation, with what was checked.
+/// The message that there is no violation, and how much was checked.
 std::string no_violation(const ViewModel& model);
 
 /// Shows a message at the bottom of the view for some seconds.
@@ -190,16 +191,16 @@ void say(ViewModel& model, const std::string& text, double now);
 /// Parses the filter again and applies it.
 void apply_filter(ViewModel& model);
 
-/// Findings about a block, or about the program as a whole.
+/// Findings about a block; without one, about the program as a whole.
 std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optional<size_t> block);
 
 /// A length in the unit of the window, mm or inch, without the unit.
 std::string length_text(const ViewModel& model, double mm, int decimals = 2);
 
-/// The same for a lower bound of a clearance: rounded down, never below 0.
+/// As length_text, for a lower bound of a clearance: rounded down, never below 0.
 std::string length_at_least(const ViewModel& model, double mm, int decimals = 2);
 
-/// The same for an upper bound or an allowance: rounded up.
+/// As length_text, for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);
 const char* length_unit(const ViewModel& model);
 

@@ -92,19 +92,19 @@ const char* title_of(CommandGroup group);
 struct KeyBinding {
     Command command;
     CommandGroup group;
-    int code;         // as key_codes.h has it
-    int modifiers;    // all of them and no others
+    int code;         // GLFW key code, see namespace key
+    int modifiers;    // exactly these must be down
     const char* keys; // for the list of keys
-    const char* help; // empty: another key for the command above
+    const char* help; // empty: a second key for a command listed above
 };
 
-/// All key bindings, in the order of the list.
+/// All key bindings, in the order of the list of keys.
 std::span<const KeyBinding> key_bindings();
 
 /// The command of a key; empty: none.
 std::optional<Command> command_of(int code, int modifiers);
 
-/// The help and the key of a command: "Next block (Right)".
+/// The help text and the key of a command: "Next block (Right)".
 std::string tip_of(Command command);
 
 /// Key codes of GLFW; ImGui 1.86 has no names for most of them.
@@ -119,24 +119,24 @@ constexpr int keypad_0 = 320, keypad_subtract = 333, keypad_add = 334;
 constexpr int left_shift = 340, left_control = 341, left_alt = 342;
 constexpr int right_shift = 344, right_control = 345, right_alt = 346;
 
-/// Of a capital letter or a digit.
+/// The code of a capital letter or a digit.
 constexpr int of(char c) { return c; }
-/// F1 .. F12
+/// The code of F1 .. F12.
 constexpr int function(int number) { return f1 + number - 1; }
 } // namespace key
 
-/// Modifiers, as GLFW's bits.
+/// Modifiers, with the bits of GLFW.
 namespace mod {
 constexpr int none = 0, shift = 1, control = 2, alt = 4;
 } // namespace mod
 
-/// Performs a command. Requests that need a window are stored in the model.
+/// Performs a command on the model. Stores requests that need the worker or the window in it.
 void perform(ViewModel& model, Command command, double now);
 
-/// Centres the view on the closest pair of the current block.
+/// Goes to the closest pair of the current block and centres the view on it.
 void frame_witness(ViewModel& model);
 
-/// Passes the requests of the model to the worker. True if there were any.
+/// Passes the requests in the model to the worker. True if there were any.
 bool send_requests(ViewModel& model, SessionWorker& worker);
 
 } // namespace app::viewer

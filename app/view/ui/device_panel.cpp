@@ -23,7 +23,7 @@ ImU32 color_of(const Frame& frame, Tone tone) {
     return frame.look.color(Role::text);
 }
 
-/// The panel's name, and a button that hides it.
+/// Draws the panel's title, and the button that hides the panel.
 void draw_head(Frame& frame) {
     const float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
     const float top = ImGui::GetCursorPosY();
@@ -39,7 +39,7 @@ void draw_head(Frame& frame) {
     tip(frame, tip_of(Command::show_device));
 }
 
-/// What goes on, and how far it is.
+/// Draws the progress or the error of the run.
 void draw_status(Frame& frame) {
     const std::string status = device_status(frame.model);
     if (status.empty()) return;
@@ -97,7 +97,7 @@ void draw_answer(Frame& frame, const DeviceSheet& sheet) {
         wrapped_text(frame.fonts.small, color_of(frame, sheet.exact_tone), sheet.exact);
 }
 
-/// The way to what holds the machine, and off.
+/// Draws the buttons for the next late or refused block, and for switching off.
 void draw_buttons(Frame& frame) {
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x;
     ImGui::BeginDisabled(frame.model.device.study->stops.empty());
@@ -107,7 +107,7 @@ void draw_buttons(Frame& frame) {
     tip(frame, tip_of(Command::next_stop));
     ImGui::SameLine();
     if (ImGui::Button("Switch off", ImVec2(0.38F * room, 0))) switch_off_device(frame.model);
-    tip(frame, "Ends the run, and takes slack off the timeline");
+    tip(frame, "End the run and remove slack from the timeline");
 }
 
 } // namespace

@@ -27,7 +27,7 @@ std::string blocks_text(size_t count) {
     return count == 1 ? "1 block" : fmt::format("{} blocks", count);
 }
 
-/// "lines 188 to 194", and of which file.
+/// "lines 188 ... 194", and the file of a subprogram.
 std::string place_text(const ViewModel& model, const FindingStretch& stretch) {
     const BlockRow& first = model.rows[stretch.first];
     const BlockRow& last = model.rows[stretch.last];
@@ -38,7 +38,7 @@ std::string place_text(const ViewModel& model, const FindingStretch& stretch) {
     return text;
 }
 
-/// What is left, or what is missing where nothing is known to be left.
+/// The clearance in the worst block, or the shortfall if there is no clearance.
 std::string worst_text(const ViewModel& model, const FindingStretch& stretch) {
     if (stretch.clearance) return length_at_least(model, *stretch.clearance);
     if (stretch.shortfall > 0.0) return "short " + length_at_most(model, stretch.shortfall);
@@ -167,12 +167,12 @@ void FindingsPanel::draw(Frame& frame, const Area& area) {
     draw_list_tabs(frame);
     ImGui::Dummy(ImVec2(0, frame.px(6)));
     wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                 "Ctrl+Down, Ctrl+Up: next, before \xC2\xB7 R: note \xC2\xB7 V: lines");
+                 "Ctrl+Down, Ctrl+Up: next, previous \xC2\xB7 R: note \xC2\xB7 V: lines");
     ImGui::BeginChild("groups", ImVec2(area.width - frame.px(18), 0), false,
                       ImGuiWindowFlags_NoNav);
     if (model.groups.empty())
         wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
-                     model.is_recorded ? "Nothing was found." : "Nothing is found so far.");
+                     model.is_recorded ? "No findings." : "No findings so far.");
     const std::optional<StretchPlace> selected = selected_stretch(model);
     for (size_t i = 0; i < model.groups.size(); ++i) draw_group(frame, i, selected);
     scrolled_to_ = selected;

@@ -1,5 +1,5 @@
 #pragma once
 
-// Where Debian's package puts them.
+// The folder of Debian's package.
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>

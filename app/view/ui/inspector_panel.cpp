@@ -37,9 +37,9 @@ void draw_number(Frame& frame) {
 
 std::string sentence_of(const ViewModel& model, const BlockRow& row) {
     if (!row.is_known) return "not checked yet";
-    if (!moves(row)) return "this block does not move";
-    if (!row.is_judged) return "nothing can be said of this motion";
-    if (!row.upper) return "nothing is nearer than the search goes";
+    if (!moves(row)) return "this block moves nothing";
+    if (!row.is_judged) return "this motion cannot be checked";
+    if (!row.upper) return "nothing within the search limit";
     const std::string unit = length_unit(model);
     const std::string allowance = "allowance " + length_at_most(model, *row.allowance) + " " + unit;
     if (row.verdict == core::Verdict::collision) return allowance + " \xC2\xB7 collision";
@@ -49,7 +49,8 @@ std::string sentence_of(const ViewModel& model, const BlockRow& row) {
     return allowance + " \xC2\xB7 short by " + length_at_most(model, -margin) + " " + unit;
 }
 
-/// Violation, near, clear in proportion, up to six times the allowance, and where the block is.
+/// Draws the scale of violation, near and clear up to six times the allowance, with the clearance
+/// of the block marked on it.
 void draw_scale(Frame& frame) {
     const BlockRow& row = frame.model.row();
     const float width = ImGui::GetContentRegionAvail().x, height = frame.px(10);
@@ -89,10 +90,10 @@ void draw_pair(Frame& frame) {
         value_row(frame, "At",
                   fmt::format("{:.0f} % of block",
                               std::clamp(100.0 * row.witness_time / row.duration, 0.0, 100.0)));
-    value_row(frame, "Proven",
+    value_row(frame, "Bounds",
               fmt::format("{} \xE2\x80\xA6 {} {}", length_at_least(frame.model, *row.lower, 3),
                           length_at_most(frame.model, *row.upper, 3), length_unit(frame.model)));
-    if (ImGui::Button("Look at it", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+    if (ImGui::Button("Show it", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
         frame.perform(Command::frame_witness);
     tip(frame, tip_of(Command::frame_witness));
 }
@@ -120,7 +121,7 @@ void draw_findings(Frame& frame) {
     for (const core::Finding* finding : found) draw_finding(frame, *finding);
 }
 
-/// What moves, and by which code.
+/// The kind of motion, and its code.
 std::string motion_text(const ViewModel& model) {
     std::string words = core::name_of(model.row().motion);
     if (!model.place) return words;
@@ -201,8 +202,8 @@ void draw_assumptions(Frame& frame) {
     heading(frame, program->is_inferred ? "Inferred set-up" : "Set-up");
     if (program->is_inferred)
         wrapped_text(frame.fonts.small, frame.look.color(Role::near),
-                     "No set-up was given: this is what the program itself tells. Drop a set-up "
-                     "file here to replace it.");
+                     "No set-up file was given: this set-up is inferred from the program. Drop a "
+                     "set-up file here to replace it.");
     else
         value_row(frame, "File", program->setup, 50.0);
     if (ImGui::Button("Edit and save \xE2\x80\xA6", ImVec2(ImGui::GetContentRegionAvail().x, 0)))

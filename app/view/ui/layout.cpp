@@ -10,7 +10,7 @@ namespace {
 
 using render::Role;
 
-/// A panel in a part of the window, with room round what it holds.
+/// Draws a panel in an area of the window, with padding inside.
 void place(Frame& frame, Panel& panel, const char* name, const Area& area, ImVec2 padding,
            bool scrolls = false) {
     ImGui::SetCursorScreenPos(area.corner());
@@ -24,8 +24,8 @@ void place(Frame& frame, Panel& panel, const char* name, const Area& area, ImVec
     ImGui::EndChild();
 }
 
-/// A line between two panels that can be dragged; returns how far. It is a window of its own, as it
-/// lies upon the panels, which would have the mouse otherwise.
+/// A line between two panels that can be dragged; returns by how many pixels. It is a separate
+/// child window on top of the panels, which would otherwise take the mouse.
 float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::BeginChild(name, area.size(), false,
@@ -43,17 +43,17 @@ float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
     return upright ? ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.y;
 }
 
-/// How wide a column is. In a small window the view keeps the larger part.
+/// The width of a column, pixels: limited in a small window, so that the 3D view stays larger.
 float width_of(const Frame& frame, const Area& area, double wanted, double share) {
     return std::min(frame.px(wanted), static_cast<float>(share) * area.width);
 }
 
-/// What is dragged at a splitter, in a setting that stays within its limits.
+/// Adds a splitter's drag to a setting, within limits.
 void drag(double& setting, float by, const Frame& frame, double least, double most) {
     setting = std::clamp(setting + by / frame.fonts.scale, least, most);
 }
 
-constexpr double least_view = 560.0; // beside which both columns at the right stand
+constexpr double least_view = 560.0; // width that both right columns must leave to the 3D view
 
 } // namespace
 
@@ -73,7 +73,7 @@ Layout::Parts Layout::parts_of(const Frame& frame, const Area& area) {
     float device = 0.0F;
     if (frame.model.device.shown) {
         device = width_of(frame, area, settings.device_width, 0.3);
-        // Where there is no room for both, the device stands in the inspector's place.
+        // Without room for both, the coprocessor panel replaces the inspector.
         if (area.width - left - inspector - device < frame.px(least_view)) inspector = 0.0F;
     }
     Parts parts;

@@ -22,7 +22,7 @@ namespace {
 
 using render::Role;
 
-/// A picture as a texture, for as long as it is needed.
+/// A picture as an OpenGL texture.
 struct Texture {
     render::GlTexture texture = render::GlTexture::make();
 
@@ -48,7 +48,7 @@ struct OffscreenViewer::State {
     State& operator=(const State&) = delete;
 
     void wait();
-    /// What is drawn between ImGui's NewFrame and Render, as a picture.
+    /// The picture that `draw` makes between ImGui's NewFrame and Render.
     core::Result<render::Image> drawn(const render::Viewport& size, render::ColorScheme theme,
                                       int frames, const std::function<void()>& draw);
 
@@ -59,7 +59,7 @@ struct OffscreenViewer::State {
     std::mutex mutex_;
     std::condition_variable woken_;
     bool is_woken_ = false;
-    std::optional<CheckJob> job_; // that is open
+    std::optional<CheckJob> job_; // the open job
     std::unique_ptr<SessionWorker> worker_;
     std::unique_ptr<DeviceWorker> device_;
 };

@@ -108,7 +108,7 @@ constexpr const char* jetbrains =
     "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
 constexpr const char* awesome = "/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf";
 
-/// What programs, names and units are written in. Zero ends it.
+/// Unicode ranges for programs, names and units. Zero ends the list.
 constexpr ImWchar letters[] = {0x0020, 0x017F, 0x0370, 0x04FF, 0x2010, 0x2027, 0x2030, 0x2044,
                                0x2070, 0x20BF, 0x2190, 0x2199, 0x2200, 0x2265, 0};
 constexpr ImWchar digits[] = {0x0020, 0x007E, 0x2013, 0x2014, 0x2265, 0x2265, 0};
@@ -280,7 +280,7 @@ std::string shortened(ImFont* font, const std::string& words, float width) {
         else
             high = middle - 1;
     }
-    // No letter of several bytes is torn apart.
+    // Do not cut inside a UTF-8 sequence.
     while (low > 0 && (static_cast<unsigned char>(words[low]) & 0xC0) == 0x80) --low;
     return words.substr(0, low) + "\xE2\x80\xA6";
 }

@@ -19,15 +19,15 @@ struct Theme {
 
     ImU32 color(render::Role role, double alpha = 1.0) const;
     ImVec4 vector(render::Role role, double alpha = 1.0) const;
-    /// For text: colours too pale on white are darker.
+    /// A role's colour for text: darker if it would be too pale on white.
     ImU32 ink(render::Role role) const;
-    /// A mixture of two roles: the first at share 0.
+    /// A mixture of two roles; at share 0 it is the first.
     ImU32 mixed(render::Role a, render::Role b, double share) const;
-    /// Of a block's clearance; `otherwise` if it is clear.
+    /// The colour of a block's clearance; `otherwise` if it is clear.
     ImU32 of(const BlockRow& row, render::Role otherwise) const;
 };
 
-/// Gives ImGui's current context the colours and sizes of a theme.
+/// Sets the colours and sizes of a theme in ImGui's current context.
 void apply_style(const Theme& look, double scale);
 
 } // namespace app::viewer
@@ -75,7 +75,7 @@ struct Fonts {
     ImFont* text = nullptr;  // 15 px
     ImFont* small = nullptr; // 12.5 px
     ImFont* strong = nullptr;
-    ImFont* big = nullptr;  // 38 px, for the number
+    ImFont* big = nullptr;  // 38 px, for the large number
     ImFont* mono = nullptr; // 14.5 px
     bool has_icons = false;
     double scale = 1.0;
@@ -83,11 +83,11 @@ struct Fonts {
     const char* icon(Icon icon) const;
 };
 
-/// Loads all fonts into ImGui's current context, lightly hinted by FreeType. Their texture must be
-/// made again afterwards.
+/// Loads all fonts into ImGui's current context, lightly hinted by FreeType. Create the font
+/// texture again afterwards.
 Fonts load_fonts(double scale);
 
-/// A part of the window, pixels.
+/// A rectangle of the window, pixels.
 struct Area {
     float x = 0, y = 0, width = 0, height = 0;
 
@@ -104,11 +104,11 @@ struct Frame {
     double now = 0.0; // seconds
 
     float px(double length) const { return static_cast<float>(length * fonts.scale); }
-    /// Performs a command as its key does.
+    /// Performs a command, as its key would.
     void perform(Command command);
 };
 
-/// A part of the window that follows the current block. Needs an ImGui context.
+/// A panel that shows the current block. Needs an ImGui context.
 class Panel {
 public:
     virtual ~Panel() = default;
@@ -118,28 +118,28 @@ public:
 /// A square button with an icon and a tooltip. True when pressed.
 bool icon_button(Frame& frame, Icon icon, Command command, bool is_on = false);
 
-/// A button with an icon and a word beside it.
+/// A button with an icon and a word next to it. True when pressed.
 bool word_button(Frame& frame, Icon icon, const char* word, bool icon_first, const char* tip);
 
-/// A dim name with its value, cut off with dots at the edge of the panel.
+/// A dim name with its value, truncated with an ellipsis at the edge of the panel.
 void value_row(Frame& frame, const char* name, const std::string& value, double name_width = 84.0,
                bool is_changed = false);
 
 /// A heading with a line above it.
 void heading(Frame& frame, const char* text);
 
-/// Text in a font and a colour.
+/// Draws text in a font and a colour.
 void text(ImFont* font, ImU32 color, const std::string& words);
-/// The same, wrapped at the remaining width of the panel.
+/// As text(), wrapped at the edge of the panel.
 void wrapped_text(ImFont* font, ImU32 color, const std::string& words);
 
 /// A tooltip for the last item.
 void tip(const Frame& frame, const std::string& words);
 
-/// A text cut off with dots to fit a width.
+/// A text truncated with an ellipsis to fit a width.
 std::string shortened(ImFont* font, const std::string& words, float width);
 
-/// Seconds as 00:03:12.
+/// Seconds as hours, minutes and seconds: 00:03:12.
 std::string clock_text(double seconds);
 
 } // namespace app::viewer

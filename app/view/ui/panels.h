@@ -53,14 +53,14 @@ private:
     void draw_note(Frame& frame, const StretchPlace& place);
 
     std::optional<StretchPlace> scrolled_to_, noted_;
-    uint64_t typed_from_ = 0; // opening
+    uint64_t typed_from_ = 0; // number of the opened program
     std::string typed_;
 };
 
-/// The tabs of the two lists at the left.
+/// Draws the tabs of the two lists on the left.
 void draw_list_tabs(Frame& frame);
 
-/// The current block: clearance, pair, state, findings; and the program.
+/// The current block: clearance, pair, state, findings. Below it, the program as a whole.
 class InspectorPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -69,14 +69,14 @@ private:
     std::string watch_;
 };
 
-/// The coprocessor: its answer for the current block, and its state then.
+/// The coprocessor: its answer for the current block, and its state at that time.
 class DevicePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// The least clearance of every block, along the lower edge; below it the slack, if a device was
-/// run.
+/// The least clearance of every block, along the lower edge of the window. Below it the slack, if a
+/// device was run.
 class TimelinePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -85,15 +85,15 @@ private:
     bool scrubbing_ = false;
 };
 
-/// The 3D view: machine, stock, path, and the witness line with its clearance. The picture is kept
-/// in a texture and drawn again only after a change.
+/// The 3D view: machine, stock, path, and the witness line with its clearance. The picture is
+/// stored in a texture and redrawn only after a change.
 class ScenePanel : public Panel {
 public:
     explicit ScenePanel(render::Renderer renderer);
     ~ScenePanel() override;
 
     void draw(Frame& frame, const Area& area) override;
-    /// 4: smooth edges, for pictures; 1: fast.
+    /// Samples per pixel. 4: smooth edges, for pictures; 1: fast.
     void set_samples(int samples);
 
 private:
@@ -101,8 +101,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Shows, edits and saves the set-up. Edits take effect when they are applied, and only if all of
-/// them are valid.
+/// Shows, edits and saves the set-up. Edits take effect when the user applies them, and only if all
+/// of them are valid.
 class SetupPopup {
 public:
     SetupPopup();
@@ -114,7 +114,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// The windows on top of the panels: keys, going to a line, opening a file, what-ifs, settings.
+/// The dialogs on top of the panels: keys, go to line, open file, what-if, breakpoints, settings,
+/// set-up.
 class PopupPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -130,27 +131,27 @@ private:
     std::string line_, path_, condition_;
     Popup shown_{};
     SetupPopup setup_;
-    // of what-ifs
+    // fields of the what-if dialog
     size_t fixture_ = 0;
     double length_ = 0.0, table_length_ = 0.0, allowance_ = 0.0, by_[3] = {0.0, 0.0, 0.0};
     int table_number_ = 1, offset_ = 0, axis_ = 2;
     double origin_ = 0.0;
 };
 
-/// The screen without a program.
+/// The screen that is shown without a program.
 class WelcomePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
-/// The error of a program, set-up or mesh that could not be opened, and its remedy.
+/// The error in a program, set-up or mesh that could not be opened, and what to do.
 class ErrorPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
 };
 
 /// All panels and their areas. Needs a current OpenGL context and an ImGui context, but no window,
-/// so it also draws pictures.
+/// so it can also draw pictures.
 class Layout {
 public:
     explicit Layout(render::Renderer renderer);
@@ -159,11 +160,11 @@ public:
     /// Draws everything between ImGui's NewFrame and Render.
     void draw(ViewModel& model, const Fonts& fonts, double now);
 
-    /// 4: smooth edges in the 3D view, for pictures; 1: fast.
+    /// Samples per pixel of the 3D view. 4: smooth edges, for pictures; 1: fast.
     void set_samples(int samples);
 
 private:
-    /// The areas of the panels; hidden ones have no width.
+    /// The areas of the panels; those of hidden panels have width 0.
     struct Parts {
         Area toolbar, list, view, device, inspector, timeline;
     };

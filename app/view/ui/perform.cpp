@@ -12,7 +12,7 @@ namespace app::viewer {
 namespace {
 
 constexpr int page = 25;
-constexpr double key_turn = 24.0; // pixels of a drag that a key turns as far as
+constexpr double key_turn = 24.0; // a key turns the view as far as a drag of this many pixels
 constexpr render::Viewport any_view{800, 600};
 
 void toggle(bool& value) { value = !value; }
@@ -31,16 +31,16 @@ void zoom(ViewModel& model, double factor) {
 
 void find_offending(ViewModel& model, bool forward, double now) {
     if (!go_to_offending(model, forward)) return say(model, no_violation(model), now);
-    if (model.awaits_offending) say(model, "Goes to the next violation once one is found", now);
+    if (model.awaits_offending) say(model, "Waiting for the next violation to be found", now);
 }
 
 void step_findings(ViewModel& model, bool forward, double now) {
     show_findings(model, true);
-    if (!step_stretch(model, forward)) say(model, "There is no other finding", now);
+    if (!step_stretch(model, forward)) say(model, "No more findings", now);
 }
 
 void begin_note(ViewModel& model, double now) {
-    if (!selected_stretch(model)) return say(model, "There is no finding here", now);
+    if (!selected_stretch(model)) return say(model, "No finding at this block", now);
     show_findings(model, true);
     model.note_wants_focus = true;
 }
@@ -51,7 +51,7 @@ void toggle_section(ViewModel& model) {
     core::Vec3 through = model.camera.target;
     if (model.has_rows() && model.row().has_witness())
         through = 0.5 * (model.row().on_tool + model.row().on_body);
-    // The half that hides the place is taken away.
+    // Cut away the half on the side of the eye.
     const core::Vec3 to_eye = render::eye(model.camera) - through;
     const int axis = std::abs(to_eye.x) > std::abs(to_eye.y) ? 0 : 1;
     plane.normal = core::Vec3(0.0);
@@ -63,7 +63,7 @@ void toggle_section(ViewModel& model) {
 void toggle_measuring(ViewModel& model, double now) {
     toggle(model.measuring.on);
     model.measuring.places.clear();
-    if (model.measuring.on) say(model, "Click two places on surfaces; M ends measuring", now);
+    if (model.measuring.on) say(model, "Click two points on surfaces; M ends measuring", now);
 }
 
 void toggle_bookmark(ViewModel& model) {
@@ -81,8 +81,9 @@ void open_popup(ViewModel& model, Popup popup) {
 void find_stop(ViewModel& model, bool forward, double now) {
     if (go_to_stop(model, forward)) return;
     say(model,
-        model.device.study ? "The machine has to wait for no block"
-                           : "The coprocessor has not answered yet; D runs the program beside it",
+        model.device.study
+            ? "No block is late or refused"
+            : "No answers from the coprocessor yet; press D to run the program with it",
         now);
 }
 

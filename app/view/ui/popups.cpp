@@ -34,16 +34,15 @@ void draw_shortcuts(Frame& frame) {
         ImGui::Dummy(ImVec2(0, frame.px(6)));
     }
     ImGui::EndTable();
-    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                 "Mouse: drag turns, right drag moves, the wheel goes to the cursor; a click on "
-                 "the path or a cut "
-                 "surface goes to its line; a click beside a line number sets a breakpoint; drag "
-                 "the timeline to scrub, "
-                 "turn the wheel there to zoom.");
+    wrapped_text(
+        frame.fonts.small, frame.look.color(Role::dim),
+        "Mouse: drag to turn, right drag to move, wheel to zoom towards the cursor; click "
+        "the path or a cut surface to go to its line; click next to a line number to set a "
+        "breakpoint; drag the timeline to scrub, turn the wheel there to zoom.");
     wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
                  "Filter and breakpoints take conditions: clearance < 1 and rapid; T3 or T4; near; "
-                 "error; rule = near-miss; \"clamp-1\"; line > 200; ~ \"G81\". Other words are "
-                 "looked for in the lines.");
+                 "error; rule = near-miss; \"clamp-1\"; line > 200; ~ \"G81\". The filter searches "
+                 "the lines for any other text.");
 }
 
 void draw_settings(Frame& frame) {
@@ -94,14 +93,15 @@ const char* title_of(Popup popup) {
     return "";
 }
 
-/// What a row of the what-ifs is about; what follows stands beside it.
+/// Draws the label of a row of the what-if dialog; its fields follow on the same line.
 void row_name(Frame& frame, const std::string& name) {
     ImGui::AlignTextToFramePadding();
     text(frame.fonts.text, frame.look.color(Role::dim), name);
     ImGui::SameLine(frame.px(150));
 }
 
-/// A length to be typed and a button that tries it; whether it was pressed.
+/// An input field for a length, and a button that tries it. True if Enter or the button was
+/// pressed.
 bool length_to_try(Frame& frame, const char* id, double& value) {
     ImGui::PushID(id);
     ImGui::SetNextItemWidth(frame.px(100));
@@ -127,7 +127,7 @@ void PopupPanel::draw_go_to_line(Frame& frame) {
     const auto found = find_line(model, line_);
     if (!line_.empty() && !found)
         text(frame.fonts.small, frame.look.color(Role::violation),
-             "No block of such a line is run.");
+             "No block of this line is executed.");
     if (!done || !found) return;
     go_to(model, *found);
     model.popup = Popup::none;
@@ -138,8 +138,7 @@ void PopupPanel::draw_open_file(Frame& frame) {
     ImGui::SetNextItemWidth(frame.px(460));
     const bool done = ImGui::InputTextWithHint("##path", "Program, set-up (.toml)", &path_,
                                                ImGuiInputTextFlags_EnterReturnsTrue);
-    text(frame.fonts.small, frame.look.color(Role::dim),
-         "Files can also be dropped into the window.");
+    text(frame.fonts.small, frame.look.color(Role::dim), "You can also drop files on the window.");
     if (!done || path_.empty()) return;
     frame.model.wanted_path = path_;
     frame.model.popup = Popup::none;
@@ -224,9 +223,9 @@ void PopupPanel::draw_what_if(Frame& frame) {
     ViewModel& model = frame.model;
     if (!model.place) return;
     const core::Setup& setup = model.place->scene->setup;
-    wrapped_text(
-        frame.fonts.text, frame.look.color(Role::dim),
-        fmt::format("From block {} on; what lies before stays as it is.", model.cursor.block));
+    wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+                 fmt::format("Takes effect from block {} on; earlier blocks do not change.",
+                             model.cursor.block));
     draw_lengths(frame, setup);
     row_name(frame, "Allowance");
     if (length_to_try(frame, "allowance", allowance_))
@@ -234,7 +233,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
     if (!setup.fixtures.empty()) draw_fixture(frame, setup);
     for (const std::string& change : model.changes)
         text(frame.fonts.text, frame.look.color(Role::accent), change);
-    if (!model.changes.empty() && ImGui::Button("Take the last one back"))
+    if (!model.changes.empty() && ImGui::Button("Undo the last change"))
         model.wants_take_back = true;
 }
 
@@ -245,7 +244,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     const bool is_form = model.popup == Popup::setup;
     ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
                             ImGuiCond_Always, ImVec2(0.5F, 0.5F));
-    // What is taller than the window scrolls.
+    // A dialog taller than the window scrolls.
     ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F),
                                         ImVec2(area.width - 20, 0.88F * area.height));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
@@ -309,17 +308,18 @@ void WelcomePanel::draw(Frame& frame, const Area& area) {
     };
     put(frame.fonts.big, "feeler", frame.px(26), Role::text);
     put(frame.fonts.strong, "Drop an NC program here", frame.px(90), Role::text);
-    put(frame.fonts.text, "and a set-up (.toml), if there is one. Without it stock and tools",
+    put(frame.fonts.text, "and a set-up (.toml), if you have one. Otherwise stock and tools",
         frame.px(118), Role::dim);
-    put(frame.fonts.text, "are taken from the program, and every guess is said.", frame.px(138),
-        Role::dim);
-    put(frame.fonts.text, "Ctrl+O opens by name \xC2\xB7 F1 lists the keys", frame.px(176),
+    put(frame.fonts.text, "are inferred from the program, and all assumptions are listed.",
+        frame.px(138), Role::dim);
+    put(frame.fonts.text, "Ctrl+O: open a file \xC2\xB7 F1: list of keys", frame.px(176),
         Role::accent);
 }
 
 void ErrorPanel::draw(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
-    const core::Error nothing{core::ErrorCode::missing_value, {}, "The program runs no block."};
+    const core::Error nothing{
+        core::ErrorCode::missing_value, {}, "The program has no executable block."};
     const core::Error& error = model.failure   ? *model.failure
                                : model.stopped ? *model.stopped
                                                : nothing;
@@ -333,7 +333,7 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(26), frame.px(22)));
     ImGui::BeginChild("error", ImVec2(width, frame.px(270)), true);
     text(frame.fonts.strong, frame.look.color(Role::violation),
-         std::string(frame.fonts.icon(Icon::warning)) + "  This could not be "
+         std::string(frame.fonts.icon(Icon::warning)) + "  The program could not be "
              + (model.failure ? "opened" : "run"));
     std::string place = error.file.empty() && model.program ? model.program->program : error.file;
     if (error.where.line > 0) place += fmt::format(":{}", error.where.line);
@@ -345,15 +345,15 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
     wrapped_text(frame.fonts.text, frame.look.color(Role::text), error.message);
     ImGui::Dummy(ImVec2(0, frame.px(10)));
     wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
-                 "Mend the file and save it: it is read again by itself. Or drop another program "
-                 "or set-up here.");
+                 "Correct the file and save it; it is then reloaded automatically. Or drop another "
+                 "program or set-up here.");
     ImGui::Dummy(ImVec2(0, frame.px(6)));
-    if (model.edits && ImGui::Button("Take the set-up's changes back"))
+    if (model.edits && ImGui::Button("Undo the changes of the set-up"))
         frame.model.wanted_setup = SetupRequest{};
     if (model.edits) ImGui::SameLine();
-    if (ImGui::Button("Read it again")) frame.perform(Command::reload);
+    if (ImGui::Button("Reload")) frame.perform(Command::reload);
     ImGui::SameLine();
-    if (ImGui::Button("Open another")) frame.perform(Command::open);
+    if (ImGui::Button("Open another file")) frame.perform(Command::open);
     ImGui::EndChild();
     ImGui::PopStyleVar(2);
     ImGui::PopStyleColor();

@@ -17,7 +17,8 @@ namespace {
 
 using render::Role;
 
-/// The words of a line, each with its colour: N numbers and comments dim, motion codes marked.
+/// Draws the words of a line in their colours: N numbers and comments dim, G, M and T words
+/// accented.
 void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, float end) {
     const Theme& look = frame.look;
     ImFont* const font = frame.fonts.mono;
@@ -36,7 +37,7 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
             role = Role::dim;
         } else if (is_letter(i) && i + 1 < text.size()
                    && (is_letter(i + 1) || text[i + 1] == '_')) {
-            // A name, such as TOOL or FMAX: its letters are no addresses.
+            // A name such as TOOL or FMAX: its letters are not addresses.
             const auto is_of_name = [&](size_t k) { return is_letter(k) || text[k] == '_'; };
             while (stop < text.size() && is_of_name(stop)) ++stop;
         } else if (is_letter(i)) {
@@ -59,7 +60,7 @@ std::string clearance_text(const ViewModel& model, const BlockRow& row) {
     if (row.is_known && !row.is_judged && moves(row)) return "?";
     if (!row.is_known || !row.lower) return {};
     if (!row.upper) return ">" + length_at_least(model, *row.lower, 0);
-    // The lower one is proven; where the two differ visibly the sign says so.
+    // The lower bound is the proven one.
     return length_at_least(model, *row.lower);
 }
 
@@ -78,7 +79,8 @@ void draw_background(Frame& frame, ImDrawList& list, const Area& row, const Bloc
         list.AddRectFilled(a, b, look.color(Role::raised, 0.35), round);
 }
 
-/// The bar at the left: its colour and its width tell the state.
+/// Draws the bar on the left, whose colour and width show the state, the breakpoint and the
+/// bookmark.
 void draw_gutter(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
                  size_t index) {
     const Theme& look = frame.look;
@@ -100,7 +102,7 @@ void draw_gutter(Frame& frame, ImDrawList& list, const Area& row, const BlockRow
                      frame.fonts.icon(Icon::bookmark));
 }
 
-/// Line number, code and clearance.
+/// Draws line number, code and clearance.
 void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow& row) {
     ImFont* const font = frame.fonts.mono;
     const float top = area.y + 0.5F * (area.height - font->FontSize);
@@ -125,7 +127,7 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-/// How many blocks are how bad, beside the tabs.
+/// Draws the numbers of violations, near blocks and all blocks, next to the tabs.
 void draw_counts(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
     const std::string counts = fmt::format("of {}", model.rows.size());
@@ -133,7 +135,7 @@ void draw_counts(Frame& frame, const Area& area) {
         fmt::format("{} {}", frame.fonts.icon(Icon::warning), model.offending.size());
     const std::string near = fmt::format("{} {}", frame.fonts.icon(Icon::near), model.near_count);
     const float gap = frame.px(12);
-    // The violations have the first right to what room there is.
+    // If there is little room, violations come first.
     const float room = area.width - frame.px(26) - (ImGui::GetItemRectMax().x - area.x);
     float width = ImGui::CalcTextSize(bad.c_str()).x;
     const auto fits = [&](const std::string& words) {
@@ -146,11 +148,11 @@ void draw_counts(Frame& frame, const Area& area) {
     ImGui::SameLine(area.width - width - frame.px(14));
     text(frame.fonts.text, frame.look.color(model.offending.empty() ? Role::dim : Role::violation),
          bad);
-    tip(frame, "Blocks that do not keep their allowance, or have a finding of severity error");
+    tip(frame, "Blocks that are not proven clear, or have a finding of severity error");
     if (!near_fits) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(model.near_count == 0 ? Role::dim : Role::near), near);
-    tip(frame, "Blocks that keep their allowance, but not twice");
+    tip(frame, "Blocks with less than twice their allowance");
     if (!counts_fit) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.look.color(Role::dim), counts);
@@ -172,14 +174,14 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     draw_filter_note(frame);
 }
 
-/// How the filter was understood, where that is not what it says.
+/// Shows the error of the filter, or that it is used as a text search.
 void ProgramPanel::draw_filter_note(Frame& frame) {
     const RowFilter& filter = frame.model.filter;
     if (!filter.refusal().empty())
         wrapped_text(frame.fonts.small, frame.look.color(Role::violation), filter.refusal());
     if (!filter.wanted_text().empty())
         wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                     fmt::format("Blocks with the text \"{}\": {}", filter.wanted_text(),
+                     fmt::format("Blocks that contain \"{}\": {}", filter.wanted_text(),
                                  frame.model.filtered.size()));
 }
 
@@ -215,7 +217,7 @@ void ProgramPanel::follow_cursor(Frame& frame) {
                           ? static_cast<ptrdiff_t>(block)
                           : std::lower_bound(shown.begin(), shown.end(), block) - shown.begin();
     const float height = frame.px(20), top = static_cast<float>(rank) * height;
-    // What is said inside of a window about its scrolling counts from the next frame on.
+    // Scrolling set from inside the child window would take effect one frame late.
     if (top < scroll_ + 3 * height || top > scroll_ + room_ - 4 * height)
         ImGui::SetNextWindowScroll({-1.0F, std::max(0.0F, top - 0.5F * room_ + height)});
 }
@@ -230,7 +232,7 @@ void ProgramPanel::draw_rows(Frame& frame) {
     room_ = ImGui::GetWindowHeight();
     if (count == 0) {
         wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
-                     filtering ? "No block is like that." : "Reading \xE2\x80\xA6");
+                     filtering ? "No block matches the filter." : "Reading \xE2\x80\xA6");
         return;
     }
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, 0));

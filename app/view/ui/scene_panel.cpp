@@ -17,7 +17,7 @@ namespace {
 
 using render::Role;
 
-/// What a drag does.
+/// The effect of a mouse drag.
 enum class Drag : uint8_t { none, orbit, pan };
 
 Drag drag_of(const Settings& settings) {
@@ -38,7 +38,7 @@ Drag drag_of(const Settings& settings) {
     return Drag::none;
 }
 
-/// A box with a word in it. `middle`: of the box.
+/// Draws a box with text. `middle`: of the box.
 void draw_tag(const Frame& frame, ImDrawList& list, ImVec2 middle, const std::string& words,
               ImU32 fill, ImU32 ink) {
     ImFont* const font = frame.fonts.strong;
@@ -60,7 +60,7 @@ void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::s
                  words.c_str());
 }
 
-/// What was inferred, where it cannot be overlooked.
+/// Draws the summary of an inferred set-up over the view, so that it cannot be overlooked.
 void draw_summary(const Frame& frame, ImDrawList& list, const Area& area) {
     const std::vector<std::string> lines = inferred_summary(frame.model);
     if (lines.empty() || area.height < frame.px(360)) return;
@@ -90,21 +90,21 @@ std::string place_text(const ViewModel& model) {
                        clock_text(last.time + last.duration));
 }
 
-/// What makes less of the picture than it seems to be: a file that is gone, a program that stops.
+/// Why the view may be outdated or incomplete: a file is missing, or the program stops early.
 std::string warning_text(const Frame& frame) {
     const char* const sign = frame.fonts.icon(Icon::warning);
     std::string words;
     if (!frame.model.missing.empty())
-        words = fmt::format("{}  {} is gone or empty: this shows what it was before", sign,
+        words = fmt::format("{}  {} is missing or empty: this is its last known state", sign,
                             std::filesystem::path(frame.model.missing).filename().string());
     if (!frame.model.stopped) return words;
     const core::Error& error = *frame.model.stopped;
     return words + (words.empty() ? "" : "\n")
-           + fmt::format("{}  Line {} could not be run, nothing behind it is checked: {}", sign,
+           + fmt::format("{}  Line {} could not be run; nothing after it is checked: {}", sign,
                          error.where.line, error.message);
 }
 
-/// The same where nobody can overlook it.
+/// Draws the warning over the view, so that it cannot be overlooked.
 void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
     const std::string words = warning_text(frame);
     if (words.empty()) return;
@@ -125,7 +125,7 @@ std::string words_of(const ViewModel& model, const BlockRow& row) {
     return length_at_least(model, *row.lower) + " " + length_unit(model);
 }
 
-/// An end of an axis, on which a click looks along it.
+/// One end of an axis. A click on it selects the view along the axis.
 struct AxisBall {
     const char* name;
     core::Vec3 axis;
@@ -180,9 +180,9 @@ struct ScenePanel::State {
     SceneKey drawn_;
     render::Scene scene_;
     int samples_ = 1;
-    uint64_t framed_ = 0;                          // the opening that the camera was placed for
+    uint64_t framed_ = 0; // number of the opened program for which the camera was placed
     render::Vec2 last_hover_ = render::Vec2(-1.0); // of the mouse
-    std::optional<size_t> hovered_;                // the block of the path there
+    std::optional<size_t> hovered_;                // block of the path under the mouse
 };
 
 void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& size) {
@@ -193,7 +193,7 @@ void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& s
     const bool is_first = framed_ == 0;
     if (is_first) model.camera = render::seen_from(model.camera, render::StandardView::iso);
     model.camera = render::framing(model.camera, size, box);
-    // The early picture lacks the tool; the camera is placed once more when it is there.
+    // The first picture lacks the tool: place the camera once more when the tool is known.
     model.camera_placed = model.place != nullptr;
     framed_ = model.camera_placed ? model.opening : 0;
 }

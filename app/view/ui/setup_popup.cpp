@@ -15,26 +15,26 @@ namespace {
 
 using render::Role;
 
-/// A length to be typed, in the unit of the window; whether it was changed. What is not touched
-/// keeps every bit.
+/// An input field for a length in the unit of the window. True if it was changed; an untouched
+/// value keeps every bit.
 bool length_field(const Frame& frame, const char* id, double& mm);
 
-/// A small word that says where a value comes from: what a person has stated stands out.
+/// A small mark for the source of a value. Values entered by the user are highlighted.
 void source_mark(Frame& frame, SetupSource source, bool is_in_heading = false);
 
-/// What is wrong with the field above, or nothing.
+/// The error of the field above, if any.
 void field_refusal(Frame& frame, const std::vector<EditRefusal>& refused,
                    std::optional<core::ToolNumber> tool, std::string_view key);
 
-/// The stock: its shape, corner and size, and where they come from.
+/// Draws the stock: its shape, corner and size, and their source.
 void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
                        const std::vector<EditRefusal>& refused);
 
-/// The general allowance.
+/// Draws the general allowance.
 void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
                           const std::vector<EditRefusal>& refused);
 
-/// What a row is about; its field stands beside it.
+/// Draws the label of a row; its field follows on the same line.
 void field_name(Frame& frame, const std::string& name, double width = 150.0);
 
 SetupSource source_of(const SheetTool& tool, const std::string& key) {
@@ -49,7 +49,7 @@ void draw_shape(core::ToolDescription& tool) {
     ImGui::EndCombo();
 }
 
-/// What holds the tool: nothing, one of those that come with the program, or what was described.
+/// Draws the choice of the holder: none, one of the built-in library, or the one described.
 void draw_holder(Frame& frame, const core::ToolDescription& shown, core::ToolDescription& tool) {
     std::string now = holder_name(tool);
     if (now.empty()) now = tool.holder.empty() ? "none: only the tool is checked" : "as described";
@@ -67,7 +67,7 @@ void draw_holder(Frame& frame, const core::ToolDescription& shown, core::ToolDes
     ImGui::EndCombo();
 }
 
-/// A size of the tool; angles are in degrees whatever the window's unit.
+/// Draws a size of the tool. Angles are in degrees for both units of the window.
 void draw_size(Frame& frame, const core::ToolSize& field, core::ToolDescription& tool) {
     double value = field.of(tool).value_or(0.0);
     const bool is_angle = std::string_view(field.unit) == "deg";
@@ -100,15 +100,15 @@ struct SetupPopup::State {
     void draw_tool(Frame& frame, size_t index);
     void draw_buttons(Frame& frame);
     void draw_saving(Frame& frame);
-    /// The edits, if all of them can be made; else the mistakes are shown.
+    /// The edits, if all of them are valid; otherwise empty, and the errors are shown.
     std::optional<SetupEdits> checked_edits(const ViewModel& model);
 
-    std::shared_ptr<const SetupSheet> shown_; // that `wanted_` began as
+    std::shared_ptr<const SetupSheet> shown_; // the sheet that `wanted_` was copied from
     SetupSheet wanted_;
     std::vector<EditRefusal> refused_;
     size_t tool_ = 0;
     bool is_saving_ = false, asks_to_replace_ = false;
-    std::string path_, refusal_; // of saving
+    std::string path_, refusal_; // of the save dialog
 };
 
 void SetupPopup::State::begin(const std::shared_ptr<const SetupSheet>& sheet) {
@@ -136,7 +136,7 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
     ImGui::PushID(core::value_of(number));
     if (tool.shape == core::ToolShape::profile) {
         wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
-                     "Its outline is edited in the set-up file.");
+                     "Edit its outline in the set-up file.");
         ImGui::PopID();
         return;
     }
@@ -157,7 +157,7 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
     }
     if (has_cones)
         wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                     "Its shank is described by cones, which give the stick-out.");
+                     "Its shank is described by cones, which determine the stick-out.");
     field_name(frame, "Holder", 130.0);
     draw_holder(frame, shown.tool, tool);
     source_mark(frame, source_of(shown, "holder"));
@@ -171,7 +171,7 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
 void SetupPopup::State::draw_tools(Frame& frame) {
     text(frame.fonts.strong, frame.look.color(Role::text), "Tools");
     if (wanted_.tools.empty()) {
-        text(frame.fonts.text, frame.look.color(Role::dim), "The program uses none.");
+        text(frame.fonts.text, frame.look.color(Role::dim), "The program uses no tools.");
         return;
     }
     const float height = std::min(frame.px(270), 0.3F * ImGui::GetIO().DisplaySize.y);
@@ -188,7 +188,7 @@ void SetupPopup::State::draw_tools(Frame& frame) {
     }
     ImGui::EndChild();
     ImGui::SameLine(0, frame.px(16));
-    ImGui::BeginGroup(); // in the same window, so that Tab goes through its fields
+    ImGui::BeginGroup(); // in the same ImGui window, so that Tab reaches its fields
     draw_tool(frame, tool_);
     ImGui::EndGroup();
 }
@@ -205,10 +205,10 @@ void SetupPopup::State::draw_saving(Frame& frame) {
     bool save = ImGui::InputText("##path", &path_, ImGuiInputTextFlags_EnterReturnsTrue);
     if (ImGui::IsItemEdited()) asks_to_replace_ = false;
     ImGui::SameLine();
-    save = ImGui::Button(asks_to_replace_ ? "Replace it" : "Save") || save;
+    save = ImGui::Button(asks_to_replace_ ? "Replace" : "Save") || save;
     if (!refusal_.empty())
         wrapped_text(frame.fonts.small, frame.look.color(Role::violation),
-                     asks_to_replace_ ? "This file is there already. Replace it, or type another "
+                     asks_to_replace_ ? "This file already exists. Replace it, or enter another "
                                         "name."
                                       : refusal_);
     if (!save) return;
@@ -222,7 +222,7 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
     ViewModel& model = frame.model;
     const bool enter =
         ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
-    if (ImGui::Button("Check with it") || enter) {
+    if (ImGui::Button("Check") || enter) {
         if (auto edits = checked_edits(model)) {
             model.wanted_setup =
                 SetupRequest{std::make_shared<const SetupEdits>(*std::move(edits))};
@@ -234,7 +234,7 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
     if (ImGui::Button("Save as set-up \xE2\x80\xA6")) is_saving_ = !is_saving_;
     ImGui::SameLine();
     ImGui::BeginDisabled(!model.edits);
-    if (ImGui::Button("Take all changes back")) {
+    if (ImGui::Button("Undo all changes")) {
         model.wanted_setup = SetupRequest{};
         model.popup = Popup::none;
     }
@@ -242,7 +242,7 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
     if (!refused_.empty()) {
         ImGui::SameLine();
         text(frame.fonts.text, frame.look.color(Role::violation),
-             "Nothing has changed: see the fields in question.");
+             "Nothing was changed: correct the marked fields.");
     }
     if (is_saving_) draw_saving(frame);
 }
@@ -261,9 +261,10 @@ void SetupPopup::State::draw(Frame& frame) {
     }
     if (std::exchange(frame.model.wants_saving, false)) is_saving_ = true;
     text(frame.fonts.text, frame.look.color(Role::dim),
-         sheet->path.empty() ? "No set-up was given: all of this was inferred from the program. "
-                               "State what you know better."
-                             : "From " + sheet->path);
+         sheet->path.empty()
+             ? "No set-up file was given: all values are inferred from the program. "
+               "Enter those that you know."
+             : "From " + sheet->path);
     ImGui::Dummy(ImVec2(0, frame.px(4)));
     draw_stock_fields(frame, *shown_, wanted_, refused_);
     ImGui::Dummy(ImVec2(0, frame.px(4)));
@@ -277,7 +278,7 @@ namespace {
 
 constexpr double inch = 25.4;
 
-/// Three lengths in a row; whether one was changed.
+/// Three input fields for lengths in a row. True if one was changed.
 bool place_field(const Frame& frame, const char* id, core::Vec3& mm) {
     bool changed = false;
     ImGui::PushID(id);
@@ -305,7 +306,7 @@ void unit_behind(Frame& frame, const char* more = "") {
 void draw_box(Frame& frame, core::SolidBox& stock) {
     core::Aabb& box = stock.box;
     core::Vec3 size = box.size();
-    field_name(frame, "Lowest corner");
+    field_name(frame, "Lower corner");
     core::Vec3 corner = box.min;
     if (place_field(frame, "corner", corner)) box = {corner, corner + size};
     unit_behind(frame, "   X Y Z");
@@ -315,7 +316,7 @@ void draw_box(Frame& frame, core::SolidBox& stock) {
 }
 
 void draw_cylinder(Frame& frame, core::SolidCylinder& round) {
-    field_name(frame, "Foot");
+    field_name(frame, "Base centre");
     place_field(frame, "foot", round.base);
     unit_behind(frame, "   X Y Z");
     field_name(frame, "Diameter");
@@ -329,7 +330,7 @@ void draw_cylinder(Frame& frame, core::SolidCylinder& round) {
     ImGui::Combo("##axis", &round.axis, "along X\0along Y\0along Z\0");
 }
 
-/// A box or cylinder of the size of what stands there now.
+/// Changes the stock to a box (0) or cylinder (1) of the same size.
 void reshape(core::Solid& stock, int kind) {
     const core::Aabb box = core::bounds(stock);
     const core::Vec3 size = box.size(), middle = 0.5 * (box.min + box.max);
@@ -368,7 +369,7 @@ void source_mark(Frame& frame, SetupSource source, bool is_in_heading) {
     ImGui::SameLine(0, frame.px(10));
     if (!is_in_heading) ImGui::AlignTextToFramePadding();
     text(frame.fonts.small, frame.look.ink(role),
-         source == SetupSource::stated ? "stated by you" : name_of(source));
+         source == SetupSource::stated ? "entered by you" : name_of(source));
 }
 
 void field_refusal(Frame& frame, const std::vector<EditRefusal>& refused,
@@ -394,14 +395,14 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
     if (kind > 1) {
         ImGui::SameLine();
         text(frame.fonts.small, frame.look.color(Role::dim),
-             "now a mesh of the set-up; a box or cylinder takes its place");
+             "now a mesh from the set-up; a box or cylinder replaces it");
     }
     if (wish != kind) reshape(stock, wish);
     if (auto* box = std::get_if<core::SolidBox>(&stock.shape)) draw_box(frame, *box);
     if (auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) draw_cylinder(frame, *round);
     field_refusal(frame, refused, {}, "box");
     field_refusal(frame, refused, {}, "cylinder");
-    why_it_is_so(frame, "Coordinates of " + shown.frame
+    why_it_is_so(frame, "Coordinates in " + shown.frame
                             + (shown.stock_source == SetupSource::inferred ? "; " + shown.stock_why
                                                                            : std::string()));
     ImGui::PopID();
@@ -411,9 +412,9 @@ void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wan
                           const std::vector<EditRefusal>& refused) {
     text(frame.fonts.strong, frame.look.color(Role::text), "Allowance");
     source_mark(frame, shown.allowance_source, true);
-    field_name(frame, "Clearance to keep");
+    field_name(frame, "Minimum clearance");
     bool is_usual = !wanted.allowance;
-    // What a set-up states cannot be made usual again here.
+    // An allowance stated in the set-up cannot be reset to the usual one here.
     ImGui::BeginDisabled(shown.allowance_source != SetupSource::usual);
     if (ImGui::Checkbox("usual", &is_usual)) {
         wanted.allowance.reset();

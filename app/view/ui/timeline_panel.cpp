@@ -14,19 +14,19 @@
 
 namespace app::viewer {
 
-/// The row of slacks on the timeline; the worst of the blocks that a pixel stands for. The device
-/// must have answered.
+/// Draws the row of slacks on the timeline, with the worst block of each pixel. The device must
+/// have answered.
 void draw_slack(Frame& frame, const Area& area);
 
 namespace {
 
 using render::Role;
 
-/// A slack that a line marks.
+/// A slack marked by a line.
 struct Mark {
     double seconds;
     const char* name;
-    float least_lines; // height of the row, in lines of text, from which on it is named
+    float least_lines; // the name is shown if the row is at least this high, in lines of text
 };
 constexpr std::array<Mark, 2> marks = {{{1e-2, "10 ms", 3.3F}, {1.0, "1 s", 1.8F}}};
 
@@ -49,7 +49,7 @@ void draw_bar(Frame& frame, ImDrawList& list, const Area& area, const TimelineCe
     const Theme& look = frame.look;
     ImU32 color = look.mixed(Role::panel, Role::accent, 0.5);
     if (cell.near) color = look.color(Role::near);
-    // What stops the machine is as high as the row: nobody looks for it.
+    // A block that stops the machine gets a full-height bar, so that it cannot be missed.
     double height = slack_height(cell.least);
     if (cell.offending) {
         color = look.color(Role::violation);
@@ -79,10 +79,10 @@ void draw_slack(Frame& frame, const Area& area) {
 
 namespace {
 
-/// Pairs have allowances of their own. A bar stands for what is kept beyond its own one, so that
-/// all bars may be held against the one line.
+/// The allowance at the dashed line: that of the current block, else that of the set-up, else 2 mm.
 ///
-/// The allowance that the dashed line stands for: that of the current block, or what was asked.
+/// Each pair has its own allowance. A bar shows its margin above this line, so that all bars can be
+/// compared with the same line.
 double shown_allowance(const ViewModel& model) {
     if (model.row().allowance && *model.row().allowance > 0.0) return *model.row().allowance;
     if (model.program && model.program->scene && model.program->scene->setup.allowance)
@@ -120,7 +120,7 @@ void draw_bar(Frame& frame, ImDrawList& list, const Bars& bars, const TimelineCe
     list.AddRectFilled({x, bottom - height}, {x + width, bottom}, color);
 }
 
-/// The tick above a bar of a violation.
+/// Draws the tick above the bar of a violation.
 void draw_tick(Frame& frame, ImDrawList& list, const Bars& bars, float x) {
     const float half = frame.px(5), top = bars.area.y;
     list.AddTriangleFilled({x - half, top}, {x + half, top}, {x, top + frame.px(8)},
@@ -221,7 +221,8 @@ void show_hovered(Frame& frame, size_t block) {
     ImGui::EndTooltip();
 }
 
-/// Click and scrub, wheel zoom, Shift+wheel or middle drag to move.
+/// Handles the mouse: click and drag scrub, the wheel zooms, Shift+wheel or middle drag moves the
+/// range.
 void take_mouse(Frame& frame, const Area& area, bool& scrubbing) {
     ViewModel& model = frame.model;
     const ImGuiIO& io = ImGui::GetIO();
@@ -249,11 +250,11 @@ void take_mouse(Frame& frame, const Area& area, bool& scrubbing) {
     if (!scrubbing) show_hovered(frame, block);
 }
 
-/// What the rows show, and how far those are that make them.
+/// Draws the headings of the rows, and the progress of the check.
 void draw_title(Frame& frame) {
     const ViewModel& model = frame.model;
     std::string title = fmt::format("MIN CLEARANCE PER BLOCK ({})", length_unit(model));
-    if (model.device.study) title += "  \xC2\xB7  SLACK OF THE COPROCESSOR, BELOW";
+    if (model.device.study) title += "  \xC2\xB7  BELOW: SLACK OF THE COPROCESSOR";
     text(frame.fonts.small, frame.look.color(Role::dim), title);
     if (!model.is_recorded && model.has_rows()) {
         ImGui::SameLine(0, frame.px(14));

@@ -56,7 +56,7 @@ void draw_walk(Frame& frame) {
 void draw_stops(Frame& frame) {
     const bool none = frame.model.is_recorded && frame.model.offending.empty();
     ImGui::BeginDisabled(none);
-    if (word_button(frame, Icon::warning, "Prev", true, "Violation before (Shift+N)"))
+    if (word_button(frame, Icon::warning, "Prev", true, "Previous violation (Shift+N)"))
         frame.perform(Command::previous_offending);
     ImGui::SameLine();
     if (word_button(frame, Icon::warning, "Next", false, "Next violation (N)"))
@@ -64,7 +64,7 @@ void draw_stops(Frame& frame) {
     ImGui::EndDisabled();
 }
 
-/// A slider by decades, so that slow motion has as much room as fast.
+/// Draws a logarithmic slider, so that slow motion gets as much room as fast motion.
 void draw_speed(Frame& frame) {
     auto speed = static_cast<float>(frame.model.playback.speed);
     ImGui::SetNextItemWidth(frame.px(116));
@@ -74,7 +74,7 @@ void draw_speed(Frame& frame) {
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
         frame.model.playback.speed = speed;
     ImGui::PopStyleVar();
-    tip(frame, "Speed of playing: 1x is that of the machine  ([ and ])");
+    tip(frame, "Playback speed: 1x is the speed of the machine  ([ and ])");
 }
 
 void draw_right(Frame& frame) {
@@ -109,7 +109,7 @@ void ToolbarPanel::draw(Frame& frame, const Area& area) {
     ImGui::SetCursorPos(ImVec2(frame.px(14), frame.px(8)));
     draw_name(frame, width - frame.px(10));
     if (frame.model.has_rows()) {
-        // What there is no room for has keys all the same.
+        // Buttons without room are left out; their keys still work.
         ImGui::SetCursorPos(ImVec2(width, frame.px(8)));
         if (width + frame.px(195) < right) draw_walk(frame);
         ImGui::SameLine(0, frame.px(16));

@@ -30,19 +30,19 @@
 
 namespace app::viewer {
 
-/// Writes down when keys came and frames were drawn, to measure how fast the window is. Times are
-/// seconds since 1970.
+/// Logs when keys were pressed and frames were drawn, to measure how fast the window responds.
+/// Times are in seconds since 1970.
 ///
 ///     key TIME CODE
 ///     frame BEGIN END CURSOR SHOWN PATH    the cursor's block, the block whose stock is shown (-1:
 ///                                          none yet), points of the path
 class FrameLog {
 public:
-    /// Nothing is written where the path is empty.
+    /// Writes nothing if the path is empty.
     explicit FrameLog(const std::filesystem::path& path);
 
     void key(int code);
-    /// Before and after a frame was drawn.
+    /// To be called before and after a frame is drawn.
     void begin_frame();
     void end_frame(const ViewModel& model);
 
@@ -57,27 +57,26 @@ struct ImGuiIO;
 
 namespace app::viewer {
 
-/// Keys on their way to ImGui 1.86, which knows of each only whether it is down in a frame.
+/// A queue of key events for ImGui 1.86, which only sees whether a key is down during a frame.
 ///
-/// One that is pressed and released between two frames gets a frame for each; a modifier that goes
-/// up behind a key is down as long as that one is new.
+/// A key that is pressed and released between two frames gets one frame for each event. A modifier
+/// released after a key press still counts as down in the frame of that press.
 class KeyQueue {
 public:
-    /// A key by its code in GLFW.
+    /// Adds an event of a key with this GLFW code.
     void add(int code, bool is_down);
 
-    /// Tells ImGui what it can be told for the next frame; whether something is left for a later
-    /// one.
+    /// Passes ImGui the events for the next frame. True if some are left for later frames.
     bool feed(ImGuiIO& io);
 
 private:
     std::deque<std::pair<int, bool>> keys_;
 };
 
-/// What the window's own framebuffer shows. Needs its context to be current.
+/// The contents of the window's framebuffer. The context of the window must be current.
 render::Image screen_picture(int width, int height);
 
-/// A file of a folder that does not exist yet: feeler-0001.png and so on.
+/// The first unused file name in a folder: feeler-0001.png and so on.
 std::filesystem::path free_picture_name(const std::filesystem::path& folder);
 
 } // namespace app::viewer
@@ -93,10 +92,11 @@ static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
               && mod::shift == GLFW_MOD_SHIFT && mod::control == GLFW_MOD_CONTROL
               && mod::alt == GLFW_MOD_ALT);
 
-/// How often files are looked at, and how long the window sleeps at most, seconds.
+/// Interval between checks of the files, and longest sleep of the window, seconds.
 constexpr double watch_interval = 0.4;
 constexpr double frame_time = 1.0 / 60.0;
-/// What the view of a block mostly takes: after a step one frame is drawn and not two.
+/// Typical time to make the view of a block, seconds. After a step the window waits this long, to
+/// draw one frame instead of two.
 constexpr double answer_time = 0.015;
 
 struct Glfw {
@@ -113,7 +113,7 @@ struct Gui {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
-        io.KeyRepeatDelay = 1e9F; // the system does that
+        io.KeyRepeatDelay = 1e9F; // the operating system repeats keys
         io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
         ImGui_ImplGlfw_InitForOpenGL(window, true);
         ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -158,7 +158,7 @@ private:
     double wanted_scale() const;
 
     WindowJob job_;
-    std::optional<CheckJob> check_; // that is open
+    std::optional<CheckJob> check_; // the open job
     GLFWwindow* window_;
     Gui gui_;
     Layout layout_;
@@ -169,10 +169,10 @@ private:
     FrameLog log_;
     KeyQueue keys_;
     double last_watch_ = 0.0, last_frame_ = 0.0;
-    bool asked_ = false; // the worker has just been asked for something
-    int frames_ = 3;     // still to draw: ImGui needs some until all is where it belongs
+    bool asked_ = false; // a request has just been sent to the worker
+    int frames_ = 3;     // still to draw: ImGui needs several to settle the layout
     SessionWorker worker_;
-    DeviceWorker device_; // last: they end first
+    DeviceWorker device_; // last, so that the threads end before the other members
 };
 
 double Window::wanted_scale() const {
@@ -181,7 +181,7 @@ double Window::wanted_scale() const {
     int width = 1, height = 1, pixels = 1, rows = 1;
     glfwGetWindowSize(window_, &width, &height);
     glfwGetFramebufferSize(window_, &pixels, &rows);
-    // Where coordinates are not pixels the system scales by itself.
+    // If screen coordinates are not pixels, the system already scales the window.
     const double scaled = width > 0 ? static_cast<double>(pixels) / width : 1.0;
     return std::clamp(static_cast<double>(x) / std::max(scaled, 1.0), 0.5, 4.0)
            * model.settings.scale;
@@ -221,10 +221,10 @@ void Window::do_setup(const SetupRequest& request) {
         return worker_.save_setup(edited, request.save_path, request.may_replace, job_.write);
     check_ = edited;
     open_job();
-    say(model, "The program is checked with the set-up as it stands now", glfwGetTime());
+    say(model, "Checking again with the changed set-up", glfwGetTime());
 }
 
-/// The window goes on with the file: what is saved is what is shown.
+/// Continues with the saved set-up file, so that the window shows what was saved.
 void Window::work_with_saved() {
     const std::string path = model.saved->path;
     model.saved.reset();
@@ -249,7 +249,7 @@ void Window::press(int code, int modifiers) {
     damage();
     const auto command = command_of(code, modifiers);
     if (!command) return;
-    // The wish for text outlives its field by two frames.
+    // WantTextInput stays set for two frames after its field is gone.
     const bool is_typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
     const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
     const bool moves_text = code >= key::enter && code <= key::end;
@@ -293,7 +293,7 @@ void Window::update() {
         last_watch_ = now;
         if (files_.has_changed()) {
             open_job();
-            say(model, "The file has changed and is read again", now);
+            say(model, "A file has changed: reloading", now);
         }
         if (model.missing != files_.missing()) {
             model.missing = files_.missing();
@@ -371,7 +371,7 @@ Window& window_of(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
 }
 
-/// Whatever has happened, the window is drawn again.
+/// Redraws the window after any event.
 template <typename... What>
 void damage(GLFWwindow* window, What...) {
     if (glfwGetWindowUserPointer(window)) window_of(window).damage();
@@ -391,12 +391,12 @@ void listen(GLFWwindow* window) {
     glfwSetWindowFocusCallback(window, damage<int>);
 }
 
-/// In place of the one of ImGui's backend.
+/// Replaces the key callback of ImGui's backend.
 void listen_to_keys(GLFWwindow* window) {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int, int action, int modifiers) {
         if (!glfwGetWindowUserPointer(w)) return;
         window_of(w).damage();
-        // The system repeats keys, and takes fast presses for repeats.
+        // The system repeats keys, and reports fast presses as repeats.
         if (action == GLFW_REPEAT) window_of(w).type(code, false);
         window_of(w).type(code, action != GLFW_RELEASE);
         const int known = mod::shift | mod::control | mod::alt;
@@ -435,7 +435,7 @@ core::Result<void> run_window(const WindowJob& job) {
     const Settings settings = read_settings(job.settings_file);
     const OpenWindow window = make_window(settings);
     if (!window)
-        return core::fail(core::ErrorCode::unsupported, "there is no OpenGL 3.3 for a window here");
+        return core::fail(core::ErrorCode::unsupported, "OpenGL 3.3 is not available for a window");
     FEELER_TRY(render::Renderer renderer, render::Renderer::make());
     const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
     shown->model.settings = settings;
@@ -456,7 +456,7 @@ const char* words_of(DeviceAnswer answer) {
     case DeviceAnswer::unknown:
         return "no answer";
     case DeviceAnswer::nothing:
-        return "nothing to ask";
+        return "no motion";
     case DeviceAnswer::permitted:
         return "permitted";
     case DeviceAnswer::late:
@@ -464,7 +464,7 @@ const char* words_of(DeviceAnswer answer) {
     case DeviceAnswer::refused:
         return "refused";
     case DeviceAnswer::not_asked:
-        return "not asked";
+        return "not checked";
     }
     return "";
 }
@@ -482,14 +482,14 @@ std::string device_words(const ViewModel& model) {
 
 std::string window_title(const ViewModel& model) {
     if (model.failure || (model.is_recorded && !model.has_rows()))
-        return "This could not be opened - feeler";
+        return "Program could not be opened - feeler";
     if (!model.program) return "feeler";
     std::string title = std::filesystem::path(model.program->program).filename().string();
     if (model.has_rows())
         title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
                              model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
     title += device_words(model);
-    if (!model.missing.empty()) title += ", gone or empty";
+    if (!model.missing.empty()) title += ", file missing or empty";
     if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
     return title + " - feeler";
 }

@@ -20,7 +20,7 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     bool has_program = false, has_setup = false;
     for (const std::string& path : paths) {
         if (is_mesh_file(path)) {
-            say(model, "A mesh has its place in a set-up: mesh = \"" + path + "\"", now);
+            say(model, "Enter the mesh in a set-up: mesh = \"" + path + "\"", now);
         } else if (is_setup_file(path)) {
             check.setup = path;
             has_setup = true;
@@ -31,7 +31,7 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     }
     if (!has_program && !has_setup) return {};
     if (check.program.empty()) {
-        say(model, "Drop the program as well", now);
+        say(model, "Drop a program as well", now);
         return {};
     }
     if (has_program && !has_setup) check.setup.clear();
@@ -46,11 +46,11 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const SetupWriter& write,
                 double now) {
     if (path.empty() || !model.program) return;
-    std::error_code ignored; // the writing tells of it
+    std::error_code ignored; // writing the file reports it
     std::filesystem::create_directories(path.parent_path(), ignored);
     model.notes = merged(notes_in(read_text(path).value_or("")), model.notes, notes_key(model));
     const auto written = write(path, text_of(model.notes));
-    if (!written) say(model, "The note could not be kept: " + written.error().message, now);
+    if (!written) say(model, "The note could not be saved: " + written.error().message, now);
 }
 
 } // namespace app::viewer
