@@ -10,17 +10,17 @@ namespace core {
 namespace {
 
 constexpr double default_contact = 0.05; // for pairs that may touch
-constexpr double stock_distance = 1.0;   // of the holder and the machine from the stock
+constexpr double stock_distance = 1.0;   // from holder and machine bodies to the stock
 constexpr double fixture_distance = 2.0;
 
-/// What a rule may call a body: by its own name, or by its kind.
+/// Names of a body in allowance rules: its own name and its kind.
 struct Names {
     std::string own, kind;
 
     bool include(const std::string& name) const { return name == own || name == kind; }
 };
 
-/// The last rule that names the pair wins.
+/// The allowance of the last rule that names the pair.
 std::optional<Allowance> ruled(const Setup& setup, const Names& part, const Names& body) {
     std::optional<Allowance> found;
     for (const AllowanceRule& rule : setup.allowances) {
@@ -90,7 +90,7 @@ Verdict judge_contact(const Allowance& allowance, double shrunk_lower, double sh
 double contact_depth(const Allowance& allowance) { return std::max(allowance.contact, resolution); }
 
 double contact_shrink(const Allowance& allowance, const RevolvedProfile& part) {
-    constexpr double least = 0.005; // mm: the errors of paths and chords are below
+    constexpr double least = 0.005; // mm; more than the errors of paths and chords
     const double depth = contact_depth(allowance);
     const double widest = bounds(part).max.x;
     double shrink = depth;
@@ -104,7 +104,7 @@ double contact_shrink(const Allowance& allowance, const RevolvedProfile& part) {
 }
 
 void merge(PairClearance& known, const PairClearance& later) {
-    // What only touched before and collides now is seen at the collision.
+    // If the pair only touched before and collides now, report the collision.
     const bool is_worse = later.verdict > known.verdict && later.upper == known.upper;
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);

@@ -19,38 +19,37 @@ enum class Severity : uint8_t { off, note, warning, error };
 
 const char* name_of(Severity severity);
 
-/// Something a person should know about a block.
+/// A fact about a block that a person should know.
 struct Finding {
-    std::string rule; // stable name, as in `near-miss`
+    std::string rule; // stable id, such as `near-miss`
     Severity severity = Severity::warning;
     std::optional<BlockIndex> block;   // empty: the program as a whole
-    std::string message;               // one or two sentences as a machinist would say them
-    std::string cure;                  // what would make it go away; may be empty
-    std::array<std::string, 2> pair{}; // the part and the body it is about; empty if about none
-    double shortfall = 0.0;            // how much is missing of what must be kept, mm
+    std::string message;               // one or two sentences, in a machinist's words
+    std::string cure;                  // what removes it; may be empty
+    std::array<std::string, 2> pair{}; // the two bodies concerned; empty if there are none
+    double shortfall = 0.0;            // minimum clearance minus clearance, mm
 };
 
-/// What the set-up says about rules by name, in place of their own severity.
+/// Severities from the set-up, by rule name. They override the defaults.
 using RuleSeverities = std::map<std::string, Severity>;
 
-/// The severity that a rule has unless the set-up changes it; empty if no rule has that name.
+/// Default severity of a rule; empty if there is no such rule.
 std::optional<Severity> default_severity(const std::string& rule);
 
-/// The severity of a rule in this set-up.
+/// Severity of a rule in this set-up.
 Severity severity_of(const Setup& setup, const std::string& rule);
 
-/// Gives a finding whose rule has left that open its severity in this set-up. A note stays one
-/// unless the set-up names its rule.
+/// Sets the severity of a finding to that of its rule in this set-up. A note stays a note unless
+/// the set-up names its rule.
 void settle_severity(const Setup& setup, Finding& finding);
 
-/// The rule whose name takes the fewest letters changed, put in or left out to make it from this
-/// one.
+/// The rule name with the smallest edit distance from `name`.
 std::string nearest_rule(const std::string& name);
 
-/// A kind of finding: one row of the table of rules. SARIF, HTML and the manual show its texts.
+/// A kind of finding: one entry in the table of rules. SARIF, HTML and the manual show its texts.
 struct RuleEntry {
     std::string_view name; // stable id; set-ups and comments in programs refer to it
-    Severity severity;     // unless the set-up says otherwise
+    Severity severity;     // unless the set-up overrides it
     std::string_view meaning;
     std::string_view cure;
 };
@@ -58,7 +57,7 @@ struct RuleEntry {
 /// All rules.
 std::span<const RuleEntry> rule_table();
 
-/// The rule of that name; null if there is none.
+/// The rule with this name; null if there is none.
 const RuleEntry* find_rule(std::string_view name);
 
 /// The names of all rules.

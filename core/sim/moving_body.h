@@ -11,38 +11,39 @@ namespace core {
 struct Fixture;
 struct Setup;
 
-/// A body of the tool's side as it is checked against the work: a part of the tool, or a body of
-/// the machine that the table does not carry.
+/// A body on the spindle side that is checked against the work: a part of the tool, or a machine
+/// body that the table does not carry.
 struct MovingBody {
     PartKind kind = PartKind::flutes;
-    size_t carried = 0;                       // index of the machine's body
-    const RevolvedProfile* profile = nullptr; // of a part of the tool
-    const ExactBody* body = nullptr;          // of the machine
+    size_t carried = 0;                       // index of the machine body
+    const RevolvedProfile* profile = nullptr; // set for parts of the tool
+    const ExactBody* body = nullptr;          // set for machine bodies
     Mover mover;
 };
 
-/// All of them; parts of the tool come first, from the flutes up. Refers to the set-up and the
-/// tool.
+/// All moving bodies; first the parts of the tool, from the flutes up. The result refers to the
+/// set-up and the tool.
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
 
-/// Whether two bodies are never compared: fixed to each other, or parts of the machine that are
-/// neighbours.
+/// Whether two bodies are never checked against each other: they are fixed to each other, or are
+/// machine bodies on neighbouring links.
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture);
 
-/// A box that holds the body wherever it really is over a leg; infinite where its error is.
+/// A box that contains the body at all its real positions over a leg; infinite if the leg's error
+/// is infinite.
 Aabb bounds(const MovingBody& body, const RelativeLeg& leg);
 
-/// Convex shapes whose union is the profile, as they pass over a leg.
+/// Convex shapes, swept along a leg, whose union is the swept profile.
 std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const RelativeLeg& leg);
 
-/// Convex shapes that hold the surface of a machine's body, as they pass over a leg.
+/// Convex shapes, swept along a leg, that contain the swept surface of a machine body.
 std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg);
 
-/// How far the body is from a fixture over a leg, the leg's error not counted.
+/// Distance from the body to a fixture over a leg, without the leg's error, mm.
 Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,
                          double limit, size_t& shape_tests);
 
-/// The same for a profile in the body's place.
+/// Distance for a profile instead of the body.
 Separation distance_over(const RelativeLeg& leg, const RevolvedProfile& profile,
                          const ExactBody& fixture, double limit, size_t& shape_tests);
 

@@ -15,7 +15,7 @@
 namespace core {
 namespace {
 
-/// More samples of the part than this are not taken; they stand farther apart then.
+/// Maximum number of samples on the part; a larger part is sampled more coarsely.
 constexpr double most_samples = 4e6;
 
 struct Worst {
@@ -70,19 +70,19 @@ private:
     const StockMesh& surface_;
     const Part& part_;
     SolidMesh stock_solid_;
-    std::array<std::vector<Worst>, 2> worst_; // of each sample of the stock, by kind
+    std::array<std::vector<Worst>, 2> worst_; // for each sample of the stock, by kind
     PartComparison result_;
 
     std::optional<uint32_t> block_of(size_t sweep) const;
 };
 
-/// The block of this program that made a move.
+/// The block that made a cut; empty if it belongs to an earlier program.
 std::optional<uint32_t> Comparison::block_of(size_t sweep) const {
     const uint32_t block = stock_.log.block(sweep);
     return block == earlier_block ? std::nullopt : std::optional(block);
 }
 
-/// Nothing is left to measure to: all of the part is missing.
+/// No stock is left to measure to: the whole part is missing.
 void Comparison::add_whole_part() {
     const Aabb box = part_.solid.mesh->bounds();
     DeviationRegion region;
@@ -112,8 +112,9 @@ double longest_side(const Triangle& t) {
     return std::max({glm::distance(t.a, t.b), glm::distance(t.b, t.c), glm::distance(t.c, t.a)});
 }
 
-/// About a mesh size, unless that makes too many samples: a triangle is halved into at most eight
-/// times its area over the square of the spacing, and as often as its longest side asks.
+/// About a mesh size, or more if that makes too many samples. Halving divides a triangle into at
+/// most eight times its area over the square of the spacing, plus a number proportional to its
+/// longest side.
 double Comparison::spacing_of_samples() const {
     const double h = stock_.lines.grid.spacing;
     double count = 0.0;
@@ -136,8 +137,8 @@ void Comparison::measure_part() {
     }
 }
 
-/// Halves the triangle across its longest side until that is no longer than `spacing`: all corners
-/// of what is left are measured.
+/// Halves the triangle across its longest side until that is at most `spacing`, and measures at all
+/// corners of the pieces.
 void Comparison::measure_within(const Triangle& whole, double spacing, SurfaceTracker& tracker) {
     std::vector<Triangle> open = {whole};
     while (!open.empty()) {
@@ -164,12 +165,12 @@ void Comparison::measure_part_at(const Vec3& place, SurfaceTracker& tracker) {
     ++result_.samples;
     const NearestSurface nearest = tracker.at(place);
     if (nearest.distance <= part_.tolerance || holds(stock_solid_, place)) return;
-    // The mesh of the stock is off its true surface between the lines; the cuts themselves are not.
+    // Between scan lines the mesh of the stock deviates from the true surface; the cuts are exact.
     if (has_matter_near(place)) return;
     worst(Deviation::gouge)[nearest.triangle / 2].offer(nearest.distance, place);
 }
 
-/// Whether matter is found within the tolerance of a place, on nine lines along Z round it.
+/// Whether there is material within the tolerance of a point, on nine lines along Z around it.
 bool Comparison::has_matter_near(const Vec3& place) const {
     const ScanGrid& grid = stock_.lines.grid;
     const auto cell = [&](const Vec3& at, int axis) {
@@ -196,7 +197,7 @@ double Comparison::area(size_t sample) const {
     return sum;
 }
 
-/// Samples that are off by more than the tolerance belong together if their triangles share
+/// Samples that deviate by more than the tolerance are in the same region if their triangles share
 /// corners.
 void Comparison::add_regions(Deviation kind) {
     UnionFind groups(surface_.mesh.vertices.size());
@@ -220,8 +221,8 @@ void Comparison::add_regions(Deviation kind) {
         region.amount = worst(kind)[k].amount;
         region.place = worst(kind)[k].place;
     }
-    // Of places that are about as bad, one that was cut says more than raw stock, and the last cut
-    // more than those before.
+    // Of points with about the same deviation, a cut one is more informative than raw stock, and a
+    // later cut more than an earlier one.
     std::map<uint32_t, uint32_t> sweeps;
     for (size_t k = 0; k < surface_.samples.size(); ++k) {
         const auto& sweep = surface_.samples[k].sweep;

@@ -19,51 +19,52 @@ namespace core {
 
 struct CutterSweep;
 
-/// Something that holds the work, or a body of the machine on the work's side.
+/// A body that holds the work, or a machine body on the table side.
 struct Fixture {
     std::string name;
     ExactBody body;
-    bool expendable = false; // flutes that feed may cut it
-    Mount mount = {};        // where its frame stands
-    bool is_there = true;    // at the first block
+    bool expendable = false; // flutes may cut it in a feed move
+    Mount mount = {};        // its link and its frame in that link
+    bool is_there = true;    // at the start of the program
     bool is_machine = false;
 };
 
-/// What may differ from the part where nothing is said, mm.
+/// Default tolerance of the comparison with the part, mm.
 constexpr double default_part_tolerance = 0.1;
 
-/// What is to be made. Frame: that of the stock.
+/// The design shape of the finished workpiece. Frame: that of the stock.
 struct Part {
     SolidMesh solid;
     double tolerance = default_part_tolerance; // mm, either way
 };
 
-/// What a pair of bodies must keep, as the set-up says it. A name is a body's, or one of: flutes
-/// shank holder nose stock fixture machine.
+/// Minimum clearance of a pair of bodies, from the set-up. A name is that of a body or one of:
+/// flutes shank holder nose stock fixture machine.
 struct AllowanceRule {
     std::array<std::string, 2> between;
     double distance = 0.0;
     double contact = 0.0;
 };
 
-/// When somebody moves a fixture: before a line of the main program is run, or when an M code is.
+/// Adding, removing or replacing a fixture: before a line of the main program runs, or at an M
+/// code.
 struct FixtureMove {
     std::optional<uint32_t> line;
     std::optional<int> code;  // of the M word
-    size_t from = 0;          // the fixture that goes
-    std::optional<size_t> to; // the one that takes its place; empty: it is taken away
+    size_t from = 0;          // index of the fixture that is removed
+    std::optional<size_t> to; // the fixture that replaces it; empty: none does
 };
 
-/// Everything that does not change while a program runs. mm.
+/// Everything that stays the same while a program runs. mm.
 struct Setup {
     double mesh_size = 0.5;
-    std::optional<double> allowance; // replaces the default against fixtures and of the holder
+    std::optional<double> allowance; // overrides the defaults for fixtures and holder
     std::vector<AllowanceRule> allowances;
     Machine machine;
-    Mount stock_mount;                                            // where the stock's frame stands
-    Solid stock;                                                  // in that frame
-    std::shared_ptr<const std::vector<CutterSweep>> earlier_cuts; // of programs before, in order
-    std::optional<Part> part;                                     // what is to be made
+    Mount stock_mount; // link of the stock and its frame in that link
+    Solid stock;       // in the stock's frame
+    std::shared_ptr<const std::vector<CutterSweep>> earlier_cuts; // of earlier programs, in order
+    std::optional<Part> part;                                     // the design shape
     std::vector<Fixture> fixtures;
     std::vector<FixtureMove> fixture_moves;
     std::map<ToolNumber, ToolAssembly> tools;
@@ -71,8 +72,8 @@ struct Setup {
     SpindleDirection spindle_at_start = SpindleDirection::stopped;
     RuleSeverities rules;
     Detail detail = Detail::every_pair;
-    double search_limit = 50.0;                 // nobody asks beyond it
-    double memory_limit = default_memory_limit; // bytes that the stock's model may take
+    double search_limit = 50.0;                 // clearances beyond it are not measured
+    double memory_limit = default_memory_limit; // bytes, of the stock's model
 };
 
 } // namespace core

@@ -14,12 +14,13 @@ constexpr double right_angle = 0.5 * std::numbers::pi;
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-/// The round edge of a tool: a ball of radius `corner` about a circle of radius `disc`.
+/// The rounded edge of a tool: a torus of a ball of radius `corner` around a circle of radius
+/// `disc`.
 struct Rounding {
     double disc = 0.0;
     double corner = 0.0;
 
-    /// Where it is at an angle from straight down, as z and r.
+    /// Point of the edge at an angle from straight down, as z and r.
     ProfileElement at(double angle) const {
         const double r = disc + corner * std::sin(angle), z = corner * (1.0 - std::cos(angle));
         return {z, r, z, r, 0.0};
@@ -27,7 +28,7 @@ struct Rounding {
     ProfileElement whole() const { return {corner, disc, corner, disc, corner}; }
 };
 
-/// The rounding between two angles as cones, none of them outside it.
+/// Approximates the rounding between two angles by cones, none of them outside it.
 void add_cones(RevolvedProfile& profile, const Rounding& round, double from, double to) {
     const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / round.corner));
     const int cones = std::max(4, static_cast<int>(std::ceil((to - from) / step)));
@@ -43,8 +44,8 @@ void add_cones(RevolvedProfile& profile, const Rounding& round, double from, dou
     }
 }
 
-/// The rounding from the tip up to an angle. Its upper half is within the tool if that is high
-/// enough; a ball and a disc are then exact.
+/// Adds the rounding from the tip up to an angle. If the flutes are high enough, its upper half is
+/// inside the tool, so the whole torus can be used, which is exact.
 void add_tip(RevolvedProfile& profile, const Rounding& round, double to, double height) {
     if (height >= 2.0 * round.corner)
         profile.elements.push_back(round.whole());
@@ -54,7 +55,7 @@ void add_tip(RevolvedProfile& profile, const Rounding& round, double to, double 
 
 ProfileElement upright(double z0, double z1, double r) { return {z0, r, z1, r, 0.0}; }
 
-/// Flutes up to their length, and nothing above.
+/// A head that consists of flutes only.
 ToolHead plain(const ToolDescription& tool, RevolvedProfile flutes) {
     const ProfileElement& last = flutes.elements.back();
     const double top = 2.0 * (last.r1 + last.margin);
@@ -81,7 +82,7 @@ Result<ToolHead> ball(const ToolDescription& tool) {
     const double r = 0.5 * tool.diameter;
     if (tool.corner_radius && std::abs(*tool.corner_radius - r) > 0.001)
         return tool_error(tool, fmt::format("corner_radius of a ball is half its diameter, {:g} "
-                                            "mm, not {:g}; leave it out or make it a bull",
+                                            "mm, not {:g}; omit it, or use shape \"bull\"",
                                             r, *tool.corner_radius));
     if (tool.flute_length < r)
         return tool_error(tool, fmt::format("flute_length {:g} is shorter than the ball's radius "
@@ -101,8 +102,8 @@ Result<ToolHead> bull(const ToolDescription& tool) {
     return rounded(tool, corner);
 }
 
-/// A point or flank from the tip out to the full radius, then upright. A rounding of the tip
-/// meets the flank as a tangent.
+/// A point or flank from the tip out to the full radius, then a cylinder. A corner radius at the
+/// tip is tangent to the flank.
 Result<ToolHead> coned(const ToolDescription& tool, double tip, double from_axis) {
     const double r = 0.5 * tool.diameter, steep = std::tan(from_axis);
     const double corner = tool.corner_radius.value_or(0.0);
@@ -117,7 +118,7 @@ Result<ToolHead> coned(const ToolDescription& tool, double tip, double from_axis
     RevolvedProfile flutes;
     if (corner > 0.0) add_tip(flutes, round, angle, tool.flute_length);
     const double height = z0 + (r - r0) / steep;
-    // A flank longer than the flutes ends with them, before it reaches the full diameter.
+    // A flank higher than the flutes ends with them, below the full diameter.
     const double end = std::min(height, tool.flute_length);
     const double r_end = height >= tool.flute_length ? r0 + (end - z0) * steep : r;
     flutes.elements.push_back({z0, r0, end, r_end, 0.0});
@@ -158,9 +159,8 @@ Result<ToolHead> tslot(const ToolDescription& tool) {
     const double corner = tool.corner_radius.value_or(0.0);
     if (corner == 0.0) return flat(tool);
     if (!(corner > 0.0 && corner < r && 2.0 * corner <= height))
-        return tool_error(tool, fmt::format("corner_radius {:g} does not fit twice into "
-                                            "flute_length {:g}, and once into half the diameter "
-                                            "{:g}",
+        return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
+                                            "flute_length {:g} and below half the diameter, {:g}",
                                             corner, height, r));
     const double inner = r - corner;
     RevolvedProfile flutes{{{corner, inner, corner, inner, corner}}};
@@ -179,8 +179,8 @@ Result<ToolHead> dovetail(const ToolDescription& tool) {
     const double corner = tool.corner_radius.value_or(0.0),
                  steep = std::tan(radians(*tool.angle_deg));
     if (!(corner >= 0.0 && corner < r && 2.0 * corner <= height))
-        return tool_error(tool, fmt::format("corner_radius {:g} does not fit twice into "
-                                            "flute_length {:g}",
+        return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
+                                            "flute_length {:g} and below half the diameter",
                                             corner, height));
     const Rounding round{r - corner, corner};
     const ProfileElement flank = round.at(right_angle + radians(*tool.angle_deg));
@@ -224,8 +224,8 @@ Result<ToolHead> lollipop(const ToolDescription& tool) {
     return head;
 }
 
-/// One row of teeth of a thread mill from `z` up: the basic profile of its thread, whose crest is
-/// an eighth and whose root a quarter of the pitch wide.
+/// Adds a tooth row of a thread mill from `z` up: the basic profile of its thread, with a crest of
+/// 1/8 of the pitch and a root of 1/4.
 void add_row(RevolvedProfile& flutes, double z, double pitch, double crest, double root) {
     const double flank = 0.3125 * pitch, half_root = 0.125 * pitch, flat = 0.125 * pitch;
     flutes.elements.push_back(upright(z, z + half_root, root));
@@ -246,7 +246,7 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
                                             pitch, tool.flute_length));
     if (!(angle > 0.0 && angle < 180.0))
         return tool_error(tool, "thread_deg must lie between 0 and 180");
-    constexpr double whole = 1.0 + 1e-9; // ten rows of 0.1 are ten
+    constexpr double whole = 1.0 + 1e-9; // so that 1.0 / 0.1 gives ten rows despite rounding
     const int most = static_cast<int>(tool.flute_length / pitch * whole);
     const int rows = tool.teeth.value_or(most);
     constexpr int too_many = 200;
@@ -265,7 +265,7 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
     return ToolHead{std::move(flutes), {}, tool.flute_length, 2.0 * root};
 }
 
-/// A piece of an outline goes to the flutes as far as they reach, the rest to what is behind.
+/// Adds a piece of an outline: up to `flutes_end` to the flutes, the rest to the part above them.
 void add_piece(ToolHead& head, const ProfileElement& piece, double flutes_end) {
     if (piece.z0 >= flutes_end) return head.behind.elements.push_back(piece);
     if (piece.z1 <= flutes_end) return head.flutes.elements.push_back(piece);
@@ -292,11 +292,11 @@ Result<ToolHead> outlined(const ToolDescription& tool) {
             return tool_error(tool, "profile points need a finite z and an r that is not negative");
         if (i == 0) continue;
         const auto [r_below, z_below] = tool.outline[i - 1];
-        if (z < z_below) return tool_error(tool, "profile must go from the tip up");
+        if (z < z_below) return tool_error(tool, "profile points must be in order from the tip up");
         if (z > z_below && (r > 0.0 || r_below > 0.0))
             add_piece(head, {z_below, r_below, z, r, 0.0}, flutes_end);
     }
-    if (head.flutes.empty()) return tool_error(tool, "profile encloses nothing");
+    if (head.flutes.empty()) return tool_error(tool, "profile encloses no volume");
     return head;
 }
 
@@ -327,7 +327,7 @@ Result<ToolHead> shaped(const ToolDescription& tool) {
     return tool.corner_radius ? bull(tool) : flat(tool);
 }
 
-/// The neck stands on the head; it is part of the shank, which is what does not cut.
+/// Adds the neck on top of the head. It does not cut, so it is part of the shank.
 Result<void> add_neck(const ToolDescription& tool, ToolHead& head) {
     if (!tool.neck_diameter) {
         if (tool.neck_length) return tool_error(tool, "neck_length needs neck_diameter");
@@ -361,13 +361,13 @@ Result<ToolHead> tool_head(const ToolDescription& tool) {
 
 namespace {
 
-constexpr double same_length = 0.001; // mm; catalogues round
+constexpr double same_length = 0.001; // mm; catalogue values are rounded
 
 bool is_size(double value) { return std::isfinite(value) && value > 0.0; }
 
 bool differ(double a, double b) { return std::abs(a - b) > same_length; }
 
-/// Stacks cones upwards from `z`, which is left at their top.
+/// Stacks cones upwards from `z` and sets `z` to their top.
 Result<RevolvedProfile> stack(const ToolDescription& tool, const std::vector<ConeStep>& steps,
                               const char* key, double& z) {
     RevolvedProfile profile;
@@ -390,14 +390,14 @@ double height(const std::vector<ConeStep>& steps) {
     return sum;
 }
 
-/// The tip's distance from the holder's face, if anything says it besides the shank itself.
+/// Distance from the tip to the holder's lower face, if it is given independently of the shank.
 std::optional<double> stated_stick_out(const ToolDescription& tool) {
     if (tool.stick_out) return tool.stick_out;
     if (tool.gauge_length && !tool.holder.empty()) return *tool.gauge_length - height(tool.holder);
     return std::nullopt;
 }
 
-/// The cylinder between the head and the holder's face when no shank is described.
+/// The cylinder between the head and the holder's lower face if no shank is described.
 Result<std::vector<ConeStep>> filling_shank(const ToolDescription& tool, const ToolHead& head) {
     const auto stick_out = stated_stick_out(tool);
     if (!stick_out || !differ(*stick_out, head.length)) return std::vector<ConeStep>{};
@@ -413,7 +413,7 @@ Result<std::vector<ConeStep>> filling_shank(const ToolDescription& tool, const T
     return std::vector<ConeStep>{{diameter, diameter, *stick_out - head.length}};
 }
 
-/// Compares what is said twice.
+/// Checks lengths that are given in two ways.
 Result<void> check_lengths(const ToolDescription& tool, double to_holder, double to_gauge_line) {
     if (tool.stick_out && differ(*tool.stick_out, to_holder))
         return tool_error(tool, fmt::format("stick_out is {:g} mm, but flutes, neck and shank are "
@@ -431,18 +431,18 @@ Result<void> check_lengths(const ToolDescription& tool, double to_holder, double
     return {};
 }
 
-/// Whether the tool is made to cut under an edge with the upper face of its head, or beside it.
+/// Whether the tool is made to cut undercuts with the upper face or the side of its head.
 bool cuts_undercuts(ToolShape shape) {
     return shape == ToolShape::tslot || shape == ToolShape::dovetail
            || shape == ToolShape::threadmill;
 }
 
-/// Lets the flutes reach a little into the slender part above them. A contact is told from a crash
-/// by a head that is made smaller, and what shows that its upper face is free and comes down with
-/// it is the narrower piece above.
+/// Extends the flutes a little into the slender part above them. Shrinking the head, which
+/// distinguishes contact from collision, lowers the upward faces of steps but not the top face; the
+/// stub turns the top face into a step.
 void bare_upper_face(const ToolDescription& tool, const RevolvedProfile& above,
                      RevolvedProfile& flutes) {
-    constexpr double stub = 0.2; // mm; more than twice of what a head is shrunk by
+    constexpr double stub = 0.2; // mm; more than twice the amount by which a head is shrunk
     const ProfileElement& top = flutes.elements.back();
     const double usual = tool.neck_diameter.value_or(0.5 * tool.diameter);
     const double r = above.empty() ? 0.5 * usual : above.elements.front().r0;
@@ -450,9 +450,9 @@ void bare_upper_face(const ToolDescription& tool, const RevolvedProfile& above,
     if (r > 0.0 && r < top.r1) flutes.elements.push_back({z, r, z + stub, r, 0.0});
 }
 
-/// Lets the flutes reach past their end by less than any length of theirs is known. A cut exactly
-/// as deep as they are long would leave a skin at the top of the outer model, thinner than rounding
-/// or the error of an arc, that a shank then seems to meet.
+/// Extends the flutes past their end by less than the accuracy of their length. Otherwise a cut
+/// exactly as deep as the flutes are long would leave a skin at the top of the outer model, thinner
+/// than rounding or the error of an arc, and the shank would seem to meet it.
 void reach_past_end(RevolvedProfile& flutes) {
     constexpr double past = 0.005; // mm
     ProfileElement& last = flutes.elements.back();

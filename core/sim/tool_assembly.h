@@ -12,23 +12,22 @@ namespace core {
 /// The end of a tool that its shape describes. Frame: the tip is the origin, the axis is Z.
 struct ToolHead {
     RevolvedProfile flutes;
-    RevolvedProfile behind;    // what the shape has above the flutes and does not cut
-    double length = 0.0;       // from the tip to where the shank begins, mm
-    double top_diameter = 0.0; // there
+    RevolvedProfile behind;    // non-cutting part of the shape above the flutes
+    double length = 0.0;       // from the tip to the lower end of the shank, mm
+    double top_diameter = 0.0; // at that height, mm
 };
 
-/// How far a rounding that had to be made of cones stands off the round, mm.
+/// Largest distance between a rounded edge and the cones that approximate it, mm.
 constexpr double rounding_sag = 0.0025;
 
-/// The head of a tool from its sizes: a surface of revolution, exact but for roundings that the end
-/// of the flutes divides, which are cones.
+/// The head of a tool from its dimensions: a surface of revolution. It is exact, except that a
+/// rounding that the end of the flutes divides is approximated by cones.
 ///
-/// Errors: invalid_value, naming the tool and the key, when the sizes make no such tool or a size
-///         means nothing for the shape.
+/// Errors: invalid_value, naming the tool and the key, if the dimensions are not those of a
+///         possible tool or one does not apply to the shape.
 Result<ToolHead> tool_head(const ToolDescription& tool);
 
-/// What moves on the tool's side: parts of the tool, the spindle's nose, and the rest of the
-/// machine.
+/// Bodies on the spindle side: parts of the tool, the spindle nose, other machine bodies.
 enum class PartKind : uint8_t { flutes, shank, holder, nose, machine };
 
 const char* name_of(PartKind kind);
@@ -39,18 +38,19 @@ struct ToolPart {
     RevolvedProfile profile;
 };
 
-/// A tool as it stands in the spindle.
+/// A tool as mounted in the spindle.
 struct ToolAssembly {
     ToolDescription description;
-    std::vector<ToolPart> parts; // those that exist, from the flutes up
-    double length = 0.0; // gauge length: tip to gauge line, mm; as stated if it was touched off
+    std::vector<ToolPart> parts; // existing parts, from the flutes up
+    double length = 0.0;         // gauge length, mm; if touched off, the length in the control
 };
 
-/// The solid parts of a tool. A neck is part of the shank. A shank that is not described fills the
-/// stick-out; a holder that is not described leaves nothing but the gauge length.
+/// Makes the bodies of a tool. A neck is part of the shank. If no shank is described, a cylinder
+/// reaches up to the stick-out; if no holder is described, there is none, and only the gauge length
+/// is used.
 ///
-/// Errors: invalid_value, naming the tool and the key, when the sizes make no tool or contradict
-///         each other by more than 0.001 mm.
+/// Errors: invalid_value, naming the tool and the key, if the dimensions are not those of a
+///         possible tool or contradict each other by more than 0.001 mm.
 Result<ToolAssembly> assemble(const ToolDescription& description);
 
 } // namespace core

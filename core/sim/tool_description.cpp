@@ -96,9 +96,9 @@ tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string&
 
 namespace {
 
-constexpr double longest_length = 2000.0; // mm; more is a typing error
+constexpr double longest_length = 2000.0; // mm; more is taken for a typing error
 
-/// An error if the tool states a size that its shape does not have.
+/// Fails if the tool has a dimension that does not apply to its shape.
 Result<void> check_shape_keys(const ToolDescription& tool) {
     const auto refused = [&](const char* key) {
         return tool_error(
@@ -118,7 +118,7 @@ Result<void> check_length(const ToolDescription& tool, const ToolSize& size, dou
     if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && !size.zero.contains(tool.shape)))
         return tool_error(tool, fmt::format("{} must be above 0", size.key));
     if (value > longest_length)
-        return tool_error(tool, fmt::format("{} = {:g} mm is larger than any tool ({:g} mm)",
+        return tool_error(tool, fmt::format("{} = {:g} mm is implausible: the maximum is {:g} mm",
                                             size.key, value, longest_length));
     return {};
 }

@@ -29,57 +29,57 @@ enum class ToolShape : uint8_t {
     profile
 };
 
-/// A row of the table of tool shapes.
+/// An entry in the table of tool shapes.
 struct ToolShapeEntry {
     ToolShape shape;
     const char* name;        // `shape` in a set-up
     const char* description; // "a T-slot cutter", for messages
 };
 
-/// Every shape, in the order of the enumeration.
+/// All shapes, in the order of the enumeration.
 std::span<const ToolShapeEntry> tool_shapes();
 
-/// The name of a shape in a set-up: tslot.
+/// Name of a shape in a set-up, such as `tslot`.
 const char* name_of(ToolShape shape);
 
-/// A shape in a sentence: a T-slot cutter.
+/// Name of a shape in a sentence, such as "a T-slot cutter".
 const char* description_of(ToolShape shape);
 
-/// The shape of a name; empty if there is none.
+/// Shape with this set-up name; empty if there is none.
 std::optional<ToolShape> tool_shape_named(const std::string& name);
 
-/// A truncated cone of a shank or holder, stacked on the one below.
+/// A truncated cone of a shank or holder, on top of the previous one.
 struct ConeStep {
     double lower_diameter = 0.0;
     double upper_diameter = 0.0;
     double length = 0.0;
 };
 
-/// What is known about a tool, as written in a set-up. mm; angles in degrees as in tool catalogues.
+/// A tool as described in a set-up. mm; angles in degrees, as in tool catalogues.
 struct ToolDescription {
     ToolNumber number{};
     std::string name;
     ToolShape shape = ToolShape::flat;
     double diameter = 0.0;
     double flute_length = 0.0;
-    std::optional<double> corner_radius;        // bull, taper, chamfer, tslot, dovetail
-    std::optional<double> point_deg;            // drill: full angle of the point, 118 if absent
-    std::optional<double> angle_deg;            // taper, chamfer, dovetail: flank from the axis
-    double tip_diameter = 0.0;                  // taper, chamfer: where the corner's rounding ends
+    std::optional<double> corner_radius; // bull, taper, chamfer, tslot, dovetail
+    std::optional<double> point_deg;     // drill: included point angle, 118 if absent
+    std::optional<double> angle_deg;     // taper, chamfer, dovetail: angle between flank and axis
+    double tip_diameter = 0.0;           // taper, chamfer: at the end of the corner radius
     std::vector<std::array<double, 2>> outline; // profile: r, z from the tip up
-    std::optional<double> neck_diameter;        // all but profile: what is slender above the flutes
+    std::optional<double> neck_diameter;        // all but profile: relief above the flutes
     std::optional<double> neck_length;
     std::optional<double> pitch;      // threadmill
-    std::optional<int> teeth;         // threadmill: rows of teeth; as many as fit if absent
-    std::optional<double> thread_deg; // threadmill: full angle of the thread, 60 if absent
+    std::optional<int> teeth;         // threadmill: number of tooth rows; as many as fit if absent
+    std::optional<double> thread_deg; // threadmill: included thread angle, 60 if absent
     std::vector<ConeStep> shank, holder;
-    std::optional<double> shank_diameter; // of the cylinder that fills a stick-out
-    std::optional<double> stick_out;      // tip to the holder's face
+    std::optional<double> shank_diameter; // of the cylinder up to the holder if no shank is given
+    std::optional<double> stick_out;      // tip to the holder's lower face
     std::optional<double> gauge_length;   // tip to the gauge line
-    std::optional<double> touched_off;    // what the control takes its length for, and rightly so
+    std::optional<double> touched_off; // length in the control; correct, the tool was touched off
     SpindleDirection cuts = SpindleDirection::clockwise;
     bool cuts_at_centre = true;
-    double centre_radius = 0.0; // up to here it does not cut when it goes straight down
+    double centre_radius = 0.0; // it does not cut within this radius when it plunges
 };
 
 /// A set of shapes.
@@ -94,7 +94,7 @@ struct ShapeSet {
     }
 };
 
-/// A size of a tool: its key in a set-up, its name in a dialog, and the shapes that have it.
+/// A dimension of a tool: its key in a set-up, its label in a dialog, and the shapes that have it.
 struct ToolSize {
     using Member =
         std::variant<double ToolDescription::*, std::optional<double> ToolDescription::*>;
@@ -105,22 +105,23 @@ struct ToolSize {
     const char* unit; // mm or deg
     Member member;
     Group group;
-    ShapeSet shapes;    // in which a set-up may state it
-    ShapeSet shown;     // in which a dialog offers it
-    ShapeSet zero = {}; // in which 0 is allowed and means that there is none
+    ShapeSet shapes;    // whose set-up entry may have this key
+    ShapeSet shown;     // for which a dialog shows it
+    ShapeSet zero = {}; // for which 0 is allowed and means "none"
 
-    /// Empty where it is not stated.
+    /// The value; empty if it is not given.
     std::optional<double> of(const ToolDescription& tool) const;
     void put(ToolDescription& tool, std::optional<double> value) const;
 };
 
-/// Every size that is a number, in the order in which a set-up file is written.
+/// All numeric dimensions, in the order in which they are written to a set-up file.
 std::span<const ToolSize> tool_sizes();
 
-/// An error that names the tool.
+/// An error whose message names the tool.
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why);
 
-/// Checks each size by itself: a tool of this shape must have it, and it must be in range.
+/// Checks each dimension by itself: it must apply to the shape, required ones must be given, and
+/// its value must be in range.
 ///
 /// Errors: invalid_value, naming the tool and the key.
 Result<void> check_keys(const ToolDescription& tool);

@@ -10,14 +10,14 @@ namespace {
 
 double units_in_one(int digits) { return std::pow(10.0, digits); }
 
-/// What counts as none, in units of the last digit.
+/// Difference that is ignored, in units of the last digit.
 double nothing(int digits) { return std::min(5e-4, 0.5 * resolution * units_in_one(digits)); }
 
 std::string text_of(double units, int digits) {
     return fmt::format("{:.{}f}", units / units_in_one(digits), digits);
 }
 
-/// One number says both where they differ by no more than what is printed.
+/// Whether the bounds differ by at most one unit of the last digit, so that one number is enough.
 bool are_one(double low, double high, int digits) {
     return units_above(high, digits) - units_below(low, digits) <= 1.0;
 }
@@ -51,7 +51,7 @@ const char* name_of(BlockMotion motion) {
     }
 }
 
-// Zero is added to what is rounded, as -0 is not to be printed.
+// Adding 0.0 avoids printing -0.
 
 double units_below(double value, int digits) {
     return std::floor(value * units_in_one(digits) + nothing(digits)) + 0.0;
@@ -71,7 +71,7 @@ std::string at_most(double upper, int digits) {
 
 std::string at_most_figures(double upper, int figures) {
     if (!(upper > 0.0)) return "0";
-    const int before = static_cast<int>(std::floor(std::log10(upper))) + 1; // the decimal point
+    const int before = static_cast<int>(std::floor(std::log10(upper))) + 1; // decimal point
     std::string text = at_most(upper, std::max(figures - before, 0));
     if (text.find('.') == std::string::npos) return text;
     text.erase(text.find_last_not_of('0') + 1);

@@ -253,7 +253,7 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
     saw.setup.fixtures.back().is_there = true;
     found = saw.run(stepped);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_NE(found[0].message.find("near still touches it"), std::string::npos);
+    EXPECT_NE(found[0].message.find("Still touched by near"), std::string::npos);
 }
 
 TEST(LoosePieces, AreToldOnceEach) {

@@ -14,30 +14,31 @@
 
 namespace core {
 
-/// What a pair keeps apart at least, where the machine stands now.
+/// Lower bound of a pair's distance at the machine's current position.
 struct PairBound {
     Pair pair;
     double apart = 0.0;
-    double drift = 0.0; // the way since the pair was measured
+    double drift = 0.0; // travel since the pair was measured, mm
 };
 
-/// What a check keeps from leg to leg. All but `cuts` is there to be faster, and no verdict depends
-/// on it.
+/// State of a check that is carried from leg to leg. All but `cuts` only saves time; no verdict
+/// depends on it.
 struct CheckMemory {
-    /// Cutting takes nothing nearer, and a motion no more than it is long: so bounds hold from
-    /// block to block, until a tool or a fixture is changed.
+    /// Cutting brings nothing nearer, and a motion brings a pair nearer by at most its length, so
+    /// bounds hold from block to block until a tool or a fixture is changed.
     std::vector<PairBound> bounds;
-    std::optional<Pair> deciding; // the pair that decided the last block: likely the next one, too
-    double margin = 0.0;          // of that pair
+    std::optional<Pair> deciding; // of the last block; it probably decides the next one too
+    double margin = 0.0;          // of the deciding pair
 
-    double off_path = 0.0; // that is taken off every lower bound behind the block, mm
+    double off_path = 0.0; // subtracted from every lower bound after the block, mm
 
-    /// Where each kind of body last met the stock most nearly: a good place to look first.
+    /// Scan line that was nearest to each kind of body in the last search; the next search starts
+    /// there.
     std::array<std::optional<LineId>, 5> hints;
-    /// Cutters made ready, by the tool's number and the path error they allow for.
+    /// Prepared cutters, by tool number and path error.
     std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
-    /// What flutes that feed have cut of expendable fixtures, by the fixture's index, in the
-    /// stock's frame. Without it a rapid in its own cut is an alarm.
+    /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's
+    /// frame. Without them a rapid within such a cut would be a false alarm.
     std::map<size_t, SweepLog> cuts;
 };
 

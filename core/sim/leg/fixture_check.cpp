@@ -6,7 +6,7 @@
 namespace core {
 namespace {
 
-/// The axis values at a share of a leg; at its start where the way is not known.
+/// Axis values at a fraction of a leg; at its start if the path is unknown.
 AxisValues values_at(const Leg& leg, double share) {
     return leg.straight && leg.places.size() == 2 ? stretch(leg, 0.0, share).places[1]
                                                   : leg.places[0];
@@ -71,7 +71,7 @@ void FixtureCheck::check_passage(const Leg& leg, double start, size_t fixture,
     PairClearance now = measure(leg, start, relative, body, known);
     if (!leg.arc.motion || is_settled(now, known)) return merge(known, now);
     doubts_.push_back({leg, start, fixture, &body, now});
-    // Its lower bound waits for `settle`: another chord may turn out to be nearer.
+    // `resolve_doubts` adds its lower bound: another chord may turn out to be nearer.
     const double lower = now.lower;
     now.lower = infinity;
     now.verdict = Verdict::clear;
@@ -115,7 +115,7 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
         context_.setup.machine, context_.setup.fixtures[fixture].mount, body.mover, leg);
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
-    // A body that turns: half of the way at a time, until it is far or seen sharply enough.
+    // A body that turns: halve the leg until the body is far away or its error is small enough.
     const double apart =
         distance(bounds(body, relative), bounds(context_.setup.fixtures[fixture].body));
     if (is_far(known, apart, context_.setup.search_limit)) return;

@@ -9,14 +9,15 @@
 namespace core {
 namespace {
 
-/// The next of a series of errors, a quarter apart: so legs that turn share cutters.
+/// The next larger error in a geometric series with ratio 1.25, so that legs that turn share
+/// cutters.
 double rounded_up(double error) {
     double step = 1e-5;
     while (step < error) step *= 1.25;
     return step;
 }
 
-/// The box of a fixture that does not move against the stock, in the stock's frame.
+/// The box of a fixture in the stock's frame; empty if it moves relative to the stock.
 std::optional<Aabb> box_in_stock(const Setup& setup, size_t fixture) {
     const Fixture& body = setup.fixtures[fixture];
     if (body.mount.link != setup.stock_mount.link) return std::nullopt;

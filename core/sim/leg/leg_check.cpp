@@ -39,8 +39,8 @@ double LegCheck::run(const Leg& leg, double start, CutModel& stock,
 
 void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
                           std::vector<TrackedPair>& pairs) {
-    // What the hull keeps away from is safe; what it meets need not happen, unless a place that is
-    // certainly taken meets it too.
+    // Anything that the hull does not meet is safe. Anything that it meets need not happen, unless
+    // a position that is certainly taken meets it too.
     std::vector<TrackedPair> anywhere;
     fixtures_.check(leg, start, anywhere);
     stock_.check_bodies(leg, start, stock, anywhere);

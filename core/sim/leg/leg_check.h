@@ -12,18 +12,18 @@
 
 namespace core {
 
-/// Checks moving bodies against the fixtures over legs. Refers to what it was given.
+/// Checks moving bodies against the fixtures over legs. Refers to the constructor's arguments.
 class FixtureCheck {
 public:
     FixtureCheck(const LegContext& context, const PairBounds& bounds, FluteCut& flutes)
         : context_(context), bounds_(bounds), flutes_(flutes) {}
 
     /// Adds the clearances over a leg, with times counted from `start`, seconds. A chord of an arc
-    /// whose error leaves a doubt is kept for `resolve_doubts`.
+    /// whose error leaves a pair undecided is kept for `resolve_doubts`.
     void check(const Leg& leg, double start, std::vector<TrackedPair>& pairs);
 
-    /// Halves the chords that left a doubt until none is left or they are fine enough. Call it
-    /// after the last leg.
+    /// Halves the undecided chords until all are decided or short enough. Call it after the last
+    /// leg.
     void resolve_doubts(std::vector<TrackedPair>& pairs);
 
 private:
@@ -36,12 +36,13 @@ private:
         PairClearance seen;
     };
 
-    /// Whether the pair must keep its allowance on this leg. Flutes may cut expendable fixtures.
+    /// Whether the pair needs its minimum clearance on this leg. Flutes may cut expendable
+    /// fixtures.
     bool must_keep_apart(const Leg& leg, const MovingBody& body, size_t fixture,
                          std::vector<TrackedPair>& pairs);
     void check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                     std::vector<TrackedPair>& pairs);
-    /// The same on a leg on which the body does not turn.
+    /// check_pair on a leg on which the body does not turn.
     void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        const RelativeLeg& relative, TrackedPair& known);
     /// The clearance of a body from a fixture, measured once over the whole leg.
@@ -57,7 +58,8 @@ private:
     std::vector<Doubt> doubts_;
 };
 
-/// Checks moving bodies against the stock over legs, and cuts it. Refers to what it was given.
+/// Checks moving bodies against the stock over legs, and cuts it. Refers to the constructor's
+/// arguments.
 class StockCheck {
 public:
     StockCheck(const LegContext& context, PairBounds& bounds, StockProbe& probe, FluteCut& flutes)
@@ -69,7 +71,7 @@ public:
     /// Result: the volume removed, mm3.
     double check(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
 
-    /// Adds the clearances of all bodies from the stock as it is.
+    /// Adds the clearances of all bodies from the stock without cutting it.
     ///
     /// Result: whether the flutes collide with it.
     bool check_bodies(const Leg& leg, double start, const CutModel& stock,
@@ -81,17 +83,17 @@ private:
         const MovingBody& body;
         StockObservation before;
         bool clear;
-        double nearest; // that the pair has come in this block
+        double nearest; // least clearance of the pair so far in this block
     };
 
     double check_turning(const Leg& leg, double start, CutModel& stock,
                          std::vector<TrackedPair>& pairs);
-    /// A machine body over a leg that turns, against the stock before the cut. Only the lower bound
-    /// is measured if the box of the raw stock is far enough away.
+    /// Checks a machine body over a leg on which rotary axes move against the stock before the cut.
+    /// Only the lower bound is measured if the box of the raw stock is far enough away.
     void check_turning_body(const MovingBody& body, const Leg& leg, double start,
                             const CutModel& stock, std::vector<TrackedPair>& pairs);
-    /// Whether the tool stays clear on a leg that turns, measured over the whole of it; if so, adds
-    /// its clearances.
+    /// Whether the tool stays clear on a leg on which rotary axes move, measured over the whole
+    /// leg; if so, adds its clearances.
     bool is_clear_from_afar(const Leg& leg, double start, const CutModel& stock,
                             std::vector<TrackedPair>& pairs);
     double check_whole(const Leg& leg, double start, CutModel& stock,
@@ -119,7 +121,7 @@ private:
 };
 
 /// Checks a tool and the bodies that move with it along the legs of a path, against fixtures and a
-/// stock that it cuts. Refers to what it was given.
+/// stock that it cuts. Refers to the constructor's arguments.
 class LegCheck {
 public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
@@ -131,17 +133,17 @@ public:
     /// counted from `start`, seconds.
     ///
     /// While the flutes cut, the other bodies are checked against the stock at the start of the leg
-    /// (`lower`) and at its end (`upper`). A leg that leaves a doubt is halved down to the mesh
-    /// size, and one on which rotary axes move until the error of turning is small or does not
-    /// matter.
+    /// (`lower`) and at its end (`upper`). A leg that leaves a pair undecided is halved down to the
+    /// mesh size; one on which rotary axes move is halved until the error of turning is small or
+    /// does not matter.
     ///
     /// Result: the volume removed, mm3.
     double run(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
 
-    /// Resolves what the legs have left undecided. Call it after the last leg.
+    /// Decides the pairs that the legs have left undecided. Call it after the last leg.
     void finish(std::vector<TrackedPair>& pairs) { fixtures_.resolve_doubts(pairs); }
 
-    /// Checks everything at rest, at `time` of the block, without cutting.
+    /// Checks all bodies at rest, `time` seconds after the block's start, without cutting.
     void rest(const AxisValues& place, double time, const CutModel& stock,
               std::vector<TrackedPair>& pairs);
 
@@ -160,7 +162,7 @@ public:
     }
 
 private:
-    /// A leg whose way is known only to lie in a hull.
+    /// Checks a leg of which only a hull of the possible paths is known.
     void check_hull(const Leg& leg, double start, const CutModel& stock,
                     std::vector<TrackedPair>& pairs);
 

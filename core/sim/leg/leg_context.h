@@ -16,14 +16,15 @@ struct Setup;
 /// Whether material that the flutes meet is cut or is a collision.
 enum class FluteUse : uint8_t { cutting, not_cutting };
 
-/// A turning body is located well enough when its error is at most this share of its clearance.
+/// The position of a turning body is accurate enough if its error is at most this fraction of its
+/// clearance.
 constexpr double sharp_share = 0.02;
 
-/// The pair of a moving body and a fixture, or the stock.
+/// The pair of a moving body and a fixture; without `fixture`, the stock.
 Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});
 
-/// What the checks of a leg have in common: the set-up, the tool with everything that moves with
-/// it, and the memory of the run. Refers to all of it.
+/// Common data of the checks of a leg: the set-up, the tool with everything that moves with it, and
+/// the memory of the run. Owns none of them.
 struct LegContext {
     const Setup& setup;
     const ToolAssembly& tool;
@@ -37,14 +38,14 @@ struct LegContext {
     /// The moving body of a pair.
     const MovingBody& body_of(const Pair& pair) const;
 
-    /// The bodies in the order in which to check them against the stock or a fixture: first the one
-    /// that decided the last block.
+    /// The bodies in the order in which to check them against the stock or a fixture: the one that
+    /// decided the last block comes first.
     std::vector<const MovingBody*> likely_first(std::optional<size_t> fixture) const;
 
-    /// The leg of a body, seen from the stock.
+    /// The leg of a body in the stock's frame.
     RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
 
-    /// The error of a turning body that is small enough whatever its clearance is, mm.
+    /// Error of a turning body that is small enough for any clearance, mm.
     double finest_error(const MovingBody& body) const;
 
     /// Whether the error of a leg is small enough for a body with this lower bound.

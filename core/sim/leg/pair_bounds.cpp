@@ -98,8 +98,8 @@ bool PairBounds::can_probably_skip(const TrackedPair& known) const {
     const double apart = known.at_end - travel_;
     const double required = known.allowance.distance + resolution + memory_.off_path;
     constexpr double slack = 0.1; // mm: the next block often has that much more room
-    // If the pair decides after all, a bound with much drift is a poor one. Of bodies that keep
-    // away from the flutes, check_late gives a better one.
+    // If the pair decides after all, a bound with much drift is a poor one. For bodies away from
+    // the flutes, check_late gives a better one.
     const double most_drift =
         known.pair.part < PartKind::holder ? 2.0 : std::max(2.0, 0.25 * apart);
     if (known.drift + travel_ > most_drift) return false;

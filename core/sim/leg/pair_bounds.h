@@ -17,50 +17,51 @@ struct TrackedPair : PairClearance {
     double drift = 0.0;  // travel that was subtracted from it since the pair was measured, mm
 };
 
-/// Adds the clearance that was found on a leg; its lower bound is also the one at the leg's end.
+/// Merges the clearance on a leg into `known`; its lower bound is also taken as that at the leg's
+/// end.
 void merge(TrackedPair& known, const PairClearance& later);
 
 /// The entry of a pair, added if it is missing. The reference is valid until the next entry is
 /// added.
 TrackedPair& entry(std::vector<TrackedPair>& pairs, const Pair& pair, const Setup& setup);
 
-/// Whether a leg cannot bring a pair nearer than it has been in this block. If so, moves its bound
-/// on to the leg's end.
+/// Whether a leg cannot bring a pair nearer than it has been in this block. If so, updates its
+/// bound to the leg's end.
 bool stays_away(TrackedPair& known, const Leg& leg, const RelativeLeg& relative);
 
-/// Whether bodies that stay this far apart over a leg cannot change what is known of the pair. If
-/// so, keeps the distance as the pair's bound.
+/// Whether bodies that stay at least `apart` from each other over a leg cannot change the pair's
+/// clearance. If so, stores `apart` as the pair's bound.
 bool is_far(TrackedPair& known, double apart, double search_limit);
 
-/// The clearance on the real path, from that on a leg: bounds widened by the leg's error.
+/// Clearance on the real path, from that on a leg: its bounds widened by the leg's error.
 Separation widened(Separation found, const RelativeLeg& leg);
 
-/// The part, shrunk by the leg's error: where it passes, the part itself certainly passes. Empty
-/// if the leg turns or nothing is left.
+/// The part shrunk by the leg's error: the real part certainly sweeps everything that this one
+/// sweeps. Empty if the body turns on the leg or nothing is left.
 RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg);
 
-/// The greatest distance that any point of a body moves over a leg, seen from any other body, mm;
-/// infinite where rotary axes move or the path is unknown.
+/// Greatest distance that any point of a body moves over a leg relative to any other body, mm;
+/// infinite if rotary axes move or the path is unknown.
 double greatest_travel(const Machine& machine, const Leg& leg);
 
 /// Decides from bounds of earlier legs which pairs need not be measured on this one.
 ///
-/// Cutting brings nothing nearer, and a leg brings no pair nearer than it is long.
+/// Cutting brings nothing nearer, and a leg brings a pair nearer by at most its length.
 class PairBounds {
 public:
     PairBounds(const Setup& setup, CheckMemory& memory) : setup_(setup), memory_(memory) {}
 
     /// Starts a leg on which no point moves farther than `travel`, mm.
     void begin_leg(double travel) { travel_ = travel; }
-    /// Ends it: the bounds of earlier blocks lose its travel.
+    /// Ends the leg: subtracts its travel from the bounds of earlier blocks.
     void end_leg();
     double travel() const { return travel_; }
 
-    /// The entry of a pair; a new one starts with the bound that the last block left.
+    /// The entry of a pair; a new entry starts with the bound from the last block.
     TrackedPair& known_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
 
     /// Whether the pair stays clear over the leg and another pair of the block has less margin. If
-    /// so, moves its bound on to the leg's end.
+    /// so, updates its bound to the leg's end.
     bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const;
 
     /// Whether a pair with this lower bound is clear and cannot decide the block.
@@ -70,10 +71,10 @@ public:
     /// Whether the pair can be skipped if this block has about as much margin as the last one.
     bool can_probably_skip(const TrackedPair& known) const;
 
-    /// Moves the bound of a pair that is not checked on this leg on to the leg's end.
+    /// Updates the bound of a pair that is not checked on this leg to the leg's end.
     void carry_bound(const Pair& pair, std::vector<TrackedPair>& pairs) const;
 
-    /// What rounded corners take off a clearance; 0 for a pair that may touch, mm.
+    /// Amount that rounded corners subtract from a clearance, mm; 0 for a pair that may touch.
     double off_path(const Allowance& allowance) const {
         return allowance.distance > resolution ? memory_.off_path : 0.0;
     }

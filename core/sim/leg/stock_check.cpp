@@ -52,7 +52,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         bounds_.begin_leg(2.0 * bounds_.travel());
         return removed;
     }
-    // What is cut between the lines has no volume to them, yet a witness may have stood there.
+    // A cut between scan lines removes no volume from them, but may have removed a witness.
     const size_t sweeps = stock.log.size();
     const double removed = flutes_.along(leg, stock);
     const bool cut = stock.log.size() > sweeps;
@@ -82,7 +82,8 @@ void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start
                             const CutModel& stock, std::vector<TrackedPair>& pairs) {
     TrackedPair& known = bounds_.known_pair(pairs, pair_of(body));
     if (bounds_.can_skip(known, pairs)) return;
-    // The stock of before is gone. It was what is left and what the flutes took on their way.
+    // The stock before the cut is no longer available. It was the remaining stock plus what the
+    // flutes removed on the leg.
     const RelativeLeg relative = context_.against_stock(body, leg);
     const RelativeLeg flutes = context_.against_stock(context_.bodies[0], leg);
     const double limit = std::min(context_.setup.search_limit, known.upper);
@@ -99,7 +100,7 @@ void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start
 
 bool StockCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
                                  const CutModel& stock) {
-    // What is too near both before and after the cut is so in any order.
+    // A body that is too near both before and after the cut is so in any order of events.
     CutModel cut_already = stock;
     flutes_.along(leg, cut_already);
     for (const BodyCheck& check : checks) {
@@ -114,7 +115,7 @@ bool StockCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg
 StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& leg,
                                            const CutModel& stock) {
     if (!check.clear) return probe_.observe(check.body, leg, stock, context_.setup.search_limit);
-    // Clear by its lower bound: what is left of the stock only gives the upper one.
+    // Clear by its lower bound: the remaining stock is only needed for the upper bound.
     StockObservation after = check.before;
     const double limit = std::min(context_.setup.search_limit, check.nearest);
     after.plain = Separation{.lower = after.plain.lower};
@@ -152,7 +153,7 @@ double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& sto
         const double share = probe_.earliest(leg, flutes.pair, 0.0, stock);
         flutes.time = std::min(flutes.time, start + leg.begin + share * (leg.end - leg.begin));
     }
-    // After the finding the material is gone, so that one crash is one finding.
+    // Remove the material after the finding, so that one crash gives one finding.
     return gouged ? flutes_.along(leg, stock) : 0.0;
 }
 
@@ -200,7 +201,7 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
     const double apart = distance(bounds(body, relative), stock.outer_box);
     if (is_far(known, apart, context_.setup.search_limit)) return;
     if (!context_.is_too_vague(relative)) {
-        // Mostly the raw stock's box tells enough of a body that is large and far.
+        // For a large and distant body, the box of the raw stock is usually enough.
         const double from_box = probe_.distance_to_box(body, relative, stock.outer_box);
         if (from_box >= std::max(known.allowance.distance, resolution)) {
             known.lower = std::min({known.lower, from_box, context_.setup.search_limit});
@@ -221,7 +222,7 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
 double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
                                  std::vector<TrackedPair>& pairs) {
     if (context_.use == FluteUse::not_cutting && has_crashed(pairs)) {
-        // One crash is enough: what comes after it is not looked at, and so not called clear.
+        // One crash is enough: later motion is not measured, and so not reported as clear.
         for (const MovingBody& body : context_.bodies) {
             if (body.body) continue;
             TrackedPair& known = entry(pairs, pair_of(body), context_.setup);
@@ -241,7 +242,7 @@ double StockCheck::check(const Leg& leg, double start, CutModel& stock,
     const bool turns = context_.setup.machine.has_rotary() && leg.places.size() == 2
                        && turn_of(context_.setup.machine, leg.places[0], leg.places[1]) > 0.0;
     if (turns) {
-        // Their reach is long: they would divide the leg far beyond what the tool needs.
+        // Machine bodies are large: they would divide the leg far more finely than the tool needs.
         for (const MovingBody& body : context_.bodies)
             if (body.body) check_turning_body(body, leg, start, stock, pairs);
         only_tool_ = true;

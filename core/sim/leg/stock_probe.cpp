@@ -9,7 +9,7 @@
 namespace core {
 namespace {
 
-/// The distance at which a search may stop narrowing its interval: just below the allowance.
+/// The value that the bounds of a search must not enclose: just below the allowance.
 double deciding_distance(const Allowance& allowance) {
     return allowance.distance > resolution ? allowance.distance - resolution : 0.0;
 }
@@ -18,7 +18,7 @@ double deciding_distance(const Allowance& allowance) {
 
 Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
                                 const CutModel& stock, StockGoal goal, double shrink) {
-    // Most bodies of a machine are far away, and made of many triangles.
+    // Most machine bodies are far away and have many triangles.
     if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
         return {.lower = goal.limit};
     const std::vector<ConvexShape> shapes =
@@ -55,7 +55,8 @@ StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, con
         seen.shrunk =
             to_stock(body, relative, stock, {.limit = 2.0 * just_apart, .threshold = just_apart},
                      contact_shrink(allowance, *body.profile));
-        // What meets a part of the body meets the body, though its own search ended before.
+        // If the shrunk body overlaps, so does the body, even if the body's own search ended
+        // earlier.
         if (seen.shrunk.upper == 0.0) seen.plain = seen.shrunk;
     } else if (seen.plain.upper == 0.0) {
         seen.shrunk = seen.plain;
@@ -81,7 +82,7 @@ StockObservation StockProbe::observe_lower(const MovingBody& body, const Leg& le
 
 bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                           const Allowance& allowance) const {
-    // Where a shank has been it need not have been free: it cuts nothing.
+    // A shank does not cut, so it may have been inside the stock on the same path.
     if (context_.tool.parts.empty() || body.kind != PartKind::flutes) return false;
     if (leg.turns || leg.places.size() > 2) return false;
     return runs_in_own_cut(stock, {.flutes = context_.tool.parts[0].profile,
@@ -93,7 +94,7 @@ bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const 
 
 void StockProbe::look_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
                                const CutModel& stock, double nearest) {
-    // Where the body really is at one moment is a sure witness.
+    // The body is certainly at this position at one moment.
     const StockObservation here = observe(body, still_half_way(leg), stock, nearest);
     seen.shrunk.upper = here.shrunk.upper;
     if (here.plain.upper >= seen.plain.upper) return;
@@ -180,7 +181,7 @@ double StockProbe::earliest(const Leg& leg, const Pair& pair, double distance,
                          : to_stock(body, moved, stock, {.limit = limit + resolution});
         return found.upper <= limit;
     };
-    // Mostly it is where it was seen, and not before.
+    // Usually it is at the witness and not before.
     constexpr double step = 1e-4;
     double before = 0.0, after = 1.0;
     if (seen && (*seen <= step || !reached(*seen - step))) return *seen;

@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// The shortest series that is told: ways in and out of a cut are shorter.
+/// Length of the shortest series that is reported, mm: approach and retract of a cut are shorter.
 double least_way(double diameter) { return std::max(50.0, 5.0 * diameter); }
 
 } // namespace
@@ -26,14 +26,14 @@ std::optional<Finding> end_air(AirSeries& series, double diameter) {
     Finding finding;
     finding.rule = "air-cut";
     finding.block = ended.begin;
-    finding.message = fmt::format("From here on the tool feeds {:.0f} mm in {} through air, more "
+    finding.message = fmt::format("From here on, the tool feeds {:.0f} mm in {} through air, more "
                                   "than {:g} mm from the stock.",
                                   ended.way,
                                   ended.blocks == 1 ? std::string("one block")
                                                     : fmt::format("{} blocks", ended.blocks),
                                   air_gap);
-    finding.cure = "Look whether work offset, tool length and stock are those the program was made "
-                   "for; if so, a rapid saves the time.";
+    finding.cure = "Check that work offset, tool length and stock are those that the program was "
+                   "made for; if so, a rapid would save time.";
     return finding;
 }
 

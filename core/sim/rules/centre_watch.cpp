@@ -7,14 +7,14 @@
 namespace core {
 namespace {
 
-/// Places at one height do not differ by more, mm; nor do those where one leg ends and the next
-/// begins.
+/// Positions that differ in height by less are at the same height, mm. Also the tolerance between
+/// the end of a leg and the start of the next.
 constexpr double level = 1e-6;
 
 /// The overlap that counts as contact for flutes, mm.
 constexpr double touch = 0.05;
 
-/// A circle round places, seen along the tool's axis.
+/// A circle around positions, seen along the tool's axis.
 struct Circle {
     Vec3 centre = Vec3(0.0);
     double radius = 0.0;
@@ -22,7 +22,7 @@ struct Circle {
 
 double beside(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// The smallest circle round the places, its radius at most some percent too large.
+/// Smallest circle around the positions; its radius is at most a few percent too large.
 Circle circle_round(const std::vector<Vec3>& places) {
     Circle circle{places.front(), 0.0};
     const auto farthest = [&] {
@@ -30,15 +30,15 @@ Circle circle_round(const std::vector<Vec3>& places) {
             return beside(a, circle.centre) < beside(b, circle.centre);
         });
     };
-    constexpr int rounds = 60; // the centre is off by radius / sqrt(rounds) at most, mostly by less
+    constexpr int rounds = 60; // error of the centre <= radius / sqrt(rounds)
     for (int i = 1; i <= rounds; ++i)
         circle.centre += (farthest() - circle.centre) / static_cast<double>(i + 1);
     circle.radius = beside(farthest(), circle.centre);
     return circle;
 }
 
-/// Whether the edges have come by everything that lies under the centre at the end of the trail,
-/// down to there.
+/// Whether the edges have passed everything under the centre at the end of the trail, down to its
+/// height.
 bool has_cleared_its_level(const CentreWatch& watch, double centre_radius) {
     std::vector<Vec3> here;
     for (const Vec3& place : watch.trail)
@@ -46,7 +46,7 @@ bool has_cleared_its_level(const CentreWatch& watch, double centre_radius) {
     return circle_round(here).radius > centre_radius;
 }
 
-/// Whether the part of the face that has been above one spot all the while meets matter there.
+/// Whether the region that has been under the centre during the whole trail contains material.
 bool meets_matter(const CentreWatch& watch, const ToolDescription& tool, const CutModel& stock) {
     const double recess = centre_recess(tool), low = watch.trail.back().z + recess + touch;
     if (low >= watch.top) return false;
@@ -59,7 +59,7 @@ bool meets_matter(const CentreWatch& watch, const ToolDescription& tool, const C
     return separation(shapes_of(face, rest), stock, {.limit = level}).separation.upper <= 0.0;
 }
 
-/// Takes up the trail at `from`, or begins a new one if the tool has been elsewhere or goes up.
+/// Continues the trail at `from`, or begins a new one if the tool was elsewhere or moves up.
 void take_up(CentreWatch& watch, const Mat3& orientation, const Vec3& from, const Vec3& to) {
     const bool goes_on = !watch.trail.empty() && watch.orientation == orientation
                          && glm::distance(watch.trail.back(), from) <= level
@@ -70,7 +70,7 @@ void take_up(CentreWatch& watch, const Mat3& orientation, const Vec3& from, cons
     watch.trail = {from};
 }
 
-/// How many places of a leg are looked at.
+/// Number of positions to check on a leg.
 int places_on(const Vec3& by, const ToolDescription& tool) {
     const double shares =
         std::max(-by.z / centre_recess(tool), std::hypot(by.x, by.y) / tool.centre_radius);

@@ -10,7 +10,7 @@
 namespace core {
 namespace {
 
-/// The names of those fixtures in place that touch a piece, to within a mesh size.
+/// Names of the mounted fixtures that touch a piece, to within a mesh size.
 std::vector<std::string> holders_of(const Setup& setup, const std::vector<bool>& there,
                                     const CutModel& stock, const PieceMap& map, size_t number,
                                     const Aabb& box) {
@@ -37,7 +37,7 @@ std::vector<std::string> holders_of(const Setup& setup, const std::vector<bool>&
 }
 
 std::string holding_text(const Setup& setup, const std::vector<std::string>& names) {
-    if (!names.empty()) return fmt::format("{} still touches it.", fmt::join(names, " and "));
+    if (!names.empty()) return fmt::format("Still touched by {}.", fmt::join(names, " and "));
     if (setup.fixtures.empty())
         return "The set-up describes no fixture that could hold it: it may fall or be thrown.";
     return "No fixture touches it: it may fall or be thrown.";
@@ -51,10 +51,10 @@ Finding finding_of(const Setup& setup, const StockPiece& piece, double spacing,
     finding.severity = severity_of(setup, finding.rule);
     finding.message = fmt::format(
         "A piece of {:.1f} x {:.1f} x {:.1f} mm, {:.0f} mm3, is cut loose at X {:.1f} Y {:.1f} Z "
-        "{:.1f} of the stock. {}",
+        "{:.1f} in stock coordinates. {}",
         size.x, size.y, size.z, piece.volume, piece.place.x, piece.place.y, piece.place.z,
         holding_text(setup, holders));
-    finding.cure = "Leave tabs that are cut later, or hold the piece before this cut.";
+    finding.cure = "Leave tabs that are cut later, or clamp the piece before this cut.";
     return finding;
 }
 
@@ -68,7 +68,7 @@ Aabb box_of_cuts(const CutModel& stock, size_t first) {
 
 PieceWatch watch_of(const CutModel& stock) {
     PieceWatch watch;
-    // A box or a cylinder is one piece; a mesh, or what was cut before, may be several.
+    // A box or a cylinder is one piece; a mesh or a stock with earlier cuts may be several.
     const bool uncut = stock.log.size() == 0;
     if (uncut && !std::holds_alternative<SolidMesh>(stock.solid.shape)) return watch;
     watch.known = watch.map.pieces(stock).size();
@@ -87,7 +87,7 @@ std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& f
     size_t fresh = pieces.size() > watch.known ? pieces.size() - watch.known : 0;
     watch.known = pieces.size();
     const Aabb near = box.grown(2.0 * stock.lines.grid.spacing);
-    // What a cut parts lies beside it; the smaller pieces are the ones that come loose.
+    // New pieces are next to the cut, and the smaller ones are the ones that come loose.
     for (size_t i = pieces.size(); i-- > 1 && fresh > 0;) {
         if (!overlaps(pieces[i].box, near)) continue;
         const auto holders = holders_of(setup, fixtures_there, stock, watch.map, i, pieces[i].box);

@@ -10,8 +10,8 @@
 namespace core {
 namespace {
 
-constexpr double room = 0.5;              // mm that a rapid should pass over the stock by
-constexpr double highest_retract = 500.0; // mm that a retract could be higher by
+constexpr double room = 0.5;              // mm, minimum distance of a rapid over the stock
+constexpr double highest_retract = 500.0; // mm, maximum increase that is tried
 constexpr double retract_step = 0.01;
 
 Setup with_every_pair(Setup setup) {
@@ -19,7 +19,7 @@ Setup with_every_pair(Setup setup) {
     return setup;
 }
 
-/// Looks at every pair, whatever the report wants.
+/// Measures every pair, whatever detail the report has.
 struct Look {
     const LegAsRun& link;
     Setup setup = with_every_pair(link.setup);
@@ -56,20 +56,20 @@ bool are_clear(const std::vector<TrackedPair>& pairs) {
                        [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
 }
 
-/// How near the flutes are to the stock.
+/// Distance from the flutes to the stock, mm.
 double flutes_to_stock(const std::vector<TrackedPair>& pairs) {
     for (const TrackedPair& pair : pairs)
         if (is_flutes_over_stock(pair)) return pair.found() ? pair.upper : pair.lower;
     return infinity;
 }
 
-/// Whether the flutes pass over the face of the stock from above, no wall beside them.
+/// Whether the flutes pass above the top of the stock, rather than next to a wall.
 bool passes_over(const LegAsRun& link, const PairClearance& pair) {
     const Vec3 up = pair.on_tool - pair.on_body;
     return up.z > 0.7 * glm::length(up) && pair.on_body.z >= link.stock.outer_box.max.z - room;
 }
 
-/// What the rapid comes too near to, of the pairs on the way.
+/// The pair that the rapid brings too near; null if there is none.
 const PairClearance* in_the_way(const LegAsRun& link, const std::vector<TrackedPair>& pairs) {
     const PairClearance* worst = deciding_pair(pairs);
     if (worst && worst->verdict != Verdict::clear) return worst;
@@ -80,7 +80,7 @@ const PairClearance* in_the_way(const LegAsRun& link, const std::vector<TrackedP
     return nullptr;
 }
 
-/// Whether anything on the way is too near, or the flutes pass the stock with little room.
+/// Whether any pair is below its allowance on the link, or the flutes pass close to the stock.
 bool is_doubtful(const LegAsRun& link, const std::vector<TrackedPair>& known) {
     if (!are_clear(known)) return true;
     CheckMemory memory;
@@ -91,7 +91,8 @@ bool is_doubtful(const LegAsRun& link, const std::vector<TrackedPair>& known) {
            < room;
 }
 
-/// How much higher, to within `step`, the leg would pass everything; empty if it never does.
+/// Increase in height at which the leg is clear of everything, to within `retract_step`, mm; empty
+/// if there is none.
 std::optional<double> lift(Look& look) {
     const auto passes = [&](double higher) {
         const auto pairs = look.along(higher);
@@ -141,8 +142,8 @@ std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<Track
     finding.shortfall = *higher;
     finding.message =
         near->verdict == Verdict::clear
-            ? fmt::format("The retract before this rapid is low: on the way the {} pass over the "
-                          "{} by {} mm only.",
+            ? fmt::format("The retract before this rapid is low: the {} pass over the {} with "
+                          "only {} mm to spare.",
                           finding.pair[0], finding.pair[1],
                           bounds_text(near->lower, near->upper, " to ", 2))
             : fmt::format("The retract before this rapid is too low: {} is in the way of the {}.",

@@ -22,12 +22,10 @@ struct ToolAssembly;
 struct ToolDescription;
 struct TrackedPair;
 
-/// Flutes that keep farther than this from the stock are in the air, mm; nearer they may be on a
-/// spring pass.
+/// Flutes farther than this from the stock are in air, mm; nearer ones may be on a spring pass.
 constexpr double air_gap = 0.5;
 
-/// Motions of one tool in a row, rapids between them not counted, that feed through nothing but
-/// air. A plain value.
+/// Consecutive feeds of one tool through air only; rapids between them do not count. A plain value.
 struct AirSeries {
     std::optional<BlockIndex> begin;
     double way = 0.0; // mm
@@ -35,28 +33,28 @@ struct AirSeries {
     std::optional<BlockIndex> last;
 };
 
-/// A feed of this length that kept away from the stock.
+/// Adds a feed of length `way`, mm, away from the stock.
 void add_air(AirSeries& series, BlockIndex block, double way);
 
-/// Ends a series, and gives the finding `air-cut` about it, with its first block, if it is longer
-/// than the ways in and out of a cut by a tool of this diameter. Its severity is left open.
+/// Ends a series. Returns the finding `air-cut` with its first block if the series is longer than
+/// approach and retract of a cut with a tool of this diameter. The caller sets its severity.
 std::optional<Finding> end_air(AirSeries& series, double diameter);
 
-/// Where a tool is too short for what it does, over all blocks so far. A plain value.
+/// By how much a tool is too short, over all blocks so far. A plain value.
 struct ToolReach {
-    std::optional<BlockIndex> holder_block; // the first in which the holder meets the stock
-    double more_stick_out = 0.0;            // mm that the holder would have to stand higher
-    std::optional<BlockIndex> shank_block;  // the first in which the shank does
-    double more_flute = 0.0;                // mm that the shank would have to begin higher
-    std::optional<BlockIndex> rub_block;    // the first in which the shank only touches
-    size_t blocks = 0;                      // in which holder or shank meet the stock
-    size_t looks = 0;                       // at how long it would have to be; then no more
+    std::optional<BlockIndex> holder_block; // first block in which the holder meets the stock
+    double more_stick_out = 0.0;            // required additional stick-out, mm
+    std::optional<BlockIndex> shank_block;  // first block in which the shank meets the stock
+    double more_flute = 0.0;                // required additional flute length, mm
+    std::optional<BlockIndex> rub_block;    // first block in which the shank only rubs
+    size_t blocks = 0; // number of blocks in which holder or shank meet the stock
+    size_t looks = 0;  // number of computations of the required length, which is limited
     std::optional<BlockIndex> last;
 };
 
 using ToolReaches = std::map<ToolNumber, ToolReach>;
 
-/// A leg of the run, with what a rule needs to check it again with other tool positions.
+/// A leg of the run, with the data to check it again with a changed tool or at another height.
 struct LegAsRun {
     const Setup& setup;
     const ToolAssembly& tool;
@@ -66,90 +64,90 @@ struct LegAsRun {
     const CutModel& stock; // note_reach: after the leg; low_retract: before it
 };
 
-/// Notes whether holder and shank met the stock on a leg that the flutes cut, and how much higher
-/// they would have to stand to keep every allowance on it.
+/// Records whether holder and shank met the stock on a leg that the flutes cut, and how much higher
+/// on the tool they would have to be to keep every allowance on it.
 ///
-/// Cost: nothing for a leg on which they keep away; else, where they have to stand higher than on
-///       any leg before, some ten checks of the leg.
+/// Cost: none for a leg on which they are clear; about ten checks of the leg if they must be higher
+/// than for any leg before.
 void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<TrackedPair>& pairs);
 
-/// The findings `stick-out-short` and `over-engagement`, one of each for a tool, with the first
-/// block that they are about and what would do for all blocks. Severities are left open but for a
-/// shank that only rubs, which is a note.
+/// The findings `stick-out-short` and `over-engagement`, at most one of each per tool, with the
+/// first block concerned and the length that is enough for all blocks. The caller sets severities,
+/// except that a shank that only rubs is a note.
 std::vector<Finding> findings_of(const ToolReaches& reaches, const Setup& setup);
 
-/// What rules that look at more than one block remember. A plain value.
+/// State of the rules that span several blocks. A plain value.
 struct RunWatch {
     AirSeries air;
     ToolReaches reaches;
-    bool has_fed = false;           // the tool that is in the spindle now
-    bool singular_reported = false; // of the same tool, singular-orientation
-    // The control counts with another length than the tool's: how deep the tool goes then says
-    // nothing of its stick-out. Whoever runs the blocks knows that and sets it.
+    bool has_fed = false;           // since the last tool change
+    bool singular_reported = false; // `singular-orientation`, since the last tool change
+    // The control's length of the tool differs from the real one, so the tool's depth says nothing
+    // about its stick-out. Set by the caller that runs the blocks.
     bool length_in_doubt = false;
 };
 
-/// Whether a leg goes across far enough to be a way from one feature to another.
+/// Whether a leg moves far enough sideways to be a link between two features.
 bool goes_across(const Leg& leg);
 
-/// The finding `low-retract`: the tool is free where the rapid begins and where it ends, but not of
-/// what stands between, or passes over it by less than half a millimetre. `pairs` are what was
-/// found on the leg. Its severity is left open.
+/// The finding `low-retract`: the tool is clear at the start and end of the rapid but not between
+/// them, or passes over the stock there by less than half a millimetre. `known` are the clearances
+/// on the leg. The caller sets its severity.
 ///
-/// Cost: nothing where the rapid passes well clear; else some twenty checks of the leg.
+/// Cost: none if the rapid is well clear; else about twenty checks of the leg.
 std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known);
 
-/// What is known about the pieces of a stock while it is cut. A plain value.
+/// The pieces of a stock while it is cut. A plain value.
 struct PieceWatch {
     PieceMap map;
-    size_t known = 1; // pieces, without crumbs
+    size_t known = 1; // number of pieces, without crumbs
 };
 
-/// The watch over a stock at the start of a run.
+/// The pieces of a stock at the start of a run.
 PieceWatch watch_of(const CutModel& stock);
 
-/// Looks, with these of the fixtures in place, whether the cuts from `first` on, by their numbers
-/// in the log, have parted the stock.
+/// Checks whether the cuts from number `first` in the log on have parted the stock.
+/// `fixtures_there` says which fixtures are mounted.
 ///
-/// Result: a finding `loose-piece` for each new piece but the largest, without its block: how large
-///         it is, where, and whether a fixture touches it, to within a mesh size.
-/// Cost:   some microseconds for cuts above solid matter, else that of PieceMap::pieces().
+/// Result: a finding `loose-piece`, without its block, for each new piece but the largest: its
+///         size, its position, and whether a fixture touches it, to within a mesh size.
+/// Cost:   some microseconds for cuts above solid material, else that of PieceMap::pieces().
 std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
                                   const CutModel& stock, size_t first, PieceWatch& watch);
 
-/// What has to be remembered of a tool that does not cut at its centre while it goes down: how the
-/// stock stood before, and where the tool has been since.
+/// State of a tool that does not cut at its centre, while it goes down: the stock before that, and
+/// the positions of the tool since.
 ///
-/// Frame: places are those of the tip, along the tool's own axes.
+/// Frame: positions are those of the tip, with axes fixed to the tool, Z along its axis.
 struct CentreWatch {
     std::optional<CutModel> before;
     Mat3 orientation = Mat3(1.0);
-    double top = 0.0;        // height at which it began to go down
-    std::vector<Vec3> trail; // the last of it, as far as it is within the recess of the lowest
+    double top = 0.0;        // height at which the descent began
+    std::vector<Vec3> trail; // latest positions, up to one recess above the lowest
 };
 
-/// Where on a leg the centre of a tool is pushed into matter that its edges have not taken.
+/// First contact on a leg of a tool's centre with material that its edges have not removed.
 struct CentreContact {
-    double share = 0.0;     // of the leg
-    Vec3 place = Vec3(0.0); // of the tool's face there, in the stock's frame
+    double share = 0.0;     // fraction of the leg
+    Vec3 place = Vec3(0.0); // of the tool's face, in the stock's frame
 };
 
-/// How far the face of such a tool stands back from its edges, mm. With it the steepest ramp that
-/// is still taken for cutting falls by recess / (2 * centre_radius): some 7 degrees.
+/// Assumed recess of the face of such a tool behind its edges, mm. With it, the steepest ramp that
+/// still counts as cutting has a slope of recess / (2 * centre_radius), about 7 degrees.
 double centre_recess(const ToolDescription& tool);
 
-/// Follows a feed along one leg; `stock` is as it is before the leg. Call it for every leg of such
+/// Follows a feed along one leg; `stock` is the stock before the leg. Call it for every leg of such
 /// a tool, in order.
 ///
 /// Proof: a tool that goes down meets a point at the height of its face for the first time when its
-/// tip passes there. If the point has been under the centre ever since, no edge has come by.
+/// tip passes there. If the point has been under the centre ever since, no edge has passed it.
 std::optional<CentreContact> follow(CentreWatch& watch, const ToolDescription& tool,
                                     const RelativeLeg& leg, const CutModel& stock);
 
-/// The finding `singular-orientation` about a feed on which rotary axes turn: near the pole, where
-/// an axis turns far while the tool hardly leans and its tip hardly moves; or, where the control
-/// does not follow the tip, a block of several rotary axes that is so long that the tip swings off
-/// its line by more than 0.5 mm. Severity and block are left open.
+/// The finding `singular-orientation` about a feed in which rotary axes turn: near the pole, an
+/// axis turns far while the tool hardly tilts and its tip hardly moves; or, without tool centre
+/// point control, a block that turns several rotary axes is so long that the tip deviates from its
+/// straight line by more than 0.5 mm. The caller sets severity and block.
 std::optional<Finding> singular_orientation(const Machine& machine, const Motion& motion,
                                             double tool_length);
 

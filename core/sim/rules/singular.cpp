@@ -11,28 +11,28 @@
 namespace core {
 namespace {
 
-constexpr double far_turn = 20.0;       // degrees: less is no jump
-constexpr double turn_per_lean = 5.0;   // an axis that turns so many times as far as the tool leans
-constexpr double way_per_degree = 0.05; // mm that the tip moves at most for each degree
-constexpr double swing = 0.5;           // mm off the line
+constexpr double far_turn = 20.0;       // degrees; a smaller turn is not reported
+constexpr double turn_per_lean = 5.0;   // ratio of an axis's turn to the tilt of the tool
+constexpr double way_per_degree = 0.05; // mm per degree, greatest travel of the tip
+constexpr double swing = 0.5;           // mm, deviation from the line
 
-/// What the tool and its tip do over a motion, seen from the work.
+/// Motion of the tool and its tip, seen from the work.
 struct Seen {
-    size_t axis = 3;   // the rotary axis that turns farthest
-    double turn = 0.0; // of it, degrees
-    int turning = 0;   // rotary axes that turn
-    double lean = 0.0; // of the tool, degrees
-    double way = 0.0;  // of the tip, mm
-    double off = 0.0;  // of the tip from the straight line half way, mm
+    size_t axis = 3;   // rotary axis with the largest turn
+    double turn = 0.0; // of that axis, degrees
+    int turning = 0;   // number of rotary axes that turn
+    double lean = 0.0; // tilt of the tool, degrees
+    double way = 0.0;  // travel of the tip, mm
+    double off = 0.0;  // deviation of the tip from the straight line half way, mm
 };
 
-/// The direction of the tool seen from the table.
+/// Direction of the tool in the table's frame.
 Vec3 direction(const Machine& machine, const AxisValues& values) {
     const Vec3 tip = tip_place(machine, values, 1.0), gauge = tip_place(machine, values, 0.0);
     return gauge - tip;
 }
 
-/// Ends and middle; empty where an end is not known.
+/// Positions at start, middle and end; empty if an end is unknown.
 std::optional<std::array<AxisValues, 3>> places_of(const Motion& motion) {
     std::array<AxisValues, 3> places{};
     for (size_t i = 0; i < axis_count; ++i) {
@@ -82,18 +82,19 @@ std::optional<Finding> singular_orientation(const Machine& machine, const Motion
         && seen.way < way_per_degree * seen.turn) {
         finding.message =
             fmt::format("Near the pole: {} turns {:.1f} degrees while the tip moves {:.3f} mm and "
-                        "the tool leans by {:.2f} degrees. The tool dwells in the cut meanwhile.",
+                        "the tool tilts by {:.2f} degrees. Meanwhile the tool dwells in the cut.",
                         axis_letters[seen.axis], seen.turn, seen.way, seen.lean);
-        finding.cure = "Lean the tool or the set-up by a few degrees more, away from the pole, or "
+        finding.cure = "Tilt the tool or the work a few degrees farther away from the pole, or "
                        "retract before the axis swings round.";
         return finding;
     }
     if (motion.tip || seen.turning < 2 || seen.off <= swing) return std::nullopt;
     finding.message = fmt::format(
-        "Without tool centre control the tip swings {:.2f} mm off its straight line in this block, "
-        "on which {} turns {:.1f} degrees.",
+        "Without tool centre point control, the tip swings {:.2f} mm off its straight line in this "
+        "block, in which {} turns {:.1f} degrees.",
         seen.off, axis_letters[seen.axis], seen.turn);
-    finding.cure = "Switch tool centre control on (G43.4), or post the program in shorter blocks.";
+    finding.cure =
+        "Switch on tool centre point control (G43.4), or post the program in shorter blocks.";
     return finding;
 }
 

@@ -9,12 +9,12 @@
 namespace core {
 namespace {
 
-constexpr double longest_stick_out = 300.0; // mm that anybody would make a tool longer by
-constexpr double stick_out_step = 0.01;     // mm, to which the answer is worked out
-constexpr size_t enough = 500;              // legs of a tool that are looked at again
+constexpr double longest_stick_out = 300.0; // mm, maximum increase that is tried
+constexpr double stick_out_step = 0.01;     // mm, precision of the result
+constexpr size_t enough = 500; // maximum number of legs per tool that are checked again
 
-/// The tool with everything above the flutes, or above the shank, higher by `by`. What is moved
-/// leaves no gap: its lowest piece becomes longer.
+/// The tool with its holder, or its shank and holder, raised by `by`. Raising the holder leaves no
+/// gap: the shank becomes longer.
 ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
     for (ToolPart& part : tool.parts) {
         if (part.kind < from) continue;
@@ -32,8 +32,7 @@ ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
     return tool;
 }
 
-/// Whether the parts from this one up keep their allowances on the leg, against the stock as it was
-/// left.
+/// Whether the part `from`, raised by `by`, keeps its allowance to the remaining stock on the leg.
 bool keeps_clear(const LegAsRun& cut, PartKind from, double by) {
     const ToolAssembly longer = raised(cut.tool, from, by);
     CutModel stock = cut.stock;
@@ -50,8 +49,8 @@ bool keeps_clear(const LegAsRun& cut, PartKind from, double by) {
     });
 }
 
-/// The least height, to within `step`, at or above `known` that keeps the leg clear; `most` if none
-/// does.
+/// Least raise, to within `stick_out_step` and at least `known`, that keeps the leg clear, mm;
+/// `longest_stick_out` if there is none.
 double needed(const LegAsRun& cut, PartKind from, double known) {
     if (keeps_clear(cut, from, known)) return known;
     double low = known, high = std::max(1.0, 2.0 * known);
@@ -67,8 +66,8 @@ double needed(const LegAsRun& cut, PartKind from, double known) {
     return high;
 }
 
-/// As long as whoever described the tool says, else as their shape is high: some reach a little
-/// into the neck for the sake of the check.
+/// Stated flute length, else the height of the flutes' shape, which may reach a little into the
+/// neck.
 double top_of_flutes(const ToolAssembly& tool) {
     const double stated = tool.description.flute_length;
     return stated > 0.0 ? stated : bounds(tool.parts[0].profile).max.z;
@@ -80,11 +79,11 @@ double stick_out_of(const ToolAssembly& tool) {
     return tool.length;
 }
 
-/// A length that is no less, to a tenth.
+/// A length, rounded up to a tenth.
 double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0; }
 
 std::string in_blocks(const ToolReach& reach) {
-    if (reach.looks > enough) return " in the first of these blocks, the others were not tried";
+    if (reach.looks > enough) return " in the first of these blocks (the others were not tried)";
     if (reach.blocks == 2) return " in both blocks";
     return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
 }
@@ -103,18 +102,19 @@ Finding short_stick_out(const ToolAssembly& tool, const ToolReach& reach) {
     finding.pair = {name_of(PartKind::holder), "stock"};
     finding.shortfall = reach.more_stick_out;
     finding.message = fmt::format("Tool {} sticks out {:.1f} mm, too little for this depth: its "
-                                  "holder comes too near to the stock.",
+                                  "holder comes too close to the stock.",
                                   number, now);
     finding.cure =
         reach.more_stick_out >= longest_stick_out
-            ? "No stick-out helps: less depth, or a slimmer holder."
-            : fmt::format("A stick-out of {:.1f} mm keeps every allowance{}; or use a slimmer "
+            ? "No stick-out is long enough: use less depth or a slimmer holder."
+            : fmt::format("A stick-out of {:.1f} mm gives enough clearance{}; or use a slimmer "
                           "holder.",
                           tenths_up(now + reach.more_stick_out), in_blocks(reach));
     return finding;
 }
 
-/// The shank in the way: the flutes are too short for the depth, and so is all that is slim enough.
+/// Adds the findings about a shank in the way: the flutes, or the flutes with the neck, are too
+/// short for the depth.
 void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
                       std::vector<Finding>& findings) {
     const int number = value_of(tool.description.number);
@@ -127,18 +127,21 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
         fmt::format("Tool {} cuts deeper than its flutes are long ({:.1f} mm): the shank "
                     "is pushed into material.",
                     number, now);
-    deep.cure = hopeless ? "Less depth, or a tool with a slimmer shank."
-                         : fmt::format("Flutes of {:.1f} mm would do{}, or passes of less depth.",
-                                       tenths_up(now + reach.more_flute), in_blocks(reach));
+    deep.cure =
+        hopeless
+            ? "Use less depth, or a tool with a slimmer shank."
+            : fmt::format("Flutes of {:.1f} mm would be long enough{}; or use shallower passes.",
+                          tenths_up(now + reach.more_flute), in_blocks(reach));
     Finding reach_short = deep;
     reach_short.rule = "stick-out-short";
-    reach_short.message = fmt::format("Flutes, shank and depth of tool {} do not fit: its shank "
+    reach_short.message = fmt::format("Tool {} does not reach this depth: its shank "
                                       "begins {:.1f} mm above the tip and meets the wall.",
                                       number, now);
     reach_short.cure =
-        hopeless ? "A tool with a slimmer shank or a neck, or less depth."
-                 : fmt::format("A tool that is slim up to {:.1f} mm above its tip, or less depth.",
-                               tenths_up(now + reach.more_flute));
+        hopeless ? "Use a tool with a slimmer shank or a neck, or less depth."
+                 : fmt::format(
+                     "Use a tool that is relieved up to {:.1f} mm above its tip, or less depth.",
+                     tenths_up(now + reach.more_flute));
     findings.push_back(std::move(deep));
     findings.push_back(std::move(reach_short));
 }
@@ -147,10 +150,10 @@ Finding rubbing(const ToolAssembly& tool, const ToolReach& reach) {
     Finding finding = about("over-engagement", reach.rub_block);
     finding.severity = Severity::note;
     finding.pair = {name_of(PartKind::shank), "stock"};
-    finding.message = fmt::format("Deeper than the flutes of tool {} are long ({:.1f} mm): its "
+    finding.message = fmt::format("Tool {} cuts deeper than its flutes are long ({:.1f} mm): its "
                                   "shank rubs along the wall that they have cut.",
                                   value_of(tool.description.number), top_of_flutes(tool));
-    finding.cure = "A tool with longer flutes or a relieved neck.";
+    finding.cure = "Use a tool with longer flutes or a relieved neck.";
     return finding;
 }
 

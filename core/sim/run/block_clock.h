@@ -12,45 +12,46 @@ namespace core {
 struct BlockEvents;
 struct BlockResult;
 
-/// A part of a block in which one motion takes place, or none.
+/// A part of a block: one motion, or a dwell.
 struct BlockStretch {
-    double at_full_speed = 0.0; // seconds it would take without accelerations
-    MotionTime time;            // of no length when the machine stands still
+    double at_full_speed = 0.0; // duration without accelerations, seconds
+    MotionTime time;            // its length is 0 if the machine does not move
     bool final = false;
 };
 
-/// When a block takes place, under the speeds and accelerations of the machine.
+/// Start and duration of a block, with the speeds and accelerations of the machine.
 struct BlockTime {
     BlockIndex block{};
     double start = 0.0, duration = 0.0; // seconds
     std::vector<BlockStretch> stretches;
 
-    /// The time after its start of what would happen after this share of its time at full speed.
+    /// Time from the block's start, seconds, of the event that occurs after this fraction of the
+    /// block's time without accelerations.
     double moment(double share) const;
 };
 
-/// Blocks on their way to a place in time. A plain value: copy it to go back.
+/// Blocks whose times are being computed. A plain value: copy it to step back.
 struct BlockClock {
     Machine machine;
     TimePlan plan;
-    std::deque<BlockTime> open; // blocks without their duration yet, in order
-    uint32_t first_open = 0;    // how many came before them
-    double time = 0.0;          // seconds, when the first of them starts
+    std::deque<BlockTime> open; // blocks without a final duration, in order
+    uint32_t first_open = 0;    // number of blocks before them
+    double time = 0.0;          // start of the first of them, seconds
 };
 
-/// A clock at 0, for this machine.
+/// A clock at time 0 for this machine.
 BlockClock start_clock(const Machine& machine);
 
-/// Adds a block and appends the blocks whose time has become final to `done`, in order:
-/// when it has become so for the planner (see TimePlan). Changes of tool and spindle bring the
-/// machine to rest; the time they take by themselves is not known and not counted.
+/// Adds a block and appends the blocks whose times have become final (see TimePlan) to `done`, in
+/// order. Changes of tool and spindle bring the machine to rest; their own duration is unknown and
+/// not counted.
 void add_block(BlockClock& clock, const BlockEvents& block, std::vector<BlockTime>& done);
 
-/// The end of the program: everything becomes final.
+/// Ends the program: makes the times of all blocks final.
 void stop_clock(BlockClock& clock, std::vector<BlockTime>& done);
 
-/// Puts a block in its place in time. The times of its pairs keep their places on the path, except
-/// that those of dog-leg rapids keep their share of the motion's time.
+/// Sets the times of a block. The times of its pairs keep their positions on the path, but in
+/// dog-leg rapids they keep their fraction of the motion's time.
 void settle_time(BlockResult& result, const BlockTime& time);
 
 } // namespace core

@@ -38,7 +38,7 @@ void BlockRun::check_limits(const Motion& motion) {
                          below > above ? at_least(range.min[i]) : at_most(range.max[i]),
                          at_most(beyond), is_rotary(i) ? "degrees" : "mm"),
              i == 2         ? "Move the work, or use another tool length or work offset."
-             : is_rotary(i) ? "Turn the work, or reach the same place from the other side."
+             : is_rotary(i) ? "Turn the work, or reach the same position from the other side."
                             : "Move the work, or use another work offset.");
     }
 }
@@ -48,21 +48,22 @@ void BlockRun::round_corners(const Motion& motion) {
     if (corners.by == 0.0) return;
     off_path = std::max(off_path, corners.by);
     if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool);
-    state.assumptions.insert(
-        fmt::format("feeds may be up to {:g} mm off their programmed way while the control rounds "
-                    "corners (G64): clearances say so",
-                    corners.by));
+    state.assumptions.insert(fmt::format(
+        "feeds may deviate by up to {:g} mm from the programmed path while the control rounds "
+        "corners (G64); clearances include this",
+        corners.by));
 }
 
 void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
-    // Nobody knows where the machine comes from: what is not clear from everywhere is told, once.
+    // The start position is unknown: report, once, a motion that is not clear from every possible
+    // start.
     if (!block.judgement && !path.legs.empty()) {
         std::vector<TrackedPair> here;
         for (const Leg& leg : path.legs)
             leg_check(use(motion)).run(leg, result.duration, state.stock, here);
         const TrackedPair* worst = deciding_pair(here);
         if (!worst || worst->verdict == Verdict::clear) {
-            // A block with several motions, such as G28, may have come here before.
+            // In a block with several motions, such as G28, the pair may have an entry already.
             for (const TrackedPair& pair : here) {
                 TrackedPair& known = entry(pairs, pair.pair, setup);
                 merge(known, pair);
@@ -75,9 +76,9 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     result.checked = false;
     if (std::exchange(state.told_unknown_start, true)) return;
     find("first-move",
-         "The machine starts from a place nobody knows, so this motion cannot be judged.",
-         "Say where the axes stand at the first block: `start` under [program] in the set-up, or "
-         "the machine's home.");
+         "The start position of the machine is unknown, so this motion cannot be checked.",
+         "State the axis positions at the first block: `start` under [program] in the set-up, or "
+         "the machine's home position.");
 }
 
 void BlockRun::carry_out(const Motion& motion) {
@@ -97,7 +98,7 @@ void BlockRun::carry_out(const Motion& motion) {
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
-        // Nothing moves that could meet anything.
+        // No body moves.
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else if (block.judgement) {
@@ -156,7 +157,7 @@ void BlockRun::follow_path(const Motion& motion, const Path& path) {
     LegCheck check = leg_check(use(motion));
     for (const Leg& leg : path.legs) {
         watch_centre(motion, leg);
-        // On a motion that turns nobody knows how far it has come when it meets the stock.
+        // If rotary axes move, the position at which the tool meets the stock is unknown.
         if (cuts || (block.judgement->runs_into_stock && !turns))
             result.removed += check.only_cut(leg, state.stock);
     }
@@ -173,7 +174,7 @@ void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutMo
     Machine machine = setup.machine;
     machine.rapid = RapidStyle::straight;
     CutModel stock = before;
-    CheckMemory memory; // bounds of the run hold along its own path only
+    CheckMemory memory; // the bounds of the run only hold along its own path
     std::vector<TrackedPair> along_the_line;
     for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
         leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
@@ -210,12 +211,12 @@ void BlockRun::move_without_tool(const Motion& motion) {
     if (state.tool)
         find(
             "undecided",
-            fmt::format("Tool {} moves, but nothing is known about it: none of its motions can be "
+            fmt::format("Tool {} moves, but it is not described: none of its motions can be "
                         "checked.",
                         value_of(*state.tool)),
             fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*state.tool)));
     else
-        find("undecided", "The program feeds before it calls a tool: nobody knows what moves.",
+        find("undecided", "The program feeds before it calls a tool, so the tool is unknown.",
              "Call the tool (T and M6), or describe a single tool in the set-up.");
 }
 

@@ -7,8 +7,8 @@
 namespace core {
 namespace {
 
-/// The place of the witness in time, at its earliest, where several moments are equally near:
-/// `nearest` is how near it is on the programmed way.
+/// Sets the time of the witness to the earliest of several moments at which the pair is equally
+/// near. `nearest` is the distance on the programmed path.
 void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
     if (!pair.found() || (!pair.pair.fixture && run.result.removed > 0.0)) return;
     for (const TimedLeg& timed : run.legs) {
@@ -30,7 +30,8 @@ void BlockRun::forget_bounds() {
 }
 
 void BlockRun::carry_out(const ToolChange& change) {
-    // Only the tool that was there knows when it was nearest.
+    // The earliest time can only be found with the tool that made the motion, so find it before the
+    // change.
     if (const TrackedPair* worst = deciding_pair(pairs))
         settle_time(*this, pairs[static_cast<size_t>(worst - pairs.data())], worst->upper);
     legs.clear();
@@ -52,14 +53,14 @@ void BlockRun::carry_out(const ToolChange& change) {
 
 void BlockRun::carry_out(const PathModeChange& change) {
     if (change_mode(state.corners, change, setup.machine))
-        state.assumptions.insert("corners are passed as programmed where G64 states no tolerance "
-                                 "and the machine no corner_tolerance");
+        state.assumptions.insert("the control does not round corners where neither G64 nor "
+                                 "`corner_tolerance` of the machine gives a tolerance");
 }
 
 void BlockRun::carry_out(const FixtureChange& change) {
     forget_bounds();
     state.fixtures_there[change.fixture] = change.is_there;
-    state.memory.cuts.erase(change.fixture); // another one may stand there
+    state.memory.cuts.erase(change.fixture); // another fixture may be there now
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
         return;
@@ -91,7 +92,7 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
         return motion.from[i] && motion.to[i] ? std::abs(*motion.to[i] - *motion.from[i]) : 0.0;
     };
     if (way(3) + way(4) + way(5) > 0.0) return true;
-    // A drill may follow a hole that is not quite upright.
+    // A drill may follow a hole that is slightly inclined.
     constexpr double slack = 0.1, slope = 0.05;
     return !motion.arc && std::hypot(way(0), way(1)) <= slack + slope * way(2);
 }
@@ -128,7 +129,7 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
         finding.rule = "collision";
         finding.message = fmt::format("Tool {} is a drill and is fed sideways into the stock.",
                                       value_of(tool()->description.number));
-        finding.cure = "Drill along its axis, or mill with a tool that cuts at its side.";
+        finding.cure = "Drill along the tool axis, or mill with a tool that cuts on its sides.";
     }
     if (!pushes_centre) return finding;
     const ToolDescription& described = tool()->description;
@@ -136,8 +137,8 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
         "Tool {} does not cut within {:g} mm of its axis, and its centre is pushed into the stock.",
         value_of(described.number), described.centre_radius);
     finding.cure = fmt::format(
-        "Ramp or wind in by at most {:.1f} degrees, in circles of more than {:g} mm radius; drill "
-        "first; or use a tool that cuts at its centre.",
+        "Ramp or helix in at {:.1f} degrees or less, with a radius of more than {:g} mm; "
+        "pre-drill; or use a centre-cutting tool.",
         std::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
             / std::numbers::pi,
         described.centre_radius);
@@ -153,7 +154,7 @@ void BlockRun::conclude() {
                                   [](const TimedLeg& timed) { return rises(timed.leg); });
     const bool follows =
         follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
-    std::vector<double> on_the_way; // how near each pair is where the program goes
+    std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
         widen(pair, off_path, state.corners, follows);
@@ -168,7 +169,7 @@ void BlockRun::conclude() {
     result.verdict = std::max(result.verdict, at_change);
     if (setup.detail == Detail::verdict && result.deciding
         && pairs[*result.deciding].verdict == Verdict::clear) {
-        // Of the others only bounds are known: which pair decides is not.
+        // Only bounds of the other pairs are known, so the deciding pair may be unknown.
         double least = infinity;
         for (const PairClearance& pair : pairs)
             least = std::min(least, pair.lower - pair.allowance.distance);
@@ -193,7 +194,7 @@ void BlockRun::conclude() {
 }
 
 void BlockRun::conclude(const Judgement& judgement) {
-    // A rule may have found a pair in collision by looking at what is cut.
+    // A rule that follows the cut may have found a pair in collision.
     for (const PairClearance& pair : judgement.pairs) merge(entry(pairs, pair.pair, setup), pair);
     const auto is_worse = [](const PairClearance& a, const PairClearance& b) {
         return a.verdict != b.verdict ? a.verdict > b.verdict : a.margin() < b.margin();

@@ -7,13 +7,13 @@
 
 namespace core {
 
-/// One leg of the block, with when its motion began.
+/// A leg of the block, with the start of its motion.
 struct TimedLeg {
     Leg leg;
-    double start; // seconds after the block's start
+    double start; // seconds from the block's start
 };
 
-/// A pair that does not keep its allowance, and the kind of motion in which it is worst.
+/// A pair below its allowance, and the kind of motion in which it is worst.
 struct WorstMotion {
     Pair pair;
     Verdict verdict = Verdict::clear;
@@ -21,7 +21,7 @@ struct WorstMotion {
     MotionKind kind = MotionKind::rapid;
 };
 
-/// A block while it is carried out.
+/// A block during its execution.
 struct BlockRun {
     const Setup& setup;
     const BlockEvents& block;
@@ -30,12 +30,12 @@ struct BlockRun {
     std::vector<TrackedPair> pairs = {};
     std::vector<TimedLeg> legs = {};
     std::vector<WorstMotion> worst_motions = {};
-    Verdict at_change = Verdict::clear; // of the new tool where it was changed in
-    bool turns = false;                 // rotary axes move
-    bool pushes_centre = false;         // down into the stock, where the tool does not cut
+    Verdict at_change = Verdict::clear; // of the new tool at the tool change
+    bool turns = false;                 // whether rotary axes move
+    bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
-    double off_path = 0.0;     // that rounded corners may take its feeds, mm
-    bool only_dog_leg = false; // straight, a rapid of this block would be free
+    double off_path = 0.0;     // deviation of its feeds by rounded corners, mm
+    bool only_dog_leg = false; // a rapid of this block would be clear if it were straight
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -55,7 +55,8 @@ struct BlockRun {
         if (finding.severity != Severity::off) result.findings.push_back(std::move(finding));
     }
 
-    /// Adds a finding of a rule that knows its block, with its severity in this set-up.
+    /// Adds the finding of a rule, with its severity in this set-up; without a block, it gets this
+    /// one.
     void tell(std::optional<Finding> finding) {
         if (!finding) return;
         settle_severity(setup, *finding);
@@ -63,7 +64,7 @@ struct BlockRun {
         if (finding->severity != Severity::off) result.findings.push_back(*std::move(finding));
     }
 
-    /// What checks the legs of a motion, with whatever is in the spindle.
+    /// The check for the legs of a motion, with the current tool, if any.
     LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
         return {setup,           tool() ? *tool() : nothing, use,
@@ -88,14 +89,14 @@ struct BlockRun {
     void carry_out(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
-    /// The same where somebody else judges the block.
+    /// Cuts the stock along a path without measuring, for a block with a `Judgement`.
     void follow_path(const Motion& motion, const Path& path);
     void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
     void look_at_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
     void watch_centre(const Motion& motion, const Leg& leg);
     void note_worst(MotionKind kind);
-    /// The motion that a finding about the pair speaks of.
+    /// The motion to name in a finding about the pair.
     BlockMove move_of(const PairClearance& pair) const;
     Finding finding_about(const PairClearance& pair) const;
     void check_tool_change();

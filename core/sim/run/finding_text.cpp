@@ -24,7 +24,7 @@ std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spind
                : "collision";
 }
 
-/// The way out of a near miss: along the axis that leads away from the body most directly.
+/// Cure of a near miss: a shift along the axis that leads most directly away from the body.
 std::string way_out(const PairClearance& pair, double missing) {
     const Vec3 away = pair.on_tool - pair.on_body;
     const double length = glm::length(away);
@@ -32,7 +32,7 @@ std::string way_out(const PairClearance& pair, double missing) {
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
-    // Rounded up: what is printed has to do.
+    // Rounded up, so that the printed shift is enough.
     const std::string along = at_most(missing * length / std::abs(away[axis]));
     return fmt::format("Move the tool path at least {} mm towards {}{}", along, "XYZ"[axis],
                        away[axis] > 0.0 ? '+' : '-');
@@ -40,32 +40,32 @@ std::string way_out(const PairClearance& pair, double missing) {
 
 std::string cure_of_rapid(MoveWithin within) {
     if (within == MoveWithin::way_home)
-        return "Retract along the tool first, as with G91 G28 Z0 or G53 G0 Z0; then the other axes "
-               "go home.";
+        return "Retract along the tool axis first, for example with G91 G28 Z0 or G53 G0 Z0; then "
+               "move the other axes home.";
     if (within == MoveWithin::cycle)
         return "Raise the plane from which the cycle feeds and to which it retracts.";
     return "Raise the retract height, or feed through the material.";
 }
 
-/// What widens the interval of a pair that is not decided, and what would narrow it.
+/// Cure of an undecided pair: reduce whatever widens its interval most.
 std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                           const RoundedCorners& corners) {
     const bool rapid = move.motion == BlockMotion::rapid;
     const double off = off_way(pair.pair, rapid ? 0.0 : corners.by, corners);
-    // Of an interval that ends at 0 nobody knows how far it would have gone on.
+    // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
+    // upper - lower.
     if (off > 0.0 && 4.0 * off >= pair.upper - pair.lower)
-        return fmt::format("The control may round corners by {:g} mm (G64): a smaller tolerance, "
-                           "or G61, decides it; if not, give the block more room.",
+        return fmt::format("The control may round corners by {:g} mm (G64): use a smaller "
+                           "tolerance or G61; if that does not decide it, increase the clearance.",
                            off);
     if (move.turns)
-        return "Turn the rotary axes farther away or in shorter blocks, or give the block more "
-               "room.";
-    if (pair.pair.fixture) return "Give the block more room.";
+        return "Turn the rotary axes farther away or in shorter blocks, or increase the clearance.";
+    if (pair.pair.fixture) return "Increase the clearance.";
     const double tolerance = setup.stock.tolerance;
     if (tolerance <= 0.0)
-        return "A smaller mesh size decides it; if not, give the block more room.";
-    return fmt::format("The raw stock may be {:g} mm larger than stated: measure it and lower "
-                       "`tolerance` of [stock]{}, or give the block more room.",
+        return "Use a smaller mesh size; if that does not decide it, increase the clearance.";
+    return fmt::format("The raw stock may be {:g} mm larger than stated: measure it and reduce "
+                       "`tolerance` of [stock]{}, or increase the clearance.",
                        tolerance, tolerance < setup.mesh_size ? " and the mesh size" : "");
 }
 
@@ -75,25 +75,25 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
     if (rule == "rapid-in-stock") return cure_of_rapid(within);
     if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
     if (rule == "spindle-off")
-        return "Start the spindle the right way round before the tool feeds into the stock.";
+        return "Start the spindle in the correct direction before the tool feeds into the stock.";
     if (rule == "dog-leg-rapid")
-        return fmt::format("Straight the way is free: move the axes one after another round {}, or "
-                           "feed fast instead of the rapid.",
+        return fmt::format("A straight line would be clear: move the axes one after another around "
+                           "{}, or use a fast feed move instead of the rapid.",
                            body);
     const double missing = pair.allowance.distance - pair.upper;
     const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
     const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
     if (!room.empty()) return fmt::format("{}{}.", room, move);
     if (pair.pair.part == PartKind::machine)
-        return "Move the work, or use a longer tool: a part of the machine comes too near.";
+        return "Move the work, or use a longer tool: a machine body comes too close.";
     if (pair.pair.part == PartKind::shank && !fixture)
-        return "Longer flutes, a slimmer shank or neck, or less depth.";
+        return "Use longer flutes, a slimmer shank or neck, or less depth.";
     if (pair.pair.part != PartKind::flutes && !fixture)
-        return "A longer stick-out or a slimmer holder, or less depth.";
+        return "Use a longer stick-out, a slimmer holder, or less depth.";
     return fixture ? fmt::format("Change the path, or move {}.", body) : "Change the path.";
 }
 
-/// Whose rapid it is.
+/// Beginning of a message about a rapid.
 const char* words_for_rapid(MoveWithin within) {
     switch (within) {
     case MoveWithin::way_home:
@@ -116,7 +116,7 @@ std::string rapid_into_stock(const std::string& part, MoveWithin within) {
     return fmt::format("Rapid into material: the {} collides with the stock{}.", part, whose);
 }
 
-/// When in its block something happens.
+/// When in the block it happens, at fraction `at` of its duration.
 std::string how_far(double at) {
     if (at < 0.005) return "at the start of the block";
     return fmt::format("after {:.0f} % of the block", 100.0 * at);
@@ -131,7 +131,7 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
                                                            : "The";
     if (rule == "rapid-in-stock") return rapid_into_stock(part, move.within);
     if (rule == "spindle-off")
-        return "The flutes meet the stock while the spindle stands still or turns the wrong way.";
+        return "The flutes meet the stock while the spindle is stopped or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
         return fmt::format("{} {} collides with {} {}.", kind, part, body, how_far(at));
     const double keep = pair.allowance.distance;
@@ -148,7 +148,7 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
                        clearance_at_least(pair.lower), body, at_most(keep));
 }
 
-/// "The flutes come", "the holder comes".
+/// Changes the verb to the plural for "flutes": "the flutes come", but "the holder comes".
 std::string in_the_plural(std::string message) {
     for (const auto& [one, many] :
          {std::pair{"flutes comes", "flutes come"}, std::pair{"flutes collides", "flutes collide"}})
@@ -157,32 +157,32 @@ std::string in_the_plural(std::string message) {
     return message;
 }
 
-/// What a sentence calls a body.
+/// Name of the second body in a sentence.
 std::string body_in_words(const Setup& setup, const Pair& pair) {
     return pair.fixture ? body_name(setup, pair) : "the stock";
 }
 
-/// What a tool that was just changed in does to the body.
+/// Message about a new tool at the tool change position.
 std::string change_message(const PairClearance& pair, ToolNumber tool, const std::string& part,
                            const std::string& body) {
     const bool many = pair.pair.part == PartKind::flutes;
     const int number = value_of(tool);
     if (pair.verdict == Verdict::collision)
-        return fmt::format("Tool {} is changed in where its {} {} in {}.", number, part,
-                           many ? "stand" : "stands", body);
+        return fmt::format("Tool {} is loaded where its {} {} with {}.", number, part,
+                           many ? "collide" : "collides", body);
     const double keep = pair.allowance.distance;
     if (pair.verdict == Verdict::violation)
         return fmt::format(
-            "Tool {} is changed in where its {} {} only {} mm from {}; {} mm must be kept.", number,
-            part, many ? "are" : "is",
+            "Tool {} is loaded where its {} {} only {} mm from {} (minimum clearance {} mm).",
+            number, part, many ? "are" : "is",
             bounds_text(pair.lower, pair.upper, " to ", digits_below(pair.upper, keep)), body,
             at_most(keep));
-    return fmt::format("Tool {} is changed in where its {} may be as near to {} as {} mm; {} mm "
-                       "must be kept.",
+    return fmt::format("Tool {} is loaded where its {} may be as close to {} as {} mm (minimum "
+                       "clearance {} mm).",
                        number, part, body, clearance_at_least(pair.lower), at_most(keep));
 }
 
-/// Whatever it is called, a collision is never passed over.
+/// A collision is always an error, whatever severity its rule has.
 Severity severity_about(const Setup& setup, const PairClearance& pair, const std::string& rule) {
     return pair.verdict == Verdict::collision ? Severity::error : severity_of(setup, rule);
 }
@@ -221,7 +221,8 @@ Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber 
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.pair = {part_name(setup, pair.pair), body_name(setup, pair.pair)};
     finding.message = change_message(pair, tool, finding.pair[0], body_in_words(setup, pair.pair));
-    finding.cure = "Move to a safe place, as with G28 or G53 Z0, before the tool change.";
+    finding.cure =
+        "Move to a safe position, for example with G28 or G53 Z0, before the tool change.";
     finding.shortfall = shortfall_of(pair);
     return finding;
 }

@@ -7,23 +7,24 @@ namespace core {
 struct Setup;
 struct SimulatorState;
 
-/// What a motion is a part of, if its block has several.
+/// The context of a motion in a block with several motions.
 enum class MoveWithin : uint8_t { nothing, block, cycle, way_home };
 
-/// What a block moves, as far as it names what came of it.
+/// The properties of a block's motion that affect the rule and message of a finding.
 struct BlockMove {
-    BlockMotion motion = BlockMotion::none; // of several: rapid if that is the one in question
-    bool turns = false;                     // rotary axes move
-    double duration = 0.0;                  // seconds
-    bool only_dog_leg = false;              // straight, the rapid would keep every allowance
+    BlockMotion motion =
+        BlockMotion::none;     // `rapid` if the pair was worst in a rapid of several motions
+    bool turns = false;        // rotary axes move
+    double duration = 0.0;     // seconds
+    bool only_dog_leg = false; // the rapid would be clear if it were straight
     MoveWithin within = MoveWithin::nothing;
 };
 
-/// The finding for a pair that did not keep its allowance in a block, with its cure.
+/// The finding for a pair below its allowance in a block, with its cure.
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                    const SimulatorState& state);
 
-/// The finding for a tool that is changed in where it does not keep an allowance.
+/// The finding for a tool change at a position where a pair of the new tool is below its allowance.
 Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool);
 
 } // namespace core

@@ -7,15 +7,15 @@
 namespace core {
 namespace {
 
-/// Speeds that are one.
+/// Speeds that differ by less are equal, mm/s.
 constexpr double same_speed = 1e-9;
 
-/// The speed at which a machine that brakes towards a place is there.
+/// A machine that brakes towards a point has reached it below this speed, mm/s.
 constexpr double creeping = 1e-6;
 
 bool stands_still(const MotionTime& time) { return !(time.length > 0.0); }
 
-/// The speed by plan where so much of a motion lies behind.
+/// Planned speed after a length `along` of a motion.
 double planned_speed(const MotionTime& time, double along) {
     if (stands_still(time)) return 0.0;
     const double a = time.acceleration;
@@ -25,7 +25,7 @@ double planned_speed(const MotionTime& time, double along) {
     return std::min(time.cruise, std::sqrt(std::max(0.0, std::min(up, down))));
 }
 
-/// How much of a motion lies behind after so many seconds by plan.
+/// Length of a motion that is covered after `seconds` by plan.
 double covered(const MotionTime& time, double seconds) {
     if (stands_still(time)) return 0.0;
     const double a = time.acceleration;
@@ -38,12 +38,12 @@ double covered(const MotionTime& time, double seconds) {
                                      + (seconds - rising) * time.cruise);
 }
 
-/// The time by plan at which so much of a motion lies behind.
+/// Planned time after a length `along` of a motion, seconds from its start.
 double moment_of(const MotionTime& time, double along) {
     return stands_still(time) ? 0.0 : time.moment(along);
 }
 
-/// What a machine does within one set point.
+/// Advances a machine by one set point.
 class Tick {
 public:
     explicit Tick(PermitRun& run) : run_(run) {}
@@ -64,9 +64,9 @@ public:
 private:
     double lag() const { return 3.0 * run_.servo.period + run_.servo.latency; }
     const MotionTime& motion(size_t i) const { return run_.motions[i].time; }
-    /// Whether a permit is due that is not there.
+    /// Whether a permit is due but missing.
     bool is_late() const { return run_.seen < run_.due; }
-    /// The speed by plan at the place where it is.
+    /// Planned speed at the current position.
     double planned() const {
         return run_.servo.feed
                * planned_speed(motion(run_.motion), run_.place() - run_.starts[run_.motion]);
@@ -88,12 +88,12 @@ private:
         }
         const double place = run_.place(), speed = run_.speed_now();
         const auto way_to_stop = [&](double a) { return speed * (0.5 * speed / a + lag()); };
-        double weakest = now.acceleration; // on the way there
+        double weakest = now.acceleration; // from here to motion i
         for (size_t i = run_.motion + 1; i < run_.motions.size(); ++i) {
             const double left = run_.starts[i] - place;
             if (left > way_to_stop(run_.weakest)) return;
             if (left <= way_to_stop(weakest)) fall_due(i);
-            if (stands_still(motion(i))) return; // it stops there anyway
+            if (stands_still(motion(i))) return; // the machine stops there anyway
             weakest = std::min(weakest, motion(i).acceleration);
         }
     }
@@ -114,7 +114,7 @@ private:
         run_.is_behind = false;
     }
 
-    /// Begins the next motion; false: it must not.
+    /// Begins the next motion; false if there is none or its permit is missing.
     bool enter_next(double when) {
         if (++run_.motion == run_.motions.size()) return false;
         run_.into = run_.along = 0.0;
@@ -141,7 +141,8 @@ private:
         }
     }
 
-    /// The speed from which it still stops before the first motion without a permit.
+    /// Highest speed from which the machine can still stop before the first motion without a
+    /// permit.
     double bearable_speed() const {
         if (!is_late()) return infinity;
         const double left = std::max(0.0, run_.starts[run_.seen] - run_.place());
@@ -156,7 +157,7 @@ private:
         const double faster = run_.speed + motion(run_.motion).acceleration * period;
         const double bearable = bearable_speed();
         run_.speed = std::min({faster, planned(), bearable});
-        if (is_late() && bearable < creeping) { // and less than that, in mm, before the place
+        if (is_late() && bearable < creeping) { // and less than 1e-6 mm before that point
             while (enter_next(run_.time() + period)) {
             }
             return;

@@ -18,41 +18,41 @@ namespace core {
 
 struct Setup;
 
-/// Everything a run leaves behind for its next block. A plain value: copy it to go back in time.
+/// State of a run between two blocks. A plain value: copy it to step back.
 struct SimulatorState {
     CutModel stock;
-    std::optional<ToolNumber> tool;   // what is in the spindle; empty: nothing, or nobody knows
-    bool tool_known = false;          // something was called, if only an empty spindle
-    AxisPosition position;            // where the last motion ended
-    std::vector<bool> fixtures_there; // of the set-up's fixtures
+    std::optional<ToolNumber> tool;   // tool in the spindle; empty: none, or unknown
+    bool tool_known = false;          // a tool or an empty spindle was called
+    AxisPosition position;            // at the end of the last motion
+    std::vector<bool> fixtures_there; // whether each fixture of the set-up is mounted
     SpindleChange spindle;
     LengthOffsetChange length_offset;
     PieceWatch pieces;  // of the stock
-    CentreWatch centre; // of a tool that does not cut there
+    CentreWatch centre; // of a tool that does not cut at its centre
     RunWatch watch;
-    double time = 0.0; // seconds since the program's start, everything at full speed
+    double time = 0.0; // seconds since the program's start, without accelerations
     Statistics statistics;
     CheckMemory memory;
     RoundedCorners corners;
-    std::set<std::string> assumptions; // what had to be taken for granted on the way
+    std::set<std::string> assumptions; // assumptions made so far
     bool told_unknown_start = false;
-    bool told_unchecked_tool = false; // of the tool that is in the spindle now
+    bool told_unchecked_tool = false; // for the tool now in the spindle
 };
 
-/// Whether the spindle turns, the way round that the tool cuts. At 0 rev/min it stands.
+/// Whether the spindle turns in the cutting direction of the tool, at more than 0 rev/min.
 bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool);
 
-/// Whether the tool cuts the way a motion goes: a drill cuts along its axis alone. Motions on which
-/// rotary axes move are taken to go such a way.
+/// Whether the tool can cut in the direction of a motion: a drill cuts only along its axis. Motions
+/// in which rotary axes move are assumed to be in a cutting direction.
 bool cuts_along(const ToolAssembly& tool, const Motion& motion);
 
-/// What a run needs to know of a block.
+/// Input of a run for one block.
 struct BlockEvents {
     BlockIndex block{};
-    bool is_cycle = false; // one block with several motions: a canned cycle, G28
+    bool is_cycle = false; // several motions in one block: a canned cycle, G28
     std::span<const Event> events;
     bool goes_home = false; // G28 or G30
-    // In place of measuring: the stock is cut, and rules that need no clearance are told.
+    // Replaces measuring: the stock is still cut, and rules that need no clearance still apply.
     const Judgement* judgement = nullptr;
 };
 
@@ -61,10 +61,10 @@ struct BlockEvents {
 /// Errors: those of make_cut_model, for a stock that cannot be modelled.
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position);
 
-/// Carries out one block: moves, cuts, measures. The set-up must outlive the result.
+/// Runs one block: moves, cuts, measures. The set-up must outlive the result.
 BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorState& state);
 
-/// What can only be told behind the last block, each finding with the block that it is about.
+/// Findings that are only known after the last block, each with the block that it is about.
 std::vector<Finding> end_of_run(const Setup& setup, SimulatorState& state);
 
 } // namespace core
