@@ -1,4 +1,4 @@
-"""Prints the seconds that each module took in the last build, from ninja's log.
+"""Prints the compile time of each module in the last build, from ninja's log.
 
 usage: build_times.py build/release/.ninja_log
 """
@@ -9,7 +9,7 @@ import sys
 
 
 def module_of(output):
-    """The folder of the sources that an object or library was made of."""
+    """The folder of the sources of an object or library."""
     folder = re.sub(r"/CMakeFiles/.*", "", output) if "CMakeFiles" in output else os.path.dirname(output)
     return folder or "(headers)"
 

@@ -1,2 +1,2 @@
-// Exists so that headers.h has a target that precompiles it.
+// Source of the target that precompiles headers.h.
 #include "cmake/headers.h"

@@ -1,2 +1,2 @@
-// Exists so that test_headers.h has a target that precompiles it.
+// Source of the target that precompiles test_headers.h.
 #include "cmake/test_headers.h"

@@ -1,11 +1,11 @@
-# Fails when a test outside tests/bench and tests/speed reads a clock: on a busy machine everything
-# takes longer. Count work instead, or move the check of the time to tests/speed. Run from the root
-# of the sources.
+# Fails when a test outside tests/bench and tests/speed reads a clock, because durations depend on how
+# busy the machine is. Count operations instead, or move the timing check to tests/speed. Run from the
+# source root.
 cmake_minimum_required(VERSION 3.25)
 
-# These need a clock but compare no duration with a limit that a slow machine could exceed: they
-# give up waiting after one minute or more (cluster is run by hand), or they make a file look
-# recently written.
+# These need a clock but do not compare a duration with a limit that a slow machine could exceed: they
+# stop waiting after one minute or more (cluster is run manually), or they set the time stamp of a
+# file.
 set(allowed
   tests/app/store_writing_test.cpp tests/app/watched_files_test.cpp tests/support/signalled.h
   tests/support/terminal.h tests/viewer/await_frames.cpp tests/viewer/device_worker_test.cpp
@@ -30,5 +30,5 @@ foreach(file IN LISTS files)
   endforeach()
 endforeach()
 if(violations)
-  message(FATAL_ERROR "tests that look at a clock:\n${violations}")
+  message(FATAL_ERROR "tests that read a clock:\n${violations}")
 endif()

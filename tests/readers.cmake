@@ -1,10 +1,10 @@
-# Fails when a folder used by a check reads files by other means than core/base/file_reads, which
-# reports the files on which the check depends. Run from the root of the sources.
+# Fails when a folder used by a check reads files without core/base/file_reads, which reports the
+# files that the check depends on. Run from the source root.
 cmake_minimum_required(VERSION 3.25)
 
-# gcode/text/source and core/geom/mesh_file find the reason for refusing a file before they read it;
+# gcode/text/source and core/geom/mesh_file determine why a file cannot be read before they read it;
 # windows of lines are for programs that are only translated. app/base/file_stamp is for outputs and
-# watches, saved_setup reads the file that it writes, and the prompt reads a file named there.
+# watched files, saved_setup reads the file that it writes, and the prompt reads a file named there.
 set(allowed
   core/base/file_reads.cpp gcode/language/program_folder.cpp gcode/text/source.cpp
   core/geom/mesh_file.cpp app/base/sha256.cpp app/base/file_stamp.cpp
@@ -29,5 +29,5 @@ foreach(folder core gcode hwsim app/base app/setup app/check app/coproc app/debu
   endforeach()
 endforeach()
 if(violations)
-  message(FATAL_ERROR "read by core/base/file_reads what a check reads:\n${violations}")
+  message(FATAL_ERROR "use core/base/file_reads for the files that a check reads:\n${violations}")
 endif()

@@ -2,7 +2,7 @@
 """Write the meshes of this folder: binary STL, millimetres, closed, facing outwards.
 
 Every mesh is checked before it is written: each edge is used once in each direction, and the
-volume is the one worked out by another way. The same bytes come out on every run.
+volume must equal the one computed by another method. Every run writes the same bytes.
 """
 
 import math
@@ -64,7 +64,7 @@ def write_blank(name):
     write_checked(name, chamfered_box(size, chamfer), chamfered_box_volume(size, chamfer))
 
 
-# Upper side of PARALLEL.NC's work, some 0.3 mm above what the ball leaves: y and z, mm.
+# Upper side of PARALLEL.NC's work, about 0.3 mm above the finished surface: y and z, mm.
 ROUGHED_TOP = [
     (0.0, -10.15),
     (6.5, -8.3),
@@ -86,7 +86,7 @@ def write_roughed(name):
     write_checked(name, drilled_block(*block), drilled_block_volume(*block))
 
 
-# --- the 6 inch vise: three meshes, put together for any opening ---------------------------------
+# --- the 6 inch vise: three meshes, combined for any opening -------------------------------------
 
 
 def write_vise6():
@@ -105,14 +105,14 @@ def write_vise6():
 
 
 def write_fork(name):
-    """A forked strap, 125 x 40 x 25: nose at x 0 resting at z 0, open behind for a stud of 12."""
+    """A forked strap, 125 x 40 x 25: nose at x 0 resting at z 0, open at the back for an M12 stud."""
     plan = [(0, -20), (125, -20), (125, -7), (30, -7), (30, 7), (125, 7), (125, 20), (0, 20)]
     upright = lambda u, v, w: (u, v, w)
     write_checked(name, prism(plan, 25.0, upright), (125 * 40 - 95 * 14) * 25)
 
 
 def write_stud(name):
-    """M12 with washer and nut, standing on the strap's upper side at z 0; 12 mm beyond the nut."""
+    """M12 with washer and nut, which rest on the strap at z 0; protrudes 12 mm from the nut."""
     count = 24
     stud, nut, washer = (r / math.cos(math.pi / count) for r in (6.0, 11.0, 13.0))
     profile = [(-100, 0), (33, 0), (33, stud), (21, stud), (21, nut), (3, nut), (3, washer)]
@@ -149,7 +149,7 @@ def write_chuck_jaw(name):
 
 
 def write_cradle(name):
-    """A trunnion's cradle seen from the front, 180 deep; the origin lies on the axis it tilts about."""
+    """A trunnion's cradle seen from the front, 180 deep; the origin is on its tilting axis."""
     profile = [(-190, -120), (190, -120), (190, 90), (150, 90), (150, -70), (-150, -70)]
     profile += [(-150, 90), (-190, 90)]
     write_checked(name, along_y(profile, 180), (380 * 50 + 2 * 40 * 160) * 180)

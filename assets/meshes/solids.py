@@ -1,4 +1,4 @@
-"""Solids: lists of triangles, each three (x, y, z), facing outwards; and what they hold."""
+"""Solids: lists of triangles, each three (x, y, z), facing outwards; and their volumes."""
 
 import math
 
@@ -17,7 +17,7 @@ def triangulate(polygon):
         ear = next(i for i in range(len(rest)) if is_ear(rest, i))
         triangles.append((rest[ear - 1], rest[ear], rest[(ear + 1) % len(rest)]))
         del rest[ear]
-    assert cross(*rest) > 0, "what is left of the polygon is flat"
+    assert cross(*rest) > 0, "the rest of the polygon is flat"
     return triangles + [tuple(rest)]
 
 
@@ -38,7 +38,7 @@ def is_inside(p, triangle):
 
 
 def prism(polygon, length, point):
-    """The polygon carried along its normal; `point(u, v, w)` places it. w runs from 0 to length."""
+    """The polygon extruded along its normal; `point(u, v, w)` gives x, y, z, w from 0 to length."""
     low = lambda p: point(p[0], p[1], 0.0)
     high = lambda p: point(p[0], p[1], length)
     solid = []
@@ -56,16 +56,16 @@ def along_x(polygon, width):
 
 def along_y(polygon, width):
     """A profile in (x, z), extruded over y from -width/2 to width/2."""
-    # (u, v, w) -> (x, z, -y) keeps the hand of the axes.
+    # (u, v, w) -> (x, z, -y) keeps the axes right-handed.
     return prism(polygon, width, lambda u, v, w: (u, width / 2 - w, v))
 
 
 def chamfered_box(size, chamfer):
-    """A box with all its edges chamfered at 45 degrees, standing centred on z = 0."""
+    """A box with all its edges chamfered at 45 degrees, centred in x and y, with its base at z = 0."""
     half = [s / 2 for s in size]
 
     def corner(signs, axis):
-        """The corner point that lies in the face across `axis`."""
+        """The corner point in the face normal to `axis`."""
         p = [s * (h - (0 if i == axis else chamfer)) for i, (s, h) in enumerate(zip(signs, half))]
         return (p[0], p[1], p[2] + half[2])
 
@@ -136,17 +136,17 @@ def height(top, y):
     for (y0, z0), (y1, z1) in zip(top, top[1:]):
         if y0 <= y <= y1:
             return z0 + (z1 - z0) * (y - y0) / (y1 - y0)
-    raise ValueError(f"y {y} is beside the block")
+    raise ValueError(f"y {y} is outside the block")
 
 
 def row(width, y, holes):
-    """The points between two strips where no hole is open: the corners, and where a hole ends."""
+    """The points of the line between two strips: the corners, and the ends of holes."""
     tips = [(cx, y) for cx, cy, r in holes if y in (cy - r, cy + r)]
     return [(0.0, y), *tips, (width, y)]
 
 
 def hole_borders(low, high, holes):
-    """The left and right side, upwards, of each hole that is open between low and high."""
+    """The left and right side, upwards, of each hole that spans low to high."""
     for cx, cy, r in holes:
         if cy - r <= low and high <= cy + r:
             right = arc((cx, cy, r), low, high)
@@ -166,7 +166,7 @@ def arc(hole, low, high):
 
 
 def half_chord(r, d):
-    """Exactly nothing at the ends, where rounding would leave a sliver."""
+    """Half the chord at distance d from the centre; exactly 0 at the ends, to avoid slivers."""
     return 0.0 if abs(abs(d) - r) < 1e-12 else math.sqrt(r * r - d * d)
 
 
@@ -179,10 +179,10 @@ def strip_pieces(width, low, high, holes):
 
 
 def turned(profile, count, place):
-    """A polygon [(w, r), ...] round the axis, counter-clockwise, made of `count` flat sides.
+    """A polygon [(w, r), ...], counter-clockwise, rotated about the axis in `count` flat sides.
 
-    `place(u, v, w)` puts it down; w runs along the axis. Radii reach to the edges: divide one by
-    cos(pi / count) to leave out no point of a round outside.
+    `place(u, v, w)` maps to x, y, z; w runs along the axis. Radii are those of the edges: divide a
+    radius by cos(pi / count) to contain the whole circle.
     """
     def at(p, i):
         if p[1] == 0.0:
@@ -201,16 +201,16 @@ def turned(profile, count, place):
 
 
 def turned_volume(rings, count):
-    """Rings (outer radius, inner radius, length), with `count` flat sides."""
+    """Volume of rings (outer radius, inner radius, length) with `count` flat sides."""
     share = count / 2 * math.sin(2 * math.pi / count)
     return share * sum((outer**2 - inner**2) * length for outer, inner, length in rings)
 
 
-# --- volumes, worked out another way ---------------------------------------------------------------
+# --- volumes, by an independent method -----------------------------------------------------------
 
 
 def chamfered_box_volume(size, chamfer):
-    """The box less the chamfer all round, grown by an octahedron of that radius."""
+    """Minkowski sum of the box, smaller by the chamfer on each side, and an octahedron of that radius."""
     p, q, r = (s - 2 * chamfer for s in size)
     return (
         p * q * r

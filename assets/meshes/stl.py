@@ -45,7 +45,7 @@ def write_stl(name, solid):
 
 
 def rounded_to_float(solid):
-    """What a reader of the file will see."""
+    """The coordinates as stored in the file."""
     as_float = lambda x: struct.unpack("<f", struct.pack("<f", x))[0] + 0.0
     return [tuple(tuple(map(as_float, p)) for p in triangle) for triangle in solid]
 
