@@ -14,7 +14,7 @@ namespace {
 
 constexpr long double pi = std::numbers::pi_v<long double>;
 
-/// How far a value is from the truth, in units of the last place of the truth.
+/// Error of a value, in units of the last place of the true value.
 double ulps(double value, long double truth) {
     const double near = std::abs(static_cast<double>(truth));
     const double ulp = std::nextafter(near, 1e300) - near;
@@ -34,7 +34,7 @@ TEST(SinCos, IsWithinOneUlp) {
         }
     }
     EXPECT_LE(worst, 1.0);
-    EXPECT_GT(worst, 0.5); // no rounding is better than half: the oracle measures something
+    EXPECT_GT(worst, 0.5); // no rounding is better than half, so the oracle does measure the error
 }
 
 TEST(SinCos, HoldsNextToMultiplesOfAQuarterTurn) {
@@ -55,7 +55,7 @@ TEST(SinCos, OfDegreesIsAsGood) {
             const double x = angle(rng);
             const auto [s, c] = sin_cos_deg(x);
             const long double radians = x * (pi / 180);
-            // Near a multiple of 90 the oracle's own argument is rounded.
+            // Near a multiple of 90 the argument of the oracle is rounded, too.
             const double own = 1e-18 * std::abs(x);
             EXPECT_LE(std::abs(static_cast<double>(s - std::sin(radians))),
                       std::max(own, 2.3e-16 * std::abs(s)));
@@ -103,10 +103,10 @@ TEST(AngleOf, IsWithinThreeUlp) {
     EXPECT_EQ(angle_of(5, 5), std::numbers::pi / 4);
 }
 
-/// Every processor must give the bits that one gave; run this under
-/// GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA to take away what the C library may use.
+/// Every processor must give the same bits. Also run this under
+/// GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA, which disables fast functions of the C library.
 TEST(SinCos, HasTheSameBitsEverywhere) {
-    std::mt19937_64 rng(64); // its integers are the same everywhere
+    std::mt19937_64 rng(64); // its integers are equal on all platforms
     uint64_t hash = 14695981039346656037U;
     const auto add = [&](double x) {
         hash = (hash ^ std::bit_cast<uint64_t>(x)) * 1099511628211U;

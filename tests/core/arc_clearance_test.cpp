@@ -12,16 +12,16 @@ namespace {
 
 constexpr double tau = 2.0 * std::numbers::pi;
 
-/// A ring round the middle of which a tool goes, and a pin. Frame: the machine's, the tip being at
-/// the gauge line less its length.
+/// A ring along which the tool moves around the centre, and a pin. Frame: the machine; the tip is
+/// at the gauge line minus the length.
 struct Round {
-    double radius = 30.0; // of the tool's way
+    double radius = 30.0; // of the tool path
     double start = 0.0, angle = tau, rise = 0.0;
-    Vec3 pin = Vec3(0.0); // its middle
+    Vec3 pin = Vec3(0.0); // its centre
     double pin_radius = 10.0;
 };
 
-/// A bare cylinder of 10 mm; nothing else of the tool could come near.
+/// A plain cylinder of 10 mm; no other part of the tool can come near.
 ToolAssembly bare_tool() {
     ToolDescription tool;
     tool.number = ToolNumber{1};
@@ -55,7 +55,7 @@ Motion motion_of(const Round& round, double length) {
     return motion;
 }
 
-/// The pair of the flutes with the pin, over the way.
+/// The result for flutes and pin over the whole path.
 PairClearance passed(const Round& round) {
     const Setup setup = setup_of(round);
     SimulatorState state = *start_of_run(setup, {});
@@ -69,7 +69,7 @@ PairClearance passed(const Round& round) {
     return {};
 }
 
-/// The least distance of the tool's wall from the pin's, both upright, 0 where they overlap.
+/// The distance between the side of the tool and that of the pin, both upright; 0 if they overlap.
 double true_distance(const Round& round) {
     const double away = std::hypot(round.pin.x, round.pin.y);
     const double towards = std::atan2(round.pin.y, round.pin.x);
@@ -126,7 +126,7 @@ TEST(ArcClearance, IsDecidedOnEitherSideOfTheAllowance) {
 }
 
 TEST(ArcClearance, CallsAChordThatCutsThePinNoCollision) {
-    Round round; // the middles of its chords are 0.00125 mm nearer to the pin
+    Round round; // the chord midpoints are 0.00125 mm nearer to the pin
     round.pin_radius = round.radius - 5.0 - 2e-4;
     const PairClearance beside = passed(round);
     EXPECT_EQ(beside.verdict, Verdict::violation);

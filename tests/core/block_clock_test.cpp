@@ -92,7 +92,7 @@ TEST(BlockClock, RoundsCornersByTheStatedTolerance) {
                                      {feed({10, 0, 0}, {10, 10, 0}, 6000)}})[1]
             .duration;
     };
-    // v^2 = 8 P a / sqrt 2 at a right angle of axes alike, from 100 mm/s.
+    // v^2 = 8 P a / sqrt 2 at a right angle with equal axes, from 100 mm/s.
     const auto expected = [](double tolerance) {
         const double v = std::sqrt(8.0 * tolerance * 1000.0 / std::sqrt(2.0));
         return 0.1 + (100.0 - v) / 1000.0 + (10.0 - 5.0 - (10'000.0 - v * v) / 2000.0) / 100.0;
@@ -121,7 +121,7 @@ TEST(BlockClock, RunsTheAxesOfADogLegOneByOne) {
 TEST(BlockClock, PutsWitnessesWhereTheyArePassed) {
     const auto times = times_of(mill(1000), {{feed({0, 0, 0}, {100, 0, 0}, 6000), Dwell{1.0},
                                               feed({100, 0, 0}, {0, 0, 0}, 12'000)}});
-    // At full speed: 1 s there, 1 s of waiting, half a second back; then 1.1, 1 and 0.7.
+    // At full speed: 1 s there, 1 s of waiting, 0.5 s back; then 1.1, 1 and 0.7.
     const BlockTime& time = times[0];
     EXPECT_NEAR(time.duration, 1.1 + 1.0 + 0.7, 1e-12);
     EXPECT_NEAR(time.moment(0.5 / 2.5), 0.55, 1e-12);
@@ -136,8 +136,8 @@ TEST(BlockClock, PutsWitnessesWhereTheyArePassed) {
     EXPECT_NEAR(result.duration, 2.8, 1e-12);
 }
 
-/// Drives a motion from rest to rest and samples its axes finely: none is faster or accelerates
-/// more than it may. Returns the greatest share of its acceleration that any axis used.
+/// Runs a motion from rest to rest, samples its axes finely, and expects that none exceeds its
+/// speed or acceleration. Returns the largest fraction of its acceleration that an axis used.
 double drive(const Motion& motion, const Machine& machine,
              const std::function<AxisValues(double)>& place) {
     const auto path = path_motion(motion, machine);

@@ -39,7 +39,7 @@ TEST(BodyDistance, OfAShapeInACavityIsToItsWalls) {
     const ExactBody hollow = hollow_box();
     expect_distance(separation(ball_at({1, 0, 0}, 2.0), hollow), 3.0);
     expect_distance(separation(ball_at({8, 0, 0}, 1.0), hollow), 0.0);  // in the wall
-    expect_distance(separation(ball_at({0, 0, 0}, 40.0), hollow), 0.0); // swallows it
+    expect_distance(separation(ball_at({0, 0, 0}, 40.0), hollow), 0.0); // encloses it
     expect_distance(separation(ball_at({14, 0, 0}, 1.0), hollow), 3.0);
     EXPECT_EQ(separation(ball_at({8, 0, 0}, 0.1), hollow, {.limit = 1.0}).upper, 0.0);
 }
@@ -57,7 +57,7 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
         expect_distance(separation(hollow, small, translation(c.place), Vec3(0)), c.distance);
         expect_distance(separation(small, hollow, translation(-c.place), Vec3(0)), c.distance);
     }
-    // One of two shells in the matter, the other far outside.
+    // One of two shells is inside the material, the other far outside.
     expect_distance(separation(hollow, two, translation({8, 0, 0}), Vec3(0)), 0.0);
     expect_distance(separation(two, hollow, translation({-8, 0, 0}), Vec3(0)), 0.0);
     expect_distance(separation(hollow, two, translation({38, 0, 0}), Vec3(0)), 0.0);
@@ -66,7 +66,7 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
 TEST(BodyDistance, OfABodyBesideAFoldInTheMatterIsZero) {
     const ExactBody folded = solid_mesh(test_support::cube_with_a_fold());
     const ExactBody cube = solid_mesh(box_mesh(Vec3(0), Vec3(1)));
-    const Transform place = translation({3.5, 0.229, 5.0}); // above the fold, in the matter
+    const Transform place = translation({3.5, 0.229, 5.0}); // above the fold, in the material
     expect_distance(separation(folded, cube, place, Vec3(0)), 0.0);
     expect_distance(separation(ball_at({3.5, 0.229, 5.0}, 0.5), folded), 0.0);
 }
@@ -81,7 +81,7 @@ TEST(BodyDistance, SeesABodySweptIntoAnother) {
         expect_distance(separation(box, body, translation({20, 0, 0}), {-40, 0, 0}), 0.0);
         expect_distance(separation(body, box, translation({-20, 0, 0}), {7, 0, 0}), 2.0);
         expect_distance(separation(body, box, translation({-20, 0, 0}), {20, 0, 0}), 0.0);
-        expect_distance(separation(body, box, translation({0, 0, -11.0}), Vec3(0)), 0.0); // touch
+        expect_distance(separation(body, box, translation({0, 0, -11.0}), Vec3(0)), 0.0); // contact
     }
 }
 

@@ -33,7 +33,7 @@ struct Shop {
     BlockResult give(const std::vector<Event>& events) {
         return run_block(setup, {BlockIndex{block++}, false, events}, *state);
     }
-    /// Whether the block crashes; every collision here is of the flutes.
+    /// Whether the block crashes. Every collision here is one of the flutes.
     bool crashes(MotionKind kind, const Vec3& to) {
         const double length = setup.tools.at(ToolNumber{1}).length;
         const auto at = [&](const Vec3& p) { return AxisPosition{p.x, p.y, p.z + length}; };
@@ -45,7 +45,7 @@ struct Shop {
     bool feed(const Vec3& to) { return crashes(MotionKind::feed, to); }
     bool rapid(const Vec3& to) { return crashes(MotionKind::rapid, to); }
 
-    /// Winds down in chords; how deep it stands when it crashes first, or the end.
+    /// Moves down a helix of chords. Returns the Z of the first crash, or of the end.
     double wind(double radius, double pitch, double depth) {
         feed({50 + radius, 50, 0.5});
         constexpr int chords = 48;
@@ -72,7 +72,7 @@ TEST(CentreWatch, FindsAPlungeOnTheCentre) {
     EXPECT_EQ(result.findings[0].rule, "collision");
     EXPECT_NE(result.findings[0].message.find("does not cut within 2.5 mm"), std::string::npos);
     ASSERT_TRUE(result.deciding);
-    // It is found when the face, not the edges, comes to the stock: 1.625 mm of 10.
+    // Reported when the end face, not the cutting edges, reaches the stock: 1.625 mm of 10.
     EXPECT_NEAR(result.pairs[*result.deciding].time, 0.17 * result.duration,
                 0.02 * result.duration);
     EXPECT_FALSE(Shop(true).feed({50, 50, -9}));
@@ -88,7 +88,7 @@ TEST(CentreWatch, FindsAPlungeInSmallSteps) {
 }
 
 TEST(CentreWatch, IsSilentWhereTheEdgesLeaveNothing) {
-    Shop shop; // beside the stock, in the open, and across it
+    Shop shop; // next to the stock, in the open, and across it
     EXPECT_FALSE(shop.rapid({-20, 50, 20}));
     EXPECT_FALSE(shop.feed({-20, 50, -5}));
     EXPECT_FALSE(shop.feed({120, 50, -5}));
@@ -128,7 +128,7 @@ TEST(CentreWatch, IsSilentOnARampToAndFroThatIsLongEnough) {
     shop.feed({40, 50, 0});
     for (int i = 0; i < 10; ++i)
         EXPECT_FALSE(shop.feed({i % 2 ? 40.0 : 60.0, 50, -0.5 * (i + 1)})) << i;
-    // On less than the centre's own width a pillar stays.
+    // On a path smaller than the non-cutting centre a pillar remains.
     Shop narrow;
     narrow.feed({40, 50, 0});
     bool found = false;
@@ -140,7 +140,7 @@ TEST(CentreWatch, IsSilentOnARampToAndFroThatIsLongEnough) {
 TEST(CentreWatch, TellsAHelixFromOneThatIsTooNarrow) {
     EXPECT_LT(Shop().wind(4.0, 0.8, 6.0), -5.9);
     EXPECT_LT(Shop().wind(3.0, 0.5, 4.0), -3.9);
-    EXPECT_NEAR(Shop().wind(1.5, 0.5, 4.0), -recess, 0.3); // the pillar in its middle
+    EXPECT_NEAR(Shop().wind(1.5, 0.5, 4.0), -recess, 0.3); // the pillar in the centre
     EXPECT_GT(Shop().wind(4.0, 6.0, 6.0), -2.0);           // too steep
 }
 

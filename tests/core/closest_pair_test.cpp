@@ -22,7 +22,7 @@ SphereTree paper_sphere(double spacing) {
     return tree_of(boundary_points(scan(Sphere{25.0}, spacing).value()));
 }
 
-/// The result must be a real pair, and the least one to the last bit.
+/// The result must be an existing pair with the least distance, to the last bit.
 void expect_least(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Transform& pose) {
     const ClosestPair found = closest_pair(tree_of(a), tree_of(b), pose);
     EXPECT_EQ(found.distance, brute_force_distance(a, b, pose));
@@ -70,7 +70,7 @@ TEST(SphereTree, HoldsEveryPointOnceInsideEveryNodeAboveIt) {
 
 TEST(SphereTree, SplitsEqualCoordinatesByIndex) {
     const SphereTree tree = tree_of(std::vector<Vec3>(1000, Vec3(1.0)));
-    uint32_t next = 0; // depth first, the leaves come in the order of the points
+    uint32_t next = 0; // depth first; the leaves are in the order of the points
     for (const SphereTree::Node& node : tree.nodes)
         if (node.is_leaf()) {
             EXPECT_EQ(node.point, next++);
@@ -88,7 +88,7 @@ TEST(ClosestPair, AgreesWithBruteForceOnRandomClouds) {
         expect_least(a, b, pose);
         far += brute_force_distance(a, b, pose) > 5.0;
     }
-    EXPECT_GT(far, 30); // a sample that is all near or all far would prove little
+    EXPECT_GT(far, 30); // a sample of only near or only far pairs would prove little
     EXPECT_LT(far, 170);
 }
 
@@ -106,7 +106,7 @@ TEST(ClosestPair, AgreesWithBruteForceFarFromTheOrigin) {
 
 TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
     const auto plate = block_of_points(12, 12, 2);
-    for (const double lift : {1.5, 2.0, 3.0, 7.25}) // every column is equally near
+    for (const double lift : {1.5, 2.0, 3.0, 7.25}) // all columns have the same distance
         expect_least(plate, plate, translation({0.0, 0.0, lift}));
     expect_least(plate, plate, {rotation_xyz_deg({0.0, 0.0, 90.0}), Vec3(3.0, -2.0, 4.0)});
     expect_least(plate, plate, {rotation_xyz_deg({30.0, 0.0, 45.0}), Vec3(5.0, 5.0, 14.0)});
@@ -115,9 +115,9 @@ TEST(ClosestPair, AgreesWithBruteForceOnLattices) {
 TEST(ClosestPair, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
     std::mt19937 rng(11);
     for (int i = 0; i < 400; ++i) {
-        // Two blocks turned alike: every column is equally near, but for the rounding of its
-        // points. Spheres of a column touch its end points, so their gaps are off by the last bits
-        // too.
+        // Two blocks with the same rotation: all columns have the same distance, except for
+        // rounding. The spheres of a column touch its end points, so their gaps also differ by the
+        // last bits.
         const Transform turned = random_pose(rng, 40.0);
         std::vector<Vec3> a = block_of_points(5, 5, 8), b = a;
         for (Vec3& p : a) p = turned * p;
@@ -185,7 +185,7 @@ TEST(PaperSpheres, NeedMoreSphereTestsThanPointTests) {
 }
 
 TEST(PaperSpheres, TakeTheTestsThatTheOrderOfTheSearchImplies) {
-    // Other orders of splitting and visiting find the same distance with other counts.
+    // Other orders of splitting and visiting give the same distance with other counts.
     const SphereTree ball = paper_sphere(0.5);
     const auto near = closest_pair(ball, ball, translation({50.5, 0.0, 0.0}));
     EXPECT_EQ(near.node_tests, 6629u);

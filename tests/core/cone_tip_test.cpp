@@ -12,7 +12,7 @@ using test_support::argmin_convex;
 using test_support::outside_tilted_sweep;
 using test_support::random_rotation;
 
-/// A cone on a move, and a line that runs past a place of its surface or axis at next to nothing.
+/// A moving cone, and a line that passes a point of its surface or axis at a tiny distance.
 struct NearMiss {
     ElementSweep sweep;
     Mat3 orientation = Mat3(1.0);
@@ -26,7 +26,7 @@ struct NearMiss {
         p[(axis + 2) % 3] = v;
         return outside_tilted_sweep(sweep.element, orientation, sweep.from, sweep.to, p);
     }
-    /// How deep the line goes at all.
+    /// Depth of the line in the cone, at most.
     double depth() const {
         const Aabb box = bounds(sweep.element);
         const double size = glm::length(box.max) + glm::length(box.min) + 1.0;
@@ -37,7 +37,7 @@ struct NearMiss {
     }
 };
 
-/// 0 or 1e-9 .. 1e-3 to either side.
+/// 0, or 1e-9 .. 1e-3 to either side.
 double next_to_nothing(std::mt19937& rng) {
     const double size = std::pow(10.0, -3.0 - static_cast<double>(rng() % 7));
     return static_cast<double>(static_cast<int>(rng() % 3) - 1) * size;
@@ -76,7 +76,7 @@ Mat3 orientation_of(std::mt19937& rng) {
     }
 }
 
-/// A move: none, along the tool's axis, along the line, along the flank, across, anywhere.
+/// A move: none, along the tool axis, along the line, along the flank, across, or in any direction.
 Vec3 move_of(const ProfileElement& e, const Mat3& tool, int axis, std::mt19937& rng) {
     std::uniform_real_distribution<double> step(-12.0, 12.0);
     const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
@@ -100,7 +100,7 @@ Vec3 move_of(const ProfileElement& e, const Mat3& tool, int axis, std::mt19937& 
     }
 }
 
-/// A place on the axis, on the flank, on a rim or at the end of the axis.
+/// A point on the axis, on the flank, on a rim or at the end of the axis.
 Vec3 aim_of(const ProfileElement& e, std::mt19937& rng) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     const double s = share(rng);
@@ -141,7 +141,8 @@ void expect_true_interval(const NearMiss& c, const std::optional<Interval>& foun
         EXPECT_LE(depth, 1e-7);
         return;
     }
-    // Never longer than the volume; where the line runs along a surface it may end early.
+    // The interval is never longer than the volume; where the line runs along a surface it may end
+    // early.
     EXPECT_LE(c.outside(found->lower), 1e-9);
     EXPECT_LE(c.outside(found->upper), 1e-9);
     EXPECT_GE(c.outside(found->lower - 1e-6), -1e-7);

@@ -18,8 +18,8 @@ struct Seen {
     int far = 0, near = 0, touching = 0, overlapping = 0, wide = 0;
 };
 
-/// Witnesses that lie on the bodies prove `upper`, and contradict a `lower` above them; a slab
-/// between the bodies proves that the witnesses are the nearest.
+/// Witnesses on the bodies prove `upper` and refute a `lower` above them; a slab between the bodies
+/// proves that the witnesses are the nearest points.
 void expect_proven(const ConvexShape& a, const ConvexShape& b, std::mt19937& rng, Seen& seen,
                    double tolerance = 1e-6) {
     const Separation found = separation(a, b);
@@ -96,7 +96,7 @@ ConvexShape random_shape(std::mt19937& rng) {
     }
 }
 
-/// Posed, and swept over 2 to 9 places in two cases of three.
+/// A body with a random pose, in two of three cases swept over 2 to 9 positions.
 ConvexShape random_body(std::mt19937& rng, double reach) {
     ConvexShape shape = posed(random_shape(rng), random_pose(rng, reach));
     if (rng() % 4 == 0) shape = posed(random_shape(rng), translation(shape.places[0].at));
@@ -129,7 +129,8 @@ TEST(ConvexSeparation, HoldsForBodiesThatTouch) {
         const ConvexShape a = random_body(rng, 20.0), b = random_body(rng, 20.0);
         const Separation apart = separation(a, b);
         if (apart.upper == 0.0) continue;
-        ConvexShape touching = b; // moved to touch, to gape and to overlap by a little
+        ConvexShape touching =
+            b; // moved to touch, or to leave a gap or an overlap of a small amount
         const double by[] = {0.0, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4};
         const Vec3 towards = (apart.point_a - apart.point_b) / apart.upper;
         for (size_t k = 0; k < touching.place_count; ++k)
@@ -147,7 +148,7 @@ Vec3 farthest(const ConvexShape& shape, const Vec3& n) {
     return support(shape, n).point + shape.margin * n;
 }
 
-/// Where a curved rim touches a face or another rim, the way between them is rounding.
+/// Where a curved rim touches a face or another rim, the computed gap is only rounding.
 TEST(ConvexSeparation, ClosesWhereRimsTouch) {
     std::mt19937 rng(4);
     std::uniform_real_distribution<double> size(0.01, 3.0);
@@ -201,7 +202,7 @@ TEST(ConvexSeparation, OfSliversAndNeedlesAndPointsIsProven) {
         switch (kind) {
         case 0: // a needle
             return convex(Triangle{a, b, b + by * random_direction(rng)});
-        case 1: // a cap: the third corner close to the middle of the side
+        case 1: // a cap: the third corner is close to the middle of the opposite side
             return convex(Triangle{a, b, 0.5 * (a + b) + by * random_direction(rng)});
         case 2: // no area
             return convex(Triangle{a, b, a + 0.3 * (b - a)});
@@ -227,7 +228,7 @@ TEST(ConvexSeparation, OfSliversAndNeedlesAndPointsIsProven) {
 }
 
 TEST(ConvexSeparation, IsNoOverlapForFacesThatLeanByALittle) {
-    // Long thin tetrahedra far from the origin: their volume says nothing about what they hold.
+    // Long thin tetrahedra far from the origin: their volume says nothing about their extent.
     std::mt19937 rng(15);
     Seen seen;
     for (int i = 0; i < 800; ++i) {

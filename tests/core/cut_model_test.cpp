@@ -16,7 +16,7 @@ using test_support::random_point;
 
 constexpr double spacing = 0.7;
 
-/// Calls act(i, j, square) for every cell whose closed square holds the point.
+/// Calls act(i, j, square) for every cell whose closed square contains the point.
 template <typename Act>
 void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
     for (int j = 0; j < model.columns.v_count(); ++j)
@@ -26,7 +26,7 @@ void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
         }
 }
 
-/// A part of the square that holds the point.
+/// A random part of the square that contains the point.
 Square part_round(const Square& s, const Vec3& p, std::mt19937& rng) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     return {p.x - share(rng) * (p.x - s.x0), p.x + share(rng) * (s.x1 - p.x),
@@ -51,7 +51,7 @@ struct Seen {
     int stock = 0, close = 0, gone = 0;
 };
 
-/// Whatever is stock under some path within the path error lies in the columns.
+/// All stock that remains for some path within the path error is inside the columns.
 void expect_outer_model_holds(const CutBox& world, const CutModel& model, std::mt19937& rng,
                               Seen& seen) {
     const Vec3 off = world.path_error * random_direction(rng);
@@ -109,7 +109,8 @@ TEST(CutModelLines, AreStockOverTheirWholeLength) {
 }
 
 TEST(CutModelLines, AreAllThatIsStock) {
-    // Lines are no shorter than the stock either, up to the path error that is taken off twice.
+    // The lines are not shorter than the stock either, except for the path error, which is
+    // subtracted twice.
     std::mt19937 rng(63);
     int held = 0;
     for (int i = 0; i < 30; ++i) {
@@ -210,7 +211,7 @@ void expect_same(const CutModel& one, const CutModel& other) {
 
 TEST(CutModel, CopyIsASnapshotThatLaterCutsDoNotChange) {
     std::mt19937 rng(67);
-    CutBox world = random_cut_box(rng, 150, 0.0); // more than a chunk of the log
+    CutBox world = random_cut_box(rng, 150, 0.0); // more than one chunk of the log
     for (CutBox::Cut& c : world.cuts) c.flutes = {{{0, 0.6, 12, 0.6, 0}}};
     CutModel model = world.uncut(spacing);
     std::vector<CutModel> copies;
@@ -222,7 +223,7 @@ TEST(CutModel, CopyIsASnapshotThatLaterCutsDoNotChange) {
     for (size_t c = 0; c < copies.size(); ++c) {
         world.cuts.assign(all.begin(), all.begin() + static_cast<long>(30 * c));
         expect_same(world.model(spacing), copies[c]);
-        CutModel branch = copies[c]; // another way on from the snapshot
+        CutModel branch = copies[c]; // another continuation from the snapshot
         world.cuts.push_back(all[149]);
         cut(branch, world.sweep(world.cuts.size() - 1));
         expect_same(world.model(spacing), branch);
@@ -237,7 +238,7 @@ TEST(CutModel, IsGoneWhenAllOfItWasCut) {
 }
 
 TEST(CutModelColumns, HoldTheToleranceThatNoLineMeets) {
-    // The raw stock may reach 1 mm farther: what is not cut there may be there.
+    // The raw stock may extend 1 mm farther: where it was not cut there may be material.
     CutModel model = make_cut_model({SolidBox{{{0, 0, 0}, {10, 10, 10}}}, 1.0}, 0.5).value();
     const RevolvedProfile flat{{{0, 3, 30, 3, 0}}};
     const auto cutter = std::make_shared<Cutter>(make_cutter(flat, 0.0));
@@ -253,7 +254,7 @@ TEST(CutModelColumns, HoldTheToleranceThatNoLineMeets) {
     }
     EXPECT_GT(in, 1000);
     for_cells_at(model, {-0.9, 5.1, 0}, [&](int i, int j, const Square&) {
-        EXPECT_FALSE(model.columns.line(i, j).contains(3.0)); // and what is cut is not
+        EXPECT_FALSE(model.columns.line(i, j).contains(3.0)); // but not where it was cut
     });
 }
 

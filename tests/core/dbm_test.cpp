@@ -8,7 +8,7 @@ namespace core {
 namespace {
 
 TEST(Dbm, HasThePointsOfThePapersSphere) {
-    // The paper counts 47119, 11780, 5233, 2904; it does not say where its grid stands.
+    // The paper counts 47119, 11780, 5233, 2904; it does not state the position of its grid.
     EXPECT_EQ(point_count(scan(Sphere{25.0}, 0.5).value()), 47160u);
     EXPECT_EQ(point_count(scan(Sphere{25.0}, 1.0).value()), 11856u);
     EXPECT_EQ(point_count(scan(Sphere{25.0}, 1.5).value()), 5232u);

@@ -45,8 +45,8 @@ Setup random_setup(std::mt19937& random) {
     return setup;
 }
 
-/// A program of events over and in that block: rapids, feeds, arcs, tool changes, fixtures that
-/// come and go.
+/// A program of events above and in that block: rapids, feeds, arcs, tool changes, fixtures that
+/// are added and removed.
 std::vector<std::vector<Event>> random_program(std::mt19937& random, const Setup& setup) {
     std::uniform_real_distribution<double> share(0.0, 1.0);
     std::vector<std::vector<Event>> blocks;
@@ -98,7 +98,7 @@ std::vector<BlockResult> carried_out(Setup setup, Detail detail,
     return results;
 }
 
-/// The worst that was found, as a set-up's user sees it.
+/// The findings as the user of a set-up sees them.
 std::vector<std::pair<std::string, std::string>> findings(const BlockResult& result) {
     std::vector<std::pair<std::string, std::string>> found;
     for (const Finding& finding : result.findings)
@@ -125,7 +125,7 @@ TEST_P(Details, OfThePairThatDecidesAreThoseOfAFullCheck) {
         const PairClearance& a = full[i].pairs[*full[i].deciding];
         const PairClearance& b = brief[i].pairs[*brief[i].deciding];
         EXPECT_NEAR(a.margin(), b.margin(), 1e-6);
-        if (!(a.pair == b.pair)) continue; // equally near
+        if (!(a.pair == b.pair)) continue; // equal distance
         EXPECT_NEAR(a.upper, b.upper, 1e-6);
         EXPECT_LE(b.lower, a.upper + 1e-6);
         loose += a.lower - b.lower > 0.5;

@@ -23,7 +23,7 @@ struct EngineCase {
     std::unique_ptr<DistanceEngine> (*make)();
 };
 
-/// What any engine must do, tried on each.
+/// Requirements on every engine; run for each.
 class AnyEngine : public testing::TestWithParam<EngineCase> {
 protected:
     std::unique_ptr<DistanceEngine> engine = GetParam().make();
@@ -34,7 +34,7 @@ protected:
         return engine->closest_pair(a, b, pose, goal).value();
     }
 
-    /// The result must be a real pair, and the least one to the last bit.
+    /// The result must be an existing pair with the least distance, to the last bit.
     ClosestPair expect_least(const Points& a, const Points& b, const Transform& pose,
                              const PairGoal& goal = {}) {
         const ClosestPair found = find(add(a), add(b), pose, goal);
@@ -70,7 +70,7 @@ TEST_P(AnyEngine, AgreesWithBruteForceOnRandomClouds) {
         const Points a = random_cloud(rng, 1 + i, 10.0), b = random_cloud(rng, 300 - i, 8.0);
         far += expect_least(a, b, random_pose(rng, 30.0)).distance > 5.0;
     }
-    EXPECT_GT(far, 30); // a sample that is all near or all far would prove little
+    EXPECT_GT(far, 30); // a sample of only near or only far pairs would prove little
     EXPECT_LT(far, 170);
 }
 
@@ -111,7 +111,7 @@ TEST_P(AnyEngine, AgreesWithBruteForceWhenOneBodyIsTinyOrFar) {
 TEST_P(AnyEngine, AgreesWithBruteForceWhereLargeBodiesAlmostTouch) {
     std::mt19937 rng(36);
     for (int i = 0; i < 40; ++i) {
-        // Every point of A has one of B next to it: single precision tells none of them apart.
+        // Every point of A is next to one of B; single precision cannot distinguish them.
         const Transform pose = random_pose(rng, 500.0);
         const Points a = random_cloud(rng, 300, 1000.0), off = random_cloud(rng, 300, 1e-6);
         Points b;
@@ -126,8 +126,8 @@ TEST_P(AnyEngine, AgreesWithBruteForceWhereLargeBodiesAlmostTouch) {
 TEST_P(AnyEngine, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
     std::mt19937 rng(25);
     for (int i = 0; i < 100; ++i) {
-        // Two blocks turned alike: every column is equally near, but for the rounding of its
-        // points.
+        // Two blocks with the same rotation: all columns have the same distance, except for
+        // rounding.
         const Transform turned = random_pose(rng, 40.0);
         Points a = block_of_points(9, 5, 8), b = a;
         for (Vec3& p : a) p = turned * p;
@@ -226,7 +226,7 @@ TEST_P(AnyEngine, GivesUpNoMoreThanTheTolerance) {
             inexact += found.distance > least;
         }
     }
-    EXPECT_GT(inexact, 0); // or nothing is ever given up
+    EXPECT_GT(inexact, 0); // otherwise the search never gives up
 }
 
 TEST_P(AnyEngine, TakesAnyFirstPair) {

@@ -13,7 +13,7 @@ using core::FileAccess;
 using core::FileQuestion;
 using test_support::ScopedFolder;
 
-/// "content a: hello", "presence b: -" and so on, with the file's own name only.
+/// Records accesses as "content a: hello", "presence b: -" and so on, with the file name only.
 struct Looks {
     std::vector<std::string> seen;
     core::FileAccessObserver listening{[this](const FileAccess& look) {

@@ -9,7 +9,7 @@
 namespace core {
 namespace {
 
-/// The slow oracle: unit cells that are filled or not.
+/// A slow oracle: unit cells that are filled or empty.
 class Bitmap {
 public:
     double set(int lower, int upper, bool value) {
@@ -57,7 +57,7 @@ TEST(IntervalList, AgreesWithABitmap) {
             most = std::max(most, list.size());
         }
     }
-    EXPECT_GE(most, 8u); // the heap and the shifts inside it were used
+    EXPECT_GE(most, 8u); // so the heap and moves within it were exercised
 }
 
 TEST(IntervalList, UnitesWhatTouches) {

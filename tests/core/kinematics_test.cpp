@@ -53,7 +53,7 @@ TEST(TipPlace, OfATrunnionIsTurnedBackThroughBothAxes) {
     std::mt19937 rng(3);
     for (int i = 0; i < 200; ++i) {
         const AxisValues q = random_values(rng);
-        // The tool turns by A and C as the work sees it: about A first, which stands still.
+        // Relative to the work the tool rotates by A and C: first about A, whose axis is fixed.
         const Vec3 tip(q[0], q[1], q[2] - 80.0);
         const Vec3 on_cradle = about_x(tip - a_point, q[3]) + a_point;
         expect_near(tip_place(machine, q, 80.0), about_z(on_cradle - c_point, q[5]) + c_point,
@@ -118,7 +118,7 @@ TEST(PointTool, KeepsToTheLimitsAndTurnsAsLittleAsItCan) {
     machine.axes[3].min = -30.0;
     machine.axes[3].max = 120.0;
     AxisValues q{};
-    // Towards -Y by A 90, or by A -90 and half a turn of C, which the limit forbids.
+    // Towards -Y by A 90, or by A -90 and half a turn of C, which the limit excludes.
     const auto pointed = point_tool(machine, q, {0, -1, 0});
     ASSERT_TRUE(pointed);
     EXPECT_NEAR((*pointed)[3], 90.0, 1e-9);
@@ -192,7 +192,7 @@ TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
     }
     EXPECT_GT(turned, 2000);
     EXPECT_GT(straight, 200);
-    EXPECT_GT(tightest, 0.5); // a bound that were much too wide would be of no use
+    EXPECT_GT(tightest, 0.5); // a bound that is much too wide would be useless
 }
 
 TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
@@ -226,8 +226,8 @@ TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
 }
 
 TEST(AxisRange, OfATipPathHoldsWhatTheAxesDoOnTheWay) {
-    // The tip stays where it is, 100 mm from A's line, while A swings from -40 to 40 degrees: Z has
-    // its extreme in the middle, where both of its ends are the same.
+    // The tip does not move, 100 mm from the axis of A, while A moves from -40 to 40 degrees: Z has
+    // its extreme in the middle and equal values at both ends.
     const Machine machine = trunnion({0, 0, 0}, {0, 0, 0});
     AxisValues from{};
     from[3] = -40.0;

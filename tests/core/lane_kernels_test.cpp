@@ -15,7 +15,7 @@ namespace {
 using test_support::random_cloud;
 using test_support::random_pose;
 
-/// Lets the searches of its life use one instruction set only.
+/// Restricts searches to one instruction set during its lifetime.
 class OnlyTarget {
 public:
     explicit OnlyTarget(int64_t target) { use(target); }

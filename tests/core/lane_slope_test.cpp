@@ -10,13 +10,14 @@ namespace {
 
 using namespace core;
 
-/// What a chunk of lines comes to, beside line_interval.
+/// The results for a chunk of lines compared with line_interval.
 struct Compared {
     int met = 0, both_missed = 0;
-    double longest = -infinity, shortest = infinity; // lanes' stretch beyond the other, at an end
+    double longest = -infinity,
+           shortest = infinity; // by which an interval of the lanes is longer, at one end
 };
 
-/// Random moves that climb or sink, some of them nearly level or nearly upright.
+/// Random moves up or down, some of them nearly level or nearly vertical.
 CutterSweep random_move(std::mt19937& rng, const std::shared_ptr<const Cutter>& cutter) {
     const auto within = [&](double reach) {
         return std::uniform_real_distribution<double>(-reach, reach)(rng);
@@ -57,7 +58,7 @@ Compared compare(const RevolvedProfile& flutes, unsigned seed) {
                 const bool met = found.lower[i] < found.upper[i];
                 if (!truth || !met) {
                     all.both_missed += !truth && !met;
-                    // One that only grazes the body may be missed.
+                    // A line that only grazes the body may be missed.
                     if (truth) all.shortest = std::min(all.shortest, -truth->length());
                     if (met) all.longest = std::max(all.longest, found.upper[i] - found.lower[i]);
                     continue;
@@ -99,7 +100,7 @@ TEST(LaneSlope, MeetsRoundedCornersAsLineByLine) {
     expect_equal({{{2.5, 0.5, 2.5, 0.5, 2.5}}}, 1e-6);
 }
 
-/// A number that changes with any bit of what random moves of the cutter sweep.
+/// A hash of what random moves of the cutter sweep; any changed bit changes it.
 uint64_t hash_of_stretches(const RevolvedProfile& flutes) {
     std::mt19937 rng(11);
     const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, 0.0));

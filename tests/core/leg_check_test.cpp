@@ -6,8 +6,8 @@
 namespace core {
 namespace {
 
-/// A block of 100 x 100 x 30 with its top at Z 0 and a 10 mm end mill with a holder of 40 mm from
-/// 45 mm above the tip. Machine and stock frame are the same.
+/// A block of 100 x 100 x 30 with its top at Z 0 and a 10 mm end mill with a 40 mm holder that
+/// starts 45 mm above the tip. Machine and stock frame are equal.
 Setup block_setup() {
     Setup setup;
     setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
@@ -21,7 +21,7 @@ Setup block_setup() {
     return setup;
 }
 
-/// What the checks of legs refer to.
+/// The objects that leg checks refer to.
 struct Bench {
     Setup setup;
     std::vector<bool> there = std::vector<bool>(setup.fixtures.size(), true);
@@ -40,7 +40,7 @@ struct Bench {
     StockProbe probe{context, bounds};
     FluteCut flutes{context};
 
-    /// A leg of the tip that takes a second.
+    /// A leg of the tip that takes one second.
     Leg leg(const Vec3& from, const Vec3& to) const {
         const double length = context.tool.length;
         const AxisValues a{from.x, from.y, from.z + length}, b{to.x, to.y, to.z + length};
@@ -67,7 +67,7 @@ TEST(PairBounds, CarriesABoundOverLegs) {
     EXPECT_EQ(holder.drift, 4.5);
     bounds.end_leg();
     EXPECT_EQ(memory.bounds[0].apart, 26.0);
-    // 26 mm less 25.5 mm is less than the allowance of 1 mm.
+    // 26 mm minus 25.5 mm is less than the allowance of 1 mm.
     bounds.begin_leg(25.5);
     EXPECT_FALSE(bounds.can_skip(holder, pairs));
     EXPECT_EQ(holder.at_end, 26.0);
@@ -79,7 +79,7 @@ TEST(PairBounds, SkipsOnlyPairsThatCannotDecide) {
     CheckMemory memory;
     const Allowance allowance{1.0, 0.0};
     TrackedPair flutes;
-    flutes.upper = 5.0; // with an allowance of 0: a margin of 5
+    flutes.upper = 5.0; // with an allowance of 0: the margin is 5
     const std::vector<TrackedPair> pairs = {flutes};
     const PairBounds bounds(setup, memory);
     setup.detail = Detail::every_pair;
@@ -136,7 +136,7 @@ TEST(FluteCut, RemovesWhatTheFlutesSweep) {
     EXPECT_NEAR(bench.flutes.along(slot, bench.stock), 100.0 * 10.0 * 4.0, 40.0);
     EXPECT_EQ(bench.flutes.along(slot, bench.stock), 0.0);
     EXPECT_EQ(bench.statistics.sweeps, 2u);
-    EXPECT_EQ(bench.memory.cutters.size(), 1u); // made once
+    EXPECT_EQ(bench.memory.cutters.size(), 1u); // computed once
     EXPECT_EQ(bench.stock.log.block(0), 7u);
 }
 

@@ -9,7 +9,7 @@
 namespace core {
 namespace {
 
-/// A run of one tool: a 10 mm end mill with 5 mm of flutes and a shank of the same diameter.
+/// A run of a single tool: a 10 mm end mill with 5 mm of flutes and a shank of the same diameter.
 struct Nibbler {
     Setup setup;
     AxisValues at{};
@@ -68,7 +68,7 @@ Setup on_a_trunnion() {
 }
 
 TEST(LateLook, KnowsWhatTheFlutesTookOnTheirWay) {
-    // The fin is 2.9 mm below the shank until the flutes take it, and then nothing is left.
+    // The fin is 2.9 mm below the shank until the flutes remove it completely.
     Nibbler run(beside_a_fin(), {-5.5, 0.0, -0.1});
     const BlockResult near = run.go(MotionKind::rapid, {{0, 0.2}});
     ASSERT_TRUE(near.deciding);

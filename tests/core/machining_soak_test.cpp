@@ -13,10 +13,10 @@ void expect_sound(const test_support::MachiningTally& tally) {
         ADD_FAILURE() << tally.failures[i];
 }
 
-/// Random programs, every block of which is held against what is true of every point.
+/// Random programs; each block is compared with the exact truth for every point.
 class MachiningSoak : public testing::TestWithParam<unsigned> {};
 
-/// How many blocks in all: FEELER_MACHINING_BLOCKS, or a million.
+/// Total number of blocks: FEELER_MACHINING_BLOCKS, or one million.
 unsigned long long blocks_wanted() {
     const char* said = std::getenv("FEELER_MACHINING_BLOCKS");
     return said ? std::strtoull(said, nullptr, 10) : 1'000'000;

@@ -11,7 +11,7 @@ void expect_sound(const test_support::MachiningTally& tally) {
         ADD_FAILURE() << tally.failures[i];
 }
 
-/// Random programs, every block of which is held against what is true of every point.
+/// Random programs; each block is compared with the exact truth for every point.
 class Machining : public testing::TestWithParam<unsigned> {};
 
 TEST_P(Machining, KeepsTheTruthBetweenLowerAndUpper) {

@@ -92,10 +92,10 @@ TEST(MeshCheck, KeepsABodyInsideACavity) {
 }
 
 TEST(MeshCheck, KeepsACavityThatFillsNearlyAllOfItsBox) {
-    // The cavity's box is not inside a U-shaped body's matter, but inside its box.
+    // The cavity's box is not inside the material of a U-shaped body, but inside its box.
     const Mesh torus = torus_mesh(10.0, 3.0, 24, 12);
     const auto [mesh, repairs] = check(together(torus, inside_out(cube(-0.5, 0.5))));
-    // In the hole of the torus it is no cavity: it faces inwards with nothing around it.
+    // In the hole of the torus it is no cavity: it faces inwards with no material around it.
     EXPECT_GT(signed_volume(mesh.value()), signed_volume(torus) + 0.9);
     EXPECT_THAT(repairs, ElementsAre(HasSubstr("1 of its shells")));
 }
@@ -119,7 +119,7 @@ TEST(MeshCheck, KeepsShellsApartThatShareAnEdge) {
 }
 
 TEST(MeshCheck, RefusesASurfaceWithOneSide) {
-    // A closed surface that no turning makes agree: a projective plane of ten triangles.
+    // A closed surface that cannot be oriented consistently: a projective plane of ten triangles.
     Mesh mesh;
     for (int i = 0; i < 6; ++i) mesh.vertices.emplace_back(i * i, i % 3, i % 2 + 0.1 * i * i * i);
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1},

@@ -21,7 +21,7 @@ using test_support::together;
 using test_support::torus_mesh;
 using ::testing::HasSubstr;
 
-/// A file that is gone after the test.
+/// A file that is deleted after the test.
 class TemporaryFile {
 public:
     TemporaryFile(const std::string& name, const std::string& bytes)
@@ -163,7 +163,7 @@ TEST(MeshFile, ReadsACubeFromEveryFormat) {
 }
 
 TEST(MeshFile, ReadsAPlyWithMoreToItThanASurface) {
-    // OpenMesh takes one word for a list that it does not know.
+    // OpenMesh takes a list that it does not know for a single word.
     std::string text = with(cube_ply, "property uchar red", "property list uchar float weights");
     for (size_t at = 0; (at = text.find(" 1\n", at)) != std::string::npos; at += 5)
         text.replace(at, 3, " 2 7 9\n");
@@ -333,7 +333,7 @@ TEST(MeshFile, SurvivesFilesWithDamage) {
             if (!file) continue;
             std::vector<std::string> repairs;
             EXPECT_TRUE(checked_solid(file->mesh, repairs));
-            EXPECT_TRUE(repairs.empty()); // what is returned needs no further repair
+            EXPECT_TRUE(repairs.empty()); // the result needs no further repair
             EXPECT_GT(signed_volume(file->mesh), 0.0);
         }
     EXPECT_GT(read_count, 100u);
@@ -353,7 +353,7 @@ TEST(MeshFile, SaysThatDegenerateTrianglesAreLeftOut) {
 }
 
 TEST(MeshFile, CutsAFaceWithADentAlongItsCorners) {
-    // A prism over an L, its two ends hexagons; the area of the mesh tells wrong cuts.
+    // An L-shaped prism whose two ends are hexagons; the area of the mesh reveals wrong cuts.
     const std::string obj = R"(v 0 0 0
 v 4 0 0
 v 4 1 0

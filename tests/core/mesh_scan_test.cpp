@@ -18,7 +18,7 @@ using test_support::random_pose;
 using test_support::together;
 using test_support::torus_mesh;
 
-/// Equal but for depths; `slack` also bounds slivers that only one of them shows.
+/// Expects equality except for depths; `slack` also bounds slivers that only one side has.
 void expect_near(const IntervalList& found, const IntervalList& expected, double slack) {
     IntervalList more = found, less = expected;
     for (const Interval& i : expected) more.subtract({i.lower - slack, i.upper + slack});
@@ -27,7 +27,7 @@ void expect_near(const IntervalList& found, const IntervalList& expected, double
     EXPECT_LT(less.length(), slack);
 }
 
-/// The scan of every line must be what the oracle says, and what scan_line says to the last bit.
+/// Expects that the scan of every line equals the oracle, and scan_line to the last bit.
 void expect_as_oracle(const Mesh& mesh, double spacing, double slack = 1e-6) {
     const Dbm dbm = scan(mesh, spacing).value();
     for (int axis = 0; axis < 3; ++axis) {
@@ -48,7 +48,7 @@ Mesh tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }
 
 TEST(MeshScan, OfABoxIsThatOfThePrimitive) {
-    // With h = 1 the lines of the 5 mm sides run exactly in the faces.
+    // With h = 1 the lines of the 5 mm sides are exactly in the faces.
     for (const double spacing : {1.0, 0.7, 0.25, 2.0}) {
         const Vec3 size(5.0, 4.0, 3.0);
         const Dbm mesh = scan(box_mesh(-0.5 * size, 0.5 * size), spacing).value();
@@ -78,7 +78,7 @@ TEST(MeshScan, AgreesWithTheOracleOnGridAlignedTetrahedra) {
         const Mesh mesh = tetrahedron(corner(), corner(), corner(), corner());
         if (signed_volume(mesh) < 1e-9) continue;
         ++scanned;
-        // Half-integer corners, half-integer lines: edges and corners are met all the time.
+        // Half-integer corners and lines, so that lines frequently hit edges and corners.
         for (int axis = 0; axis < 3; ++axis)
             for (double u = -2.0; u <= 2.0; u += 0.25)
                 for (double v = -2.0; v <= 2.0; v += 0.25)
@@ -98,12 +98,12 @@ TEST(MeshScan, AgreesWithTheOracleOnRotatedMeshes) {
 }
 
 TEST(MeshScan, AgreesWithTheOracleOnAnUnturnedTorus) {
-    expect_as_oracle(torus_mesh(10.0, 3.0, 24, 12), 1.0); // many edges lie along the lines
+    expect_as_oracle(torus_mesh(10.0, 3.0, 24, 12), 1.0); // many edges are along the lines
     expect_as_oracle(torus_mesh(8.0, 2.0, 4, 4), 0.5);
 }
 
 TEST(MeshScan, IsWatertightAlongEverySharedEdge) {
-    // Steep slivers fanned about points that lines pass through exactly.
+    // Steep slivers in fans around points that lines pass through exactly.
     const Mesh ball = ball_mesh(1000.0, 24, 48);
     for (int axis = 0; axis < 3; ++axis)
         for (const Vec3& p : ball.vertices) {
@@ -141,7 +141,8 @@ TEST(MeshScan, LeavesNoSeamWhereShellsTouch) {
     EXPECT_EQ(scan_line(touching, 0, 1.0, 1.0).value(), IntervalList(Interval{0.0, 8.0}));
     EXPECT_FALSE(scan_mesh(touching, 0.7)->shells_overlap);
     std::mt19937 rng(8);
-    for (int i = 0; i < 10; ++i) // turned, the common face is computed with different rounding
+    for (int i = 0; i < 10;
+         ++i) // after a rotation, the common face is computed with different rounding
         for (const Vec3& p :
              boundary_points(scan(moved(touching, random_pose(rng, 50.0)), 1.0).value()))
             EXPECT_TRUE(is_finite(p));

@@ -16,7 +16,7 @@ using test_support::random_pose;
 using test_support::torus_mesh;
 using test_support::wide_distance;
 
-/// A soup with slivers and triangles of no area.
+/// A triangle soup with slivers and triangles of no area.
 Mesh random_soup(std::mt19937& rng) {
     std::uniform_real_distribution<double> place(-8.0, 8.0);
     Mesh mesh;
@@ -63,7 +63,7 @@ void expect_representative(const Seen& seen, int times) {
     EXPECT_GT(seen.far, times);
 }
 
-/// Every pair of triangles, each swept, by the search for convex shapes.
+/// The least distance of all pairs of triangles, each swept, by the search for convex shapes.
 double least_of_all_pairs(const Mesh& a, const Mesh& b, const Transform& pose, const Vec3& sweep) {
     const Vec3 places[] = {Vec3(0.0), sweep};
     double least = infinity;
@@ -82,7 +82,7 @@ TEST(MeshSeparation, HoldsTheDistanceRoundingIncluded) {
     std::mt19937 rng(91);
     Seen seen;
     for (int i = 0; i < 240 && !testing::Test::HasFailure(); ++i) {
-        // Up to 1 km from the origin, on either side of the transform.
+        // Up to 1 km from the origin, on both sides of the transform.
         const double offset = i % 3 ? 0.0 : std::pow(10.0, 1 + i % 6);
         const Vec3 place = random_pose(rng, offset).translation;
         const Mesh a = test_support::moved(random_mesh(rng), translation(place));

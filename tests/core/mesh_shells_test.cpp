@@ -12,7 +12,7 @@ namespace {
 using test_support::box_mesh;
 using test_support::torus_mesh;
 
-/// Two unit cubes beside each other, sharing corners; `partition` keeps both faces between them.
+/// Two adjacent unit cubes that share corners; `partition` keeps both faces between them.
 Mesh two_cells(bool partition) {
     Mesh mesh;
     for (int i = 0; i < 12; ++i) mesh.vertices.emplace_back(i / 4, i % 2, i / 2 % 2);
@@ -67,7 +67,7 @@ TEST(Shells, StayApartWhereOnlyAnEdgeIsShared) {
     for (unsigned seed = 0; seed < 20; ++seed) {
         Mesh mesh = box_mesh(Vec3(0.0), Vec3(1.0));
         const Mesh other = box_mesh(Vec3(1.0, 1.0, 0.0), Vec3(2.0, 2.0, 1.0));
-        // The other's corners 0 and 4 are this one's 3 and 7.
+        // The corners 0 and 4 of the other cube are the corners 3 and 7 of this one.
         const uint32_t number[8] = {3, 8, 9, 10, 7, 11, 12, 13};
         mesh.vertices.resize(14);
         for (size_t i = 0; i < 8; ++i) mesh.vertices[number[i]] = other.vertices[i];

@@ -12,7 +12,7 @@ __extension__ using Whole = __int128;
 
 int sign_of(double x) { return (x > 0.0) - (x < 0.0); }
 
-/// The sign for coordinates that are multiples of 2^-50 up to 32, in whole numbers.
+/// The sign for coordinates that are multiples of 2^-50 up to 32, computed with integers.
 int exact_sign(const Vec2& a, const Vec2& b, const Vec2& c) {
     const auto whole = [](double x) { return static_cast<Whole>(std::ldexp(x, 50)); };
     const Whole left = (whole(a.x) - whole(c.x)) * (whole(b.y) - whole(c.y));
@@ -25,7 +25,7 @@ TEST(Orientation, HasTheRightSignNextToALine) {
     std::uniform_int_distribution<int> step(-16, 16);
     int on_line = 0, wrong_in_doubles = 0;
     for (int i = 0; i < 20000; ++i) {
-        // Kettner's example: points about (0.5, 0.5) against a line they nearly lie on.
+        // Kettner's example: points near (0.5, 0.5) and a line that they almost lie on.
         const Vec2 a(0.5 + step(rng) * 0x1p-50, 0.5 + step(rng) * 0x1p-50);
         const Vec2 b(12.0, 12.0), c(24.0, 24.0);
         const int expected = exact_sign(a, b, c);
@@ -37,7 +37,7 @@ TEST(Orientation, HasTheRightSignNextToALine) {
         on_line += expected == 0;
     }
     EXPECT_GT(on_line, 100);
-    EXPECT_GT(wrong_in_doubles, 100); // else the sample would not need the exact part
+    EXPECT_GT(wrong_in_doubles, 100); // otherwise the sample would not need the exact part
 }
 
 TEST(Orientation, IsTwiceTheArea) {

@@ -13,7 +13,7 @@ namespace {
 using test_support::random_pose;
 using test_support::Wide;
 
-/// Heaps of triangles that are flat, thin, on one line, in one point, or none of it.
+/// Sets of triangles that are flat, thin, on one line, in one point, or none of these.
 std::vector<Triangle> random_heap(std::mt19937& rng, double offset) {
     std::uniform_real_distribution<double> place(-1.0, 1.0), power(-14.0, 1.0);
     const Vec3 size(std::pow(10.0, power(rng)), std::pow(10.0, power(rng)),
@@ -30,7 +30,7 @@ std::vector<Triangle> random_heap(std::mt19937& rng, double offset) {
     return heap;
 }
 
-/// How far the point is outside the box, worked out with eleven more bits.
+/// The distance of a point from the box, computed with eleven more bits.
 long double outside(const OrientedBox& box, const Vec3& p) {
     const glm::tmat3x3<long double> axes(box.axes);
     const Wide local = glm::inverse(axes) * (Wide(p) - Wide(box.center));

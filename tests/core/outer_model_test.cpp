@@ -62,7 +62,7 @@ TEST(OuterModel, HoldsEveryPointOfTheBody) {
         }
 }
 
-/// How far the boxes stand out of the body: the most of their corners.
+/// The largest distance of a corner of the boxes from the body.
 double standing_out(const std::vector<TruePart>& parts, double h) {
     double most = 0.0;
     for (const Aabb& box : boxes(parts, h, {2, 0, 1}))
@@ -79,7 +79,7 @@ TEST(OuterModel, StandsOutOfTheBodyByLessThanTheDiagonalOfACell) {
             EXPECT_LT(standing_out(parts, h), 1.0001 * std::sqrt(3.0) * h);
 }
 
-/// Boxes of a floor with two walls, of which only cuts by flat tools are known.
+/// Boxes of a floor with two walls, known only from the cuts of flat tools.
 TEST(OuterModel, OfACutStockHoldsEveryPointThatWasLeft) {
     std::mt19937 rng(9);
     for (int round = 0; round < 10; ++round) {

@@ -42,7 +42,7 @@ Part part_of(Mesh mesh, double tolerance = 0.05) {
     return {solid_mesh(*checked_solid(std::move(mesh), repairs)), tolerance};
 }
 
-/// The block with its slot, moved along Y; corner for corner, from an outline across X.
+/// The block with its slot, moved along Y; exact corners, from an outline across X.
 Mesh slotted_part(double moved = 0.0) {
     const double outline[8][2] = {{0, -20},
                                   {40, -20},
@@ -90,7 +90,7 @@ TEST(PartComparison, SeesAPartThatIsMoved) {
     const PartComparison result = compare(slotted_model(), part_of(slotted_part(0.1)));
     EXPECT_NEAR(result.largest_gouge, 0.1, 1e-5);
     EXPECT_NEAR(result.largest_excess, 0.1, 1e-5);
-    // One wall of the slot and one side of the block each.
+    // One side of the slot and one side of the block each.
     ASSERT_EQ(count(result, Deviation::gouge), 2u);
     ASSERT_EQ(count(result, Deviation::excess), 2u);
     for (const DeviationRegion& region : result.regions) {
@@ -126,7 +126,7 @@ TEST(PartComparison, MeasuresAGougedWall) {
     const PartComparison result = compare(stock, part_of(slotted_part()));
     ASSERT_EQ(result.regions.size(), 1u);
     EXPECT_EQ(result.regions[0].kind, Deviation::gouge);
-    // The mesh of the stock is coarse where the gouge is narrower than the mesh size.
+    // Where the gouge is narrower than the mesh size, the mesh of the stock is coarse.
     EXPECT_NEAR(result.regions[0].amount, 0.3, 0.02);
     EXPECT_EQ(result.regions[0].block, 11u);
 }
@@ -140,7 +140,7 @@ TEST(PartComparison, NamesTheBlockOfTheDeepestPlace) {
     EXPECT_EQ(result.regions[0].block, 9u);
 }
 
-/// The stock's mesh is as coarse as its lines, the part is ten times as fine.
+/// The mesh of the stock is as coarse as its lines; that of the part is ten times as fine.
 TEST(PartComparison, TakesACoarseMeshForNoGouge) {
     const auto bumps = [](double h) {
         CutModel model = *make_cut_model({SolidBox{block}, 0.0}, h);
@@ -162,7 +162,8 @@ TEST(PartComparison, SeesWhatWasNeverCut) {
     EXPECT_EQ(result.largest_gouge, 0.0);
     ASSERT_EQ(result.regions.size(), 1u);
     EXPECT_EQ(result.regions[0].kind, Deviation::excess);
-    EXPECT_NEAR(result.regions[0].amount, 3.15, 0.25); // from the middle of the mouth to the walls
+    EXPECT_NEAR(result.regions[0].amount, 3.15,
+                0.25); // from the middle of the opening to the walls
     EXPECT_FALSE(result.regions[0].block);
 }
 

@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// A random way in the plane at the machine's limits, with a stop here and there.
+/// A random path in the plane at the machine's limits, with occasional stops.
 std::vector<PermitMotion> random_plan(std::mt19937& random, size_t count) {
     std::uniform_real_distribution<double> any(0.0, 1.0);
     TimePlan plan;
@@ -39,7 +39,7 @@ std::vector<PermitMotion> random_plan(std::mt19937& random, size_t count) {
     return motions;
 }
 
-/// Permits that become known at these times, in order.
+/// Number of permits at a time, given when each becomes known, in order.
 uint32_t permitted_at(const std::vector<double>& known, double time) {
     uint32_t count = 0;
     while (count < known.size() && known[count] <= time + 1e-12) ++count;

@@ -24,7 +24,7 @@ const RevolvedProfile short_pieces{
     {{0, 4, 1, 4, 0}, {1, 4, 1.02, 5, 0}, {1.02, 5, 1.05, 3, 0}, {1.05, 3, 8, 3.5, 0}}};
 const RevolvedProfile dovetail{{{0, 10, 5, 6, 0}, {5, 4, 20, 4, 0}}};
 
-// A ball of 1 mm whose flank leaves it as a tangent at 3-4-5, 0.4 mm above the tip.
+// A ball of radius 1 mm with a flank tangential to it at 3-4-5, 0.4 mm above the tip.
 const RevolvedProfile round_taper{
     {{1, 0, 1, 0, 1}, {0.4, 0.8, 12.4, 9.8, 0}, {12.4, 9.8, 20, 9.8, 0}}};
 const RevolvedProfile round_bull{{{1, 2, 1, 2, 1}, {0.2, 2.6, 3.2, 6.6, 0}}};
@@ -46,7 +46,7 @@ std::vector<RevolvedProfile> all() {
     return profiles;
 }
 
-/// Distance in the half plane to the outline of the union of the pieces.
+/// Distance in the half-plane to the outline of the union of the pieces.
 double to_surface(const std::vector<Vec3>& line, const Vec3& p) {
     double least = infinity;
     for (const Vec3& q : line) least = std::min(least, glm::distance(p, q));
@@ -80,8 +80,8 @@ TEST(Profile, IsConvexOnlyWithoutSeamsThatTurnOutwards) {
     EXPECT_FALSE(is_convex({{{0, 2, 5, 3, 0}, {5, 3, 9, 5, 0}}})); // steeper above
     EXPECT_FALSE(is_convex({{{0, 2, 5, 3, 0}, {9, 1, 9, 1, 1}}})); // a ball above a cone
     EXPECT_TRUE(is_convex({{{0, 2, 5, 3, 0}, {5, 3, 9, 1, 0}}}));
-    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.8, 12.4, 9.9, 0}}}));   // no tangent
-    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.81, 12.4, 9.81, 0}}})); // beside the round
+    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.8, 12.4, 9.9, 0}}}));   // not tangential
+    EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.81, 12.4, 9.81, 0}}})); // not on the rounding
     EXPECT_FALSE(is_convex({{{1, 0, 1, 0, 1}, {0.4, 0.8, 1.9, 1.925, 0}}}));  // the ball is higher
 }
 
@@ -142,7 +142,7 @@ TEST(ProfileShrunkAround, ClearsTheWallsAndTheFloorThatItTouched) {
 TEST(ProfileShrunkAround, ClearsTheCeilingOfAnUndercut) {
     const RevolvedProfile inner = shrunk_around(slot, 0.05);
     for (double r = 4.1; r < 10.0; r += 0.1) EXPECT_GE(outside(inner, {r, 0, 4}), 0.04) << r;
-    EXPECT_LE(outside(inner, {3.9, 0, 4}), 0.0); // the neck goes through
+    EXPECT_LE(outside(inner, {3.9, 0, 4}), 0.0); // the neck passes through
 }
 
 TEST(ProfileGrown, HoldsWhatIsNearer) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double h = 0.5, share = 0.01, pi = std::numbers::pi;
 
-/// A block whose grid lies anywhere against the cuts.
+/// A block with a random position of its grid relative to the cuts.
 CutModel block_anywhere(std::mt19937& rng, const Vec3& size) {
     std::uniform_real_distribution<double> off(0.0, h);
     const Vec3 low(-off(rng) - 2.0, -off(rng) - 2.0, -size.z - off(rng));
@@ -101,7 +101,7 @@ TEST(RemovedVolume, IsThatOfARoundPocketCutInRings) {
         constexpr int chords = 90;
         double truth = 0.0;
         for (double ring = 4.0; ring <= 12.0; ring += 4.0) {
-            // The chords leave a polygon, which the cutter's circle rounds at its corners.
+            // The chords form a polygon; the cutter rounds its corners.
             const double side = 2.0 * ring * std::sin(pi / chords);
             truth = depth
                     * (0.5 * chords * ring * ring * std::sin(2.0 * pi / chords)

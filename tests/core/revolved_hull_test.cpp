@@ -42,7 +42,7 @@ TEST(RevolvedHull, HoldsEveryPointOfTheMesh) {
 }
 
 TEST(RevolvedHull, IsNoWiderThanItsTolerance) {
-    // At each height the farthest point of the mesh lies on one of its edges.
+    // At each height the farthest point of the mesh is on one of its edges.
     for (const Mesh& mesh : meshes()) {
         const RevolvedProfile hull = revolved_hull(mesh, 0.005);
         const Aabb box = bounds(hull);

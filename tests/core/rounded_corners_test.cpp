@@ -6,8 +6,8 @@
 namespace core {
 namespace {
 
-/// A clamp in the corner of an L, on its inner side, and one outside; the tool is a bare cylinder
-/// of 10 mm. Its way bends at the origin, from along X to along Y.
+/// A clamp inside the corner of an L-shaped path, or one outside; the tool is a plain cylinder of
+/// 10 mm. The path turns at the origin, from along X to along Y.
 core::Setup around_a_corner(double gap, bool inside) {
     core::Setup setup;
     setup.stock = {SolidBox{{{900, 900, -10}, {910, 910, 0}}}, 0.0};
@@ -26,7 +26,7 @@ core::Setup around_a_corner(double gap, bool inside) {
     return setup;
 }
 
-/// What is known of the clamp when the tool comes to the corner and leaves it.
+/// The clearance to the clamp before and after the corner.
 struct Corner {
     core::Setup setup;
     SimulatorState state;
@@ -72,7 +72,7 @@ TEST(RoundedCorners, ComeNearerToAClampInsideByTheTolerance) {
     Corner corner(around_a_corner(gap, true));
     corner.give({within(tolerance)});
     corner.pass();
-    // A way that is off by the tolerance towards the clamp is one that the control may take.
+    // The control may take a path that deviates by the tolerance towards the clamp.
     EXPECT_LE(corner.seen.lower, gap - tolerance + 1e-9);
     EXPECT_GE(corner.seen.lower, gap - tolerance - 1e-3);
     EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "2 mm must be kept";
@@ -128,7 +128,7 @@ TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
 }
 
 TEST(RoundedCorners, LeaveDoubtWhereACornerMayStandThatWasNotCut) {
-    // A square corner in a slot, cut 2 mm off at most, and a rapid down into it afterwards.
+    // A square corner in a slot, rounded by 2 mm at most, and a rapid down into it afterwards.
     for (const double tolerance : {0.02, 2.0}) {
         core::Setup setup = around_a_corner(20.0, true);
         setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};

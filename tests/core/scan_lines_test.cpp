@@ -25,7 +25,7 @@ TEST(ScanLines, LeaveASnapshotAsItWas) {
     EXPECT_EQ(snapshot.line(20, 5).length(), 521.0);
     EXPECT_EQ(lines.line(20, 5).length(), 520.5);
     EXPECT_FALSE(lines == snapshot);
-    EXPECT_EQ(lines.line(21, 5), snapshot.line(21, 5)); // cloned with the tile, not lost
+    EXPECT_EQ(lines.line(21, 5), snapshot.line(21, 5)); // copied with the tile, not lost
 }
 
 TEST(ScanLines, ShareTheTilesThatNobodyTouched) {

@@ -9,8 +9,8 @@
 namespace core {
 namespace {
 
-/// A block of 100 x 100 x 30 with its top at Z 0, machine and stock frame being the same, and a
-/// 10 mm end mill, 95 mm long: flutes 0-20, shank 20-45, holder of 40 mm 45-95 above the tip.
+/// A block of 100 x 100 x 30 with its top at Z 0, in the machine frame, and a 10 mm end mill, 95 mm
+/// long: flutes 0-20, shank 20-45, 40 mm holder 45-95 above the tip.
 Setup plain_setup(double shank_diameter = 10.0) {
     Setup setup;
     setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
@@ -24,7 +24,7 @@ Setup plain_setup(double shank_diameter = 10.0) {
     return setup;
 }
 
-/// A run of one tool; places are those of the tip.
+/// A run of one tool; positions are those of the tip.
 struct Shift {
     Setup setup;
     SimulatorState state;
@@ -141,7 +141,8 @@ TEST(Simulator, FindsAFeedWithTheSpindleStopped) {
 TEST(Simulator, KeepsTheHolderAwayFromTheStock) {
     Shift run(plain_setup());
     run.rapid({-40, 50, 60});
-    // The holder's lower face is 45 above the tip: at Z-44.5 it hangs 0.5 over the stock's top.
+    // The lower face of the holder is 45 above the tip: at Z-44.5 it is 0.5 above the top of the
+    // stock.
     run.rapid({-6, 50, -44.5});
     const BlockResult beside = run.feed({-5.5, 50, -44.5});
     EXPECT_EQ(beside.verdict, Verdict::violation);
@@ -168,7 +169,7 @@ TEST(Simulator, MeasuresAFixtureToRounding) {
 }
 
 TEST(Simulator, CoversAWholeCircle) {
-    // The post stands outside the circle, nearest to it at neither end of the block.
+    // The post is outside the circle; the closest approach is at neither end of the block.
     core::Setup setup = plain_setup();
     ConvexShape post = convex(ProfileElement{-30, 5, 60, 5, 0});
     setup.fixtures.push_back({"post", posed(post, translation({150.0, 50.0, 0.0})), false});
@@ -177,7 +178,8 @@ TEST(Simulator, CoversAWholeCircle) {
     const BlockResult round = run.circle({100, 50, 0}, {100, 30, 20});
     const PairClearance* flutes = pair_of(round, PartKind::flutes, 0);
     ASSERT_TRUE(flutes);
-    const double expected = 50.0 - 20.0 - 5.0 - 5.0; // centres, radius of the path, both radii
+    const double expected =
+        50.0 - 20.0 - 5.0 - 5.0; // distance of centres, radius of the path, both radii
     EXPECT_LE(flutes->lower, expected);
     EXPECT_GE(flutes->upper, expected - 1e-9);
     EXPECT_NEAR(flutes->upper, expected, 0.01);
@@ -191,7 +193,7 @@ TEST(Simulator, LetsFeedingFlutesCutAnExpendableFixture) {
     Shift run(setup);
     run.rapid({130, 50, 2.5});
     EXPECT_EQ(run.feed({146, 50, 2.5}).verdict, Verdict::clear);
-    EXPECT_EQ(run.rapid({130, 50, 2.5}).verdict, Verdict::clear); // by the way it came
+    EXPECT_EQ(run.rapid({130, 50, 2.5}).verdict, Verdict::clear); // back along the same path
     EXPECT_EQ(run.rapid({150, 57, 2.5}).verdict, Verdict::collision);
 }
 
@@ -225,7 +227,7 @@ TEST(Simulator, KeepsTheTimeOfAToolThatIsChangedLaterInTheBlock) {
 }
 
 TEST(Simulator, KeepsABallOfConesBelowTheTruth) {
-    // Flutes that end on the upper half of the ball divide it, so that it is made of cones.
+    // Flutes that end on the upper half of the ball divide it, so that it is approximated by cones.
     core::Setup setup = plain_setup();
     ToolDescription ball;
     ball.number = ToolNumber{1};
@@ -308,7 +310,7 @@ TEST(Simulator, ReportsAPairOnceForABlockOfSeveralMotionsFromAnUnknownPlace) {
             1);
     const PairClearance* flutes = pair_of(both, PartKind::flutes);
     ASSERT_TRUE(flutes);
-    EXPECT_NEAR(flutes->lower, 110.0 - 95.0, 1e-3); // of the first motion
+    EXPECT_NEAR(flutes->lower, 110.0 - 95.0, 1e-3); // at the first motion
 }
 
 TEST(Simulator, ChecksEveryWayFromAnUnknownPlaceWithinTheLimits) {
@@ -318,7 +320,7 @@ TEST(Simulator, ChecksEveryWayFromAnUnknownPlaceWithinTheLimits) {
         axis.max = 300.0;
     }
     Shift high(setup);
-    // The tip stays 5 or more above the stock wherever X and Y may stand.
+    // The tip stays at least 5 above the stock whatever X and Y are.
     const Motion sideways{
         .kind = MotionKind::rapid, .from = z_only(100.0), .to = {50.0, 50.0, 100.0}};
     const BlockResult over = high.give({sideways});
@@ -347,8 +349,8 @@ TEST(Simulator, FindsTheDogLegThatTheStraightRapidHides) {
     const auto rapid_past = [](const core::Setup& with) {
         Shift run(with);
         run.rapid({60, 140, 20});
-        // Straight, the tip passes (120, 155); as a dog-leg it goes 45 degrees up to (110, 190)
-        // first.
+        // On a straight path the tip passes (120, 155); as a dog-leg it first goes at 45 degrees up
+        // to (110, 190).
         return run.rapid({260, 190, 20});
     };
     EXPECT_EQ(rapid_past(setup).verdict, Verdict::clear);

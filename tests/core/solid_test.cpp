@@ -22,7 +22,7 @@ struct Named {
 
 std::vector<Named> meshes() {
     const Transform turned{rotation_xyz_deg({33, 21, 57}), Vec3(0.1, -0.2, 0.3)};
-    Mesh needle; // thin, slanted, between the corners of a square
+    Mesh needle; // thin, inclined, between the corners of a square
     needle.vertices = {{0.21, 0.22, -3}, {0.24, 0.22, -3}, {0.22, 0.25, -3}, {0.26, 0.27, 3}};
     needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     return {
@@ -38,7 +38,7 @@ std::vector<Named> meshes() {
     };
 }
 
-/// Every stretch of `inner` lies in one of `outer`, or nearly.
+/// Whether every interval of `inner` is inside one of `outer`, with a tolerance.
 bool within(const IntervalList& inner, const IntervalList& outer, double nearly = 1e-8) {
     for (const Interval& i : inner) {
         bool held = false;
@@ -192,7 +192,7 @@ TEST(LineOf, IsTheMatterOfAMeshOnTheLine) {
             const double u = place(rng), v = place(rng);
             const IntervalList found = line_of(solid, i % 3, u, v);
             const IntervalList truth = line_oracle(named.mesh, i % 3, u, v);
-            // The oracle moves the line by 2^-30; flanks are up to 100 times as steep.
+            // The oracle shifts the line by 2^-30; flanks are up to 100 times as steep.
             EXPECT_TRUE(within(found, truth, 1e-7) && within(truth, found, 1e-7)) << named.name;
             met += !truth.empty();
         }

@@ -26,7 +26,7 @@ CutModel block(const Vec3& size, double spacing) {
     return make_cut_model({SolidBox{{{0, 0, -size.z}, {size.x, size.y, 0}}}, 0.0}, spacing).value();
 }
 
-/// The height of the matter on the line along Z nearest to (x, y), and where that line runs.
+/// The top of the material on the line along Z nearest to (x, y), and the position of that line.
 struct Floor {
     double x, y, z;
 };
@@ -41,7 +41,7 @@ Floor floor_at(const CutModel& model, double x, double y) {
 }
 
 TEST(StockCase, ASlopeIsExactAllAlong) {
-    // 60 mm from z -1 to -9; at mid-length others are 17 mm too deep.
+    // 60 mm long, from Z-1 to Z-9. At mid-length other methods cut 17 mm too deep.
     for (const RevolvedProfile& tool : {flat, ball}) {
         CutModel model = block({80, 20, 30}, 0.5);
         cut(model, {cutter(tool), {10, 10, -1}, {70, 10, -9}});
@@ -49,7 +49,7 @@ TEST(StockCase, ASlopeIsExactAllAlong) {
             const Floor floor = floor_at(model, x, 10.0);
             const double slope = -8.0 / 60.0, aside = floor.y - 10.0;
             const double half = std::sqrt(9.0 - aside * aside);
-            // Flat: the last moment at which the rim is over the line. Ball: the cylinder it
+            // Flat: the last moment at which the rim is above the line. Ball: the cylinder it
             // sweeps.
             const double flat_z = -1.0 + slope * (floor.x + half - 10.0);
             const double ball_z =
@@ -139,7 +139,7 @@ TEST(StockCase, UndercutsLeaveWhatIsAboveThem) {
     }
 }
 
-/// A tool that leans over while it moves, and what a sample of its places removes.
+/// A tool that tilts while it moves, and the material removed at sampled positions.
 struct Swarf {
     Mat3 orientation(double t) const { return rotation_xyz_deg({0.0, 10.0 + 20.0 * t, 5.0 * t}); }
     Vec3 tip(double t) const { return {5.0 + 30.0 * t, 15.0 + 2.0 * t, -12.0}; }
@@ -157,7 +157,7 @@ TEST(StockCase, ASwarfMoveInStepsKeepsItsBound) {
     const RevolvedProfile tool{{{0, 3, 25, 3, 0}}};
     const Swarf swarf;
     constexpr int steps = 40;
-    // Half a step of turning, 20.6 degrees in all, at the far end of the flutes; the path is
+    // Half a step of rotation, 20.6 degrees in all, at the upper end of the flutes; the path is
     // straight.
     const double error = 0.5 / steps * 20.7 / 57.29578 * std::hypot(25.0, 3.0) + 1e-6;
     CutModel model = block({40, 30, 20}, 0.8);
@@ -234,7 +234,8 @@ TEST(Removed, IsThatOfASlotOfAnyWidthAndDirection) {
             from[along] = -10.0;
             to[along] = 70.0;
             const double truth = width * depth * 60.0;
-            // Where the slot is narrower than a cell, no line may run down it to tell the depth.
+            // Where the slot is narrower than a cell, no line may run down into it and give its
+            // depth.
             const double share = width < 0.5 ? 0.5 * 0.5 / depth : 0.01;
             EXPECT_NEAR(cut(model, {cutter(tool), from, to}), truth, share * truth) << width;
         }
@@ -242,7 +243,8 @@ TEST(Removed, IsThatOfASlotOfAnyWidthAndDirection) {
 }
 
 TEST(Removed, IsUnbiasedForFacesOfAnyDirection) {
-    // Boxes of material taken by tilted cylinders wholly inside: closed form, many directions.
+    // Material removed by tilted cylinders completely inside the block: closed form, many
+    // directions.
     std::mt19937 rng(79);
     double sum = 0.0, squares = 0.0;
     constexpr int samples = 60;

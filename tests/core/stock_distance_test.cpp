@@ -18,7 +18,7 @@ using Shapes = std::vector<ConvexShape>;
 
 ProfileElement cylinder(double r, double z0, double z1) { return {z0, r, z1, r, 0.0}; }
 
-/// A shank and a holder, a ball, a turned box or a triangle, at rest or moved straight.
+/// A shank and a holder, a ball, a rotated box or a triangle, at rest or moved straight.
 Shapes random_tool(std::mt19937& rng, const Aabb& near) {
     const Vec3 at = random_point(near, rng);
     const Vec3 places[] = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
@@ -48,7 +48,7 @@ double distance_to(const Shapes& shapes, const Vec3& p) {
     return least;
 }
 
-/// Points of the stock that is left, at random, many of them near its cut faces, and near `round`.
+/// Random points of the remaining stock, many of them near cut faces and near `round`.
 std::vector<Vec3> stock_points(const CutBox& world, const Vec3& round, std::mt19937& rng) {
     std::normal_distribution<double> away(0.0, 0.3);
     std::vector<Vec3> points;
@@ -65,7 +65,7 @@ struct Seen {
     int far = 0, near = 0, overlapping = 0, clear = 0, violated = 0, undecided = 0;
 };
 
-/// Any point of the stock contradicts a `lower` above its distance; the witness proves `upper`.
+/// Any point of the stock refutes a `lower` above its distance; the witness proves `upper`.
 void expect_sound(const CutBox& world, const Shapes& shapes, const StockSeparation& result,
                   const StockGoal& goal, std::mt19937& rng, Seen& seen) {
     const Separation& found = result.separation;
@@ -89,7 +89,7 @@ void expect_sound(const CutBox& world, const Shapes& shapes, const StockSeparati
     EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, 1e-9);
 }
 
-/// The distance to the boxes of all columns: what `lower` is without refinement.
+/// The distance to the boxes of all columns: `lower` without refinement.
 double to_columns(const Shapes& shapes, const CutModel& model) {
     double least = infinity;
     for (int j = 0; j < model.columns.v_count(); ++j)
@@ -104,7 +104,7 @@ double to_columns(const Shapes& shapes, const CutModel& model) {
     return least;
 }
 
-/// The distance to the matter on all lines: what `upper` is without refinement.
+/// The distance to the material on all lines: `upper` without refinement.
 double to_lines(const Shapes& shapes, const CutModel& model) {
     double least = infinity;
     for (int axis = 0; axis < 3; ++axis) {
@@ -128,7 +128,7 @@ TEST(StockDistance, IsThatOfTheNearestColumnAndTheNearestLine) {
     int near = 0;
     for (int i = 0; i < 40; ++i) {
         const CutBox world = random_cut_box(rng, i % 12, 0.0);
-        const CutModel model = world.model(i % 2 ? 0.7 : 0.35); // one tile, and several
+        const CutModel model = world.model(i % 2 ? 0.7 : 0.35); // one tile, or several
         for (int k = 0; k < 3; ++k) {
             const Shapes shapes = random_tool(rng, world.box.grown(4.0));
             const Separation found = separation(shapes, model).separation;
@@ -187,7 +187,7 @@ TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
     EXPECT_GT(seen.violated, 10);
 }
 
-/// A plate from which two slots leave a wall of the given thickness at y = 0.13.
+/// A plate in which two slots leave a wall of the given thickness at y = 0.13.
 CutBox thin_wall(double thickness) {
     const RevolvedProfile flat{{cylinder(3, 0, 30)}};
     const double y = 0.13 + 3.0;
@@ -202,7 +202,7 @@ TEST(StockDistance, SeesAWallThinnerThanTheMeshSize) {
     for (const double thickness : {0.3, 0.05, 0.004}) {
         const CutBox world = thin_wall(thickness);
         const CutModel model = world.model(0.5);
-        // A ball beside the wall, above the floor of the slot.
+        // A ball next to the wall, above the floor of the slot.
         const double truth = 0.6;
         const Shapes ball = {posed(convex_sphere(1.0),
                                    translation({1.7, 0.13 + 0.5 * thickness + 1.0 + truth, -4}))};
@@ -218,7 +218,7 @@ TEST(StockDistance, SeesAWallThinnerThanTheMeshSize) {
                 EXPECT_LT(found.separation.upper, threshold) << thickness;
             }
         }
-        // A needle through the wall between the scan lines.
+        // A needle that passes through the wall between the scan lines.
         const Shapes needle = {convex_segment({0.01, -2, -3}, {0.01, 2, -3.01})};
         EXPECT_EQ(separation(needle, model).separation.lower, 0.0);
     }
@@ -264,7 +264,7 @@ TEST(StockDistance, OfAFlatFaceOverAFlatStockIsExactAndCheap) {
     const StockSeparation found = separation(holder, model, {.threshold = 1.0});
     EXPECT_NEAR(found.separation.lower, 1.25, 1e-6);
     EXPECT_NEAR(found.separation.upper, 1.25, 1e-6);
-    EXPECT_LT(found.shape_tests, 300u); // ties are passed over
+    EXPECT_LT(found.shape_tests, 300u); // ties are skipped
 }
 
 TEST(StockDistance, OfAContactIsNothing) {

@@ -31,7 +31,7 @@ std::shared_ptr<const Cutter> ball_cutter(double radius) {
         make_cutter({{{radius, 0, radius, 0, radius}, {radius, radius, 30, radius, 0}}}, 0.0));
 }
 
-/// A closed surface passes every edge as often one way as the other.
+/// Whether every edge is used equally often in both directions, as in a closed surface.
 bool is_closed(const Mesh& mesh) {
     std::map<std::pair<uint32_t, uint32_t>, int> passes;
     for (const Mesh::Corners& t : mesh.triangles)
@@ -42,7 +42,7 @@ bool is_closed(const Mesh& mesh) {
     return std::all_of(passes.begin(), passes.end(), [](const auto& p) { return p.second == 0; });
 }
 
-/// What the three families say, in the mean.
+/// The mean volume of the three families of lines.
 double model_volume(const CutModel& model) {
     const ScanGrid& grid = model.lines.grid;
     double length = 0.0;
@@ -53,7 +53,7 @@ double model_volume(const CutModel& model) {
     return length * grid.spacing * grid.spacing / 3.0;
 }
 
-/// The surface as it is in a file, read again.
+/// The volume of the surface after writing it to a file and reading it back.
 double file_volume(const Mesh& mesh, const std::string& ending) {
     const test_support::ScopedFolder folder;
     const std::string bytes =
@@ -87,7 +87,8 @@ TEST(StockMesh, KeepsTheEdgesOfASlot) {
         const double out =
             std::max({std::abs(p.x - 30) - 30, std::abs(p.y - 20) - 20, -20 - p.z, p.z});
         const double in_slot = std::min(3.15 - std::abs(p.y - 20.1), p.z + 5.3);
-        EXPECT_NEAR(std::max(out, in_slot), 0.0, 1e-5); // on the outside or on the slot's walls
+        EXPECT_NEAR(std::max(out, in_slot), 0.0,
+                    1e-5); // on the outside or on the walls of the slot
     }
 }
 
@@ -98,7 +99,8 @@ TEST(StockMesh, KeepsTheEdgesOfASlotThatRunsAskew) {
     cut(model, {flat_cutter(4.0), start, start + 200.0 * along});
     const StockMesh surface = stock_mesh(model);
     EXPECT_TRUE(is_closed(surface.mesh));
-    // The slot's outline runs out of the sides of 60 mm in X: its length within is 60 / along.x.
+    // The slot leaves the block through the sides 60 mm apart in X: its length inside is 60 /
+    // along.x.
     EXPECT_NEAR(signed_volume(surface.mesh), 48'000.0 - 8.0 * 4.0 * 60.0 / along.x, 0.5);
     double beside = 0.0;
     for (const Vec3& p : surface.mesh.vertices) {
@@ -111,7 +113,7 @@ TEST(StockMesh, KeepsTheEdgesOfASlotThatRunsAskew) {
 }
 
 TEST(StockMesh, KeepsTheBottomOfASlopedVee) {
-    // Its bottom runs between the lines, and through cells that no line passes the surface in.
+    // Its bottom runs between the lines, and through cells in which no line crosses the surface.
     double volumes[2];
     for (const double h : {1.0, 0.4}) {
         CutModel model = block_model(h);
@@ -132,7 +134,7 @@ TEST(StockMesh, RoundsABallPocketWithinItsBound) {
         cut(model, {ball_cutter(r), {30, 20, -r}, {30, 20, 20}});
         const StockMesh surface = stock_mesh(model);
         EXPECT_TRUE(is_closed(surface.mesh));
-        // A vertex between lines lies off the ball by no more than the sag of a cell's diagonal.
+        // A vertex between lines deviates from the ball by at most the sag of a cell's diagonal.
         const double sag = 3.0 * h * h / (8.0 * r) * 4.0;
         EXPECT_NEAR(signed_volume(surface.mesh), 48'000.0 - 2.0 / 3.0 * pi * r * r * r,
                     2.0 * pi * r * r * sag);
@@ -196,7 +198,7 @@ TEST(StockMesh, IsEmptyWhenNothingIsLeft) {
 }
 
 TEST(StockMesh, KeepsAMeshAsItIs) {
-    // The block, turned over as a mesh of its own surface.
+    // The block as a mesh, made of its own surface.
     Mesh mesh = stock_mesh(block_model(5.0)).mesh;
     CutModel model = *make_cut_model({solid_mesh(std::move(mesh)), 0.0}, 0.9);
     const StockMesh surface = stock_mesh(model);

@@ -18,8 +18,9 @@ void mill(CutModel& model, double radius, const Vec3& from, const Vec3& to, doub
         {std::make_shared<Cutter>(make_cutter({{{0, radius, height, radius, 0}}}, 0.0)), from, to});
 }
 
-/// The slow way: nodes of the grid as a graph, joined where a line has matter from one to the next.
-/// The number of nodes in each piece, the largest first, without pieces below `least` nodes.
+/// A slow method: grid nodes as a graph, connected where a line has material from one to the next.
+/// Returns the number of nodes in each piece, the largest first, without pieces below `least`
+/// nodes.
 std::vector<size_t> pieces_by_nodes(const CutModel& model, size_t least) {
     const ScanGrid& grid = model.lines.grid;
     const int n[3] = {grid.count(0), grid.count(1), grid.count(2)};
@@ -130,7 +131,7 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
                 EXPECT_LE(pieces.size(), before);
             }
             before = pieces.size();
-            // Nodes only: pieces without any are crumbs to both.
+            // Compares nodes only: pieces without any are ignored by both.
             if (k % 6 == 5) {
                 const auto by_nodes = pieces_by_nodes(model, 30);
                 const auto large = std::count_if(pieces.begin(), pieces.end(),
@@ -162,7 +163,7 @@ TEST(StockPieces, NeedALookWhereAnOverhangIsCut) {
 }
 
 TEST(StockPieces, NeedALookWhereAThinSlotIsBelow) {
-    // Sawn from below between two lines, up to a bridge of 3 mm; then the bridge goes.
+    // Sawn from below between two lines, leaving a bridge of 3 mm; then the bridge is cut.
     CutModel model = block_model(1.0);
     mill(model, 0.1, {20.0, -5, -21}, {20.0, 45, -21}, 18.0);
     EXPECT_EQ(PieceMap().pieces(model).size(), 1u);
@@ -171,7 +172,7 @@ TEST(StockPieces, NeedALookWhereAThinSlotIsBelow) {
     EXPECT_EQ(PieceMap().pieces(model).size(), 2u);
 }
 
-/// The simulator with a 4 mm mill that saws the block through at X 20.
+/// The simulator with a 4 mm mill that saws through the block at X 20.
 struct Saw {
     Setup setup;
 
@@ -237,7 +238,7 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
     auto found = saw.run(sawing);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_NE(found[0].message.find("No fixture touches it"), std::string::npos);
-    // Within the box of the piece, but above its step.
+    // Inside the box of the piece, but above its step.
     saw.setup.fixtures.push_back({"above", clamp({1, 15, -4}, {6, 25, 0})});
     std::vector<Vec3> stepped = {
         {2, -10, -10}, {2, 50, -10}, {6, 50, -10}, {6, -10, -10}, {10, -10, -10}};
@@ -257,7 +258,7 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
 }
 
 TEST(LoosePieces, AreToldOnceEach) {
-    // Sawn at X 20, over that again, then at X 40.
+    // Sawn at X 20, along the same path again, then at X 40.
     std::vector<Vec3> tips = sawing;
     tips.insert(tips.end(), {{20, -10, 20}, {40, -10, -21}, {40, 50, -21}});
     EXPECT_EQ(Saw().run(tips).size(), 2u);

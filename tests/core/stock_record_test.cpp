@@ -67,7 +67,7 @@ TEST(StockRecord, WritesLittleForMovesThatGoOn) {
     EXPECT_LT(bytes_of(record_of(model)).size(), 26'000u);
 }
 
-/// Whether a point is left of a box that was cut, and how sure that is.
+/// Whether a point of a box remains after cutting, or is too close to a cut to decide.
 enum class Left { yes, no, near };
 
 Left is_left(const CutBox& world, const Vec3& p) {
@@ -94,7 +94,7 @@ TEST(StockRecord, TurnedOverKeepsEveryPointWhereItBelongs) {
             if (truth == Left::near) continue;
             const Vec3 q = over * p;
             for (int axis = 0; axis < 3; ++axis) {
-                // The line through the very point, worked out from the solid and the moves.
+                // The line exactly through the point, computed from the solid and the moves.
                 IntervalList line = line_of(turned->solid, axis, q[u_axis(axis)], q[v_axis(axis)]);
                 for (const CutterSweep& sweep : turned->sweeps)
                     for (const Cutter::Piece& piece : sweep.cutter->pieces)

@@ -20,7 +20,8 @@ struct Seen {
     int raw = 0, smooth = 0, edges = 0;
 };
 
-/// The point lies on the surface of the cut that is named, and the normal is where its inside is.
+/// The point must be on the surface of the named cut, with the normal towards the inside of the
+/// cut.
 void expect_true_surface(const CutBox& world, const SurfacePoint& s, Seen& seen) {
     ASSERT_NEAR(glm::length(s.normal), 1.0, 1e-9);
     if (!s.block) {
@@ -36,7 +37,7 @@ void expect_true_surface(const CutBox& world, const SurfacePoint& s, Seen& seen)
         step[k] = 1e-5;
         slope[k] = outside_cut(cut, s.point + step) - outside_cut(cut, s.point - step);
     }
-    // Out of the stock is into the cut. On an edge the slope is between those of the faces.
+    // Leaving the stock is entering the cut. On an edge the slope is between those of the faces.
     const bool smooth = glm::dot(glm::normalize(slope), s.normal) < -0.9999;
     ++(smooth ? seen.smooth : seen.edges);
 }

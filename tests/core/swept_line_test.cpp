@@ -11,7 +11,7 @@ namespace {
 using test_support::argmin_convex;
 using test_support::outside_sweep;
 
-/// A sweep and a line, and how far points of the line lie outside the swept volume.
+/// A sweep and a line, and the distance of points of the line from the swept volume.
 struct Case {
     ElementSweep sweep;
     int axis;
@@ -38,7 +38,8 @@ struct Seen {
     int hit = 0, miss = 0, graze = 0;
 };
 
-/// Ends lie in the swept volume; what lies 1e-6 beyond them does not; a miss is one.
+/// The ends of the interval must be in the swept volume and points 1e-6 beyond must not; if there
+/// is no interval, the line must miss the volume.
 void expect_true_interval(const Case& c, Seen& seen) {
     const auto found = line_interval(c.sweep, c.axis, c.u, c.v);
     const auto outside = [&](double along) { return c.outside(along); };
@@ -73,7 +74,7 @@ ProfileElement element_of(int kind, std::mt19937& rng) {
         return {z, r, z + s, 0.0, 0.0};
     case 5:
         return {r, 0.0, r, 0.0, r};
-    case 6: // 45 degrees, met by moves along its own flank
+    case 6: // 45 degrees, with moves along its own flank
         return {0.0, 1.0, 4.0, 5.0, 0.0};
     default:
         return {s, r, s, r, 0.3 * s};
@@ -94,11 +95,11 @@ Vec3 move_of(int kind, std::mt19937& rng) {
         return {0.0, step(rng), 0.0};
     case 4:
         return {step(rng), step(rng), 0.0};
-    case 5: // 45 degrees in a plane of the axes
+    case 5: // 45 degrees in a coordinate plane
         return [](double s) { return Vec3(0.0, s, -s); }(step(rng));
     case 6:
         return [](double s) { return Vec3(s, 0.0, s); }(step(rng));
-    case 7: // next to nothing on one axis
+    case 7: // almost no motion along one axis
         return {step(rng), 1e-9 * step(rng), 1e-12 * step(rng)};
     case 8:
         return 20.0 * Vec3(step(rng), step(rng), step(rng));
@@ -170,7 +171,7 @@ TEST_P(EveryElementMoveAndAxis, HoldsForLinesThroughTheAxisAndOnTheRims) {
 INSTANTIATE_TEST_SUITE_P(LineInterval, EveryElementMoveAndAxis, ::testing::Range(0, element_kinds));
 
 TEST(LineInterval, FollowsAChamferDownItsOwnFlank) {
-    // The chord's square changes evenly here, no quadratic is left.
+    // The square of the chord is linear here, so there is no quadratic to solve.
     const ElementSweep sweep{{0.0, 1.0, 4.0, 5.0, 0.0}, {0, 0, 0}, {3, 10, -10}};
     Seen seen;
     for (double y = -1.0; y < 16.0; y += 0.37)
@@ -179,7 +180,7 @@ TEST(LineInterval, FollowsAChamferDownItsOwnFlank) {
 }
 
 TEST(LineInterval, FindsARoundedCornerThatRampsAcrossTheLine) {
-    // The line is at the corner's height only while the disc is beside it.
+    // The line is at the height of the corner only while the disc is next to it.
     const ElementSweep sweep{{1.0, 5.0, 1.0, 5.0, 1.0}, {0, -40, 30}, {0, 40, -30}};
     Seen seen;
     for (double y = -12.0; y < 12.0; y += 0.3)

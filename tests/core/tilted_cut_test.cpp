@@ -17,7 +17,7 @@ using test_support::random_tilted_cut_box;
 
 constexpr double spacing = 0.7;
 
-/// Calls act(i, j, square) for every cell whose closed square holds the point.
+/// Calls act(i, j, square) for every cell whose closed square contains the point.
 template <typename Act>
 void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
     for (int j = 0; j < model.columns.v_count(); ++j)
@@ -52,7 +52,7 @@ TEST(TiltedCut, LeavesEveryPointThatIsStillStockInTheColumns) {
 }
 
 TEST(TiltedCut, EmptiesColumnsThatItCoversWhole) {
-    // A column three cells deep in what was cut holds nothing there.
+    // A column three cells inside the cut must be empty there.
     std::mt19937 rng(162);
     int deep = 0;
     for (int i = 0; i < 30; ++i) {
@@ -95,7 +95,7 @@ TEST(TiltedCut, LeavesOnTheLinesWhatIsStockAndNothingElse) {
 }
 
 TEST(TiltedCut, KeepsEveryPointThatSomePathLeavesOnTheLinesWithin) {
-    // With an error of the path, what the lines keep is stock under every path that is near enough.
+    // With a path error, what the lines keep must be stock for every path within that error.
     std::mt19937 rng(164);
     int ends = 0;
     for (int i = 0; i < 12; ++i) {
@@ -141,7 +141,7 @@ TEST(OwnCut, IsKnownFromTheSideToo) {
         return runs_in_own_cut(stock, {flutes, from, to, 0.02, orientation});
     };
     EXPECT_TRUE(holds({95, 60, -15}, {95, -20, -15}, from_the_right));
-    EXPECT_TRUE(holds({95, 60, -15}, {140, 60, -15}, from_the_right)); // out along its axis
+    EXPECT_TRUE(holds({95, 60, -15}, {140, 60, -15}, from_the_right)); // out along the tool axis
     EXPECT_FALSE(holds({95, 60, -15}, {94.9, 60, -15}, from_the_right));
     EXPECT_FALSE(holds({95, 60, -15}, {95, 60, 20}, from_the_right));
     EXPECT_FALSE(holds({95, 60, -15}, {95, -20, -15}, Mat3(1.0)));

@@ -37,8 +37,9 @@ struct Seen {
     int hit = 0, miss = 0, graze = 0;
 };
 
-/// Ends lie in the swept volume; what lies 1e-6 beyond them is not deeper in it than rounding makes
-/// a line that runs along a surface; a miss is one.
+/// The ends of the interval must be in the swept volume. Points 1e-6 beyond must not be deeper in
+/// it than rounding allows for a line along a surface. Without an interval, the line must miss the
+/// volume.
 void expect_true_interval(const Case& c, Seen& seen) {
     const auto found = tilted_line_interval(c.sweep, c.orientation, c.axis, c.u, c.v);
     const auto outside = [&](double along) { return c.outside(along); };
@@ -73,7 +74,7 @@ ProfileElement element_of(int kind, std::mt19937& rng) {
         return {z, r, z + s, 0.0, 0.0};
     case 5:
         return {r, 0.0, r, 0.0, r};
-    case 6: // 45 degrees, met by moves along its own flank
+    case 6: // 45 degrees, with moves along its own flank
         return {0.0, 1.0, 4.0, 5.0, 0.0};
     case 7: // a needle
         return {0.0, 0.001, 20.0, 0.5, 0.0};
@@ -88,13 +89,13 @@ Mat3 orientation_of(int kind, std::mt19937& rng) {
     switch (kind) {
     case 0:
         return random_rotation(rng);
-    case 1: // lying along an axis, or upside down
+    case 1: // along an axis, or upside down
         return rotation_xyz_deg({90.0 * static_cast<double>(rng() % 4), 90.0 * (rng() % 4), 0.0});
-    case 2: // about one axis, as machines with two rotary axes often stand
+    case 2: // about one axis, as is common on machines with two rotary axes
         return rotation_xyz_deg({angle(rng), 0.0, 0.0});
     case 3:
         return rotation_xyz_deg({0.0, 45.0, 0.0});
-    case 4: // next to upright
+    case 4: // almost upright
         return rotation_xyz_deg({1e-7 * angle(rng), 1e-10 * angle(rng), 0.0});
     default:
         return Mat3(1.0);
@@ -102,8 +103,8 @@ Mat3 orientation_of(int kind, std::mt19937& rng) {
 }
 constexpr int orientation_kinds = 6;
 
-/// A move: none, along the tool's axis, along the line, within the end face, along the flank of 45
-/// degrees, along nearly any of these, anywhere.
+/// A move: none, along the tool axis, along the line, in the end face, along the 45 degree flank,
+/// almost along any of these, or in any direction.
 Vec3 move_of(int kind, const Mat3& orientation, int axis, std::mt19937& rng) {
     std::uniform_real_distribution<double> step(-12.0, 12.0);
     Vec3 line(0.0);
@@ -159,7 +160,7 @@ protected:
     }
 
 private:
-    /// Has the line pass near the body at some moment; every fourth through its axis or rim.
+    /// Makes the line pass near the body at some moment; every fourth time through its axis or rim.
     static void aim(Case& c, std::mt19937& rng) {
         std::uniform_real_distribution<double> share(-1.02, 1.02);
         const ProfileElement& e = c.sweep.element;

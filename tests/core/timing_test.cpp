@@ -30,7 +30,7 @@ PathMotion line(const Vec3& by, double speed) {
     return motion;
 }
 
-/// A line along X, then one of the same length that turns off by an angle.
+/// A line along X, then one of the same length at an angle to it.
 std::vector<PathMotion> corner(double length, double angle_deg, double speed) {
     const double angle = angle_deg * pi / 180.0;
     return {line({length, 0, 0}, speed),
@@ -79,7 +79,8 @@ TEST(Timing, RunsAtFullSpeedWhereNoAccelerationIsKnown) {
 TEST(Timing, ObeysTheAxisThatIsSlowest) {
     MachineLimits limits = even_limits(500, 1000);
     limits[2] = {50, 200};
-    // Along (3, 0, 4) / 5: Z allows 50 / 0.8 along the path, and 200 / 0.8.
+    // Along (3, 0, 4) / 5: Z allows a speed of 50 / 0.8 along the path, and an acceleration of 200
+    // / 0.8.
     const auto times = times_of(plan_of(limits), {line({60, 0, 80}, 400)});
     EXPECT_NEAR(times[0].duration, 100.0 / 62.5 + 62.5 / 250.0, 1e-12);
 }
@@ -105,7 +106,7 @@ TEST(Timing, KeepsToExactCornersWithinAJumpOfOneCycle) {
     EXPECT_NEAR(times[0].leave, 1000 * control_cycle, 1e-12);
 }
 
-/// Corners of several angles, all with room for their rounding.
+/// Corners of several angles, all with enough space for rounding.
 TEST(Timing, RoundsCornersAsFastAsToleranceAndAxesAllow) {
     const double a = 1000.0, tolerance = 0.01, feed = 100.0, length = 20.0;
     const auto ramp = [&](double v, double path_a) {
@@ -116,7 +117,7 @@ TEST(Timing, RoundsCornersAsFastAsToleranceAndAxesAllow) {
         const double angle = degrees * pi / 180.0;
         const double turn = 2.0 * std::sin(angle / 2.0);
         const double steepest = std::max(1.0 - std::cos(angle), std::sin(angle));
-        // The parabola of acceleration a/steepest * turn along the bisector misses the corner by
+        // The parabola with acceleration a/steepest * turn along the bisector misses the corner by
         // turn^2 v^2 / (8 times that acceleration).
         const double bisector = a / steepest * turn;
         const double v = std::sqrt(8.0 * tolerance * bisector) / turn;
@@ -130,13 +131,13 @@ TEST(Timing, RoundsCornersAsFastAsToleranceAndAxesAllow) {
 }
 
 TEST(Timing, LeavesHalfOfAShortMotionToEachOfItsCorners) {
-    // A tolerance that never counts: the parabola begins half of the length before the corner.
+    // A tolerance that is never reached: the parabola begins half a length before the corner.
     const auto times = times_of(plan_of(even_limits(500, 1000), Blending::continuous, 100.0),
                                 corner(0.2, 90, 100));
     EXPECT_NEAR(times[0].leave, std::sqrt(0.2 * 1000.0), 1e-9);
 }
 
-/// A circle of radius r in the plane, all of it.
+/// A full circle of radius r in the plane.
 PathMotion circle(double r, double speed) {
     PathMotion motion{.length = 2.0 * pi * r, .speed = speed};
     motion.start[1] = motion.end[1] = 1.0;
@@ -172,7 +173,7 @@ TEST(Timing, TellsWhenAPlaceIsReached) {
     EXPECT_NEAR(times[0].moment(100.0), 1.1, 1e-12);
 }
 
-/// A random program: lines of all lengths, some going straight on, some turning back, and circles.
+/// A random program: lines of all lengths, some continuing straight, some reversing, and circles.
 struct RandomPath {
     std::mt19937_64 random;
     MachineLimits limits;
@@ -244,7 +245,7 @@ TEST(Timing, IsNeverFasterThanFeedOrAxes) {
                 ASSERT_LE(std::hypot(a * motion.fastest[k], top * top * motion.bend[k]),
                           path.limits[k].acceleration * (1.0 + 1e-9));
             }
-            // The length that these speeds cover in the time.
+            // The length covered at these speeds in the time.
             const double up = (top - time.enter) / a, down = (top - time.leave) / a;
             const double covered = 0.5 * (time.enter + top) * up + 0.5 * (time.leave + top) * down
                                    + top * (time.duration - up - down);
@@ -300,7 +301,7 @@ TEST(Timing, KeepsRoundedCornersWithinToleranceAndAxes) {
     EXPECT_GT(rounded, 300u);
 }
 
-/// Hundreds of tiny blocks, so that the known future is too short to brake from the feed.
+/// Hundreds of tiny blocks, so that the known future is too short to brake from the feed rate.
 TEST(Timing, LooksAheadNoFartherThanItsWindow) {
     const std::vector<PathMotion> motions(4 * look_ahead, line({0.01, 0, 0}, 400));
     const auto times = times_of(plan_of(even_limits(500, 1000)), motions);
@@ -318,7 +319,7 @@ TEST(Timing, DoesNotDependOnHowBlocksAreFed) {
     TimePlan going = plan;
     std::vector<MotionTime> piecewise;
     for (size_t i = 0; i < path.motions.size(); ++i) {
-        TimePlan copy = going; // what a look at the future leaves behind must not count
+        TimePlan copy = going; // state left by looking ahead must not count
         std::vector<MotionTime> thrown_away;
         if (i % 97 == 0) come_to_rest(copy, thrown_away);
         std::vector<MotionTime> done;

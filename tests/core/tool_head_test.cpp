@@ -12,15 +12,15 @@ namespace {
 
 using test_support::outside;
 
-/// A tool and its radius at each height, worked out another way than by pieces.
+/// A tool and its radius at each height, computed without pieces.
 struct Described {
     ToolDescription tool;
     double height;
     std::function<double(double)> radius;
-    double cut_to = infinity; // what lies above does not cut
+    double cut_to = infinity; // does not cut above this height
 };
 
-/// The farthest a ball of radius c about a circle of radius disc reaches at a height.
+/// The outermost radius, at a height, of a ball of radius c swept around a circle of radius `disc`.
 double round_at(double z, double disc, double c) {
     return disc + std::sqrt(std::max(0.0, c * c - (z - c) * (z - c)));
 }
@@ -41,10 +41,10 @@ ToolDescription with(ToolDescription tool, const std::function<void(ToolDescript
     return tool;
 }
 
-/// A flank at `deg` from the axis that has its foot where it touches the rounding: the outline of
-/// the convex hull is the lower envelope of what bounds it, seen from outside.
+/// A flank at `deg` from the axis, tangential to the rounding: the outline of the convex hull is
+/// the lower envelope of its boundaries, seen from outside.
 double flank_at(double z, double tip, double corner, double deg) {
-    // The tangent's distance from the centre of the rounding is its radius.
+    // The distance of the tangent from the centre of the rounding is its radius.
     const double a = deg * std::numbers::pi / 180.0;
     return tip - corner + corner / std::cos(a) + (z - corner) * std::tan(a);
 }
@@ -126,7 +126,7 @@ std::vector<Described> described_tools() {
                           }),
                      6, [](double z) {
                          if (z < 0.8 + 0.8 * 0.5) return round_at(z, 9.2, 0.8);
-                         // The tangent at 30 degrees inwards from upright.
+                         // The tangent at 30 degrees inwards from vertical.
                          return 9.2 + 0.8 / std::cos(std::numbers::pi / 6)
                                 - (z - 0.8) * tan_deg(30);
                      }});
@@ -160,7 +160,7 @@ RevolvedProfile part(const ToolAssembly& tool, PartKind kind) {
 }
 
 TEST(ToolHead, IsTheSolidThatItsSizesDescribe) {
-    constexpr double sag = 0.0025 + 1e-9; // of roundings that are made of cones, inwards
+    constexpr double sag = 0.0025 + 1e-9; // of roundings that are approximated by cones, inwards
     for (const Described& each : described_tools()) {
         const auto tool = assemble(each.tool);
         ASSERT_TRUE(tool.has_value()) << tool.error().message;

@@ -15,7 +15,7 @@ using test_support::certainly_outside;
 using test_support::random_pose;
 using test_support::torus_mesh;
 
-/// Every triangle is tried.
+/// Tests every triangle.
 double brute_force(const ConvexShape& shape, const Mesh& mesh) {
     double least = infinity;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)

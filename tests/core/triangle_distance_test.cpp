@@ -16,7 +16,7 @@ Vec3 random_point(std::mt19937& rng, double reach) {
     return {place(rng), place(rng), place(rng)};
 }
 
-/// Fair triangles, needles, caps, points and lines, in a random place.
+/// Well-shaped triangles, needles, caps, points and lines, in a random position.
 Triangle random_triangle(std::mt19937& rng, double reach) {
     std::uniform_real_distribution<double> part(0.0, 1.0);
     const Vec3 a = random_point(rng, 10.0), b = random_point(rng, 10.0);
@@ -40,7 +40,7 @@ Triangle random_triangle(std::mt19937& rng, double reach) {
     return {pose * t.a, pose * t.b, pose * t.c};
 }
 
-/// Triangles that share a corner or a side, touch, cross, or lie in one plane.
+/// Triangles that share a corner or a side, touch, intersect, or are in one plane.
 Triangle related(const Triangle& t, std::mt19937& rng) {
     const Vec3 inside = 0.2 * t.a + 0.3 * t.b + 0.5 * t.c;
     switch (rng() % 6) {
@@ -48,9 +48,9 @@ Triangle related(const Triangle& t, std::mt19937& rng) {
         return {t.b, t.a, random_point(rng, 10.0)};
     case 1:
         return {random_point(rng, 10.0), t.c, random_point(rng, 10.0)};
-    case 2: // crosses
+    case 2: // intersects
         return {inside + random_point(rng, 1.0), inside - random_point(rng, 1.0), inside};
-    case 3: // in the same plane, and inside it
+    case 3: // in the same plane, and inside
         return {inside, 0.1 * t.a + 0.9 * inside, 0.1 * t.b + 0.9 * inside};
     case 4: { // parallel, a little above
         const Vec3 up = 1e-5 * random_point(rng, 1.0);
@@ -71,7 +71,7 @@ Vec3 sample(const Triangle& t, std::mt19937& rng) {
     return t.a + u * (t.b - t.a) + v * (t.c - t.a);
 }
 
-/// Samples, each led nearer to the other triangle and back some times: what these find exists.
+/// Samples, each moved alternately towards the other triangle: the distances found exist.
 double sampled_distance(const Triangle& a, const Triangle& b, std::mt19937& rng) {
     double least = infinity;
     for (int i = 0; i < 30; ++i) {
@@ -101,7 +101,8 @@ void expect_sound(const Triangle& a, const Triangle& b, std::mt19937& rng) {
         test_support::wide_distance(test_support::wide(a), test_support::wide(b)));
     EXPECT_LE(found.lower, truth + rounding);
     EXPECT_GE(found.upper, truth - rounding);
-    EXPECT_LE(found.upper - found.lower, 3e-7 + rounding); // 1e-7 but for slivers that nearly touch
+    EXPECT_LE(found.upper - found.lower,
+              3e-7 + rounding); // 1e-7 except for slivers that almost touch
     EXPECT_LE(found.lower, sampled_distance(a, b, rng) + rounding);
     EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, rounding);
     EXPECT_LE(glm::distance(nearest_point(a, found.point_a), found.point_a), rounding);
@@ -165,15 +166,15 @@ TEST(TriangleDistance, IsThatWorkedOutByHand) {
         Triangle other;
         double distance;
     } cases[] = {
-        {{{1, 1, 3}, {2, 1, 4}, {1, 2, 5}}, 3.0},                   // corner over face
+        {{{1, 1, 3}, {2, 1, 4}, {1, 2, 5}}, 3.0},                   // corner above face
         {{{1, 1, -1}, {2, 1, 4}, {1, 2, 5}}, 0.0},                  // through it
         {{{1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, 0.0},                   // in it
-        {{{-3, 0, 4}, {-3, 9, 4}, {-9, 0, 9}}, 5.0},                // side along side
+        {{{-3, 0, 4}, {-3, 9, 4}, {-9, 0, 9}}, 5.0},                // side parallel to side
         {{{-3, -4, 12}, {-9, -9, 20}, {-9, -4, 22}}, 13.0},         // corner to corner
         {{{5, -1, 1}, {5, -1, -1}, {5, -9, 0}}, 1.0},               // side across side
         {{{1, 1, 2}, {1, 1, 2}, {1, 1, 2}}, 2.0},                   // a point
         {{{-5, 1, 2}, {15, 1, 2}, {5, 1, 2}}, 2.0},                 // a line
-        {{{-50, -50, 0.5}, {150, -50, 0.5}, {-50, 150, 0.5}}, 0.5}, // over all of it
+        {{{-50, -50, 0.5}, {150, -50, 0.5}, {-50, 150, 0.5}}, 0.5}, // above all of it
     };
     for (const auto& c : cases) {
         const Separation found = separation(floor, c.other);

@@ -7,7 +7,7 @@
 namespace core {
 namespace {
 
-/// Numbers of a lattice as often as not, so that faces, rims and edges lie in one plane.
+/// Half of its numbers are on a lattice, so that faces, rims and edges are often in one plane.
 class Dice {
 public:
     double length(double most) {
@@ -48,7 +48,7 @@ ConvexShape shape_of(const UprightSweep& sweep) {
     return swept(convex(sweep.element), places);
 }
 
-/// How far a point is outside a piece that stands still, from its definition.
+/// The distance of a point from a piece at rest, from its definition.
 double outside(const ProfileElement& element, const Vec3& p) {
     const double r = std::hypot(p.x, p.y);
     double least = infinity;
@@ -104,7 +104,7 @@ TEST(UprightSweep, StaysBelowTheDistanceWhereALimitEndsTheSearch) {
 }
 
 TEST(UprightSweep, FindsTheMomentOnASlope) {
-    // A cylinder that climbs past an edge: 5 - 8 t beside it and 1 + 6 t above it.
+    // A cylinder that moves up past an edge: 5 - 8 t next to it and 1 + 6 t above it.
     const UprightSweep sweep{{.z0 = 0, .r0 = 1, .z1 = 5, .r1 = 1}, {-6, 0, 2}, {8, 0, 6}};
     const Separation found = separation(sweep, {{0, -1, 0}, {1, 1, 1}}, {.tolerance = 1e-12});
     EXPECT_NEAR(found.upper, 3.8, 1e-9);

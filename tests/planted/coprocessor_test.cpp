@@ -16,7 +16,7 @@ namespace {
 
 const std::filesystem::path folder = std::filesystem::path(FEELER_SOURCE_DIR) / "tests/planted";
 
-/// A program of the table with its set-up; programs that start in the middle are left out.
+/// A program of the table with its set-up. Programs that start in the middle are omitted.
 struct Program {
     std::string file, setup, dialect;
     auto operator<=>(const Program&) const = default;

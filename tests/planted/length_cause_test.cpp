@@ -10,7 +10,7 @@ using test_support::SetupWriter;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A program with the lines, tool `tool` and length offset `offset`, which is called in line 5.
+/// A program with the lines, tool `tool` and length offset `offset`, which line 5 activates.
 std::string with_length(int tool, int offset, const std::string& lines) {
     return "O1\nG21 G17 G90 G40 G80\nT" + std::to_string(tool)
            + " M6\nG54 G0 X-30. Y50. S6000 M3\nG43 H" + std::to_string(offset) + " Z60.\n" + lines

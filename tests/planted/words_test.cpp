@@ -27,7 +27,7 @@ TEST(RapidOnTheWayHome, IsARapidInTheStock) {
 }
 
 TEST(RapidOfACycle, IsARapidInTheStock) {
-    // G98 returns to Z-8, where the cycle started in the pocket beside the wall.
+    // G98 returns to Z-8, where the cycle started in the pocket next to the wall.
     const std::vector<std::string> pocket = {"G0 X20. Y50.", "Z2.", "G1 Z-8. F200."};
     std::vector<std::string> lines = pocket;
     lines.insert(lines.end(), {"G98 G81 X80. Y50. Z-12. R-8. F200.", "G80", "G0 Z60."});
@@ -109,7 +109,7 @@ TEST(FluteLength, IsToldAsItIsWritten) {
 // The same words with and without --pairs.
 
 TEST(Witness, IsAtTheSameMomentHoweverMuchIsTold) {
-    // The holder passes through both walls of a slot that is too deep, with a clamp behind it.
+    // The holder passes through both walls of a slot that is too deep and through a clamp after it.
     const SetupWriter setup = SetupWriter()
                                   .fixture("clamp-1", "box = [[70, 60, -30], [80, 90, 12]]")
                                   .fixture("clamp-2", "box = [[90, 30, -30], [95, 40, 14]]");

@@ -34,7 +34,7 @@ std::vector<uint64_t> digests_of(const app::CheckJob& job);
 /// The record as JSON, without times.
 std::string report_of(const app::CheckRun& run);
 
-/// The same for the blocks before one, with their findings.
+/// The record of the blocks before `block` as JSON, with their findings and without times.
 std::string report_before(const app::CheckRun& run, size_t block);
 
 } // namespace session_test

@@ -123,7 +123,7 @@ TEST_F(Walking, WatchesAParameterBothWays) {
     while (session->go_on().reason == app::StopReason::watch) places.push_back(session->at());
     EXPECT_GE(places.size(), 18U);
     EXPECT_EQ(session->watches()[0].hits, places.size());
-    // Going back stops before the block that changes it.
+    // Stepping back stops before the block that changes it.
     for (size_t i = places.size(); i-- > 0;) {
         ASSERT_EQ(session->go_on_back().reason, app::StopReason::watch);
         EXPECT_EQ(session->at(), places[i] - 1);

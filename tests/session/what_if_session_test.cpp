@@ -52,7 +52,7 @@ TEST(WhatIf, LeavesEverythingBeforeItUntouched) {
         ASSERT_TRUE(session->change(change));
         record_all(*session);
         // The last blocks before it may end slightly earlier or later if the next motion changes;
-        // they are left out.
+        // they are not compared.
         EXPECT_EQ(report_before(session->record(), place - 60), report_before(*whole, place - 60));
         const size_t before = random() % (place - 60);
         ASSERT_TRUE(session->go_to(before));
@@ -166,7 +166,7 @@ G0 Z60
 M2
 )";
 
-/// A pair that was not measured is not known to be far away, even if the search limit is lowered
+/// If a pair was not measured, its distance is unknown, even if the search limit is lowered
 /// afterwards.
 TEST(WhatIf, OfASmallAllowanceLooksAsFarAsBefore) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
@@ -207,8 +207,8 @@ TEST(WhatIf, RefusesToMoveAFixtureThatHasBeenTakenAway) {
     EXPECT_TRUE(session->change(change));
 }
 
-/// The length in the control is 30 mm too short from G43 on; meanwhile the clamp is moved into the
-/// way.
+/// The length in the control is 30 mm too short from G43 on. Meanwhile the clamp is moved into the
+/// path.
 TEST(WhatIf, LetsAWrongLengthTakeInOnlyWhatComesOfIt) {
     const ProgramFiles files("short.ngc",
                              "G21 G90 G17 G54\nT1 M6\nS2000 M3\nG43 H3\nG0 Z90\nG0 X10 Y50\n"

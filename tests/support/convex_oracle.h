@@ -70,7 +70,8 @@ inline double slab_between(const core::ConvexShape& a, const core::ConvexShape& 
     return std::max(best, greatest_gap(gap, start));
 }
 
-/// A lower bound of a point's distance outside a shape; at most 0 when no direction separates them.
+/// A lower bound of the distance of a point outside a shape; at most 0 if no direction separates
+/// them.
 inline double certainly_outside(const core::ConvexShape& shape, const core::Vec3& p,
                                 std::mt19937& rng) {
     const auto gap = [&](const core::Vec3& n) { return glm::dot(n, p) - reach(shape, n); };

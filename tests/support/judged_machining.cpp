@@ -127,8 +127,8 @@ private:
         take_widths(claim, pair);
     }
 
-    /// The part of a fixture that flutes have cut is not an obstacle and is not reported; the part
-    /// that they have not cut remains an obstacle.
+    /// The material of a fixture that flutes have cut is neither an obstacle nor reported; the
+    /// remaining material is still an obstacle.
     void judge_cut_fixture(const std::vector<TruePassage>& block, const core::PairClearance& claim,
                            const TruePair& pair, bool crashed) {
         if (claim.verdict != core::Verdict::clear) return;
@@ -254,7 +254,7 @@ private:
                  fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }
 
-    /// Keeps a point near the wall that a passage has cut, as it may be all that is left of a fin.
+    /// Stores a point near the wall cut by a passage, because a fin may be all that remains there.
     void keep_beside(const TruePassage& by) {
         const core::RevolvedProfile& flutes = by.tool->part(core::PartKind::flutes)->profile;
         const core::Vec3 p = dice_.within(bounds(flutes).grown(1.0));

@@ -9,8 +9,8 @@
 namespace test_support {
 
 /// The intersections of a line with a mesh by an independent method: the line is actually shifted,
-/// by 2^-30 and 2^-50, and tested against every triangle with quadruple precision. Depths are off
-/// by the slope times 2^-30.
+/// by 2^-30 and 2^-50, and tested against every triangle with quadruple precision. The depth error
+/// is the slope times 2^-30.
 inline core::IntervalList line_oracle(const core::Mesh& mesh, int axis, double u, double v) {
     using Quad = __float128;
     const Quad p_u = Quad(u) + Quad(0x1p-30), p_v = Quad(v) + Quad(0x1p-70);

@@ -16,7 +16,7 @@ struct MachiningTally {
     std::vector<double> stock_widths;    // over the mesh size
     size_t settled = 0;                  // stock pairs that are decided or narrower than 0.05 mm
     size_t cut_fixtures = 0; // blocks in which a fixture cut by the flutes is reported clear
-    size_t standing = 0;     // points beside a cut, expected in the columns
+    size_t standing = 0;     // points next to a cut, expected in the columns
     std::vector<std::string> failures;
 
     bool is_representative() const {

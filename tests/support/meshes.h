@@ -100,7 +100,7 @@ inline core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
     return mesh;
 }
 
-/// Both meshes in one, as in a file with several shells.
+/// Combines both meshes into one, as in a file with several shells.
 inline core::Mesh together(core::Mesh a, const core::Mesh& b) {
     const auto first = static_cast<uint32_t>(a.vertices.size());
     a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());

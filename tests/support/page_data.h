@@ -8,7 +8,7 @@
 
 namespace test_support {
 
-/// The number of occurrences of a part in a text.
+/// Number of occurrences of `part` in a text.
 inline size_t count_of(const std::string& text, const std::string& part) {
     size_t count = 0;
     for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++count;
@@ -23,7 +23,7 @@ inline std::vector<int64_t> unpacked(const nlohmann::json& runs) {
     return values;
 }
 
-/// The values from their differences.
+/// The running sums of differences.
 inline std::vector<int64_t> summed(std::vector<int64_t> steps) {
     for (size_t i = 1; i < steps.size(); ++i) steps[i] += steps[i - 1];
     return steps;

@@ -49,7 +49,7 @@ double argmin_convex(const Function& f, double low, double high, int steps = 70)
     return fa < fb ? a : b;
 }
 
-/// The same for a piece moved straight between two positions.
+/// As `outside`, for a piece moved straight between two positions.
 inline double outside_sweep(const core::ProfileElement& e, const core::Vec3& from,
                             const core::Vec3& to, const core::Vec3& p) {
     const auto at = [&](double t) { return outside(e, p - (from + t * (to - from))); };

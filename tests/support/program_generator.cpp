@@ -21,7 +21,7 @@ std::vector<std::string> lines_of(const std::string& program) {
     return lines;
 }
 
-/// The words of a line, split before each letter; good enough for programs that are to be damaged.
+/// Splits a line before each letter; sufficient for programs that are to be damaged.
 std::vector<std::string> words_of(const std::string& line) {
     std::vector<std::string> words(1);
     for (const char c : line) {

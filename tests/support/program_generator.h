@@ -15,7 +15,7 @@ struct ProgramFeature {
     void (*write)(ProgramText& text);
 };
 
-/// The parts of the language by topic.
+/// The features of the language by topic.
 std::vector<ProgramFeature> motion_features();
 std::vector<ProgramFeature> offset_features();
 std::vector<ProgramFeature> cycle_features();
@@ -23,7 +23,7 @@ std::vector<ProgramFeature> action_features();
 std::vector<ProgramFeature> language_features();
 std::vector<ProgramFeature> flow_features();
 
-/// All of them.
+/// The features of all topics.
 const std::vector<ProgramFeature>& program_features();
 
 /// A random program with a number of blocks of one feature, or of all ("everything"), with moves in

@@ -15,7 +15,7 @@ struct KnownBlock {
     bool is_cycle = false;
 };
 
-/// Generates random blocks above, in and beside a stock, without regard to collisions.
+/// Generates random blocks above, in and next to a stock, without regard to collisions.
 class RandomMachining {
 public:
     RandomMachining(Dice& dice, const KnownSetup& known) : dice_(dice), known_(known) {
@@ -96,7 +96,7 @@ private:
         const double d = known_.setup.tools.at(number_).description.diameter;
         if (dice_.chance(0.2)) return last_[1]; // back to where it was
         if (dice_.chance(0.15)) {
-            // Beside the previous path, close enough to leave a fin.
+            // Next to the previous path, close enough to leave a fin.
             const core::Vec3 way = last_[0] - last_[1];
             const core::Vec3 side = glm::length(way) > 0.1
                                         ? glm::normalize(glm::cross(way, core::Vec3(0.1, 0.2, 1)))

@@ -24,7 +24,7 @@ double raster_tip(double x, double y, double ball_radius);
 /// first point, three up and back from the last. With 0.4 and 0.25 it has 100,004 blocks.
 RasterProgram raster_program(double stepover = 0.4, double spacing = 0.25);
 
-/// Its ball, with flutes 30 mm long.
+/// The ball end mill of the program, with flutes 30 mm long.
 core::RevolvedProfile raster_ball();
 
 /// One sweep for each block, numbered from 0.

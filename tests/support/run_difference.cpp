@@ -129,8 +129,8 @@ std::string ending_of(const PlainRun& run) {
                        : std::string("accepted");
 }
 
-/// Whether a straight move ends where the previous one did; one interpreter may report such a move,
-/// the other not.
+/// Whether a straight move ends where the previous one did. One interpreter may report such a move
+/// and the other not.
 bool goes_nowhere(const PlainCommand& command, const PlainCommand& before) {
     const PlainState &now = command.state, &then = before.state;
     return (command.kind == "straight_traverse" || command.kind == "straight_feed")
@@ -139,7 +139,7 @@ bool goes_nowhere(const PlainCommand& command, const PlainCommand& before) {
            && now.rotation_deg == then.rotation_deg;
 }
 
-/// Spindle orientation and pallet changes move nothing that is modelled.
+/// Leaves out spindle orientation and pallet changes, which have no modelled motion.
 std::vector<PlainCommand> comparable(const PlainRun& run, std::optional<size_t> refused) {
     std::vector<PlainCommand> commands;
     PlainCommand last_move;
@@ -163,7 +163,8 @@ std::vector<PlainCommand> without_actions(std::vector<PlainCommand> commands) {
     return commands;
 }
 
-/// A spline is one command there and may be many here: moves on to the last one of its line.
+/// A spline is one command in the reference and may be many here: skips to the last one of its
+/// line.
 void skip_to_end_of_spline(const PlainCommand& spline, std::vector<PlainCommand>& ours,
                            size_t index) {
     size_t last = index;

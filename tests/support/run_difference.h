@@ -19,7 +19,7 @@ struct RunDifference {
 /// The comparison of two runs.
 struct RunComparison {
     size_t equal = 0; // commands
-    size_t total = 0; // of the reference, as far as it is compared
+    size_t total = 0; // compared commands of the reference
     std::vector<RunDifference> differences;
 };
 

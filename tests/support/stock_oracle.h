@@ -19,7 +19,7 @@ struct CutBox {
     double path_error = 0.0;
     std::vector<Cut> cuts;
 
-    /// The distance of a point outside everything that was cut, with the paths shifted by `off`.
+    /// The distance of a point from everything that was cut, with the paths shifted by `off`.
     double outside_cuts(const core::Vec3& p, const core::Vec3& off = core::Vec3(0.0)) const {
         double least = core::infinity;
         for (const Cut& cut : cuts)
@@ -82,7 +82,7 @@ inline CutBox random_cut_box(std::mt19937& rng, size_t count, double path_error)
     return world;
 }
 
-/// The same with the tool in any direction, including along an axis and upside down.
+/// As random_cut_box, but with the tool in any direction, including along an axis and upside down.
 inline CutBox random_tilted_cut_box(std::mt19937& rng, size_t count, double path_error) {
     CutBox world = random_cut_box(rng, count, path_error);
     for (CutBox::Cut& cut : world.cuts) {

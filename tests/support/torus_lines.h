@@ -30,8 +30,8 @@ struct TorusLines {
         const double r = std::max({near, -far, 0.0});
         return r <= tube ? core::IntervalList(along(tube, r)) : core::IntervalList();
     }
-    /// Where a line passes a ring that is `z` away from the middle plane, `near` to `far` from its
-    /// axis.
+    /// The intersection of a line with the section of the torus at height `z`: a ring from radius
+    /// `near` to `far`.
     core::IntervalList ring_at(double z, double near, double far) const {
         if (z > tube) return {};
         const double half = along(tube, z).upper;

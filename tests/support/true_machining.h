@@ -66,7 +66,7 @@ struct TrueMachining {
         return {machine, mount, by.path, by.tool->length, p};
     }
 
-    /// The fraction from which on the flutes may have removed the point.
+    /// The fraction of the passage from which on the flutes may have removed the point.
     std::optional<double> first_cut(const TruePassage& by, const core::Vec3& p) const {
         return first_within(*by.tool->part(core::PartKind::flutes), seen(by, stock_mount, p), 1e-9,
                             Doubt::counts);
@@ -122,7 +122,7 @@ struct TrueMachining {
         return Removal{block.size(), 0.0};
     }
 
-    /// The same for points that have certainly been removed, by more than `slack`.
+    /// As `removal`, for points that have certainly been removed, by more than `slack`.
     Removal certain_removal(const std::vector<TruePassage>& block, double slack,
                             const core::Vec3& p) const {
         for (size_t i = 0; i < block.size(); ++i) {

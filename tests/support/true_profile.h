@@ -31,7 +31,7 @@ inline HalfPlanePoint nearest_on_segment(const HalfPlanePoint& p, const HalfPlan
     return {a.r + t * r, a.z + t * z};
 }
 
-/// The same in the half-plane, for the piece without its margin.
+/// The distance in the half-plane from the piece without its margin.
 inline double core_distance(const core::ProfileElement& e, const HalfPlanePoint& p,
                             HalfPlanePoint& nearest) {
     const HalfPlanePoint corners[4] = {{0.0, e.z0}, {e.r0, e.z0}, {e.r1, e.z1}, {0.0, e.z1}};
