@@ -30,7 +30,7 @@ void add_bodies(const CheckRun& record, const core::BlockResult& result, BlockFa
     }
 }
 
-/// Also those that are told with another one.
+/// Adds the findings about the block, including those that were merged into another one.
 void add_findings(const CheckRun& record, BlockFacts& facts) {
     const core::BlockIndex block{static_cast<uint32_t>(facts.block)};
     for (const auto* findings : {&record.findings, &record.taken_in})
@@ -128,7 +128,7 @@ bool is_about(const Node& node, const BlockFacts& facts) {
               });
 }
 
-/// Whether a line begins with an N word; it may stand behind a `/`.
+/// Whether a line begins with an N word, possibly after a `/`.
 bool begins_with(std::string_view text, const std::string& number) {
     const std::string line = lowered(text);
     const size_t begin = line.find_first_not_of(" \t/");
@@ -149,7 +149,7 @@ bool has_severity(core::Severity severity, const BlockFacts& facts) {
     return any_finding(facts, [&](const core::Finding& one) { return one.severity == severity; });
 }
 
-/// Whether it keeps its allowance, but not twice.
+/// Whether the clearance is between the allowance and twice the allowance.
 bool is_near(const BlockFacts& facts) {
     const bool is_kept = facts.verdict && *facts.verdict < core::Verdict::violation
                          && !has_severity(core::Severity::error, facts);
@@ -182,7 +182,7 @@ bool truth_of(const Node& node, const BlockFacts& facts) {
     }
 }
 
-/// The environment of a program of which nothing but the dialect is known.
+/// An environment for a program of which only the dialect is known.
 gcode::Environment plain_environment(gcode::DialectId dialect) {
     gcode::Environment environment;
     environment.dialect = dialect;
@@ -322,8 +322,8 @@ core::Result<Condition> Condition::read(std::string_view text) {
     if (root.type != ValueType::truth)
         return core::fail(core::ErrorCode::syntax,
                           root.type == ValueType::number
-                              ? "this is a number and no question: compare it, as in clearance < 1"
-                              : "this is a word and no question: compare it, as in plane = ZX",
+                              ? "this is a number, not a condition: compare it, as in clearance < 1"
+                              : "this is a word, not a condition: compare it, as in plane = ZX",
                           {.line = 1, .column = root.column});
     Condition condition;
     condition.text_ = std::string(text);

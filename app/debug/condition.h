@@ -23,32 +23,34 @@ struct CheckRun;
 struct BlockFacts {
     size_t block = 0;
     uint32_t line = 0;
-    size_t depth = 0;            // of calls
-    std::string_view text, file; // views of strings that must outlive this
+    size_t depth = 0;            // of subprogram calls
+    std::string_view text, file; // views; the strings must outlive this struct
     core::BlockMotion motion = core::BlockMotion::none;
     std::optional<core::ToolNumber> tool;
     std::optional<core::Verdict> verdict; // empty: not checked yet
-    // mm; infinite beyond the search limit, empty if not known
+    // mm; infinite beyond the search limit, empty if unknown
     std::optional<double> clearance, upper, allowance, margin;
     double removed = 0.0, duration = 0.0, time = 0.0;
-    std::vector<std::string> bodies;            // of its pairs; only if wanted
-    std::vector<const core::Finding*> findings; // about it; only if wanted
+    std::vector<std::string> bodies;            // of the block's pairs; only if wanted
+    std::vector<const core::Finding*> findings; // about the block; only if wanted
 };
 
-/// The facts that take time to collect; left out unless wanted.
+/// Which of the facts to collect that take time.
 struct WantedFacts {
     bool bodies = false;
     bool findings = false;
 };
 
-/// Cost: reads all findings of the record if they are wanted, as they are not sorted while a record
-///       grows.
+/// The facts of a block of the record.
+///
+/// Cost: reads all findings of the record if they are wanted, because they are not sorted while the
+///       record grows.
 BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wanted);
 
 /// A condition on a block, for breakpoints, filters and `until`: `clearance < 1 and rapid`.
 ///
-/// Comparisons (< <= > >= = == != <>, or LT LE GT GE EQ NE as controls write them, also in chains:
-/// 0 < z < 5), `and` `or` `not` (&& || !), round or square brackets, + - * /, numbers.
+/// Comparisons (< <= > >= = == != <>, or LT LE GT GE EQ NE as on controls, also in chains: 0 < z <
+/// 5), `and` `or` `not` (&& || !), round or square brackets, + - * /, numbers.
 ///   numbers of the block: clearance (its lower bound) upper allowance margin removed duration time
 ///       block line depth tool
 ///   words of the block, for = and !=: motion verdict file rule (of any of its findings)
@@ -56,11 +58,11 @@ BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wan
 ///       between the allowance and twice the allowance); finding error warning note; T3 (its tool),
 ///       N210; a rule's name (near-miss); a body's name in quotes ("clamp-1"); ~ "G81": the line
 ///       contains this text
-///   of the control before the block: #100 #<_name> R5 Q5 x machine.x G54.x and all that value_of
-///       names; words only for = and !=: plane = ZX
-/// `feed` and T3 are numbers where they are compared. Lengths are in mm. Numbers are equal to
-/// within 1e-6. The case of letters does not matter.
-/// A clearance that is not known (no motion, beyond the limit) is larger than any number.
+///   values of the control before the block: #100 #<_name> R5 Q5 x machine.x G54.x and all others
+///       of value_of; words only with = and !=: plane = ZX
+/// `feed` and T3 are numbers when they are compared. Lengths are in mm. Numbers are compared to
+/// within 1e-6. Case is ignored.
+/// An unknown clearance (no motion, or beyond the search limit) is larger than any number.
 class Condition {
 public:
     /// Errors: syntax with the column; an unknown name, with the nearest known one.
@@ -68,26 +70,27 @@ public:
 
     const std::string& text() const { return text_; }
 
-    /// Whether it uses values of the control, besides facts of the record.
+    /// Whether the condition uses values of the control, besides facts of the record.
     bool asks_control() const { return !asks_control_.empty(); }
-    /// The first value of the control that it uses; empty if none.
+    /// The first value of the control that the condition uses; empty if none.
     const std::string& control_value() const { return asks_control_; }
-    /// The facts that it needs.
+    /// The facts that the condition needs.
     const WantedFacts& wanted() const { return wanted_; }
 
-    /// A block of the record, and the control before it (needed only if asks_control). Without an
-    /// environment, the default of its dialect.
+    /// A block of the record and the state of the control before it (needed only if asks_control).
+    /// Without an environment, a default one for the dialect is used.
     struct Subject {
         const CheckRun& record;
         size_t block = 0;
         const gcode::InterpreterState* control = nullptr;
         const gcode::Environment* environment = nullptr;
     };
-    /// Whether a block meets it. A comparison with a value that the control does not know is false.
+    /// Whether a block meets the condition. A comparison with an unknown value of the control is
+    /// false.
     ///
     /// Cost: reads all findings of the record if the condition is about findings.
     bool holds(const Subject& subject) const;
-    /// The same from the facts of a block alone; values of the control are unknown.
+    /// Whether a block with these facts meets the condition; values of the control are unknown.
     bool holds(const BlockFacts& facts) const;
 
     struct Node;
@@ -106,23 +109,24 @@ private:
 /// Errors: as Condition::read, and those of value_of for values of the control.
 core::Result<InspectedValue> evaluate(std::string_view text, const Condition::Subject& subject);
 
-/// Whether evaluate needs the control for an expression. False for one that cannot be read.
+/// Whether evaluate needs the control for an expression. False for an invalid one.
 bool asks_control(std::string_view text);
 
-/// All names of the language with this beginning, for completion: of blocks, rules and the control.
+/// All names of the language that begin with a text, for completion: facts of blocks, rules and
+/// values of the control.
 std::vector<std::string> condition_names_beginning(const std::string& text);
 
-/// Stops a walk before each block that meets all its parts.
+/// Stops a walk before each block that meets all criteria that are set.
 struct Breakpoint {
     int id = 0;                   // from 1; never used twice in a session
     std::optional<uint32_t> line; // of `file`, or of the main program
     std::string file;             // of a subprogram, as CheckedBlock::file; empty: main program
-    std::optional<core::ToolNumber> tool; // blocks that change to it
-    std::string rule;                     // blocks with a finding of that rule; "finding": any
+    std::optional<core::ToolNumber> tool; // blocks that change to this tool
+    std::string rule;                     // blocks with a finding of this rule; "finding": any
     std::optional<Condition> condition;
     bool enabled = true;
     bool temporary = false; // removed after its first stop
-    size_t ignore = 0;      // number of times that it does not stop
+    size_t ignore = 0;      // number of hits still to be ignored
     size_t hits = 0;
 };
 

@@ -19,11 +19,11 @@ namespace {
 
 using Kind = ConditionToken::Kind;
 
-constexpr size_t longest = 4000; // of a text; nobody writes more by hand
+constexpr size_t longest = 4000; // characters of a condition; more is not written by hand
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-/// Longer signs stand before those that they begin with.
+/// Operators as written, and normalised. Longer ones come before their prefixes.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 24> signs = {{
     {"<=", "<="}, {">=", ">="}, {"==", "="},  {"!=", "!="}, {"<>", "!="}, {"&&", "and"},
     {"||", "or"}, {"<", "<"},   {">", ">"},   {"=", "="},   {"!", "not"}, {"(", "("},
@@ -31,7 +31,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> signs = 
     {"/", "/"},   {"~", "~"},   {"&", "and"}, {"|", "or"},  {",", ","},   {";", ";"},
 }};
 
-/// Signs that are words.
+/// Operators that are words.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 9> words = {{
     {"and", "and"},
     {"or", "or"},
@@ -51,7 +51,7 @@ public:
     core::Result<std::vector<ConditionToken>> all() {
         std::vector<ConditionToken> tokens;
         if (text_.size() > longest)
-            return core::fail(core::ErrorCode::syntax, "this is too long for a condition",
+            return core::fail(core::ErrorCode::syntax, "the condition is too long",
                               {.line = 1, .column = 1});
         do {
             while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
@@ -85,7 +85,7 @@ private:
             at_ += written.size();
             return token(Kind::sign, at_ - written.size(), std::string(sign));
         }
-        return refuse(at_, fmt::format("'{}' has no meaning here; a condition is written as "
+        return refuse(at_, fmt::format("'{}' is not allowed here; write a condition such as "
                                        "clearance < 1 and rapid",
                                        c));
     }
@@ -98,8 +98,8 @@ private:
             std::from_chars(text_.data() + begin, end, value, std::chars_format::fixed);
         at_ = static_cast<size_t>(read.ptr - text_.data());
         if (read.ec != std::errc() || !std::isfinite(value) || is_letter(ahead(0)))
-            return refuse(begin,
-                          fmt::format("'{}' is no number", text_.substr(begin, at_ + 1 - begin)));
+            return refuse(
+                begin, fmt::format("'{}' is not a number", text_.substr(begin, at_ + 1 - begin)));
         ConditionToken found = token(Kind::number, begin);
         found.number = value;
         return found;
@@ -109,12 +109,12 @@ private:
         const size_t begin = at_;
         const size_t end = text_.find(text_[at_], at_ + 1);
         if (end == std::string_view::npos)
-            return refuse(begin, "the quotation mark at the end is missing");
+            return refuse(begin, "the closing quotation mark is missing");
         at_ = end + 1;
         return token(Kind::text, begin, std::string(text_.substr(begin + 1, end - begin - 1)));
     }
 
-    /// `#100`, `#<_name>`
+    /// A parameter: `#100`, `#<_name>`.
     core::Result<ConditionToken> parameter() {
         const size_t begin = at_++;
         if (ahead(0) == '<') {
@@ -124,14 +124,15 @@ private:
             at_ = end + 1;
         } else {
             if (!gcode::is_digit(ahead(0)))
-                return refuse(begin, "behind # belongs a number, as in #100, or a name, as in "
-                                     "#<_name>");
+                return refuse(begin,
+                              "# must be followed by a number, as in #100, or by a name, as in "
+                              "#<_name>");
             while (gcode::is_digit(ahead(0))) ++at_;
         }
         return token(Kind::name, begin, lowered(text_.substr(begin, at_ - begin)));
     }
 
-    /// Also `machine.x`, `G59.1.x` and `$AA_IM[X]`.
+    /// A name, also `machine.x`, `G59.1.x` and `$AA_IM[X]`.
     core::Result<ConditionToken> name() {
         const size_t begin = at_++;
         while (is_letter(ahead(0)) || gcode::is_digit(ahead(0))
@@ -155,7 +156,7 @@ private:
         return name;
     }
 
-    /// The longest rule that begins here, else the name with all that hyphens join to it.
+    /// The longest name of a rule that begins here, else the name with all parts joined by hyphens.
     std::string rule_from(size_t begin) const {
         size_t end = at_, of_rule = 0;
         while (end + 1 < text_.size() && text_[end] == '-' && is_letter(text_[end + 1])) {
@@ -212,7 +213,7 @@ bool is_in(const auto& list, std::string_view name) {
     return std::find(std::begin(list), std::end(list), name) != std::end(list);
 }
 
-/// The number behind a letter, as in t3; empty when that is not all.
+/// The number after a letter, as in t3; empty if the name has another form.
 std::optional<double> number_behind(char letter, const std::string& name) {
     int number = 0;
     if (name.size() < 2 || name[0] != letter) return std::nullopt;
@@ -222,7 +223,7 @@ std::optional<double> number_behind(char letter, const std::string& name) {
     return number;
 }
 
-/// Whether value_of tells this name as a word.
+/// Whether value_of returns a word for this name.
 bool is_word_of_control(const std::string& name) {
     if (const ModalEntry* entry = modal_entry(name)) return entry->kind == ModalKind::word;
     std::string capitals = name;
@@ -297,7 +298,7 @@ std::vector<std::string> condition_names_beginning(const std::string& text) {
 
 namespace {
 
-constexpr int deepest = 100; // brackets within brackets
+constexpr int deepest = 100; // nested brackets and signs
 
 const char* name_of(ValueType type) {
     switch (type) {
@@ -331,11 +332,12 @@ public:
 
     core::Result<Node> whole() {
         if (now().kind == Kind::end)
-            return refuse(now(), "there is no condition; write one as clearance < 1 and rapid");
+            return refuse(now(),
+                          "there is no condition; write one such as clearance < 1 and rapid");
         FEELER_TRY(Node node, either());
         if (now().kind == Kind::end) return node;
         if (is_sign(")") || is_sign("]")) return refuse(now(), "this bracket was never opened");
-        return refuse(now(), "here 'and' or 'or' is missing, or a comparison");
+        return refuse(now(), "'and' or 'or' is missing here, or a comparison");
     }
 
 private:
@@ -359,7 +361,7 @@ private:
     static core::Result<void> want_truth(const Node& node) {
         if (node.type == ValueType::truth) return {};
         return refuse(node.column,
-                      fmt::format("this is {} and no question: compare it, as in {}",
+                      fmt::format("this is {}, not a condition: compare it, as in {}",
                                   name_of(node.type),
                                   node.type == ValueType::word ? "plane = ZX" : "clearance < 1"));
     }
@@ -367,8 +369,8 @@ private:
         if (node.type == ValueType::number) return {};
         return refuse(node.column,
                       node.type == ValueType::word
-                          ? "a word can only be compared with = and !="
-                          : "this is true or false and no number: join it with 'and' or 'or'");
+                          ? "words can only be compared with = and !="
+                          : "this is true or false, not a number: combine it with 'and' or 'or'");
     }
 
     core::Result<Node> either() {
@@ -398,7 +400,7 @@ private:
     core::Result<Node> opposite() {
         const uint32_t column = now().column;
         if (!take("not")) return comparison();
-        if (++depth_ > deepest) return refuse(column, "this is nested too deeply");
+        if (++depth_ > deepest) return refuse(column, "the condition is nested too deeply");
         FEELER_TRY(Node node, opposite());
         --depth_;
         if (auto wanted = want_truth(node); !wanted) return tl::unexpected(wanted.error());
@@ -411,7 +413,7 @@ private:
                    || token.text == ">=" || token.text == "=" || token.text == "!=");
     }
 
-    /// Also a chain: 0 < z < 5 is 0 < z and z < 5.
+    /// A comparison, also a chain: 0 < z < 5 is 0 < z and z < 5.
     core::Result<Node> comparison() {
         is_compared_ = in_sum_ || is_compared_ahead();
         FEELER_TRY(Node left, sum());
@@ -432,7 +434,8 @@ private:
         return *std::move(all);
     }
 
-    /// Whether the value that begins here is compared or counted with, so that `feed` is a number.
+    /// Whether the value that begins here is an operand of a comparison or calculation, so that
+    /// `feed` is a number.
     bool is_compared_ahead() const {
         size_t at = at_;
         while (tokens_[at].kind == Kind::sign && tokens_[at].text == "-") ++at;
@@ -442,7 +445,7 @@ private:
                || (behind.kind == Kind::sign && std::string_view("+-*/").find(behind.text) < 4);
     }
 
-    /// A block may have findings of several rules.
+    /// A comparison with `rule`. A block may have findings of several rules.
     static Node compared_rule(const std::string& sign, const Node& left, const Node& right) {
         Node rule{.kind = NodeKind::rule,
                   .type = ValueType::truth,
@@ -469,11 +472,11 @@ private:
         return joined(kind, ValueType::truth, std::move(left), std::move(right));
     }
 
-    /// What a word is compared with: a text, or a name that stands for itself.
+    /// The right side of a comparison with a word: a quoted text, or a name taken literally.
     core::Result<Node> word_for(const Node& left) {
         const ConditionToken token = now();
         if (token.kind != Kind::text && token.kind != Kind::name && token.kind != Kind::number)
-            return refuse(token, "here a word is missing, or a text in quotes");
+            return refuse(token, "a word or a quoted text is missing here");
         ++at_;
         const std::string text =
             token.kind == Kind::number ? number_text(token.number) : token.text;
@@ -483,7 +486,7 @@ private:
                 return lowered(word) == lowered(text);
             });
         if (!is_one)
-            return refuse(token, fmt::format("this is never '{}'; it may be {}", text,
+            return refuse(token, fmt::format("this cannot be '{}'; it may be {}", text,
                                              fmt::join(words, ", ")));
         return Node{.kind = NodeKind::word,
                     .type = ValueType::word,
@@ -532,7 +535,7 @@ private:
     }
 
     core::Result<Node> signed_value_within(uint32_t column) {
-        if (++depth_ > deepest) return refuse(column, "this is nested too deeply");
+        if (++depth_ > deepest) return refuse(column, "the condition is nested too deeply");
         FEELER_TRY(Node node, signed_value());
         --depth_;
         return node;
@@ -543,9 +546,9 @@ private:
         if (token.kind == Kind::sign && (token.text == "(" || token.text == "[")) return bracket();
         if (take("~")) return text_of_line(token.column);
         if (token.kind == Kind::end)
-            return refuse(token, "here the condition ends too early: a value is missing");
+            return refuse(token, "the condition ends too early: a value is missing");
         if (token.kind == Kind::sign)
-            return refuse(token, fmt::format("here a value is missing before '{}'", token.text));
+            return refuse(token, fmt::format("a value is missing before '{}'", token.text));
         ++at_;
         if (token.kind == Kind::number)
             return Node{.kind = NodeKind::number, .number = token.number, .column = token.column};
@@ -560,14 +563,14 @@ private:
     core::Result<Node> bracket() {
         const ConditionToken open = now();
         ++at_;
-        if (++depth_ > deepest) return refuse(open, "this is nested too deeply");
+        if (++depth_ > deepest) return refuse(open, "the condition is nested too deeply");
         const bool outer = std::exchange(in_sum_, is_compared_);
         FEELER_TRY(Node node, either());
         is_compared_ = std::exchange(in_sum_, outer);
         --depth_;
         const std::string_view closing = open.text == "(" ? ")" : "]";
         if (!take(closing))
-            return refuse(now(), fmt::format("here the '{}' of the bracket in column {} is missing",
+            return refuse(now(), fmt::format("the '{}' of the bracket in column {} is missing here",
                                              closing, open.column));
         return node;
     }
@@ -575,7 +578,7 @@ private:
     core::Result<Node> text_of_line(uint32_t column) {
         const ConditionToken token = now();
         if (token.kind != Kind::text && token.kind != Kind::name)
-            return refuse(token, "behind ~ belongs a text, as in ~ \"G81\"");
+            return refuse(token, "~ must be followed by a text, as in ~ \"G81\"");
         ++at_;
         return Node{.kind = NodeKind::contains,
                     .type = ValueType::truth,
@@ -586,7 +589,7 @@ private:
     core::Result<Node> named(const ConditionToken& token) const {
         std::optional<Node> truth = truth_named(token.text), value = value_named(token.text);
         const bool as_value = value && (is_compared_ || is_comparison(now()) || !truth);
-        // What is true or false has nothing taken from it: near-mis is a name, and a wrong one.
+        // Nothing can be subtracted from true or false, so near-mis is a misspelt name.
         const bool has_tail =
             !as_value && !token.whole.empty() && lowered(token.whole) != token.text;
         if (has_tail) return unknown(token);
@@ -598,17 +601,16 @@ private:
 
     static tl::unexpected<core::Error> unknown(const ConditionToken& token) {
         const std::string written = token.whole.empty() ? token.text : token.whole;
-        return refuse(token, fmt::format("'{}' is nothing that can be asked; the nearest name is "
-                                         "'{}'",
-                                         written,
-                                         core::nearest_name(lowered(written), condition_names())));
+        return refuse(token,
+                      fmt::format("'{}' is not a known name; the nearest name is '{}'", written,
+                                  core::nearest_name(lowered(written), condition_names())));
     }
 
     std::vector<ConditionToken> tokens_;
     size_t at_ = 0;
     int depth_ = 0;
-    bool is_compared_ = false; // names mean numbers where they can
-    bool in_sum_ = false;      // likewise for all of a bracket
+    bool is_compared_ = false; // names mean numbers if possible
+    bool in_sum_ = false;      // the same for a whole bracket
 };
 
 } // namespace

@@ -23,18 +23,18 @@
 
 namespace app {
 
-/// The control alone along a record: what it holds at each place, without moving anything.
+/// Follows the state of the control along a record, without simulating motion.
 ///
-/// Cost: some microseconds a block, far less than running it.
+/// Cost: a few microseconds per block, far less than running the block.
 class ControlWalk {
 public:
-    /// Begins at a place. The run must outlive it, and is not changed meanwhile.
+    /// Starts at a position. The run must outlive the walk and must not change meanwhile.
     ControlWalk(RecordedRun& run, size_t place);
 
     size_t place() const { return place_; }
     const gcode::InterpreterState& control() const { return control_; }
 
-    /// Goes on by a block that the record holds.
+    /// Advances by one block. The record must contain it.
     void advance();
 
 private:
@@ -60,14 +60,13 @@ void ControlWalk::advance() {
         control_ = run_.place_at(place_)->control;
 }
 
-/// One walk of a session, forwards or back, to the first place that something speaks for stopping
-/// at.
+/// One walk of a session, forwards or back, to the first position that has a reason to stop.
 class SessionWalk {
 public:
     explicit SessionWalk(DebugSession& session);
 
-    /// What is walked to, besides breakpoints and watches: asked of every block on the way, in
-    /// order, with the control before it where `asks_control`.
+    /// The goal of a walk, besides breakpoints and watches. `is_reached` is called for every block
+    /// on the way, in order, with the control before the block if `asks_control`.
     struct Goal {
         std::function<bool(size_t block, const gcode::InterpreterState* control)> is_reached;
         bool asks_control = false;
@@ -76,11 +75,10 @@ public:
     Stop forwards(const Goal& goal);
     Stop backwards(const Goal& goal);
 
-    /// Whether a finding of severity error is about a block, or it is not proven to keep its
-    /// allowances.
+    /// Whether a block has a finding of severity error or is not proven clear.
     bool offends(size_t block);
     bool changes_tool(size_t block) const;
-    /// How many subprograms deep a block is; 0 for one that is not known.
+    /// The depth of subprogram calls at a block; 0 for an unknown block.
     size_t depth(size_t block) const;
 
 private:
@@ -93,22 +91,22 @@ private:
     bool asks_control(const Goal& goal) const;
     bool is_interrupted() const;
     Stop stop_at(size_t place, Stop stop);
-    /// Behind the last block that can be run.
+    /// Stops after the last block that can be run.
     Stop stop_at_end(size_t place);
-    /// The breakpoint that a block is at, as far as its conditions go.
+    /// The first breakpoint whose criteria a block meets; ignore counts are not considered.
     Breakpoint* breakpoint_at(size_t block, const gcode::InterpreterState* control);
-    /// The same on the way forwards, where it may let so many runs pass.
+    /// As breakpoint_at, for a walk forwards: applies and decrements ignore counts.
     Breakpoint* breakpoint_reached(size_t block, const gcode::InterpreterState* control);
     bool stops_before(const Breakpoint& breakpoint, size_t block,
                       const gcode::InterpreterState* control);
-    /// What speaks for stopping before a block, if it is reached going back.
+    /// The reason to stop before a block on a walk back, if any.
     std::optional<Stop> found_going_back(size_t block, const gcode::InterpreterState* control,
                                          const Goal& goal);
     /// The values of all watches.
     std::vector<InspectedValue> values(const gcode::InterpreterState* control) const;
     std::optional<Stop> changed_watch(const std::vector<InspectedValue>& before,
                                       const std::vector<InspectedValue>& after) const;
-    /// The last place of a stretch, ends included, that a walk back stops at.
+    /// The last position in first .. last at which a walk back stops.
     std::optional<std::pair<size_t, Stop>> last_stop(size_t first, size_t last, const Goal& goal);
     const Findings* findings_of(size_t block);
 
@@ -127,7 +125,7 @@ size_t SessionWalk::depth(size_t block) const {
 
 bool SessionWalk::changes_tool(size_t block) const {
     const CheckRun& record = session_.record();
-    if (block >= session_.run_->last_place()) return false; // it is not run
+    if (block >= session_.run_->last_place()) return false; // the block is not run
     const auto before =
         block == 0 ? record.setup.tool_at_start : record.blocks[block - 1].result.tool;
     return record.blocks[block].result.tool != before;
@@ -135,7 +133,7 @@ bool SessionWalk::changes_tool(size_t block) const {
 
 const SessionWalk::Findings* SessionWalk::findings_of(size_t block) {
     const CheckRun& record = session_.record();
-    // Once the record is complete, its findings are in another order, and some are taken in.
+    // In a complete record the findings have another order, and some are merged into others.
     if (read_complete_ != session_.is_recorded() || findings_read_ > record.findings.size()) {
         findings_.clear();
         findings_read_ = 0;
@@ -263,7 +261,7 @@ Stop SessionWalk::forwards(const Goal& goal) {
         std::vector<InspectedValue> after = values(control);
         if (const auto changed = changed_watch(before, after)) return stop_at(place, *changed);
         before = std::move(after);
-        // The block of an alarm is not run, but one may have looked for it.
+        // The block of an alarm is not run, but it may be the goal of the walk.
         const bool is_run = session_.knows(place);
         if (place == session_.record().blocks.size()) return stop_at_end(place);
         if (const Breakpoint* breakpoint = breakpoint_reached(place, control))
@@ -301,10 +299,10 @@ std::optional<std::pair<size_t, Stop>> SessionWalk::last_stop(size_t first, size
 
 Stop SessionWalk::backwards(const Goal& goal) {
     const bool with_control = asks_control(goal);
-    size_t behind = session_.at_; // places from here on have been looked at
+    size_t behind = session_.at_; // positions from here on have been examined
     while (behind > 0) {
         const size_t last = behind - 1;
-        // The control can only be followed forwards, so it is followed from the keyframe before.
+        // The control can only be followed forwards, so start at the previous keyframe.
         const size_t first = with_control ? session_.run_->keyframe_before(last) : last;
         if (with_control) {
             if (const auto found = last_stop(first, last, goal))
@@ -390,8 +388,8 @@ core::Result<void> DebugSession::go_to(size_t place) {
     if (place == at_) return {};
     const bool was_known = place <= run_->last_place();
     if (place > 0 && !knows(place - 1)) return tl::unexpected(run_->place_at(place).error());
-    run_->look_at(place); // the way there leaves keyframes near it
-    // What was recorded just now need not be run again.
+    run_->look_at(place); // so that keyframes are stored near the position on the way
+    // What has just been recorded need not be run again.
     if (place > at_ && (was_known || place == at_ + 1)) {
         run_->take_to(*state_, at_, place);
     } else {
@@ -500,10 +498,9 @@ bool DebugSession::remove(int id) {
 core::Result<uint32_t> DebugSession::line_with_block(uint32_t line) const {
     for (uint32_t at = line; at > 0 && at <= program().line_count(); ++at)
         if (gcode::has_a_block(program().line(at))) return at;
-    return core::fail(
-        core::ErrorCode::invalid_value,
-        fmt::format("nothing is run in line {} or behind it: the program has {} lines", line,
-                    program().line_count()));
+    return core::fail(core::ErrorCode::invalid_value,
+                      fmt::format("no block in line {} or after it: the program has {} lines", line,
+                                  program().line_count()));
 }
 
 core::Result<size_t> DebugSession::find_line(const std::string& line) {
@@ -521,7 +518,7 @@ core::Result<size_t> DebugSession::find_line(const std::string& line) {
     for (size_t block = 0; block < at_; ++block)
         if (is_there(block)) return block;
     return core::fail(core::ErrorCode::invalid_value,
-                      fmt::format("no block of line {} is run", number));
+                      fmt::format("line {} is never executed", number));
 }
 
 // --- what if -------------------------------------------------------------------------------------

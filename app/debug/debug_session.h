@@ -25,12 +25,12 @@ struct SetupFile;
 
 /// Why a walk through a program stopped.
 enum class StopReason : uint8_t {
-    step,        // after the requested number of blocks
+    step,        // the requested number of blocks was run
     breakpoint,  // `id`
-    found,       // before the block searched for
+    found,       // reached the block that was searched for
     watch,       // a watched value changed, `id`
-    end,         // of the program
-    beginning,   // of the program, walking back
+    end,         // end of the program
+    beginning,   // beginning of the program, when walking back
     error,       // the control would stop here with an alarm; see the record
     interrupted, // by is_interrupted
 };
@@ -38,10 +38,10 @@ enum class StopReason : uint8_t {
 struct Stop {
     StopReason reason = StopReason::step;
     int id = 0;               // of the breakpoint or watch
-    std::string message = {}; // of a watch: old and new value
+    std::string message = {}; // for a watch: old and new value
 };
 
-/// A walk stops when the value of a watch changes.
+/// An expression; a walk stops when its value changes.
 struct Watch {
     int id = 0; // from the same sequence as breakpoints
     std::string expression;
@@ -49,11 +49,11 @@ struct Watch {
     size_t hits = 0;
 };
 
-/// A program that can be stepped forwards and backwards, with changes on the way.
+/// A program that can be stepped forwards and backwards, and changed on the way.
 ///
 /// The position is the number of blocks already run: at position p, block p of the record is next.
 /// The record runs ahead of the position, so the result of a block is known before the session
-/// steps over it. Not thread-safe; a window uses it from one thread of its own.
+/// steps over it. Not thread-safe; the window uses it from a single separate thread.
 class DebugSession {
 public:
     static constexpr size_t default_memory_budget = size_t(1) << 29; // bytes of keyframes
@@ -61,7 +61,7 @@ public:
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, size_t memory_budget = default_memory_budget);
-    /// The same for a check that was read, but not placed.
+    /// The same for a check that read_check has read but place_check has not placed.
     static core::Result<std::unique_ptr<DebugSession>>
     open(const CheckJob& job, PreparedCheck check, size_t memory_budget = default_memory_budget);
 
@@ -73,11 +73,11 @@ public:
     /// is_recorded, it equals the result of run_check.
     const CheckRun& record() const;
     bool is_recorded() const;
-    /// Extends the record for about so many seconds. False once it is complete.
+    /// Extends the record for about this many seconds. False once it is complete.
     bool record_for(double seconds);
-    /// Extends the record up to a block. False if no such block can be run.
+    /// Extends the record up to a block. False if the run ends before it.
     bool knows(size_t block);
-    /// The same, but stops when is_interrupted returns true.
+    /// As knows, but stops when is_interrupted returns true.
     ///
     /// Errors: interrupted.
     core::Result<bool> reaches(size_t block);
@@ -88,7 +88,7 @@ public:
     const gcode::Environment& environment() const;
     /// The set-up in effect for a block, with the what-ifs made before it.
     const core::Setup& setup_at(size_t block) const;
-    /// The set-up file. Use setup_at instead of its `setup`.
+    /// The set-up file. For the set-up itself use setup_at.
     const SetupFile& setup_file() const;
 
     // --- the position ---
@@ -97,7 +97,7 @@ public:
     size_t at() const { return at_; }
     const RunState& state() const { return *state_; }
     const gcode::InterpreterState& control() const;
-    /// The tool in the spindle; empty: none, or not known.
+    /// The tool in the spindle; empty: none, or unknown.
     std::optional<core::ToolNumber> tool() const;
     /// For each fixture of the set-up, whether it is mounted now.
     const std::vector<bool>& fixtures_there() const;
@@ -111,7 +111,7 @@ public:
 
     /// Goes to a position; extends the record if needed.
     ///
-    /// Errors: the program has fewer blocks. The position has not changed then.
+    /// Errors: the program has fewer blocks; then the position does not change.
     /// Cost:   some 10 ms near recent positions, under a second anywhere in the record.
     core::Result<void> go_to(size_t place);
 
@@ -119,24 +119,25 @@ public:
 
     Stop step(size_t blocks = 1);
     Stop step_back(size_t blocks = 1);
-    /// As step, but over the blocks of called subprograms, unless a breakpoint stops there.
+    /// As step, but skips the blocks of called subprograms, unless a breakpoint stops there.
     Stop next(size_t blocks = 1);
     Stop next_back(size_t blocks = 1);
-    /// To the first block after the current subprogram; in the main program, to the end.
+    /// Goes to the first block after the current subprogram; in the main program, to the end.
     Stop finish();
-    /// To the next breakpoint, watch, or the end.
+    /// Goes to the next breakpoint, watch, or the end.
     Stop go_on();
     Stop go_on_back();
-    /// To the next block that meets the condition, or to a breakpoint or watch before it.
+    /// Goes to the next block that meets the condition, or to a breakpoint or watch before it.
     Stop until(const Condition& condition);
-    /// To the next or previous block that has a finding of severity error or is not proven clear.
+    /// Goes to the next or previous block that has a finding of severity error or is not proven
+    /// clear.
     Stop next_finding();
     Stop previous_finding();
-    /// To the next or previous block that changes the tool.
+    /// Goes to the next or previous block that changes the tool.
     Stop next_tool();
     Stop previous_tool();
 
-    /// Called at intervals on long walks; true stops them.
+    /// Called at intervals during long walks; true stops the walk.
     std::function<bool()> is_interrupted;
 
     // --- where to stop ---
@@ -145,15 +146,15 @@ public:
     int add(Breakpoint breakpoint);
     /// Adds a watch and returns its id.
     ///
-    /// Errors: an expression that value_of does not know.
+    /// Errors: those of value_of for the expression.
     core::Result<int> watch(std::string expression);
-    /// Removes a breakpoint or watch. False if there is none with this id.
+    /// Removes a breakpoint or watch. False if none has this id.
     bool remove(int id);
     std::vector<Breakpoint>& breakpoints() { return breakpoints_; }
     std::vector<Watch>& watches() { return watches_; }
 
-    /// The first line from `line` on in the main program that holds a block, so that a breakpoint
-    /// can stop there.
+    /// The first line of the main program from `line` on that contains a block, so that a
+    /// breakpoint can stop there.
     ///
     /// Errors: no such line.
     core::Result<uint32_t> line_with_block(uint32_t line) const;
@@ -161,15 +162,15 @@ public:
     /// The first position before a block of a line of the main program ("120") or of a block number
     /// ("N210"), searched from the current position on, then from the beginning.
     ///
-    /// Errors: no such line; no block of it is run.
+    /// Errors: no such line; the line is never executed.
     core::Result<size_t> find_line(const std::string& line);
 
     // --- what if ---
 
     /// Applies a change from the current position on. The record after it, with later changes, is
-    /// dropped and made again.
+    /// dropped and recorded again.
     ///
-    /// Errors: as apply. Nothing has changed then.
+    /// Errors: as apply; then nothing changes.
     core::Result<void> change(const WhatIf& change);
     /// Undoes the last change and goes to the position where it was made.
     ///

@@ -18,16 +18,16 @@ namespace {
 using core::ErrorCode;
 using gcode::axis_letters;
 
-/// What an expression means.
+/// The kind of value that an expression refers to.
 enum class ValueKind : uint8_t {
-    numbered, // `index` behind `letter`
+    numbered, // parameter `letter` `index`
     named,    // #<name>
-    declared, // $AA_IM[X] and what a program of Siemens declares
-    modal,    // `index` of the table
+    declared, // $AA_IM[X] and names declared by a Siemens program
+    modal,    // entry `index` of modal_table()
     axis,
     machine_axis,
-    offset, // all of the origin `index`
-    origin, // its `axis`
+    offset, // the whole work offset `index`
+    origin, // one `axis` of the work offset `index`
     local_origin,
     axis_origin,
     length,
@@ -71,7 +71,7 @@ std::string upper_case(std::string_view small) {
     return text;
 }
 
-/// `machine.x`, `g54.x`, `g59.1.x`, `g52.x`: something of which an axis is asked.
+/// `machine.x`, `g54.x`, `g59.1.x`, `g52.x`: one axis of a position or offset.
 std::optional<Reference> dotted(std::string_view text) {
     const size_t dot = text.rfind('.');
     if (dot == std::string_view::npos) return std::nullopt;
@@ -108,7 +108,7 @@ std::optional<Reference> modal(std::string_view text) {
     return std::nullopt;
 }
 
-/// What the text, in small letters and without blanks, means.
+/// The reference in a text, which must be in lower case and without blanks.
 std::optional<Reference> reference_in(std::string_view text) {
     if (text.empty()) return std::nullopt;
     if (const auto found = parameter(text)) return found;
@@ -133,7 +133,7 @@ InspectedValue plain(gcode::Value value) {
     return value ? quantity(value) : InspectedValue{std::nullopt, "not set"};
 }
 
-/// Reads the parameters of a state as a program would; nothing is written.
+/// The parameters of a state, for reading as a program would; they must not be written.
 gcode::ProgramParameters parameters_of(const gcode::InterpreterState& control,
                                        const gcode::Environment& environment) {
     return {const_cast<gcode::InterpreterState&>(control), environment};
@@ -159,7 +159,7 @@ core::Result<InspectedValue> named(const Reference& asked, const gcode::Interpre
     if (!parameters.exists(asked.name)) {
         if (asked.name.front() != '$') return InspectedValue{std::nullopt, "not set"};
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("'{}' is no variable that is known here", asked.name));
+                          fmt::format("'{}' is not a known variable", asked.name));
     }
     FEELER_TRY(const gcode::Value value, parameters.named(asked.name, {}));
     return plain(value);
@@ -172,7 +172,7 @@ std::string text_of(const gcode::WorkOffset& offset) {
             text += fmt::format("{}{}{}", text.empty() ? "" : " ", axis_letters[axis],
                                 number_text(offset.origin[axis]));
     if (offset.rotation_deg != 0.0)
-        text += fmt::format(", turned {} deg", number_text(offset.rotation_deg));
+        text += fmt::format(", rotated {} deg", number_text(offset.rotation_deg));
     return text;
 }
 
@@ -255,10 +255,10 @@ core::Result<InspectedValue> value_of(const std::string& expression,
     const bool declares = gcode::dialect(environment.dialect).names_are_declared;
     if (declares && !text.empty() && parameters_of(control, environment).exists(text))
         return named({.kind = ValueKind::declared, .name = text}, control, environment);
-    if (text.empty()) return core::fail(ErrorCode::invalid_value, "no value is named");
+    if (text.empty()) return core::fail(ErrorCode::invalid_value, "the name of a value is missing");
     const std::string nearest = core::nearest_name(text, all_names());
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("'{}' is no value of the control; the nearest name is '{}'",
+                      fmt::format("the control has no value '{}'; the nearest name is '{}'",
                                   expression, nearest));
 }
 
@@ -279,7 +279,7 @@ std::vector<NamedValue> axis_values(const gcode::InterpreterState& control) {
     for (const bool of_machine : {false, true}) {
         const gcode::Position& place = of_machine ? machine : work;
         for (size_t axis = 0; axis < gcode::axis_count; ++axis) {
-            // Axes that a machine lacks stand at 0 for ever.
+            // Axes that the machine lacks always have the value 0.
             const bool tells = axis < 3 || work[axis].value_or(0.0) != 0.0
                                || machine[axis].value_or(0.0) != 0.0
                                || (offsets.machine && offsets.machine->axes[axis].present);
@@ -303,7 +303,7 @@ std::vector<NamedValue> parameter_values(const gcode::InterpreterState& control,
     for (size_t number = 1; number < numbers; ++number) {
         const bool is_local = static_cast<int>(number) <= dialect.local_count;
         const gcode::Value value = parameters.kept(static_cast<double>(number));
-        // LinuxCNC's local ones are 0 before anything is said.
+        // In LinuxCNC, local parameters are initially 0.
         if (!value || (is_local && !dialect.unset_is_vacant && *value == 0.0)) continue;
         const bool is_zero =
             static_cast<int>(number) == gcode::highest_parameter && dialect.has_parameter_zero;
@@ -354,7 +354,7 @@ namespace {
 using gcode::Dialect;
 using State = gcode::InterpreterState;
 
-/// A code with what it means; Klartext has no codes.
+/// A code and its meaning; in Klartext, which has no codes, only the meaning.
 InspectedValue code(const Dialect& dialect, std::string text, std::string meaning) {
     if (dialect.language == gcode::Language::klartext) return {std::nullopt, std::move(meaning)};
     return {std::nullopt, std::move(text), std::move(meaning)};
@@ -457,7 +457,7 @@ InspectedValue selected_tool(const State& state, const Dialect&) {
     return number_of('T', plain(state.modal.selected_tool));
 }
 
-/// Along the axis that the length counts along.
+/// The active length, along the axis on which it acts.
 InspectedValue length(const State& state, const Dialect& dialect) {
     const bool turns = !dialect.length_needs_g43;
     return quantity(
@@ -497,7 +497,7 @@ InspectedValue retract(const State& state, const Dialect& dialect) {
     return code(dialect, initial ? "G98" : "G99", meaning);
 }
 
-/// What the program does to its own coordinates, in words.
+/// The coordinate transformations of the program, in words.
 InspectedValue transform(const State& state, const Dialect&) {
     const gcode::Offsets& offsets = state.modal.offsets;
     const core::Mat3& linear = offsets.frame.linear;
@@ -537,7 +537,7 @@ constexpr ModalEntry entries[] = {
     {"retract", word, "G98,G99,to the initial level,to R", retract},
     {"transform", word, "", transform}};
 
-/// The whole number that a text is; empty when it is none.
+/// The whole number in a text; empty if the text is anything else.
 std::optional<size_t> whole(std::string_view text) {
     size_t number = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), number);

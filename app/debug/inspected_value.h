@@ -21,17 +21,17 @@ namespace app {
 struct InspectedValue {
     std::optional<double> number; // empty: a word, or unknown
     std::string text;             // "12.5 mm", "G2", "unknown"
-    std::string meaning = {};     // of a code: "arc, clockwise" of G2
+    std::string meaning = {};     // of a code: "arc clockwise" for G2
 
     bool operator==(const InspectedValue&) const = default;
 };
 
-/// Whether text or meaning of a value is this word, ignoring case.
+/// Whether the text or the meaning of a value is this word, ignoring case.
 bool is_word(const InspectedValue& value, std::string_view word);
 
 /// The value of an expression in a state of the control: `#100`, `#<_name>`, `R5` (Siemens), `Q5`
 /// (Heidenhain), `$AA_IM[X]` and declared names (Siemens), as a program would read them; modal
-/// values by the names of modal_values; x y z a b c u v w (tool tip, program coordinates),
+/// values with the names of modal_values; x y z a b c u v w (tool tip, program coordinates),
 /// machine.x ...; G54.x ... (origins), G54, G52.x, G92.x; H3 (length offset), D3 (tool diameter).
 /// Case is ignored.
 ///
@@ -41,8 +41,8 @@ core::Result<InspectedValue> value_of(const std::string& expression,
                                       const gcode::InterpreterState& control,
                                       const gcode::Environment& environment);
 
-/// Whether an expression has the form of one that value_of knows. Names declared by a program are
-/// only known to its state.
+/// Whether an expression has a form that value_of accepts. False for names declared by a program,
+/// which depend on its state.
 bool names_value(const std::string& expression);
 
 struct NamedValue {
@@ -61,10 +61,10 @@ std::vector<NamedValue> axis_values(const gcode::InterpreterState& control);
 /// ones.
 std::vector<NamedValue> parameter_values(const gcode::InterpreterState& control,
                                          const gcode::Environment& environment);
-/// Work offsets that are not zero or are active, those of G52 and G92, and the length table.
+/// Work offsets that are nonzero or active, those of G52 and G92, and the length table.
 std::vector<NamedValue> offset_values(const gcode::InterpreterState& control);
 
-/// The names that value_of knows with this beginning, for completion.
+/// The names of value_of that begin with a text, for completion.
 std::vector<std::string> names_beginning(const std::string& text);
 
 enum class ModalKind : uint8_t { number, word };
@@ -86,22 +86,22 @@ const ModalEntry* modal_entry(std::string_view name);
 /// The possible words of an entry.
 std::vector<std::string> words_of(const ModalEntry& entry);
 
-/// "G54", "G59.1", "G54.1P3", "G500".
+/// The name of a work offset: "G54", "G59.1", "G54.1P3", "G500".
 std::string offset_name(size_t index);
 
 /// The index of an offset by its name in upper case; empty: no such offset.
 std::optional<size_t> offset_named(std::string_view name);
 
-/// At most four decimals, without trailing zeros; never "-0".
+/// A number with at most four decimals, without trailing zeros; never "-0".
 std::string number_text(double value);
 
-/// "12.5 mm"; "unknown" without a value.
+/// A value with its unit: "12.5 mm"; "unknown" without a value.
 InspectedValue quantity(std::optional<double> value, std::string_view unit = {});
 
-/// The same in degrees for rotary axes, else in mm.
+/// As quantity, in degrees for rotary axes, else in mm.
 InspectedValue axis_quantity(size_t axis, std::optional<double> value);
 
-/// The text in lower case.
+/// A text in lower case.
 std::string lowered(std::string_view text);
 
 } // namespace app

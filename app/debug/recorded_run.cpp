@@ -22,7 +22,7 @@
 
 namespace app {
 
-/// A list in pieces that several may share.
+/// A list in pieces that copies can share.
 template <typename T>
 class SharedPieces {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -31,7 +31,7 @@ public:
     static constexpr size_t piece = 64;
 
     SharedPieces() = default;
-    /// Shares the pieces that are the same as in another one.
+    /// Shares the pieces that are equal in `like`.
     SharedPieces(const std::vector<T>& list, const SharedPieces& like) : size_(list.size()) {
         for (size_t first = 0; first < list.size(); first += piece) {
             const size_t count = std::min(piece, list.size() - first);
@@ -54,7 +54,7 @@ public:
         return list;
     }
 
-    /// Bytes that it does not share with another one.
+    /// The number of bytes not shared with `other`.
     size_t bytes_apart(const SharedPieces& other) const {
         size_t bytes = pieces_.size() * sizeof(pieces_[0]);
         for (size_t i = 0; i < pieces_.size(); ++i)
@@ -68,47 +68,47 @@ private:
     size_t size_ = 0;
 };
 
-/// The boxes of a family of lines, to be had again bit for bit.
+/// The boxes of a family of scan lines, stored so that they can be restored bit for bit.
 struct SavedBoxes {
     SharedPieces<core::Aabb> boxes, blocks;
     SharedPieces<core::BoxGap> gaps, block_gaps;
-    core::TileBoxes rest; // what is small
+    core::TileBoxes rest; // the small members
 
     size_t bytes_apart(const SavedBoxes& other) const;
 };
 
-/// Takes the boxes out of where they are.
+/// Stores boxes; shares pieces with `like`.
 SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like);
 
 core::TileBoxes restored(const SavedBoxes& kept);
 
-/// A place that is kept, to come back from. It shares with the keyframe before it what is the same.
+/// A stored run state. Shares equal data with the previous keyframe.
 struct Keyframe {
-    size_t blocks = 0;    // that were run before it
-    double seconds = 0.0; // of work from the first place to here
-    RunState place;       // but for the boxes round its lines and columns
+    size_t blocks = 0;    // run before it
+    double seconds = 0.0; // of work from the beginning to here
+    RunState place;       // without the boxes of its scan lines and columns
     std::array<SavedBoxes, 4> boxes;
-    size_t bytes = 0; // that it does not share with the keyframe before it
+    size_t bytes = 0; // not shared with the previous keyframe
 
     RunState restored() const;
 };
 
-/// Places along a run, kept within a budget of memory: close to one another where the run is looked
-/// at, and farther apart the farther it is from there.
+/// Keyframes along a run within a memory budget: close together near the position in focus, and
+/// farther apart with the distance from it.
 class Keyframes {
 public:
     explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
 
-    /// Keeps a place if it is far enough from the one before it.
+    /// Stores a keyframe if it is far enough from the one before it.
     void note(size_t blocks, double seconds, const RunState& place);
 
-    /// The last one at or before a place; there is one, once the first place was added.
+    /// The last keyframe at or before a position. Exists once the first position was added.
     const Keyframe& before(size_t blocks) const;
 
-    /// Where the run is looked at, in seconds of work.
+    /// Sets the position in focus, in seconds of work.
     void look_at(double seconds) { focus_ = seconds; }
 
-    /// Forgets those after a place.
+    /// Drops the keyframes after a position.
     void drop_after(size_t blocks);
 
     size_t memory() const { return memory_; }
@@ -116,13 +116,13 @@ public:
     const std::vector<Keyframe>& frames() const { return frames_; }
 
 private:
-    /// Where the first keyframe behind a place is, or would be.
+    /// The index of the first keyframe after a position, or where it would be inserted.
     size_t index_after(size_t blocks) const;
-    /// Whether a keyframe there would be worth its memory.
+    /// Whether a keyframe at this position is worth its memory.
     bool wants(size_t blocks, double seconds) const;
     void thin_out();
     void remove(size_t index);
-    /// How bad it would be to go without a keyframe: 1 is a wait that is noticed.
+    /// The cost of dropping a keyframe: the wait that it would cause, relative to the bearable one.
     double worth(size_t index) const;
 
     size_t budget_;
@@ -162,11 +162,11 @@ core::TileBoxes restored(const SavedBoxes& kept) {
 
 namespace {
 
-constexpr double near_spacing = 0.012; // seconds of work between keyframes, where one looks
-constexpr double far_spacing = 0.04;   // elsewhere, as far as there is memory
-constexpr double longest_wait = 0.5;   // that a jump may take
+constexpr double near_spacing = 0.012; // seconds of work between keyframes near the focus
+constexpr double far_spacing = 0.04;   // elsewhere, if there is memory
+constexpr double longest_wait = 0.5;   // for a jump, seconds
 
-/// How long a wait may be for places that are so many seconds of work away from where one looks.
+/// The bearable wait for positions this many seconds of work away from the focus, seconds.
 double bearable_wait(double away) { return std::clamp(away / 8.0, 0.02, longest_wait); }
 
 size_t bytes_of(const core::ScanTile& tile) {
@@ -183,21 +183,22 @@ size_t bytes_apart(const core::ScanLines& lines, const core::ScanLines& other) {
     return bytes;
 }
 
-/// Logs in chunks: their pointers, and the last chunk, which each copy may have to itself.
+/// Bytes of the logs, which are chunked: the pointers, and the last chunk, which copies may not
+/// share.
 size_t bytes_of_logs(const core::CutModel& stock) {
     constexpr size_t pointer = sizeof(std::shared_ptr<void>);
-    constexpr size_t per_tile = 64; // a list of chunks, and its one chunk's pointer
+    constexpr size_t per_tile = 64; // a list of chunks and the pointer of its one chunk
     return 3 * pointer * (stock.log.size() / 64 + 1) + stock.history.size() * per_tile;
 }
 
-/// The boxes of a stock: those of its three families of lines, and of its columns.
+/// The boxes of a stock: 0 to 2 of its families of scan lines, 3 of its columns.
 core::TileBoxes& boxes_of(core::CutModel& stock, size_t i) {
     return i < 3 ? stock.line_boxes[i] : stock.column_boxes;
 }
 
-/// Bytes of a keyframe that it does not share with another one.
+/// The number of bytes of a keyframe that it does not share with `other`.
 size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
-    constexpr size_t of_the_rest = 16384; // of the control, the clock and the rules, about
+    constexpr size_t of_the_rest = 16384; // control, clock and rules, roughly
     const core::CutModel& stock = frame.place.machine.stock;
     const core::CutModel& other_stock = other.place.machine.stock;
     size_t bytes =
@@ -363,8 +364,9 @@ const core::Setup& RecordedRun::setup_at(size_t block) const {
 void RecordedRun::change_at(size_t place, RunState& state) {
     for (size_t i = 0; i < changes_.size(); ++i) {
         if (changes_[i].block != place) continue;
-        core::Setup scratch =
-            i == 0 ? check_->run.setup : *setups_[i - 1]; // as it was for this one
+        core::Setup scratch = i == 0
+                                  ? check_->run.setup
+                                  : *setups_[i - 1]; // the set-up to which this change was applied
         [[maybe_unused]] const auto done = apply(changes_[i].change, scratch, state);
         assert(done);
     }
@@ -376,7 +378,7 @@ core::Result<RunState> RecordedRun::place_at(size_t place) {
     if (place > last_place())
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("the program ends after {} blocks", last_place()));
-    // Behind the end the runner has closed what was open.
+    // At the end, the runner has already closed what was open, so its state cannot be used.
     if (place == last_place() && !is_complete_) return runner_->state();
     return replayed(place);
 }
@@ -384,7 +386,7 @@ core::Result<RunState> RecordedRun::place_at(size_t place) {
 RunState RecordedRun::replayed(size_t place) {
     const Keyframe& frame = keyframes_->before(place);
     RunState state = frame.restored();
-    if (frame.blocks == 0) change_at(0, state); // it is the program's start, whatever was changed
+    if (frame.blocks == 0) change_at(0, state); // the first keyframe has no changes applied
     take_to(state, frame.blocks, place);
     return state;
 }
@@ -406,7 +408,7 @@ void RecordedRun::take_to(RunState& state, size_t from, size_t place) {
 }
 
 size_t RecordedRun::restart_place(size_t place) {
-    // Blocks whose time was still open, and those of a length doubt, are run again whole.
+    // Start before blocks whose time was still open, and before an open length mismatch.
     while (true) {
         const RunState state = replayed(place);
         size_t first = std::min<size_t>(place, state.clock.first_open);
@@ -420,7 +422,8 @@ size_t RecordedRun::restart_place(size_t place) {
 
 void RecordedRun::record_again_from(size_t place) {
     const size_t first = restart_place(place);
-    const RunState state = replayed(first); // the runner's own may hold what is taken back
+    const RunState state =
+        replayed(first); // the runner's own state may contain what is being undone
     CheckRun& run = check_->run;
     if (is_complete_) {
         run.findings = told_.findings;
@@ -466,9 +469,9 @@ core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
 
 core::Result<size_t> RecordedRun::take_back() {
     if (changes_.empty())
-        return core::fail(core::ErrorCode::invalid_value, "nothing has been changed");
+        return core::fail(core::ErrorCode::invalid_value, "there is no change to undo");
     const size_t place = changes_.back().block;
-    const auto setup = std::move(setups_.back()); // the runner looks at it until it went back
+    const auto setup = std::move(setups_.back()); // the runner refers to it until it has gone back
     changes_.pop_back();
     setups_.pop_back();
     forget_from(place);

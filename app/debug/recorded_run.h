@@ -25,14 +25,14 @@ class Keyframes;
 struct PreparedCheck;
 class ProgramRunner;
 
-/// A check that runs block by block. It can return to any earlier position, and the set-up or state
-/// can be changed on the way.
+/// A check that runs block by block. It can return to any earlier position, and set-up or state can
+/// be changed on the way.
 ///
 /// A position is the number of blocks already run: at position p, block p of the record is next.
 class RecordedRun {
 public:
-    /// Starts a check that was read, but not placed. The job's `after_block` can end it, as it ends
-    /// run_check. `memory_budget`: bytes for keyframes.
+    /// Starts a check that read_check has read but place_check has not placed. The job's
+    /// `after_block` can end it, as in run_check. `memory_budget`: bytes for keyframes.
     ///
     /// Errors: as run_check.
     static core::Result<std::unique_ptr<RecordedRun>> open(const CheckJob& job, PreparedCheck check,
@@ -43,7 +43,7 @@ public:
     /// equals the result of run_check.
     const CheckRun& record() const;
     bool is_complete() const { return is_complete_; }
-    /// The last position that the record reaches.
+    /// The last position of the record.
     size_t last_place() const { return marks_.size() - 1; }
     /// Progress by program lines, 0..1.
     double share() const;
@@ -82,21 +82,21 @@ public:
     /// Changes something from a position on, and drops everything recorded after it, later changes
     /// included.
     ///
-    /// Errors: as apply; the program has fewer blocks. Nothing has changed then.
+    /// Errors: as apply; the program has fewer blocks. Then nothing changes.
     core::Result<void> change(size_t place, const WhatIf& change);
     /// Undoes the last change. Returns the position where it was made.
     ///
-    /// Errors: invalid_value when there is none.
+    /// Errors: invalid_value if there is none.
     core::Result<size_t> take_back();
     const std::vector<MadeChange>& changes() const { return changes_; }
 
 private:
     /// The size of the record at a position.
     struct Mark {
-        double seconds = 0.0; // of work
+        double seconds = 0.0; // of work up to the position
         size_t findings = 0;
     };
-    /// Findings and assumptions before those added at the end of the run.
+    /// Findings and assumptions without those added at the end of the run.
     struct Told {
         std::vector<core::Finding> findings;
         std::vector<std::string> assumptions;
@@ -109,11 +109,11 @@ private:
     RunState replayed(size_t place);
     /// Drops the keyframes from a position on, and the changes after it.
     void forget_from(size_t place);
-    /// Continues the record from a position.
+    /// Makes the record again up to a position, to continue from there.
     void record_again_from(size_t place);
     /// Applies the changes made at a position to a copy of its state.
     void change_at(size_t place, RunState& state);
-    /// A position from which the record up to another position can be made again.
+    /// The position from which to run blocks again to rebuild the record up to `place`.
     size_t restart_place(size_t place);
 
     std::unique_ptr<PreparedCheck> check_;

@@ -20,8 +20,8 @@ namespace {
 
 using core::ErrorCode;
 
-/// Bounds that hold from block to block hold for the bodies that were there. What the flutes have
-/// cut of fixtures stays.
+/// Drops bounds that are carried from block to block: they hold for the old bodies only. Keeps the
+/// cuts into fixtures.
 void forget_bounds(core::SimulatorState& machine) {
     core::CheckMemory& memory = machine.memory;
     memory.bounds.clear();
@@ -40,7 +40,7 @@ std::string numbers_of(const auto& map) {
 
 core::Result<void> check_number(double value, const std::string& of) {
     if (std::isfinite(value)) return {};
-    return core::fail(ErrorCode::invalid_value, fmt::format("{}: this is no number", of));
+    return core::fail(ErrorCode::invalid_value, fmt::format("{}: the value is not a number", of));
 }
 
 core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunState& place) {
@@ -48,11 +48,11 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
     if (found == setup.tools.end())
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("the set-up has no tool T{}{}", core::value_of(change.tool),
-                                      setup.tools.empty() ? "; it has none at all"
+                                      setup.tools.empty() ? "; it has no tools"
                                                           : "; it has " + numbers_of(setup.tools)));
     FEELER_TRY(core::ToolAssembly tool, stretched(found->second, change.length));
     found->second = std::move(tool);
-    // How much higher its holder would have to stand was found for the tool as it was.
+    // The required height of its holder was computed for the old tool.
     place.machine.watch.reaches.erase(change.tool);
     forget_bounds(place.machine);
     if (place.machine.tool == change.tool)
@@ -60,23 +60,22 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
     return {};
 }
 
-/// The control must stand where the machine does.
+/// Fails if the control has read ahead, so that its position differs from that of the machine.
 core::Result<void> check_that_nothing_waits(const RunState& place) {
     if (!holds_blocks_back(place.control)) return {};
     return core::fail(ErrorCode::unsupported,
-                      "the control has read ahead here, for cutter radius compensation or a "
+                      "the control reads ahead here, for cutter radius compensation or a "
                       "corner: change the offset before G41 or G42, or after G40");
 }
 
-/// Lets other offsets be in effect. The machine stays.
+/// Activates other offsets. The machine does not move.
 void use(const gcode::Offsets& offsets, RunState& place) {
     gcode::change_offsets(place.control.modal, offsets);
     place.lowering.offsets.work = offsets.work;
     place.lowering.offsets.tool = offsets.tool;
 }
 
-/// The axis that the length which is on counts along: Z behind G43, else the tool's when it was
-/// called.
+/// The axis along which the active length acts: Z after G43, else the tool axis at the tool call.
 size_t length_axis(const gcode::ModalState& modal) {
     if (modal.length_sign != 0.0) return 2;
     for (size_t axis = 0; axis < 3; ++axis)
@@ -84,7 +83,7 @@ size_t length_axis(const gcode::ModalState& modal) {
     return gcode::axes_of(modal.plane).normal;
 }
 
-/// The offsets with another length in place of the one that is on. What was added to it stays.
+/// The offsets with the active length replaced. Keeps what was added to it.
 gcode::Offsets with_length(const gcode::ModalState& modal, double before, double length) {
     gcode::Offsets offsets = modal.offsets;
     const double sign = modal.length_sign != 0.0 ? modal.length_sign : 1.0;
@@ -131,7 +130,7 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
         if (auto waits = check_that_nothing_waits(place); !waits) return waits;
     gcode::Tables& tables = place.control.tables.write();
     gcode::writable_work_offset(tables, change.index).origin[change.axis] = change.origin;
-    // How high its feeds lay was counted from where it was.
+    // The heights of feed moves were relative to the old origin.
     place.offsets.erase(change.index);
     if (!is_on) return {};
     gcode::Offsets offsets = place.control.modal.offsets;
@@ -143,7 +142,7 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
 core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& place) {
     if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{} is no allowance: it goes from 0 to 1000 mm",
+                          fmt::format("{} is not a valid allowance: it must be from 0 to 1000 mm",
                                       number_text(*change.distance)));
     setup.allowance = change.distance;
     setup.search_limit = core::search_limit_of(setup);
@@ -151,7 +150,7 @@ core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunS
     return {};
 }
 
-/// The fixture of a name that stands on the machine: one that the program moves has several places.
+/// The mounted fixture of this name. A fixture that the program moves has several entries.
 core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<bool>& are_there,
                                    const std::string& name) {
     std::vector<std::string> names;
@@ -162,10 +161,9 @@ core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<b
     }
     if (std::find(names.begin(), names.end(), name) != names.end())
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{} has been taken off the machine before this block", name));
+                          fmt::format("{} was removed from the machine before this block", name));
     if (names.empty())
-        return core::fail(ErrorCode::invalid_value,
-                          "the set-up has no fixture that could be moved");
+        return core::fail(ErrorCode::invalid_value, "the set-up has no fixture that can be moved");
     return core::fail(ErrorCode::invalid_value,
                       names.size() > 12
                           ? fmt::format("there is no fixture '{}'; the nearest name is '{}'", name,
@@ -181,7 +179,7 @@ core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunSta
     core::Transform& link_from_body = setup.fixtures[index].mount.link_from_body;
     link_from_body =
         core::translation(setup.stock_mount.link_from_body.rotation * change.by) * link_from_body;
-    // What flutes have cut of it they have cut elsewhere.
+    // Cuts into the fixture were made at its old position.
     place.machine.memory.cuts.erase(index);
     forget_bounds(place.machine);
     return {};
@@ -202,7 +200,7 @@ std::string text(const OtherWorkOffset& change) {
 }
 
 std::string text(const OtherAllowance& change) {
-    if (!change.distance) return "the allowances are those of the default";
+    if (!change.distance) return "the allowances are the default ones";
     return fmt::format("the allowance is {} mm", number_text(*change.distance));
 }
 
@@ -229,7 +227,7 @@ namespace {
 
 using core::ConeStep;
 
-constexpr double least_step = 1e-9; // mm; what is shorter is rounding
+constexpr double least_step = 1e-9; // mm; anything shorter is a rounding error
 
 double height(const std::vector<ConeStep>& steps) {
     double sum = 0.0;
@@ -237,7 +235,7 @@ double height(const std::vector<ConeStep>& steps) {
     return sum;
 }
 
-/// Takes the upper end of a shank away.
+/// Removes the upper end of a shank.
 void shorten(std::vector<ConeStep>& shank, double by) {
     while (by > least_step) {
         ConeStep& top = shank.back();
@@ -253,7 +251,7 @@ void shorten(std::vector<ConeStep>& shank, double by) {
     }
 }
 
-/// Lets more of a shank be seen; one that was not seen at all fills the stick-out.
+/// Lengthens the visible shank. Without a visible shank, increases the stick-out.
 core::Result<void> lengthen(core::ToolDescription& tool, double by) {
     std::vector<ConeStep>& shank = tool.shank;
     if (shank.empty()) {
@@ -279,7 +277,7 @@ core::Result<core::ToolAssembly> stretched(const core::ToolAssembly& tool, doubl
     const int number = core::value_of(tool.description.number);
     if (!std::isfinite(length) || !(length > 0.0))
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("T{}: a length is a number above 0", number));
+                          fmt::format("T{}: the length must be a number above 0", number));
     const double by = length - tool.length;
     if (std::abs(by) <= least_step) return tool;
     core::ToolDescription description = tool.description;
@@ -291,10 +289,10 @@ core::Result<core::ToolAssembly> stretched(const core::ToolAssembly& tool, doubl
     const double shank = height(description.shank);
     if (-by > shank + least_step)
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("T{} can be no shorter than {} mm: {} then", number,
+                          fmt::format("T{} can be no shorter than {} mm: {}", number,
                                       number_text(tool.length - shank),
-                                      has_holder ? "the holder is at its flutes"
-                                                 : "nothing but its flutes is left"));
+                                      has_holder ? "there the holder reaches the flutes"
+                                                 : "there only the flutes are left"));
     add(description.stick_out, by);
     if (by < 0.0)
         shorten(description.shank, -by);

@@ -20,25 +20,26 @@ namespace app {
 
 struct RunState;
 
-/// The tool sits deeper or less deep in its holder: stick-out and gauge length change, and so does
-/// the visible length of the shank. Without a holder only the gauge length changes. The length
-/// offset in the control stays.
+/// A tool clamped deeper or less deep in its holder: changes stick-out, gauge length and visible
+/// length of the shank. Without a holder only the gauge length changes. The length offset in the
+/// control does not change.
 struct OtherToolLength {
     core::ToolNumber tool{};
     double length = 0.0; // gauge length, mm
 };
 
-/// Another length in the offset table of the control, wear included. Takes effect at once if the
+/// Another length in the offset table of the control, including wear. Takes effect at once if the
 /// offset is active.
 struct OtherLengthOffset {
     core::OffsetNumber number{};
     double length = 0.0; // mm
 };
 
-/// Another origin of a work offset. Takes effect at once if it is active; bodies do not move.
+/// Another origin of a work offset. Takes effect at once if the offset is active; bodies do not
+/// move.
 struct OtherWorkOffset {
     size_t index = 0;    // 0 is G54
-    size_t axis = 0;     // of gcode's letters
+    size_t axis = 0;     // index in gcode::axis_letters
     double origin = 0.0; // machine coordinates, mm or degrees
 };
 
@@ -47,7 +48,7 @@ struct OtherAllowance {
     std::optional<double> distance;
 };
 
-/// A fixture moved.
+/// A fixture that is moved.
 struct MovedFixture {
     std::string name;
     core::Vec3 by = core::Vec3(0.0); // frame of the stock, all axes at 0; mm
@@ -63,19 +64,18 @@ struct MadeChange {
     WhatIf change;
 };
 
-/// The change in words: "T3 is 95 mm long".
+/// A change in words: "T3 is 95 mm long".
 std::string text_of(const WhatIf& change);
 
 /// Applies a change to a set-up and to the state from which a run continues. The axes do not move;
 /// if an active offset changes, the program coordinates of their position change.
 ///
 /// Errors: no such tool, fixture, offset or axis; a length that gives no valid tool; an active
-///         offset while the control reads ahead (G41, G42). Nothing has changed then.
+///         offset while the control reads ahead (G41, G42). Then nothing changes.
 core::Result<void> apply(const WhatIf& change, core::Setup& setup, RunState& place);
 
-/// A tool pulled out of its holder, or pushed into it, until its gauge length is `length`. A longer
-/// shank continues with the diameter at its end. Without a holder, only a stated gauge length
-/// changes.
+/// A tool pulled out of its holder or pushed into it so that its gauge length is `length`. A longer
+/// shank continues with its upper diameter. Without a holder, only a stated gauge length changes.
 ///
 /// Errors: invalid_value if the flutes would enter the holder, and those of assemble.
 core::Result<core::ToolAssembly> stretched(const core::ToolAssembly& tool, double length);

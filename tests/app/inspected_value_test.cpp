@@ -114,7 +114,7 @@ TEST(InspectedValue, NamesTheNearestNameWhereThereIsNone) {
     const Control control("G0 X1\n", DialectId::fanuc);
     EXPECT_THAT(control.text("plain"), HasSubstr("nearest name is 'plane'"));
     EXPECT_THAT(control.text("G60.x"), HasSubstr("nearest name is"));
-    EXPECT_THAT(control.text(""), HasSubstr("no value is named"));
+    EXPECT_THAT(control.text(""), HasSubstr("the name of a value is missing"));
     EXPECT_FALSE(app::names_value("plain"));
     EXPECT_TRUE(app::names_value("G54.1P12.z"));
     EXPECT_FALSE(app::names_value("G54.1P900.z"));

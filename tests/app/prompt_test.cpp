@@ -87,8 +87,8 @@ TEST(Prompt, SaysWhatABlockComesNearAndWhatWasFound) {
     const Talk talk;
     EXPECT_THAT(talk.say("next-finding"),
                 AllOf(HasSubstr("line 9: X62."), HasSubstr("feed, T1"),
-                      HasSubstr("flutes to clamp-1: 1.000 mm, 2 mm to keep, 1.000 mm short"),
-                      HasSubstr("TOO NEAR"), HasSubstr("error near-miss"), HasSubstr("Cure: ")));
+                      HasSubstr("flutes to clamp-1: 1.000 mm, minimum 2 mm, short by 1.000 mm"),
+                      HasSubstr("VIOLATION"), HasSubstr("error near-miss"), HasSubstr("Cure: ")));
     EXPECT_THAT(talk.say("print clearance + 1"), HasSubstr("= 2"));
     EXPECT_THAT(talk.say("until line = 11"), HasSubstr("line 11"));
     EXPECT_THAT(talk.say("previous-finding"), HasSubstr("line 9"));
@@ -111,7 +111,7 @@ TEST(Prompt, StopsAtBreakpointsOfEveryKind) {
     EXPECT_THAT(talk.say("disable 5"), IsEmpty());
     EXPECT_THAT(talk.say("c"), StartsWith("breakpoint 1: line 11\n"));
     EXPECT_THAT(talk.say("c"), StartsWith("breakpoint 6: "));
-    EXPECT_THAT(talk.say("ignore 6 1"), HasSubstr("lets the next 1 pass"));
+    EXPECT_THAT(talk.say("ignore 6 1"), HasSubstr("breakpoint 6: ignore count 1"));
     EXPECT_THAT(talk.say({"enable 5", "c"}), StartsWith("breakpoint 5: if x > 22"));
     EXPECT_THAT(talk.say("info breakpoints"),
                 AllOf(HasSubstr("line 11, stopped 1 time"), Not(HasSubstr("change to T1"))));
@@ -166,10 +166,10 @@ TEST(Prompt, ChangesSomethingAndTakesItBack) {
     EXPECT_THAT(talk.say("set fixture clamp-1 by 5,0,0"),
                 StartsWith("from here on, clamp-1 is moved by 5 mm along X\n"));
     EXPECT_THAT(talk.say("step"), AllOf(HasSubstr("6.000 mm"), HasSubstr("clear")));
-    EXPECT_THAT(talk.say("set allowance 7"), HasSubstr("7 mm to keep, 1.000 mm short"));
+    EXPECT_THAT(talk.say("set allowance 7"), HasSubstr("minimum 7 mm, short by 1.000 mm"));
     EXPECT_THAT(talk.say("info changes"), AllOf(HasSubstr("clamp-1"), HasSubstr("7 mm")));
     EXPECT_THAT(talk.say({"undo", "undo"}), HasSubstr("line 8"));
-    EXPECT_THAT(talk.say("step"), HasSubstr("1.000 mm short"));
+    EXPECT_THAT(talk.say("step"), HasSubstr("short by 1.000 mm"));
     EXPECT_THAT(talk.say({"set G54.x = -340", "p x"}), HasSubstr("x = 0 mm"));
     EXPECT_THAT(talk.say({"set H1 to 90", "p H1"}), HasSubstr("90 mm"));
     EXPECT_THAT(talk.say({"set tool 1 length 100", "info tools"}), HasSubstr("100 mm long"));
@@ -195,18 +195,18 @@ TEST(Prompt, ChangesNothingWhenItIsAskedForNonsense) {
     EXPECT_THAT(talk.fails("stpe"), HasSubstr("nearest is 'step'"));
     EXPECT_THAT(talk.fails("xyzzyxyzzy"), Not(HasSubstr("nearest")));
     EXPECT_THAT(talk.fails("re"), HasSubstr("may be reverse-next, reverse-continue"));
-    EXPECT_THAT(talk.fails("step x"), HasSubstr("no count"));
-    EXPECT_THAT(talk.fails("break 999"), HasSubstr("its last is"));
+    EXPECT_THAT(talk.fails("step x"), HasSubstr("not a count"));
+    EXPECT_THAT(talk.fails("break 999"), HasSubstr("its last line is"));
     EXPECT_THAT(talk.fails("break N999"), HasSubstr("no block N999"));
-    EXPECT_THAT(talk.fails("break somewhere"), HasSubstr("no place to stop at"));
+    EXPECT_THAT(talk.fails("break somewhere"), HasSubstr("not a place to stop"));
     EXPECT_THAT(talk.fails("break other.nc:3"), HasSubstr("no file other.nc"));
     EXPECT_THAT(talk.fails("until clearence < 1"), HasSubstr("nearest name is 'clearance'"));
     EXPECT_THAT(talk.fails("goto block 9999"), HasSubstr("ends after"));
     EXPECT_THAT(talk.fails("delete 9"), HasSubstr("no breakpoint"));
     EXPECT_THAT(talk.fails("set clamp-1 1"), HasSubstr("cannot be set"));
     EXPECT_THAT(talk.fails("set fixture clamp-1 by 1,2"), HasSubstr("by X,Y,Z"));
-    EXPECT_THAT(talk.fails("set H1 long"), HasSubstr("no number"));
-    EXPECT_THAT(talk.fails("undo"), HasSubstr("nothing has been changed"));
+    EXPECT_THAT(talk.fails("set H1 long"), HasSubstr("not a number"));
+    EXPECT_THAT(talk.fails("undo"), HasSubstr("no change to undo"));
     EXPECT_THAT(talk.fails("info nothing"), HasSubstr("breakpoints"));
     EXPECT_THAT(talk.fails("print nothing at all"), HasSubstr("nearest name"));
     EXPECT_EQ(digest_of(talk.session->state()), before);

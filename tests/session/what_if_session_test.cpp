@@ -202,7 +202,7 @@ TEST(WhatIf, RefusesToMoveAFixtureThatHasBeenTakenAway) {
     ASSERT_TRUE(session->go_to(*session->find_line("7")));
     const auto done = session->change(change);
     ASSERT_FALSE(done);
-    EXPECT_EQ(done.error().message, "vise has been taken off the machine before this block");
+    EXPECT_EQ(done.error().message, "vise was removed from the machine before this block");
     ASSERT_TRUE(session->go_to(*session->find_line("5")));
     EXPECT_TRUE(session->change(change));
 }

@@ -15,17 +15,17 @@ namespace {
 
 using core::ErrorCode;
 
-/// `3` or `T3`.
+/// Parses `3` or `T3`.
 core::Result<core::ToolNumber> tool_in(const std::string& text) {
     const bool lettered = !text.empty() && (text[0] == 'T' || text[0] == 't');
     const auto number = number_in(text.substr(lettered ? 1 : 0));
     if (!number || *number > 99999999)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("'{}' is no tool: write it as T3", text));
+                          fmt::format("'{}' is not a tool: write it as T3", text));
     return core::ToolNumber(static_cast<int32_t>(*number));
 }
 
-/// Where a condition begins, behind the word `if`.
+/// Splits a text at the word `if` into the place and the condition; no condition without `if`.
 std::pair<std::string, std::optional<std::string>> split_condition(const std::string& text) {
     const std::string small = " " + lowered(text) + " ";
     const size_t at = small.find(" if ");
@@ -54,7 +54,7 @@ core::Result<void> read_place(PromptState& state, const std::string& text, Break
     }
     if (first != "line" && !is_location(text))
         return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}' is no place to stop at: write a line (23), a block "
+                          fmt::format("'{}' is not a place to stop: write a line (23), a block "
                                       "(N210), FILE:LINE, a tool (T3), finding, rule NAME, or if "
                                       "CONDITION",
                                       text));
@@ -62,7 +62,7 @@ core::Result<void> read_place(PromptState& state, const std::string& text, Break
     breakpoint.line = location.line;
     breakpoint.file = location.file;
     if (!location.file.empty()) return {};
-    // Nothing stops at a line of comments: the next that holds more is meant.
+    // A line with only a comment has no block: use the next line that has one.
     FEELER_TRY(breakpoint.line, state.session.line_with_block(location.line));
     return {};
 }
@@ -93,7 +93,7 @@ CommandResult added(PromptState& state, Breakpoint breakpoint) {
     return fmt::format("{} {}: {}\n", temporary ? "temporary breakpoint" : "breakpoint", id, text);
 }
 
-/// The breakpoints and watches that a list of ids names; all of them where none is named.
+/// The ids in a list, which must be those of breakpoints or watches; for an empty list, all ids.
 core::Result<std::vector<int>> ids_in(PromptState& state, const std::string& arguments) {
     std::vector<int> all, ids;
     for (const Breakpoint& breakpoint : state.session.breakpoints()) all.push_back(breakpoint.id);
@@ -121,7 +121,7 @@ CommandResult switched(PromptState& state, const std::string& arguments, bool en
     return std::string();
 }
 
-/// The breakpoint of an id, and what stands behind the id.
+/// The breakpoint of the leading id, and the text after the id.
 core::Result<std::pair<Breakpoint*, std::string>> one_and_rest(PromptState& state,
                                                                const std::string& arguments) {
     const auto [first, rest] = split_word(arguments);
@@ -171,8 +171,7 @@ CommandResult enable_breakpoint(PromptState& state, const std::string& arguments
 CommandResult ignore_breakpoint(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const auto chosen, one_and_rest(state, arguments));
     FEELER_TRY(chosen.first->ignore, number_in(chosen.second));
-    return fmt::format("breakpoint {} lets the next {} pass\n", chosen.first->id,
-                       chosen.first->ignore);
+    return fmt::format("breakpoint {}: ignore count {}\n", chosen.first->id, chosen.first->ignore);
 }
 
 CommandResult change_condition(PromptState& state, const std::string& arguments) {
@@ -189,9 +188,9 @@ CommandResult show_breakpoints(PromptState& state, const std::string&) {
     std::string text;
     for (const Breakpoint& breakpoint : state.session.breakpoints()) {
         text += fmt::format("{:>4}  breakpoint  {}", breakpoint.id, text_of(breakpoint));
-        if (!breakpoint.enabled) text += ", off";
-        if (breakpoint.temporary) text += ", once";
-        if (breakpoint.ignore > 0) text += fmt::format(", lets {} pass", breakpoint.ignore);
+        if (!breakpoint.enabled) text += ", disabled";
+        if (breakpoint.temporary) text += ", temporary";
+        if (breakpoint.ignore > 0) text += fmt::format(", ignore count {}", breakpoint.ignore);
         if (breakpoint.hits > 0) text += ", stopped " + counted(breakpoint.hits, "time");
         text += "\n";
     }
@@ -204,7 +203,7 @@ CommandResult show_watches(PromptState& state, const std::string&) {
     std::string text;
     for (const Watch& watch : state.session.watches()) {
         text += fmt::format("{:>4}  watchpoint  {}", watch.id, watch.expression);
-        if (!watch.enabled) text += ", off";
+        if (!watch.enabled) text += ", disabled";
         if (watch.hits > 0) text += ", stopped " + counted(watch.hits, "time");
         text += "\n";
     }

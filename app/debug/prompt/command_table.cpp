@@ -16,50 +16,50 @@ using core::ErrorCode;
 
 // clang-format off
 constexpr PromptCommand commands[] = {
-    {"step", "s", "[COUNT]", "run a block, or COUNT of them", step_on, true},
-    {"next", "n", "[COUNT]", "run a block, and a subprogram that it calls as a whole", step_over, true},
-    {"back", "reverse-step rs", "[COUNT]", "go a block back", step_back, true},
-    {"reverse-next", "rn", "[COUNT]", "go a block back, past subprograms", step_back_over, true},
-    {"finish", "fin", "", "run to the block behind the subprogram", finish_subprogram, true},
-    {"continue", "c", "[COUNT]", "run to the next breakpoint, or the COUNTth", go_on, true},
-    {"reverse-continue", "rc", "[COUNT]", "go back to the breakpoint before", go_on_back, true},
-    {"until", "u", "LINE|CONDITION", "run to a line, or to a block of which a condition is true\n"
+    {"step", "s", "[COUNT]", "run one block, or COUNT blocks", step_on, true},
+    {"next", "n", "[COUNT]", "run one block, including a subprogram that it calls", step_over, true},
+    {"back", "reverse-step rs", "[COUNT]", "go back one block", step_back, true},
+    {"reverse-next", "rn", "[COUNT]", "go back one block, skipping subprograms", step_back_over, true},
+    {"finish", "fin", "", "run to the first block after the subprogram", finish_subprogram, true},
+    {"continue", "c", "[COUNT]", "run to the next breakpoint, or to the COUNTth", go_on, true},
+    {"reverse-continue", "rc", "[COUNT]", "go back to the previous breakpoint", go_on_back, true},
+    {"until", "u", "LINE|CONDITION", "run to a line, or to a block that meets a condition\n"
      "until 120, until N210, until clearance < 1 and rapid", go_until, false},
-    {"goto", "jump", "PLACE", "go to a place, forwards or back: block 17, line 120, N210, start, end", go_to, false},
+    {"goto", "jump", "PLACE", "go forwards or back to: block 17, line 120, N210, start, end", go_to, false},
     {"run", "r", "", "run from the beginning to the first breakpoint", run_program, false},
     {"start", "", "", "go to the beginning", start_program, false},
-    {"next-finding", "nf", "", "run to the next block with an error, or not proven to be clear", go_to_finding, true},
-    {"previous-finding", "pf", "", "go back to the block before that has one, or is not proven to be clear", go_back_to_finding, true},
-    {"next-tool", "nt", "", "run to the next change of tool", go_to_tool, true},
-    {"previous-tool", "pt", "", "go back to the change of tool before", go_back_to_tool, true},
+    {"next-finding", "nf", "", "run to the next block that has an error or is not proven clear", go_to_finding, true},
+    {"previous-finding", "pf", "", "go back to the previous block that has an error or is not proven clear", go_back_to_finding, true},
+    {"next-tool", "nt", "", "run to the next tool change", go_to_tool, true},
+    {"previous-tool", "pt", "", "go back to the previous tool change", go_back_to_tool, true},
     {"break", "b", "[PLACE] [if CONDITION]", "stop before a block\n"
-     "PLACE is a line (23), a block (N210), a line of a subprogram (sub.nc:5), a change of tool (T3), "
-     "finding, or rule NAME. Conditions ask about the block (clearance < 1 and rapid, near-miss, "
-     "\"clamp-1\", ~ \"G81\") and about the control before it (#100 = 5, z < -2, plane = ZX). "
-     "Without a place, the line here.", set_breakpoint, false},
-    {"tbreak", "tb", "[PLACE] [if CONDITION]", "the same, once", set_temporary, false},
+     "PLACE is a line (23), a block (N210), a line of a subprogram (sub.nc:5), a tool change (T3), "
+     "finding, or rule NAME. Conditions can use the block (clearance < 1 and rapid, near-miss, "
+     "\"clamp-1\", ~ \"G81\") and the control before it (#100 = 5, z < -2, plane = ZX). "
+     "Without PLACE: the current line.", set_breakpoint, false},
+    {"tbreak", "tb", "[PLACE] [if CONDITION]", "like break, but stop only once", set_temporary, false},
     {"watch", "", "EXPRESSION", "stop when a value of the control changes: z, #100, offset", watch_value, false},
-    {"delete", "d", "[ID...]", "remove breakpoints and watchpoints, or all", delete_breakpoint, false},
-    {"disable", "", "[ID...]", "keep them, but do not stop there", disable_breakpoint, false},
-    {"enable", "", "[ID...]", "stop there again", enable_breakpoint, false},
-    {"ignore", "", "ID COUNT", "let a breakpoint pass COUNT times", ignore_breakpoint, false},
-    {"condition", "", "ID [CONDITION]", "change the condition of a breakpoint", change_condition, false},
-    {"list", "l", "[LINE|FIRST,LAST]", "the program round here, with the clearance of each line\n"
-     "-> is the next line, * a breakpoint, ! what is not clear. Again, it goes on.", list_lines, true},
-    {"print", "p", "[EXPRESSION]", "a value: x, machine.z, feed, #100, G54.x, H3, clearance - allowance\n"
-     "Without one, where the axes stand.", print_value, false},
-    {"display", "", "[EXPRESSION]", "print it at every stop", display_value, false},
-    {"undisplay", "", "[ID]", "no longer", undisplay_value, false},
-    {"info", "i", "[TOPIC]", "about axes, block, breakpoints, changes, display, findings, fixtures, modal, offsets, "
+    {"delete", "d", "[ID...]", "remove the given breakpoints and watchpoints, or all", delete_breakpoint, false},
+    {"disable", "", "[ID...]", "switch breakpoints and watchpoints off", disable_breakpoint, false},
+    {"enable", "", "[ID...]", "switch breakpoints and watchpoints on", enable_breakpoint, false},
+    {"ignore", "", "ID COUNT", "ignore the next COUNT hits of a breakpoint", ignore_breakpoint, false},
+    {"condition", "", "ID [CONDITION]", "change or remove the condition of a breakpoint", change_condition, false},
+    {"list", "l", "[LINE|FIRST,LAST]", "show lines of the program with their clearance\n"
+     "-> marks the next line, * a breakpoint, ! a line that is not clear. Repeat it to continue.", list_lines, true},
+    {"print", "p", "[EXPRESSION]", "print a value: x, machine.z, feed, #100, G54.x, H3, clearance - allowance\n"
+     "Without EXPRESSION: the positions of the axes.", print_value, false},
+    {"display", "", "[EXPRESSION]", "print a value at every stop", display_value, false},
+    {"undisplay", "", "[ID]", "stop displaying a value, or all", undisplay_value, false},
+    {"info", "i", "[TOPIC]", "show axes, block, breakpoints, changes, display, findings, fixtures, modal, offsets, "
      "parameters, program, stack, tools, watchpoints", show_info, false},
-    {"findings", "", "", "everything that was found so far", show_findings, false},
-    {"where", "bt backtrace", "", "the lines that called this one", show_calls, false},
-    {"set", "", "WHAT VALUE", "change something from here on, and see what comes of it\n"
+    {"findings", "", "", "show all findings so far", show_findings, false},
+    {"where", "bt backtrace", "", "show the lines that called this one", show_calls, false},
+    {"set", "", "WHAT VALUE", "what if: change something from the current block on\n"
      "set tool 3 length 95, set H3 95, set G54.x -350, set allowance 1 (or default), "
-     "set fixture clamp-1 by 0,10,0. What came before stays as it was.", change_something, false},
-    {"undo", "", "", "take the last change back", take_back, false},
-    {"help", "h", "[COMMAND]", "this, or more about one command", show_help, false},
-    {"quit", "q exit", "", "leave", quit, false},
+     "set fixture clamp-1 by 0,10,0. Earlier blocks do not change.", change_something, false},
+    {"undo", "", "", "undo the last change", take_back, false},
+    {"help", "h", "[COMMAND]", "show this list, or more about one command", show_help, false},
+    {"quit", "q exit", "", "end the debugger", quit, false},
 };
 // clang-format on
 
@@ -93,13 +93,14 @@ core::Result<const PromptCommand*> command_named(std::string_view name) {
         const bool is_near = 2 * core::letters_apart(name, nearest) <= name.size();
         return core::fail(
             ErrorCode::syntax,
-            fmt::format("there is no command '{}'; {}'help' lists them", name,
+            fmt::format("there is no command '{}'; {}'help' lists all commands", name,
                         is_near ? fmt::format("the nearest is '{}'; ", nearest) : ""));
     }
     std::string list;
     for (const PromptCommand* command : beginning)
         list += (list.empty() ? "" : ", ") + std::string(command->name);
-    return core::fail(ErrorCode::syntax, fmt::format("'{}' may be {}", name, list));
+    return core::fail(ErrorCode::syntax,
+                      fmt::format("'{}' is ambiguous: it may be {}", name, list));
 }
 
 std::pair<std::string, std::string> split_word(std::string_view text) {
@@ -120,7 +121,7 @@ core::Result<size_t> count_in(const std::string& text) {
     const auto count = number_in(text);
     if (count && *count > 0) return *count;
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("'{}' is no count: write a number from 1 on", text));
+                      fmt::format("'{}' is not a count: write a whole number above 0", text));
 }
 
 CommandResult show_help(PromptState&, const std::string& arguments) {
@@ -136,8 +137,8 @@ CommandResult show_help(PromptState&, const std::string& arguments) {
                                     : heading + "\n" + wrapped(help, 28);
     }
     return text
-           + "Any beginning of a name will do that no other shares. An empty line repeats "
-             "step,\nnext, back, list and their like. TAB completes.\n";
+           + "Names can be abbreviated if they stay unique. An empty line repeats step, next,\n"
+             "back, list and similar commands. TAB completes.\n";
 }
 
 CommandResult quit(PromptState& state, const std::string&) {

@@ -14,17 +14,17 @@ struct PromptCommand {
     std::string_view name;
     std::string_view aliases; // short forms, separated by blanks
     std::string_view usage;   // the arguments
-    std::string_view help;    // first line: for the list; the rest: for `help NAME` only
+    std::string_view help;    // the first line is for the list, the rest only for `help NAME`
     core::Result<std::string> (*carry_out)(PromptState& state, const std::string& arguments);
-    bool repeats = false; // an empty line repeats it
+    bool repeats = false; // whether an empty line repeats it
 };
 
-/// All commands in the order of the help.
+/// All commands, in the order of the help.
 std::span<const PromptCommand> command_table();
 
-/// The command with this name, alias or unique beginning.
+/// The command with this name, alias or unambiguous abbreviation.
 ///
-/// Errors: syntax, with the nearest name, or with all names that match.
+/// Errors: syntax, with the nearest name or with all names that match.
 core::Result<const PromptCommand*> command_named(std::string_view name);
 
 /// The first word of a text and the rest, both trimmed.
@@ -33,7 +33,7 @@ std::pair<std::string, std::string> split_word(std::string_view text);
 /// All words of a text.
 std::vector<std::string> words_of(std::string_view text);
 
-/// A whole number from 1 on; 1 for an empty text.
+/// The count in a text, at least 1; 1 for an empty text.
 ///
 /// Errors: invalid_value.
 core::Result<size_t> count_in(const std::string& text);
@@ -85,7 +85,7 @@ CommandResult take_back(PromptState& state, const std::string& arguments);
 CommandResult show_help(PromptState& state, const std::string& arguments); // command_table.cpp
 CommandResult quit(PromptState& state, const std::string& arguments);
 
-/// The words that `info` and `set` take.
+/// The possible first words after `info` and `set`.
 std::vector<std::string> info_topics();
 std::vector<std::string> set_topics();
 

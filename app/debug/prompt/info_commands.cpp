@@ -40,11 +40,11 @@ CommandResult show_axes(PromptState& state, const std::string&) {
 
 CommandResult show_parameters(PromptState& state, const std::string&) {
     return table_of(parameter_values(control_of(state), state.session.environment()),
-                    "no parameter holds anything");
+                    "no parameter is set");
 }
 
 CommandResult show_offsets(PromptState& state, const std::string&) {
-    return table_of(offset_values(control_of(state)), "no offset holds anything");
+    return table_of(offset_values(control_of(state)), "no offset is set");
 }
 
 CommandResult show_tools(PromptState& state, const std::string&) {
@@ -58,10 +58,10 @@ CommandResult show_tools(PromptState& state, const std::string&) {
                             trimmed(described.name));
         if (state.session.tool() == number) text.insert(text.size() - 1, " <- in the spindle");
     }
-    return text.empty() ? "the set-up describes no tools\n" : text;
+    return text.empty() ? "the set-up has no tools\n" : text;
 }
 
-/// The box round a fixture, in the frame of the stock with all axes at 0.
+/// The bounding box of a fixture in the frame of the stock, with all axes at 0.
 core::Aabb box_of(const core::Setup& setup, const core::Fixture& fixture) {
     const core::Transform stock_from_body =
         setup.stock_mount.link_from_body.inverse() * fixture.mount.link_from_body;
@@ -89,7 +89,7 @@ CommandResult show_fixtures(PromptState& state, const std::string&) {
         text += fmt::format("{:<16} X {} to {}, Y {} to {}, Z {} to {}{}{}\n", fixture.name,
                             number_text(box.min.x), number_text(box.max.x), number_text(box.min.y),
                             number_text(box.max.y), number_text(box.min.z), number_text(box.max.z),
-                            there[i] ? "" : ", not there now",
+                            there[i] ? "" : ", not mounted now",
                             fixture.expendable ? ", may be cut" : "");
     }
     if (text.empty()) return std::string("the set-up has no fixtures\n");
@@ -104,7 +104,7 @@ CommandResult show_block(PromptState& state, const std::string&) {
     text +=
         fmt::format("    begins at {:.2f} s, removes {:.1f} mm3\n", result.time, result.removed);
     for (const core::PairClearance& pair : result.pairs)
-        text += fmt::format("    {} / {}: {} to {} mm, {} mm to keep, {}\n",
+        text += fmt::format("    {} / {}: {} to {} mm, minimum {} mm, {}\n",
                             core::part_name(setup, pair.pair), core::body_name(setup, pair.pair),
                             core::clearance_at_least(pair.lower),
                             pair.found() ? core::at_most(pair.upper) : "...",
@@ -117,7 +117,7 @@ CommandResult show_program(PromptState& state, const std::string&) {
     std::string text = fmt::format("{}, dialect {}\n", trimmed(record.program_file),
                                    gcode::dialect(record.dialect).name);
     text += fmt::format(
-        "{} known ({:.0f} % of the program), {}\n", counted(record.blocks.size(), "block"),
+        "{} checked ({:.0f} % of the program), {}\n", counted(record.blocks.size(), "block"),
         100.0 * state.session.recorded_share(), counted(record.findings.size(), "finding"));
     text += fmt::format("so far: {}\n", verdict_text(record.verdict));
     if (state.session.is_recorded())
@@ -131,7 +131,7 @@ CommandResult show_changes(PromptState& state, const std::string&) {
     std::string text;
     for (const MadeChange& made : state.session.changes())
         text += fmt::format("from block {} on: {}\n", made.block, text_of(made.change));
-    return text.empty() ? "nothing was changed\n" : text;
+    return text.empty() ? "no changes\n" : text;
 }
 
 struct Topic {
@@ -178,9 +178,8 @@ CommandResult show_info(PromptState& state, const std::string& arguments) {
     for (const Topic& topic : topics) list += (list.empty() ? "" : ", ") + std::string(topic.name);
     if (name.empty()) return "info about what? " + list + "\n";
     return core::fail(core::ErrorCode::syntax,
-                      fmt::format("'info {}' {}; there is {}", name,
-                                  beginning > 1 ? "may be more than one thing" : "is not known",
-                                  list));
+                      fmt::format("'info {}' {}; the topics are {}", name,
+                                  beginning > 1 ? "is ambiguous" : "is unknown", list));
 }
 
 CommandResult show_findings(PromptState& state, const std::string&) {
@@ -196,13 +195,13 @@ CommandResult show_findings(PromptState& state, const std::string&) {
         text += where + "\n" + finding_text(finding, 4);
     }
     if (!state.session.is_recorded())
-        text += fmt::format("the program is known up to block {}; 'goto end' runs the rest\n",
+        text += fmt::format("checked up to block {}; 'goto end' checks the rest\n",
                             record.blocks.size());
     return text.empty() ? "no findings\n" : text;
 }
 
 CommandResult show_calls(PromptState& state, const std::string&) {
-    if (!has_block(state)) return std::string("no block is left to be run here\n");
+    if (!has_block(state)) return std::string("the program has ended: no block is left\n");
     const CheckedBlock& block = state.session.record().blocks[state.session.at()];
     const auto& frames = control_of(state).frames;
     std::string text = fmt::format("#0  {}: {}\n", line_text(block), trimmed(block.text));
@@ -223,8 +222,8 @@ namespace {
 
 constexpr uint32_t lines_at_once = 11;
 
-/// What the record knows of the lines of a file: of each the block with the worst verdict, among
-/// equals with the least margin.
+/// For each line of a file in the record, the block with the worst verdict; among equals the one
+/// with the least margin.
 std::map<uint32_t, size_t> worst_blocks(const CheckRun& record, const std::string& file,
                                         uint32_t first, uint32_t last) {
     std::map<uint32_t, size_t> worst;
@@ -243,7 +242,7 @@ std::map<uint32_t, size_t> worst_blocks(const CheckRun& record, const std::strin
     return worst;
 }
 
-/// "0.420 !": how near a line comes, as short as possible.
+/// The clearance of a block as a column: "0.420 !".
 std::string clearance_column(const PromptState& state, size_t block) {
     const core::BlockResult& result = state.session.record().blocks[block].result;
     std::string text;
@@ -292,7 +291,7 @@ CommandResult listed(PromptState& state, const std::string& file, uint32_t first
     return text;
 }
 
-/// The lines round one.
+/// Lists the lines around one.
 CommandResult listed_round(PromptState& state, const Location& location) {
     const uint32_t half = lines_at_once / 2;
     const uint32_t first = location.line > half ? location.line - half : 1;

@@ -23,7 +23,8 @@ bool are_digits(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// The file of a subprogram that has run and is called so, with or without its folders.
+/// The path of a subprogram file by its name, with or without folders; empty: main program. The
+/// subprogram must have run, or be in the folder of the main program.
 core::Result<std::string> file_named(PromptState& state, const std::string& name) {
     const auto of_main = std::filesystem::path(state.session.record().program_file).filename();
     if (name == of_main.string() || name == state.session.record().program_file)
@@ -37,13 +38,13 @@ core::Result<std::string> file_named(PromptState& state, const std::string& name
         if (file == name || last == name) return file;
         names.push_back(last);
     }
-    // One that was not called so far stands beside the main program.
+    // A subprogram that was not called so far is searched for next to the main program.
     const auto beside =
         std::filesystem::path(state.session.record().program_file).parent_path() / name;
     std::error_code failure;
     if (std::filesystem::is_regular_file(beside, failure)) return beside.string();
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("no file {} is known here; the nearest is {}", name,
+                      fmt::format("there is no file {}; the nearest name is {}", name,
                                   core::nearest_name(name, names)));
 }
 
@@ -54,7 +55,8 @@ core::Result<size_t> number_in(const std::string& text) {
     const char* end = text.data() + text.size();
     const auto read = std::from_chars(text.data(), end, number);
     if (text.empty() || read.ec != std::errc() || read.ptr != end)
-        return core::fail(ErrorCode::invalid_value, fmt::format("'{}' is no whole number", text));
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("'{}' is not a whole number", text));
     return number;
 }
 
@@ -83,7 +85,7 @@ core::Result<Location> location_in(PromptState& state, const std::string& text) 
     if (!line)
         return core::fail(ErrorCode::invalid_value,
                           are_digits(text)
-                              ? fmt::format("the program has no line {}; its last is {}", text,
+                              ? fmt::format("the program has no line {}; its last line is {}", text,
                                             state.session.program().line_count())
                               : fmt::format("the program has no block {}", text));
     return Location{*line, {}};
@@ -103,7 +105,7 @@ core::Result<size_t> place_of(PromptState& state, const Location& location) {
     for (size_t block = 0; block < session.at(); ++block)
         if (is_there(block)) return block;
     return core::fail(ErrorCode::invalid_value,
-                      fmt::format("no block of line {} is run", location.line));
+                      fmt::format("line {} is never executed", location.line));
 }
 
 core::Result<const gcode::Program*> program_of(PromptState& state, const std::string& file) {

@@ -16,7 +16,7 @@
 namespace app {
 namespace {
 
-/// The message, with the place in what was written if there is one.
+/// The message of an error, with file and column if known.
 std::string error_text(const core::Error& error) {
     std::string text = error.message;
     if (error.where.column > 0)
@@ -32,8 +32,8 @@ std::string Prompt::greeting() {
     std::string text =
         fmt::format("{}: {} lines\n", record.program_file, state_.session.program().line_count());
     if (state_.session.setup_file().is_inferred)
-        text += "the set-up is inferred from the program; 'info program' says how\n";
-    return text + "'help' lists the commands; 'run', 'step' or 'next-finding' begin\n"
+        text += "the set-up is inferred from the program; 'info program' lists the assumptions\n";
+    return text + "'help' lists the commands; start with 'run', 'step' or 'next-finding'\n"
            + place_text(state_);
 }
 
@@ -45,7 +45,7 @@ PromptAnswer Prompt::answer(std::string_view line) {
     const auto command = command_named(name);
     if (!command) return {error_text(command.error()), true};
     auto result = (*command)->carry_out(state_, arguments);
-    // What `list 20` goes on with is `list`.
+    // After `list 20`, repeating continues with a plain `list`.
     state_.repeated = !(*command)->repeats         ? std::string()
                       : (*command)->name == "list" ? std::string("list")
                                                    : text;
@@ -91,7 +91,7 @@ Names fixtures_of(PromptState& state) {
     return names;
 }
 
-/// Behind `break`: a place, or a condition.
+/// The possible words after `break`: a place or a condition.
 Names break_names(PromptState& state, const Names& before) {
     if (std::find(before.begin(), before.end(), "if") != before.end())
         return condition_names_beginning("");
@@ -111,7 +111,7 @@ Names set_names(PromptState& state, const Names& before) {
     return {};
 }
 
-/// What may come behind these words, the first of which is a command.
+/// The possible words after these; the first one is a command.
 Names names_behind(PromptState& state, const Names& before) {
     const auto command = command_named(before[0]);
     if (!command) return {};

@@ -18,13 +18,13 @@ struct PromptAnswer {
     bool ends = false;   // the user quits
 };
 
-/// An expression shown at every stop.
+/// An expression that is shown at every stop.
 struct Display {
     int id = 0;
     std::string expression;
 };
 
-/// The session and what commands remember.
+/// The session, and what the commands remember.
 struct PromptState {
     DebugSession& session;
     std::vector<Display> displays = {};
@@ -36,17 +36,17 @@ struct PromptState {
     std::map<std::string, std::shared_ptr<const gcode::Program>> files = {}; // of subprograms
 };
 
-/// The command language of `feeler debug`. Takes command lines and returns texts; does not use the
-/// terminal.
+/// The command language of `feeler debug`. Takes command lines and returns texts; does not access
+/// the terminal.
 class Prompt {
 public:
-    /// The session must outlive it.
+    /// The session must outlive the prompt.
     explicit Prompt(DebugSession& session) : state_{session} {}
 
     /// The first text: the program and its position.
     std::string greeting();
 
-    /// Executes a command. An empty line repeats the last one if it is repeatable.
+    /// Executes a command. An empty line repeats the last command if it is repeatable.
     PromptAnswer answer(std::string_view line);
 
     /// Executes a line of a script: empty lines and lines that begin with # do nothing.

@@ -19,18 +19,18 @@ const core::PairClearance* deciding_pair(const core::BlockResult& result) {
     return result.deciding ? &result.pairs[*result.deciding] : nullptr;
 }
 
-/// "Holder to clamp-1: 0.420 mm; 2 mm to keep, 1.580 mm short: VIOLATION".
+/// The closest pair: "holder to clamp-1: 0.420 mm, minimum 2 mm, short by 1.580 mm".
 std::string nearness_text(const core::Setup& setup, const core::BlockResult& result) {
     const core::PairClearance* pair = deciding_pair(result);
     const std::string distance = clearance_text(setup, result);
-    if (!pair) return distance == "not known" ? "clearance not known" : distance + " from all";
+    if (!pair) return distance == "unknown" ? "clearance unknown" : distance + " from all bodies";
     std::string text = fmt::format("{} to {}: {}", core::part_name(setup, pair->pair),
                                    core::body_name(setup, pair->pair), distance);
     const double keep = pair->allowance.distance;
-    if (keep > 0.0) text += fmt::format(", {} mm to keep", keep);
+    if (keep > 0.0) text += fmt::format(", minimum {} mm", keep);
     if (result.verdict != core::Verdict::clear && keep > pair->upper)
         text +=
-            ", " + core::missing_text(keep - pair->upper, keep - pair->lower, "-") + " mm short";
+            ", short by " + core::missing_text(keep - pair->upper, keep - pair->lower, "-") + " mm";
     return text;
 }
 
@@ -41,7 +41,7 @@ std::string verdict_word(core::Verdict verdict) {
     case core::Verdict::undecided:
         return "UNDECIDED";
     case core::Verdict::violation:
-        return "TOO NEAR";
+        return "VIOLATION";
     default:
         return "COLLISION";
     }
@@ -104,7 +104,7 @@ std::string line_text(const CheckedBlock& block) {
 }
 
 std::string clearance_text(const core::Setup& setup, const core::BlockResult& result) {
-    if (!result.checked) return "not known";
+    if (!result.checked) return "unknown";
     const core::PairClearance* pair = deciding_pair(result);
     if (!pair) {
         const double least = least_clearance(setup, result);

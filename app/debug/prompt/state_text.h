@@ -14,27 +14,27 @@ namespace app {
 struct CheckedBlock;
 
 /// The position of the session: the next block, its clearance and findings, and the displays. After
-/// the last block, how the program ended.
+/// the last block: how the program ended.
 std::string place_text(PromptState& state);
 
-/// Why a walk stopped, with a newline; empty after the requested number of blocks.
+/// Why a walk stopped, with a newline; empty if it ran the requested number of blocks.
 std::string stop_text(const PromptState& state, const Stop& stop);
 
-/// "0.420 mm", "0.401-0.420 mm", "more than 50 mm", "not known".
+/// "0.420 mm", "0.401-0.420 mm", "more than 50 mm", "unknown".
 std::string clearance_text(const core::Setup& setup, const core::BlockResult& result);
 
-/// "line 23", "line 23 of sub.nc".
+/// The location of a block: "line 23", "line 23 of sub.nc".
 std::string line_text(const CheckedBlock& block);
 
 /// A finding with its cure, in lines of at most 80 characters.
 std::string finding_text(const core::Finding& finding, size_t indent);
 
-/// A value of the control before the next block, or of that block.
+/// The value of an expression: of the control before the next block, or of that block.
 ///
 /// Errors: as value_of and evaluate.
 core::Result<InspectedValue> value_here(PromptState& state, const std::string& expression);
 
-/// The displays with their values, one per line.
+/// The displayed expressions with their values, one per line.
 std::string displays_text(PromptState& state);
 
 /// The next block as the subject of a condition.

@@ -20,9 +20,9 @@ core::Result<double> value_in(const std::string& text) {
     const char* end = text.data() + text.size();
     const auto read = std::from_chars(text.data() + plus, end, value, std::chars_format::fixed);
     if (text.size() <= plus || read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
-        return core::fail(ErrorCode::invalid_value, text.empty()
-                                                        ? "the value is missing"
-                                                        : fmt::format("'{}' is no number", text));
+        return core::fail(ErrorCode::invalid_value,
+                          text.empty() ? "the value is missing"
+                                       : fmt::format("'{}' is not a number", text));
     return value;
 }
 
@@ -34,7 +34,7 @@ core::Result<int32_t> number_behind(char letter, const std::string& text) {
     return static_cast<int32_t>(number);
 }
 
-/// `tool 3 length 95`, `T3 95`
+/// Parses `tool 3 length 95` or `T3 95`.
 core::Result<WhatIf> tool_change(std::vector<std::string> words) {
     if (words[0] == "tool") words.erase(words.begin());
     if (words.size() == 3 && words[1] == "length") words.erase(words.begin() + 1);
@@ -51,7 +51,7 @@ core::Result<WhatIf> length_change(const std::vector<std::string>& words) {
     return WhatIf(OtherLengthOffset{core::OffsetNumber(number), length});
 }
 
-/// `G54.x -350`
+/// Parses `G54.x -350`.
 core::Result<WhatIf> offset_change(const std::vector<std::string>& words) {
     std::string name = words[0];
     for (char& c : name)
@@ -76,7 +76,7 @@ core::Result<WhatIf> allowance_change(const std::vector<std::string>& words) {
     return WhatIf(OtherAllowance{distance});
 }
 
-/// `fixture clamp-1 by 0,10,0`; a name may have blanks.
+/// Parses `fixture clamp-1 by 0,10,0`; the name may contain blanks.
 core::Result<WhatIf> fixture_change(const std::string& arguments) {
     const std::string text = split_word(arguments).second;
     const size_t by = text.rfind(" by ");
@@ -134,7 +134,7 @@ CommandResult take_back(PromptState& state, const std::string&) {
     const auto& changes = state.session.changes();
     const std::string what = changes.empty() ? std::string() : text_of(changes.back().change);
     if (auto done = state.session.take_back(); !done) return tl::unexpected(done.error());
-    return fmt::format("taken back: {}\n", what) + place_text(state);
+    return fmt::format("undone: {}\n", what) + place_text(state);
 }
 
 namespace {

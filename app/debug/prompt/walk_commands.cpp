@@ -14,7 +14,7 @@ std::string told(PromptState& state, const Stop& stop) {
     return stop_text(state, stop) + place_text(state);
 }
 
-/// What is said where a walk to something ends without having met it.
+/// The answer to a search: `what` says what was not found, if nothing was.
 std::string told_of_search(PromptState& state, const Stop& stop, const std::string& what) {
     if (stop.reason == StopReason::end || stop.reason == StopReason::error
         || stop.reason == StopReason::beginning)
@@ -26,11 +26,12 @@ std::string told_of_search(PromptState& state, const Stop& stop, const std::stri
 
 CommandResult want_nothing(const std::string& arguments) {
     if (arguments.empty()) return std::string();
-    return core::fail(ErrorCode::syntax,
-                      fmt::format("this command takes nothing more, not '{}'", arguments));
+    return core::fail(
+        ErrorCode::syntax,
+        fmt::format("this command takes no arguments: '{}' is not allowed", arguments));
 }
 
-/// Goes there and says where it is; nothing changes on an error.
+/// Goes to a position and describes it. On an error nothing changes.
 CommandResult gone_to(PromptState& state, size_t place) {
     if (auto done = state.session.go_to(place); !done) return tl::unexpected(done.error());
     return place_text(state);
@@ -73,7 +74,7 @@ CommandResult finish_subprogram(PromptState& state, const std::string& arguments
     FEELER_TRY(std::string text, want_nothing(arguments));
     if (!has_block(state) || state.session.record().blocks[state.session.at()].calls.empty())
         return core::fail(ErrorCode::invalid_value,
-                          "this is the main program: no subprogram runs that could be finished");
+                          "this is the main program: there is no subprogram to finish");
     return text + told(state, state.session.finish());
 }
 
@@ -114,7 +115,7 @@ CommandResult go_to(PromptState& state, const std::string& arguments) {
         while (state.session.record_for(0.1))
             if (state.session.is_interrupted && state.session.is_interrupted()) break;
         size_t last = state.session.record().blocks.size();
-        // The block that an alarm stops at is in the record, but cannot be run.
+        // The block at which an alarm stops is in the record, but cannot be run.
         while (last > 0 && !state.session.knows(last - 1)) --last;
         return gone_to(state, last);
     }
@@ -142,12 +143,12 @@ CommandResult go_back_to_finding(PromptState& state, const std::string& argument
 
 CommandResult go_to_tool(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.next_tool(), "change of tool");
+    return text + told_of_search(state, state.session.next_tool(), "tool change");
 }
 
 CommandResult go_back_to_tool(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.previous_tool(), "change of tool");
+    return text + told_of_search(state, state.session.previous_tool(), "tool change");
 }
 
 } // namespace app
