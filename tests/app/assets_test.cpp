@@ -12,10 +12,10 @@ using test_support::SetupWriter;
 
 const std::filesystem::path assets = std::filesystem::path(FEELER_SOURCE_DIR) / "assets";
 
-/// A job of assets, and what its comment says that must be found.
+/// A job of assets, and its expected results as given in the comment of its set-up.
 struct Job {
     std::string program, setup, verdict;
-    std::string errors;          // their texts, in the order of the blocks
+    std::string errors;          // texts of the blocks with errors, in order
     std::vector<double> removed; // by each tool, from tool 1 on, mm3
 };
 
@@ -30,7 +30,7 @@ Checked check_job(const Job& job) {
                        assets / "setups" / (job.setup + ".toml"));
 }
 
-/// The text of every block that is not clear.
+/// The texts of all moving blocks that are not clear.
 std::string texts_of_errors(const Checked& checked) {
     std::string texts;
     for (const BlockLine& block : checked.blocks)
@@ -61,13 +61,13 @@ TEST(Assets, EverySetupIsInAJob) {
         EXPECT_TRUE(known.contains(file.path().stem())) << file.path();
 }
 
-/// One range of an axis, or of a rotary one the angles to try.
+/// The range of an axis; for a rotary axis, the angles to try.
 struct Travel {
     char axis;
     std::vector<double> places;
 };
 
-/// Blocks that go to every corner of the travel, with an empty spindle.
+/// Blocks that move to every corner of the travel, with an empty spindle.
 std::string corners(const std::vector<Travel>& travels) {
     std::vector<std::string> blocks = {"G53 G0"};
     for (const Travel& travel : travels) {
@@ -82,7 +82,7 @@ std::string corners(const std::vector<Travel>& travels) {
     return text + "M30\n";
 }
 
-/// A crumb on the table: no work is in the way.
+/// Uses a tiny stock on the table, so that no work is in the way.
 void expect_free_travel(const std::string& machine, const std::string& origin,
                         const std::vector<Travel>& travels) {
     SetupWriter setup;

@@ -16,7 +16,7 @@ using test_support::Ran;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
-/// A folder with a good program and a good set-up that names a mesh, and an old report.
+/// A folder with a valid program, a valid set-up that names a mesh, and an old report.
 class BadInput : public testing::Test {
 protected:
     void SetUp() override {
@@ -39,7 +39,7 @@ protected:
         return feeler(words, before);
     }
 
-    /// Exit status 2, one line on standard error with these words, nothing on standard output.
+    /// Expects exit status 2, one line on standard error with these words, and no standard output.
     void expect_refused(const Ran& ran, const std::vector<std::string>& words) const {
         EXPECT_EQ(ran.status, 2) << ran.err;
         EXPECT_EQ(ran.out, "");

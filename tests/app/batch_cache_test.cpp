@@ -39,7 +39,7 @@ TEST(BatchCache, ChecksNothingTwice) {
     EXPECT_TRUE(says(history, "3 versions")) << history.out;
 }
 
-/// Two programs that were linked without a build-id and differ in a byte at their ends.
+/// Two programs linked without a build-id that differ in one byte at the end.
 TEST(BatchCache, IsThatOfOneBuildAlsoWithoutABuildId) {
     const test_support::ScopedFolder folder;
     std::filesystem::create_directory(folder / "parts");
@@ -137,7 +137,7 @@ TEST(BatchCache, HistoryEndsWithTheProgramAsItIsAlsoIfAShareHasSeenItBefore) {
     EXPECT_TRUE(says(feeler({"history", b}), ": 2 versions"));
 }
 
-/// A library that is checked from where it is named in three ways.
+/// A library that is checked under three different paths.
 class Library : public testing::Test {
 protected:
     Library() {

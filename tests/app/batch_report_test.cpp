@@ -135,7 +135,7 @@ TEST(Sarif, TellsOfWhatWasNotRunToItsEnd) {
     EXPECT_EQ(run["originalUriBaseIds"]["%SRCROOT%"]["uri"], "file:///home/me/my%20shop/");
 }
 
-/// Hosts that go by results alone must not show green.
+/// Code hosts that only look at results must not show success.
 TEST(Sarif, HasAResultForWhatWasNotChecked) {
     const json run = sarif()["runs"][0];
     const json& result = run["results"][5];
@@ -147,7 +147,7 @@ TEST(Sarif, HasAResultForWhatWasNotChecked) {
     EXPECT_EQ(rule["defaultConfiguration"]["level"], "error");
 }
 
-/// So many findings in a program, of which each third is an error and the last is the worst.
+/// Programs with a number of findings each; every third is an error and the last is the worst.
 BatchResult batch_of_many(size_t programs, size_t findings) {
     BatchResult batch;
     for (size_t i = 0; i < programs; ++i) {
@@ -178,7 +178,7 @@ TEST(Sarif, HasNoMoreResultsThanCodeHostsTake) {
     EXPECT_THAT(notes[0]["message"]["text"].get<std::string>(),
                 testing::AllOf(testing::StartsWith("omitted: 1 of the results"),
                                HasSubstr("--format json lists all")));
-    // What is left out is the mildest of the last program, a warning with the least shortfall.
+    // The omitted result is the mildest of the last program, a warning with the least shortfall.
     const auto& results = cut["results"];
     EXPECT_EQ(results[24'994], whole["results"][24'994]);
     EXPECT_EQ(results[24'995], whole["results"][24'995]);
@@ -241,7 +241,7 @@ TEST(Sarif, CountsFindingsThatAreAlike) {
         << "N20 and N30 are the same block twice";
 }
 
-/// Whether xmllint takes a text for a report of JUnit, and what it says else.
+/// Runs xmllint on a JUnit report.
 test_support::Ran linted(const std::string& xml) {
     const test_support::ScopedFolder folder;
     return test_support::run({"xmllint", "--noout", "--schema",

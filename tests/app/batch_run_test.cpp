@@ -47,7 +47,7 @@ protected:
         return batch;
     }
 
-    /// What became of the program of this name.
+    /// The result of the program with this name.
     static ProgramResult of(const BatchResult& batch, const std::string& name) {
         for (const ProgramResult& program : batch.programs)
             if (program.program.ends_with("/" + name)) return program;
@@ -133,7 +133,7 @@ TEST_F(BatchRun, DoesNotRunWhatIsKnown) {
 }
 
 TEST_F(BatchRun, StopsWhileAProgramIsLookedOver) {
-    asked.setup.clear(); // so that the whole program is run once for its stock
+    asked.setup.clear(); // so that the whole program is run once to infer its stock
     asked.settings.max_blocks.reset();
     const BatchPlan endless = *plan_batch({folder / "endless.nc"}, asked);
     std::atomic<int> questions = 0;
@@ -202,7 +202,8 @@ TEST(MemoryBudget, GivesItAllToOneThatIsLarger) {
     MemoryBudget budget(10.0);
     ASSERT_TRUE(budget.take(1.0, [] { return false; }));
     std::atomic<bool> large = false, small = false;
-    std::atomic<int> large_asked = 0, small_asked = 0; // whether to give up: it waits
+    std::atomic<int> large_asked = 0,
+                     small_asked = 0; // calls that ask whether to give up; they show that it waits
     std::thread first([&] {
         EXPECT_TRUE(budget.take(100.0, [&] { return ++large_asked < 0; }));
         large = true;

@@ -19,7 +19,7 @@ using test_support::ScopedFolder;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Programs of which one calls another, with a project, on a bad day.
+/// Programs, one of which calls another, with a project; used for failures during a batch.
 class BatchSurvival : public testing::Test {
 protected:
     void SetUp() override {
@@ -44,7 +44,7 @@ TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
         const Ran ran = feeler({"check", lib(), "--format", "json", "-o", folder / name});
         EXPECT_EQ(ran.status, 2) << name;
         EXPECT_THAT(ran.err, HasSubstr("is an input and would be overwritten")) << name;
-        // What a check finds again is put down in the database.
+        // A check writes to the database when it reuses a result.
         const bool is_database = before.starts_with("SQLite format 3");
         const size_t length = is_database ? 16 : std::string::npos;
         EXPECT_EQ(bytes_of(folder / name).substr(0, length), before.substr(0, length)) << name;
@@ -141,7 +141,7 @@ TEST_F(BatchSurvival, TakesASignalThatComesTwiceAtOnceForOne) {
         RunningProgram running({FEELER_BINARY, "check", folder / "long.nc", folder / "lib/other.nc",
                                 "--jobs", "2", "--format", "json", "-o", folder / "report.json"});
         EXPECT_TRUE(running.wait_for_output({"other.nc"}));
-        running.send(SIGTERM); // as `timeout` does: to the process and to its group
+        running.send(SIGTERM); // as `timeout` does: to the process and to its process group
         running.send(SIGTERM);
         EXPECT_EQ(running.result().status, 2) << i;
         EXPECT_TRUE(fs::exists(folder / "report.json")) << i;

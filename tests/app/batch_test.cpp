@@ -26,7 +26,7 @@ using testing::Not;
 const std::string fine = program({"X-20. Y50.", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 
-/// So many moves to and fro that nobody waits for their end.
+/// A program with too many moves to wait for its end.
 std::string long_program() {
     std::string text = fine.substr(0, fine.find("M30"));
     for (int i = 0; i < 300'000; ++i)
@@ -34,7 +34,7 @@ std::string long_program() {
     return text + "M30\n";
 }
 
-/// A folder of programs with set-ups beside them.
+/// A folder of programs with set-ups next to them.
 class Batch : public testing::Test {
 protected:
     void SetUp() override {
@@ -147,7 +147,8 @@ TEST_F(Batch, SaysThatAProjectAboveIsNotAskedAboutAProgramThatIsNamed) {
         EXPECT_THAT(check({folder / name, "--setup", folder / "near.toml"}).err,
                     Not(HasSubstr("feeler.toml")));
     }
-    EXPECT_THAT(check({folder / "near.nc"}).err, Not(HasSubstr("does not apply"))); // set-up beside
+    EXPECT_THAT(check({folder / "near.nc"}).err,
+                Not(HasSubstr("does not apply"))); // the set-up next to it
     EXPECT_THAT(check({all()}).err, Not(HasSubstr("does not apply")));
 }
 

@@ -18,7 +18,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// A scene at these mesh sizes only, each query once.
+/// Results of a scene at these mesh sizes, with each query run once.
 BenchTable measured(BenchScene scene, std::vector<double> mesh_sizes) {
     scene.mesh_sizes = std::move(mesh_sizes);
     return measure(scene, 0.0).value();
@@ -83,7 +83,7 @@ TEST(PaperBench, KeepsWhatThePaperStates) {
 }
 
 TEST(PaperBench, TakesTestsInProportionToThePoints) {
-    // What the paper says of time; counts are the same on every machine.
+    // Run times as in the paper; the counts are equal on every machine.
     std::vector<double> points, tests;
     for (const BenchMeans& mean : means_of(paper_table())) {
         points.push_back(static_cast<double>(mean.points));
@@ -132,7 +132,7 @@ TEST(Bench, CountsMoreTestsWhereFlatFacesLieParallel) {
     EXPECT_GT(tests(bench_scenes()[5]), 10 * tests(paper_scene()));
 }
 
-/// Every line through a random point must hold it if, and only if, it is inside.
+/// Every line through a random point must contain it if and only if the point is inside.
 template <typename Body, typename Inside>
 void expect_lines(const Body& body, const Inside& inside) {
     std::mt19937 rng(41);
@@ -215,7 +215,7 @@ TEST(BenchCsv, IsOneTableOfNumbersThatKeepsTheirBits) {
 
 TEST(BenchText, FitsIntoEightyColumnsAndSaysWhereTheFiguresAre) {
     BenchTable turned = measured(bench_scenes()[2], {1.0, 1.5, 2.0});
-    for (BenchRow& row : turned.rows) { // as wide as they come
+    for (BenchRow& row : turned.rows) { // maximum widths
         row.paper.node_tests += 10'000'000;
         row.paper.seconds = 1.2;
         row.fast.seconds = 0.123;

@@ -10,9 +10,9 @@
 
 namespace app_test {
 
-/// One pair of bodies over a block, as the report has it.
+/// A pair of bodies during a block, as in the report.
 struct PairLine {
-    std::string name; // "holder clamp-1"; empty when nothing came near
+    std::string name; // "holder clamp-1"; empty if nothing came near
     double lower = 0.0;
     std::optional<double> upper, allowance, at;
     std::string verdict;
@@ -23,10 +23,10 @@ struct BlockLine {
     std::string text, motion, verdict;
     double time = 0.0, duration = 0.0, removed = 0.0;
     std::optional<int> tool;
-    PairLine deciding;           // of a block that moves
+    PairLine deciding;           // of a moving block
     std::vector<PairLine> pairs; // all of them
 
-    /// Fails the test and gives an empty one when the block has no such pair.
+    /// The pair with this name; if there is none, fails the test and returns an empty one.
     PairLine pair(const std::string& name) const;
 };
 
@@ -35,7 +35,7 @@ struct FindingLine {
     std::optional<int> line;
 };
 
-/// What `feeler check --format json --pairs` said and how it ended.
+/// The output and exit status of `feeler check --format json --pairs`.
 struct Checked {
     int status = -1;
     std::string err, verdict;
@@ -43,28 +43,28 @@ struct Checked {
     std::vector<FindingLine> findings;
     std::vector<std::string> assumptions;
 
-    /// The block of a line; fails the test and gives an empty one when there is none.
+    /// The block of a line; if there is none, fails the test and returns an empty one.
     BlockLine at_line(int line) const;
 
-    /// The first finding of a rule; fails the test and gives an empty one when there is none.
+    /// The first finding of a rule; if there is none, fails the test and returns an empty one.
     FindingLine finding(const std::string& rule) const;
 
-    /// "near-miss 7, over-travel 9": every error with its line, in order.
+    /// "near-miss 7, over-travel 9": all errors with their lines, in order.
     std::string errors() const;
     std::string of_severity(const std::string& severity) const;
 };
 
-/// The program under test with these words behind its name.
+/// Runs the program under test with these arguments.
 test_support::Ran feeler(std::vector<std::string> words, const std::string& before = "");
 
 Checked check_files(const std::string& program, const std::string& setup,
                     const std::vector<std::string>& more = {});
 
-/// Writes both files and checks them.
+/// Writes the set-up and the program to files and checks them.
 Checked check(const test_support::SetupWriter& setup, const std::string& program,
               const std::vector<std::string>& more = {});
 
-/// lower <= truth <= upper, and both ends within `within` of it.
+/// Expects lower <= truth <= upper, with both bounds within `within` of the truth.
 void expect_encloses(const PairLine& pair, double truth, double within);
 
 } // namespace app_test

@@ -16,7 +16,8 @@ namespace {
 using app::Condition;
 using testing::HasSubstr;
 
-/// A block that rapids with T3 at 0.4 mm from clamp-1, which must keep 2; the control before it.
+/// A rapid with T3 that comes within 0.4 mm of clamp-1 (minimum clearance 2 mm), and the state
+/// before it.
 struct OneBlock {
     app::CheckRun record;
     gcode::Environment environment;
@@ -236,12 +237,13 @@ TEST(Condition, RefusesWhatIsNestedWithoutEnd) {
     EXPECT_FALSE(Condition::read(std::string(1'000'000, 'x')));
 }
 
-/// An expression as text beside what it is worth, made from the same random choices.
+/// An expression as text and its value, made by the same random choices.
 struct Written {
     std::string text;
     double number = 0.0;
     bool truth = false;
-    int strength = 9; // of what binds its parts: 1 or, 2 and, 3 not, 4 compared, 5 sum, 6 product
+    int strength =
+        9; // of its outermost operator: 1 or, 2 and, 3 not, 4 comparison, 5 sum, 6 product
 };
 
 class Writer {

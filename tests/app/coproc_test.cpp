@@ -115,7 +115,7 @@ TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     EXPECT_EQ(again->totals.counters, run->totals.counters);
 }
 
-/// What the device says of a short program in a bare machine with one tool.
+/// The device's results for a short program on a bare machine with one tool.
 CoprocessorRun beside_a_block(const test_support::ScopedFolder& folder, const std::string& lines) {
     CoprocessorJob job;
     job.check.setup = folder.write("setup.toml", R"(

@@ -18,7 +18,7 @@ constexpr double mesh_size = 0.5;
 /// A slot at Z-5 along Y50, from X-20 to X120 on line 8: the holder passes 40 above the stock.
 const std::string slot = program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60."});
 
-/// A clamp beside the slot, up to Z45, whose near side is at this Y.
+/// A clamp next to the slot, up to Z45, with its near side at this Y.
 SetupWriter with_clamp_from(const std::string& y) {
     return SetupWriter().fixture("clamp-1", "box = [[40, " + y + ", -30], [60, 104, 45]]");
 }
@@ -52,7 +52,7 @@ TEST(HolderBesideAClamp, IsClearWithThreeMillimetres) {
     expect_encloses(checked.at_line(8).deciding, 3.0, exact);
 }
 
-/// A rapid along Y97.8 over the stock, past a clamp whose near side is at Y104.
+/// A rapid along Y97.8 above the stock, past a clamp with its near side at Y104.
 const SetupWriter low_clamp =
     SetupWriter().fixture("clamp-1", "box = [[40, 104, -30], [60, 130, 12]]");
 
@@ -78,7 +78,7 @@ TEST(RapidThroughTheStock, IsOneCollision) {
         check(SetupWriter(), program({"G0 X-20. Y50.", "Z-5.", "X120.", "X-20.", "Z60."}));
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "collision");
-    EXPECT_EQ(checked.errors(), "rapid-in-stock 8"); // the way back is free
+    EXPECT_EQ(checked.errors(), "rapid-in-stock 8"); // the return move is clear
     EXPECT_EQ(checked.at_line(8).deciding.name, "flutes stock");
     expect_encloses(checked.at_line(8).deciding, 0.0, 0.0);
     EXPECT_NEAR(checked.at_line(8).removed, 5000.0, 1.0);
@@ -139,8 +139,8 @@ TEST(FeedIntoTheStock, IsCuttingForALeftHandToolThatTurnsLeft) {
     EXPECT_EQ(checked.errors(), "");
 }
 
-/// Two passes along one slot; the second takes the tool down to the given depth. The holder, 20 in
-/// radius, starts 25 above the tip and passes over both walls.
+/// Two passes along one slot; the second one at the given depth. The holder, radius 20, starts 25
+/// above the tip and passes over both walls.
 Checked deep_slot(const std::string& depth) {
     const std::string short_tool = "number = 1\nshape = \"flat\"\ndiameter = 10\n"
                                    "flute_length = 20\nshank = [[10, 10, 5]]\n"
@@ -188,7 +188,7 @@ TEST(ShankInTheStock, CollidesWhereTheFlutesAreShorterThanTheCut) {
 }
 
 TEST(ShankInTheStock, CollidesAboveARoundToolOfShortFlutes) {
-    // At Z-8 the flutes end at Z-1 or Z-1.5; above them stands a shank that is wider than the slot.
+    // At Z-8 the flutes end at Z-1 or Z-1.5; above them is a shank that is wider than the slot.
     for (const char* tool :
          {"shape = \"ball\"\ndiameter = 12\nflute_length = 7\nshank = [[24, 24, 88]]\n",
           "shape = \"bull\"\ndiameter = 20\ncorner_radius = 6\nflute_length = 6.5\n"

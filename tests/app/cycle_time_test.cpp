@@ -25,7 +25,7 @@ SetupWriter quick_setup() { return SetupWriter().machine(quick_mill()); }
 
 double duration_of(const Checked& checked, int line) { return checked.at_line(line).duration; }
 
-/// From rest to rest.
+/// Duration of a move from rest to rest, s.
 double alone(double length, double speed) { return length / speed + speed / 1000.0; }
 
 TEST(CycleTime, CountsAccelerations) {
@@ -104,8 +104,8 @@ TEST(CycleTime, RefusesAnAccelerationThatIsNone) {
     EXPECT_NE(ran.err.find("acceleration must be above 0"), std::string::npos);
 }
 
-/// A post beside the way at X50 of 0 to 100; the witness is met in the middle of the time, however
-/// the block begins and ends.
+/// A post next to the path from X0 to X100, at X25. With acceleration the witness is passed later
+/// than with constant speed.
 TEST(CycleTime, SaysWhenTheWitnessIsPassed) {
     const auto at = [](const std::string& machine) {
         const Checked checked = check(SetupWriter()
@@ -115,7 +115,7 @@ TEST(CycleTime, SaysWhenTheWitnessIsPassed) {
                                       program({"G4 P1", "G1 X100. F12000.", "G4 P1"}));
         return checked.at_line(first_line + 1).pair("flutes post").at.value_or(-1.0);
     };
-    // The flutes, 5 mm in radius, pass the post when their centre is at X25 to X25.1.
+    // The flutes, radius 5 mm, pass the post when their centre is at X25 to X25.1.
     EXPECT_NEAR(at(quick_mill()), (0.2 + (25.0 - 20.0) / 200.0) / alone(100, 200), 1e-2);
     EXPECT_NEAR(at(SetupWriter::mill()), 0.25, 1e-2);
 }

@@ -78,7 +78,7 @@ TEST(Debug, CompletesRepeatsAndKeepsItsHistoryAtATerminal) {
                            "--mesh-size", "2"},
                           files.folder.path());
         EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("block 0, line 1"));
-        terminal.type("until clearan\t< 1\n"); // the rest of the name comes of itself
+        terminal.type("until clearan\t< 1\n"); // completion adds the rest of the name
         EXPECT_THAT(terminal.until("line 8: G0 Z50."), HasSubstr("until clearance < 1"));
         terminal.until("(feeler) ");
         terminal.type("step\n");
@@ -92,7 +92,7 @@ TEST(Debug, CompletesRepeatsAndKeepsItsHistoryAtATerminal) {
                 HasSubstr("clearance"));
 }
 
-/// Some 40,000 blocks: seconds of work.
+/// About 40,000 blocks: seconds of work.
 constexpr const char* long_loop = "G21 G90 G17 G54\nT1 M6\nM3 S2000\nG43 H1 Z5.\n#1=0\n"
                                   "WHILE[#1LT9000]DO1\n#1=#1+1\nG1 X10. Y10. F900.\n"
                                   "X60. Z[-#1*0.001]\nEND1\nM30\n";
@@ -106,12 +106,12 @@ TEST(Debug, IsNotEndedByControlC) {
     const Files files;
     Terminal terminal(debug_words(files, long_loop), files.folder.path());
     terminal.until("(feeler) ");
-    terminal.type("steppp\x03"); // drops the line
+    terminal.type("steppp\x03"); // discards the line
     terminal.until("(feeler) ");
     terminal.type("step\n");
     EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("line 2"));
     terminal.type("until line = 11\n");
-    terminal.until(" blocks, "); // of the progress: it has begun
+    terminal.until(" blocks, "); // of the progress display: the run has begun
     terminal.type("\x03");
     EXPECT_THAT(terminal.until("(feeler) "), HasSubstr("interrupted"));
     terminal.type("back\n");
@@ -132,7 +132,7 @@ TEST(Debug, EndsWithControlDAtOnceOrAfterAWalk) {
     terminal.until("(feeler) ");
     terminal.type("until line = 11\n");
     terminal.until(" blocks, ");
-    terminal.type("\x04"); // while nobody reads
+    terminal.type("\x04"); // while the prompt is not reading
     EXPECT_EQ(terminal.status(), 0);
 }
 

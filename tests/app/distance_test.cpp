@@ -25,7 +25,7 @@ Json measure(std::vector<std::string> words) {
     return Json::parse(ran.out, nullptr, false);
 }
 
-/// lower <= truth <= upper within 1e-6, and witnesses that are as far apart as `upper` says.
+/// Expects lower <= truth <= upper within 1e-6, and witnesses whose distance is `upper`.
 void expect_distance(const Json& found, double truth) {
     ASSERT_TRUE(found.is_object());
     const double lower = found["lower"], upper = found["upper"];
@@ -67,8 +67,8 @@ TEST(Distance, TurnsTheSecondBodyBeforeItIsMoved) {
     expect_distance(
         measure({"box:10,10,10", "box:10,10,10", "--move", "20,0,0", "--rotate", "0,0,45"}),
         15.0 - std::sqrt(50.0));
-    // A corner of the cube points at the other: turned about X by 45, then about Y by the angle
-    // whose tangent is the root of 2.
+    // A corner of the cube points at the other: rotated about X by 45, then about Y by the angle
+    // whose tangent is sqrt(2).
     const double tilt = std::atan(std::numbers::sqrt2) * 180.0 / std::numbers::pi;
     expect_distance(measure({"sphere:5", "box:10,10,10", "--move", "30,0,0", "--rotate",
                              "45," + std::to_string(tilt) + ",0"}),
@@ -76,7 +76,7 @@ TEST(Distance, TurnsTheSecondBodyBeforeItIsMoved) {
 }
 
 TEST(Distance, TurnsAboutXThenYThenZ) {
-    // The long side goes from Z to -Y by the turn about X, and stays there about Y.
+    // The rotation about X takes the long side from Z to -Y; the rotation about Y keeps it there.
     const double along_y =
         measure({"sphere:1", "box:2,4,20", "--move", "0,30,0", "--rotate", "90,90,0"})["upper"];
     EXPECT_NEAR(along_y, 30.0 - 1.0 - 10.0, 1e-6);
@@ -128,13 +128,14 @@ TEST(Distance, OfScanPointsIsTheSameByEitherEngineToTheLastBit) {
         for (const char* key : {"distance", "lower", "upper", "witness", "at", "points"})
             EXPECT_EQ(fast[key], paper[key]) << key << " of " << words[1];
         EXPECT_GT(fast["distance"], 0.0);
-        EXPECT_NE(fast["sphere_tests"], paper["sphere_tests"]); // or it is one engine twice
+        EXPECT_NE(fast["sphere_tests"],
+                  paper["sphere_tests"]); // otherwise both are the same engine
     }
     EXPECT_EQ(measure({"sphere:5", "sphere:5"})["engine"], "fast");
 }
 
 TEST(Distance, OfScanPointsHoldsForEveryMomentOfASweep) {
-    // Poses a mesh size apart would pass by the nearest one, 0.3 mm beside it.
+    // Poses one mesh size apart would miss the nearest one by 0.3 mm.
     const Json found = measure(
         {"sphere:5", "sphere:5", "--move=-20.3,13,0", "--sweep", "40,0,0", "--mesh-size", "1"});
     const Json nearest = measure({"sphere:5", "sphere:5", "--move", "0,13,0", "--mesh-size", "1"});

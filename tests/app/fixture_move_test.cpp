@@ -28,7 +28,7 @@ TEST(FixtureMove, LeavesTheWayFreeFromTheMCodeOn) {
     const Checked beside =
         check(with_post("[[fixture.move]]\ncode = \"M61\"\nat = [0, 20, 0]\n"), there_and_back);
     EXPECT_EQ(beside.errors(), "");
-    // The post now begins at Y65: 15 less the tool's 5 away.
+    // The post now begins at Y65: 15 minus the tool radius of 5.
     expect_encloses(beside.at_line(9).pair("flutes post"), 10.0, 1e-6);
 }
 
@@ -74,7 +74,7 @@ TEST(FixtureMove, StandsInBothPlacesWhereTheOrderIsTheBuilders) {
 }
 
 TEST(FixtureMove, OfALineBeforeARestartHasBeenMade) {
-    // Lines 6 to 8 are before the start; the post goes out of the way, or stays in it.
+    // Lines 6 to 8 are before the start; the post is moved out of the way, or stays there.
     const std::string text =
         program({"G0 X-20. Y50.", "(A LINE)", "M61", "N10 T1 M6", "G90 G54 G0 X-20. Y50. S6000 M3",
                  "G43 H1 Z10.", "X120.", "Z60."});

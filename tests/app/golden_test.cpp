@@ -10,9 +10,9 @@ namespace app_test {
 namespace {
 
 const std::filesystem::path source_dir = FEELER_SOURCE_DIR;
-constexpr double clearance_tolerance = 0.02; // mm: what the search may stop at differs
+constexpr double clearance_tolerance = 0.02; // mm: searches may stop at different values
 constexpr double removed_tolerance = 0.3;    // mm3, and
-constexpr double removed_share = 0.01;       // of the volume: scan lines sample it
+constexpr double removed_share = 0.01;       // of the volume, which scan lines sample
 
 std::string rounded(const char* format, double value) {
     char text[64];
@@ -20,7 +20,7 @@ std::string rounded(const char* format, double value) {
     return text;
 }
 
-/// One line for a block that moves: line, motion, verdict, pair, clearance, removed.
+/// One line for a moving block: line, motion, verdict, pair, clearance, removed.
 std::string compact(const BlockLine& block) {
     const PairLine& pair = block.deciding;
     std::string text = std::to_string(block.line) + " " + block.motion + " " + block.verdict + " ";
@@ -62,7 +62,7 @@ bool near_or_same(const std::string& a, const std::string& b, double tolerance) 
     return std::abs(std::stod(a) - std::stod(b)) <= tolerance;
 }
 
-/// Words must be the same; the two numbers at the end of a block's line may differ a little.
+/// Words must be equal; the two numbers at the end of a block's line may differ slightly.
 bool agree(const std::string& a, const std::string& b) {
     if (a == b) return true;
     std::vector<std::string> left = words_of(a), right = words_of(b);
@@ -75,7 +75,7 @@ bool agree(const std::string& a, const std::string& b) {
     return left == right;
 }
 
-/// On a difference the new report is left in the test's directory, to be looked at and copied.
+/// On a difference, the new report is saved in the test's directory, to be checked and copied.
 void expect_golden(const std::string& program, const std::string& name) {
     const Checked checked = check_files(source_dir / "assets/programs" / program,
                                         source_dir / "assets/setups" / (name + ".toml"));

@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a program of which two versions were checked and kept.
+/// A folder with a program; two versions of it were checked and stored.
 class TwoVersions : public testing::Test {
 protected:
     TwoVersions() {

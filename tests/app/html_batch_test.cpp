@@ -180,7 +180,7 @@ TEST(HtmlBatch, DoesNotCallNothingClear) {
 TEST(HtmlBatch, NamesTheProgramWithTheLeastMargin) {
     BatchResult batch = large_batch(9, 0);
     batch.programs[7].tightest->lower = 0.9;
-    batch.programs[7].tightest->allowance = 5.0; // 4.1 mm too near, more than any other
+    batch.programs[7].tightest->allowance = 5.0; // short by 4.1 mm, more than any other
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("data-program=\"7\">order 7/part 7.nc, line 5</button>"));
 }

@@ -52,7 +52,7 @@ TEST(ScriptString, ComesBackAsTheSameTextAndEndsNoScript) {
 TEST(ScriptString, TakesAnyBytes) {
     const std::string read = json::parse(script_string(every_byte())).get<std::string>();
     EXPECT_EQ(read.substr(0, 128), every_byte().substr(0, 128));
-    EXPECT_GT(read.size(), 256U); // what is no UTF-8 was taken for Latin-1
+    EXPECT_GT(read.size(), 256U); // invalid UTF-8 was read as Latin-1
 }
 
 TEST(Base64, WritesWhatRfc4648Says) {
@@ -107,7 +107,7 @@ TEST(HtmlBlocks, SayWhatTheRunSays) {
     EXPECT_EQ(data["found"].size(), 4U);
 }
 
-/// The pair that decides the first block that has one, and where that block is.
+/// The deciding pair of the first block that has one, and the index of that block.
 std::pair<core::PairClearance*, size_t> first_deciding(CheckRun& run) {
     for (size_t i = 0; i < run.blocks.size(); ++i) {
         core::BlockResult& result = run.blocks[i].result;

@@ -23,7 +23,7 @@ struct Inferred {
         for (const core::Finding& finding : run.findings) found += finding.rule == rule;
         return found;
     }
-    core::Aabb stock() const { // counted from the first work offset
+    core::Aabb stock() const { // relative to the first work offset
         return core::bounds(run.setup.stock);
     }
 };
@@ -41,8 +41,8 @@ Inferred infer(const std::string& program, const std::string& name = "p.nc") {
     return result;
 }
 
-/// Faces a block with 20 mm beyond its edges, and then cuts a groove that begins with a plunge by
-/// rapid at an X.
+/// Faces a block with 20 mm beyond its edges, then cuts a groove that begins with a rapid plunge at
+/// an X.
 std::string faced_then_grooved(double x) {
     return "G21 G90 G54\nM3 S1000\nG0 Z10\nX-20 Y0\nG1 Z-1 F500\nX120\nY8\nX-20\nG0 Z10\nX"
            + std::to_string(x) + " Y4\nZ-3\nG1 Z-4\nX60\nG0 Z10\nM2\n";
@@ -149,7 +149,7 @@ TEST(StatedStock, LiesWhereItsSizeHoldsWhatIsCut) {
     EXPECT_EQ(low_corner({{-2, -2, -6}, {98, 122, 0}}), core::Vec3(0, 0, -6));
     EXPECT_EQ(low_corner({{-45, -50, -6}, {45, 50, 0}}), core::Vec3(-48, -60, -6));
     EXPECT_EQ(low_corner({{200, 0, -6}, {250, 50, 0}}), std::nullopt);
-    EXPECT_FALSE(stated(vectric)); // nothing is cut
+    EXPECT_FALSE(stated(vectric)); // no cutting
 }
 
 TEST(StatedStock, IsNoneWithoutABody) {
@@ -169,7 +169,7 @@ TEST(WorkPlaces, StandApart) {
     EXPECT_FALSE(run.run.has_errors());
     EXPECT_THAT(run.assumed,
                 HasSubstr("The stock is at G54, where most is cut; there is none at G55"));
-    EXPECT_DOUBLE_EQ(run.stock().min.z, -7.0); // what is cut at G55 does not count
+    EXPECT_DOUBLE_EQ(run.stock().min.z, -7.0); // cuts in G55 do not count
 }
 
 TEST(WorkPlaces, DoNotHideWhatHappensAtTheMainOne) {

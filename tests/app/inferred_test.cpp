@@ -46,7 +46,7 @@ TEST(InferredSetup, IsWhatTheProgramReaches) {
         run.assumes("X 7.000 to 43.000, Y 7.000 to 33.000, Z -7.000 (2 mm below the deepest "
                     "cut) to 0.000 (at Z0"));
     EXPECT_TRUE(run.assumes("no fixtures"));
-    double removed = 0.0; // the ring of 6 mm round a rectangle of 30 x 20, its outer corners round
+    double removed = 0.0; // ring of 6 mm around a rectangle of 30 x 20, with rounded outer corners
     for (const json& block : run.report["blocks"]) removed += block.value("removed", 0.0);
     const double ring = 6.0 * 100.0 + 3.14159265 * 9.0 - 4.0 * 9.0;
     EXPECT_NEAR(removed, 5.0 * ring, 0.01 * 5.0 * ring);
@@ -177,7 +177,7 @@ TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {
     std::string all;
     for (const std::string& each : checked.assumptions) all += each + "\n";
     EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, by"), std::string::npos) << all;
-    EXPECT_EQ(all.find("tool 1 is a"), std::string::npos) << all; // the set-up has it
+    EXPECT_EQ(all.find("tool 1 is a"), std::string::npos) << all; // the set-up defines it
 }
 
 } // namespace

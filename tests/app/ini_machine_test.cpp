@@ -10,7 +10,7 @@
 namespace app {
 namespace {
 
-/// A set-up whose program is read with this ini file.
+/// The machine of a set-up whose program is read with this ini file.
 core::Machine machine_of(const std::string& ini, const std::string& axes = "") {
     const test_support::ScopedFolder folder;
     std::ofstream(folder / "mill.ini") << ini;

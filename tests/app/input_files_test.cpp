@@ -45,8 +45,8 @@ std::set<fs::path> contents(const std::vector<InputFile>& inputs) {
     return paths;
 }
 
-/// The files that a set-up names, and those named by the files that it names: every text in quotes
-/// that is one. It knows nothing of keys.
+/// Adds the files that a set-up names, and those named in these files: every quoted string that is
+/// the path of a file, regardless of keys.
 void add_named_files(const fs::path& setup, std::set<fs::path>& named) {
     if (!named.insert(fs::canonical(setup)).second || setup.extension() != ".toml") return;
     const std::string text = test_support::bytes_of(setup);
@@ -63,7 +63,7 @@ bool all_same(const std::vector<InputFile>& inputs) {
                        [&](const InputFile& input) { return answers.is_same(input); });
 }
 
-/// A change of any of these files is a change of the inputs.
+/// Expects that a change of any of these files changes the inputs.
 void expect_each_counts(const std::set<fs::path>& files, const std::vector<InputFile>& inputs) {
     EXPECT_TRUE(all_same(inputs));
     for (const fs::path& file : files) {
@@ -78,7 +78,7 @@ void expect_each_counts(const std::set<fs::path>& files, const std::vector<Input
     EXPECT_TRUE(all_same(inputs));
 }
 
-/// Every set-up of the repository and the first of its programs that a check can begin with.
+/// Every set-up of the repository, with the first program that a check can start with.
 TEST(InputFiles, HoldEveryFileThatASampleSetupNames) {
     const fs::path root = FEELER_SOURCE_DIR;
     const ScopedFolder folder;
@@ -204,7 +204,7 @@ TEST(InputAnswers, ReadAFileAgainThatWasWrittenSince) {
         EXPECT_TRUE(answers.is_same(input));
         EXPECT_TRUE(answers.is_same(in_any_case));
     }
-    folder.write("a.nc", "G0 X2\n"); // as long as before
+    folder.write("a.nc", "G0 X2\n"); // the same length as before
     EXPECT_FALSE(answers.is_same(input));
     folder.write("o1", "");
     EXPECT_FALSE(answers.is_same(in_any_case));

@@ -16,7 +16,7 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The control behind a program.
+/// A control and its state after a program.
 struct Control {
     gcode::Environment environment;
     gcode::InterpreterState state;
@@ -87,7 +87,7 @@ TEST(InspectedValue, ReadsParametersAsTheControlNamesThem) {
     EXPECT_EQ(fanuc.text("#100"), "7.5");
     EXPECT_EQ(fanuc.text("#1"), "4");
     EXPECT_EQ(fanuc.text("#2"), "not set");
-    EXPECT_EQ(fanuc.text("#4003"), "90"); // G90, which the control shows there
+    EXPECT_EQ(fanuc.text("#4003"), "90"); // the code of G90 in #4003
     EXPECT_THAT(fanuc.text("R5"), HasSubstr("#1, #2"));
     const Control linuxcnc("#<_gap>=2\n#<own>=3\n#31=9\n#5=1\nG0 X1\nM2\n", DialectId::linuxcnc);
     EXPECT_EQ(linuxcnc.text("#<_GAP>"), "2");

@@ -10,17 +10,17 @@ namespace {
 using test_support::Ran;
 using test_support::ScopedFolder;
 
-/// What is measured must be the same; how long it took need not be.
+/// The report without run times, which may differ.
 std::string without_seconds(const std::string& report) {
     return report.substr(0, report.find("\"seconds\""));
 }
 
-/// The C library picks its sin, cos, exp and more by the processor. Told so, it does without what
-/// these names stand for.
+/// The C library selects its sin, cos, exp and others by the processor. With this setting it does
+/// not use the listed features.
 const std::string without_fma = "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F,-AVX";
 
-/// Angles, in degrees, whose sine in the C library ends in another bit without FMA; of others it
-/// does once in some hundreds.
+/// Angles, in degrees, for which the sine of the C library differs in the last bit without FMA.
+/// This happens for one in several hundred angles.
 const char* const tell_tales[] = {"43.654,-43.599,-43.243", "-33.773,-37.311,-41.836",
                                   "-31.124,-30.69,-29.37", "-28.492,-22.673,-19.541"};
 

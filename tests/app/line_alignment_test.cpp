@@ -12,7 +12,7 @@ using Pairs = std::vector<std::pair<size_t, size_t>>;
 
 Items items(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// The length of the longest common subsequence, by the table of all beginnings.
+/// The length of the longest common subsequence, by dynamic programming.
 size_t most_common(const Items& a, const Items& b) {
     std::vector<std::vector<size_t>> best(a.size() + 1, std::vector<size_t>(b.size() + 1, 0));
     for (size_t i = 0; i < a.size(); ++i)
@@ -77,7 +77,7 @@ TEST(Aligned, FollowsAFewChangesInALongList) {
     EXPECT_GE(pairs.size(), a.size() - 200);
 }
 
-/// Lists that have all items in common and nothing of their order.
+/// Lists with the same items in a completely different order.
 TEST(Aligned, GivesUpTheMostInTimeWhenAllIsOther) {
     Items a(50'000);
     std::mt19937 random(9);

@@ -8,13 +8,13 @@
 
 #include "tests/support/program_writer.h"
 
-/// A hundred thousand files of a shop, one of twenty a program.
+/// A hundred thousand files of a shop; one in twenty is a program.
 namespace many_files {
 
 inline constexpr size_t all_files = 100'000, one_program_in = 20, folders = 1'000;
 inline constexpr size_t programs = all_files / one_program_in;
 
-/// What a shop keeps beside its programs.
+/// A kind of file that is stored next to programs.
 struct Kind {
     const char* ending;
     std::string bytes;
@@ -41,7 +41,7 @@ inline void write(const std::filesystem::path& path, const std::string& bytes) {
     std::fclose(file);
 }
 
-/// Writes them all.
+/// Writes all files.
 inline void fill(const std::filesystem::path& root) {
     const std::string program =
         test_support::program({"X5. Y5.", "G1 Z-1. F200.", "X20.", "G0 Z60."});

@@ -29,7 +29,7 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
     return lines;
 }
 
-/// The numbers of files in lines such as "skipped: 12 files, such as ...", and what has none.
+/// The number of skipped files, from lines such as "skipped: 12 files, such as ...", or 1 per line.
 size_t counted_in(const std::vector<std::string>& lines) {
     size_t count = 0;
     for (const std::string& line : lines)
@@ -56,7 +56,7 @@ void expect_all_files(const Reports& reports, const std::string& folder) {
     EXPECT_TRUE(skipped.contains(folder + "/" + place_of(1003) + "/ü 1003.stl"));
 }
 
-// One test, as it takes longer to write so many files than to check them.
+// A single test, because writing so many files takes longer than checking them.
 TEST(ManyFiles, AreReadOnceInLittleMemoryAndSkippedInAFewLines) {
     const ScopedFolder folder;
     const std::string shop = folder / "shop", out = folder / "out.txt";
@@ -70,7 +70,7 @@ TEST(ManyFiles, AreReadOnceInLittleMemoryAndSkippedInAFewLines) {
                   "sarif", "-o", to.sarif, "--format", "json", "-o", to.whole});
     const Usage usage = usage_of(words, out);
     EXPECT_EQ(usage.status, 0);
-    if (usage.io) { // else this kernel does not count
+    if (usage.io) { // otherwise this kernel does not count
         EXPECT_LT(usage.io->reads, 3 * all_files);
         EXPECT_LT(usage.io->bytes, 100'000'000u);
         RecordProperty("reads", static_cast<int>(usage.io->reads));

@@ -29,7 +29,7 @@ std::string fine(const std::string& y = "50.") {
     return program({"X-20. Y" + y, "Z-3.", "G1 X120. F500.", "G0 Z60."});
 }
 
-/// So many moves to and fro that nobody waits for their end.
+/// A program with too many moves to wait for its end.
 std::string long_program() {
     std::string text = fine().substr(0, fine().find("M30"));
     for (int i = 0; i < 300'000; ++i)
@@ -37,7 +37,7 @@ std::string long_program() {
     return text + "M30\n";
 }
 
-/// Each number of seconds, of a check or of all, is another in every run.
+/// Removes run times, which differ between runs.
 std::string without_seconds(std::string text) {
     text =
         std::regex_replace(text, std::regex("\"seconds\":(\\[[^\\]]*\\]|[^,]*)"), "\"seconds\":0");
@@ -49,7 +49,7 @@ std::string without_seconds(std::string text) {
     return std::regex_replace(text, std::regex("  slowest .*\n"), "");
 }
 
-/// A folder with everything that a batch can meet.
+/// A folder with everything that can occur in a batch.
 class Merge : public testing::Test {
 protected:
     void SetUp() override {
@@ -60,7 +60,7 @@ protected:
         write("no set-up.nc", fine());
         write("no set-up.toml", "nonsense = 1\n");
         write("part.stl", "solid part\nendsolid part\n");
-        // Two names that are the same text, of which one is no UTF-8.
+        // Two names that read the same, one of which is not valid UTF-8.
         write("Geh\xe4use.nc", fine("40."));
         write("Gehäuse.nc", fine("45.5"));
         for (int i = 0; i < 6; ++i) write(std::to_string(i) + ".nc", fine(std::to_string(i) + "."));
@@ -100,7 +100,7 @@ protected:
         return check(share_words(i, n, more));
     }
 
-    /// The first of two shares, which runs beside the test.
+    /// Arguments for the first of two shards, which runs in parallel to the test.
     Words first_share() const {
         Words all = {FEELER_BINARY, "check"};
         const Words more = share_words(1, 2, {"--no-cache"});
@@ -115,7 +115,7 @@ protected:
         return feeler(more);
     }
 
-    /// Options that have every format written to a file of its own.
+    /// Options that write every format to a file of its own.
     Words to_files(const std::string& name) const {
         Words options;
         for (const std::string& format : formats)
@@ -156,7 +156,7 @@ TEST_F(Merge, GivesWhatOneRunGives) {
     EXPECT_THAT(one.out, HasSubstr("skipped: " + folder / "lib/part.stl"));
 }
 
-/// Results that are found again have the seconds of the run that made them.
+/// Reused results have the run times of the run that made them.
 TEST_F(Merge, GivesTheSameBytesWhereResultsAreFoundAgain) {
     const Words kept = {"--cache", folder / "results.db"};
     for (int i = 1; i <= 3; ++i) check_share(i, 3, kept);

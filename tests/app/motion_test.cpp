@@ -14,7 +14,7 @@ using test_support::SetupWriter;
 
 const std::string far_stock = "box = [[200, 200, -30], [210, 210, 0]]\n";
 
-/// From X0 Y0 to X100 Y50 at Z10. Straight, it passes X50 at Y25; axis by axis it passes at Y50.
+/// From X0 Y0 to X100 Y50 at Z10. A straight move passes X50 at Y25; a dog-leg passes it at Y50.
 const std::string slanted = program({"G0 Z10.", "X100. Y50.", "Z60."});
 
 SetupWriter post_beside_the_way() {
@@ -47,7 +47,7 @@ TEST(Rapid, IsUndecidedWhereTheSpeedsOfADogLegAreNotKnown) {
 }
 
 TEST(OverTravel, IsFoundInsideAnArcWhoseEndsAreWithinTheLimits) {
-    // The half circle bulges by its radius of 50: to Y220 of the work, 20 beyond the machine's 0.
+    // The half circle extends by its radius of 50: to Y220 of the work, 20 beyond machine zero.
     const SetupWriter setup = SetupWriter().stock(far_stock);
     const Checked beyond = check(
         setup, program({"G0 X100. Y170.", "G0 Z20.", "G2 X200. Y170. I50. J0 F1000.", "G0 Z60."}));
@@ -80,7 +80,7 @@ TEST(FirstMove, FromAnUnknownPlaceIsAWarningOnly) {
     EXPECT_EQ(checked.status, 0);
     EXPECT_EQ(checked.errors(), "");
     EXPECT_EQ(checked.of_severity("warning"), "first-move 5");
-    EXPECT_EQ(checked.at_line(8).verdict, "clear"); // every axis is known by then
+    EXPECT_EQ(checked.at_line(8).verdict, "clear"); // by then every axis is known
     EXPECT_NEAR(checked.at_line(8).removed, 5000.0, 1.0);
 }
 
@@ -98,7 +98,7 @@ TEST(FirstMove, FromHomeIsNoWarning) {
 }
 
 TEST(ToolChange, IsCheckedWithTheLengthOfTheNewTool) {
-    // The second tool is 40 longer: after the change its tip stands 20 deep in the block at Z30.
+    // The second tool is 40 longer: after the change at Z30 its tip is 20 deep in the block.
     const std::string longer = "number = 2\nshape = \"flat\"\ndiameter = 10\nflute_length = 60\n"
                                "shank = [[10, 10, 25]]\nholder = [[40, 40, 50]]\n"
                                "[[length_offset]]\nnumber = 2\nlength = 135\n";

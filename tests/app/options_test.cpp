@@ -11,7 +11,7 @@ using test_support::Ran;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
-/// Exit status 2, nothing on standard output, these words on standard error.
+/// Expects exit status 2, no standard output, and these words on standard error.
 void expect_misuse(const std::vector<std::string>& words, const std::string& told) {
     const Ran ran = feeler(words);
     EXPECT_EQ(ran.status, 2) << told;
@@ -57,7 +57,7 @@ TEST(CommandLine, PrintsHelpAndVersionOnStandardOutput) {
     }
 }
 
-/// Flutes pass a clamp at 1.5 on a rapid.
+/// In a rapid the flutes pass a clamp at 1.5 mm.
 const SetupWriter near_clamp =
     SetupWriter().fixture("clamp-1", "box = [[40, 104, -30], [60, 130, 12]]");
 const std::string past_it = program({"G0 X-20. Y97.5", "Z2.5", "X120.", "Z60."});

@@ -19,7 +19,7 @@ const std::string slot = program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F2000.", "G
 
 const std::string idle = program({"G0 Z60."});
 
-/// The block of the example, up to a height, as the part.
+/// A part equal to the block of the example, up to a height.
 SetupWriter part_up_to(const std::string& height, const std::string& more = "") {
     return SetupWriter().also("[part]\nbox = [[0, 0, -30], [100, 100, " + height + "]]\n" + more);
 }

@@ -10,7 +10,7 @@
 namespace app {
 namespace {
 
-/// A report that the first pass of a watch has written, and the next one has not.
+/// A report that was written by the first pass of a watch but not by the next.
 class PassOutputsTest : public testing::Test {
 protected:
     void SetUp() override {

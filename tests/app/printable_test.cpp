@@ -15,13 +15,13 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Sets the title of a terminal, begins a line, and colours it, by seven and by eight bits.
+/// Sets the title of a terminal, starts a line, and changes colours, with 7 and 8 bit codes.
 const std::string hostile = "a\x1b]0;x\x07\n\x7f\xc2\x9b"
                             "31m\x9b"
                             "31m\r\tb.nc";
 const std::string harmless = "a ]0;x    31m 31m  b.nc";
 
-/// The control characters of a text but line ends, also those that are two bytes in UTF-8.
+/// The number of control characters in a text except line ends, including two-byte ones in UTF-8.
 size_t controls_in(const std::string& text) {
     size_t count = 0;
     for (size_t i = 0; i < text.size(); ++i) {
@@ -33,7 +33,7 @@ size_t controls_in(const std::string& text) {
     return count;
 }
 
-/// That a report names the file in one line, and sends nothing to the terminal.
+/// Expects that a report names the file in one line and sends no control characters.
 void expect_harmless(const std::string& text) {
     EXPECT_THAT(text, HasSubstr(harmless));
     EXPECT_EQ(controls_in(text), 0U) << text;

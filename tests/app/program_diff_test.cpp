@@ -13,7 +13,7 @@ using app::ProgramDiff;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
-/// A post beside the stock, 20 mm high from Z0, 10 from the edge at X 100.
+/// A post next to the stock, 20 mm high from Z0, 10 from the edge at X 100.
 SetupWriter beside_post(double x = 110.0) {
     const std::string low = std::to_string(x), high = std::to_string(x + 20.0);
     return SetupWriter().fixture("post", "box = [[" + low + ", 0, -30], [" + high + ", 100, 20]]");
@@ -62,7 +62,7 @@ TEST(ProgramDiff, IsBlindToNumbersBlanksAndLines) {
     EXPECT_TRUE(made.added.empty());
 }
 
-/// The flutes are 5 mm in radius: at X 80 they are 25 from the post at 110, at X 95 10.
+/// The flutes have a radius of 5 mm: at X 80 they are 25 from the post at 110, at X 95 they are 10.
 TEST(ProgramDiff, PairsARewrittenBlockAndSaysHowMuchNearerItComes) {
     const ProgramDiff made = diff(program("G1 X80 F500\n"), program("G1 X95 F500\n"));
     ASSERT_FALSE(made.nearer.empty());
@@ -119,7 +119,7 @@ TEST(ProgramDiff, IsWorseWhenAnErrorIsNew) {
     EXPECT_FALSE(cured.change.gone_findings.empty());
 }
 
-/// 3 mm from the post: the allowance of 2 is kept, but less than twice.
+/// 3 mm from the post: more than the minimum clearance of 2, but less than twice that.
 TEST(ProgramDiff, IsWorseWhenABlockComesNearTheAllowance) {
     const ProgramDiff made = diff(program("G1 X80 F500\n"), program("G1 X102 F500\n"));
     EXPECT_EQ(made.after.verdict, core::Verdict::clear);

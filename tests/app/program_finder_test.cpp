@@ -18,7 +18,7 @@ using testing::IsEmpty;
 
 const std::string good = "G21 G90\nG0 X1.\nM30\n";
 
-/// A folder in which programs are searched; names are told relative to it.
+/// A folder in which programs are searched; names are relative to it.
 class ProgramFinder : public testing::Test {
 protected:
     void write(const std::string& name, const std::string& bytes = good) const {
@@ -26,13 +26,13 @@ protected:
         folder.write(name, bytes);
     }
 
-    /// What find_programs says, but for projects.
+    /// The result of find_programs, without projects.
     struct Found {
         std::vector<std::string> programs;
         std::vector<SkippedFile> skipped;
         std::vector<core::Error> failures;
 
-        /// As they are told: name and reason.
+        /// Skipped files with the reason.
         std::vector<std::string> skips() const {
             std::vector<std::string> all;
             for (const SkippedFile& file : skipped) all.push_back(file.path + " " + file.why);
@@ -117,7 +117,7 @@ TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
 TEST_F(ProgramFinder, EntersAFolderByTheFirstOfItsLinksWhateverTheDiskListsFirst) {
     const ScopedFolder other;
     other.write("far.nc", good);
-    // Disks list names by hashes, the latest first, or in their order: some of these differ.
+    // File systems list names by hash, latest first, or in order: some of these differ.
     const std::vector<std::string> names = {"m", "c", "x", "a", "k", "z", "b"};
     for (const std::string& name : names) {
         fs::create_directory(folder / name);
@@ -158,7 +158,7 @@ TEST_F(ProgramFinder, KeepsALinkToAProgramBesideIt) {
     EXPECT_THAT(find({"."}).programs, ElementsAre("a.nc", "b.nc"));
 }
 
-/// Root may read everything: nobody, for a while.
+/// Root can read everything, so root temporarily becomes the user nobody.
 class Unprivileged {
 public:
     explicit Unprivileged(const ScopedFolder& folder) : is_root_(::geteuid() == 0) {

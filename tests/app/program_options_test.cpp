@@ -15,7 +15,7 @@ using test_support::Ran;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
-/// A folder with a program, and what `feeler trace` makes of it.
+/// A folder with a program, and the output of `feeler trace` for it.
 struct Traced {
     ScopedFolder folder{};
     std::string dialect = "linuxcnc";
@@ -138,7 +138,7 @@ TEST(IniFile, ShowsItsNumbersToPrograms) {
     traced.run(program, {"--ini", ini});
     EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
     EXPECT_TRUE(traced.says("x=3.337 y=-4\n")) << traced.ran.out;
-    // An axis A that is at 1 would be told.
+    // An axis A at 1 would be in the trace.
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=1\n")) << traced.ran.out;
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=0\n")) << traced.ran.out;
     EXPECT_TRUE(traced.warns("WRAPPED_ROTARY of A is ignored")) << traced.ran.err;
@@ -226,7 +226,7 @@ TEST(ProgramOptions, OfCheckMoveWhatStandsInAWorkOffset) {
               both.assumptions.end());
 }
 
-/// Exit status 2, nothing on standard output, these words on standard error.
+/// Expects exit status 2, no standard output, and these words on standard error.
 void expect_refused(const std::vector<std::string>& more, const std::string& told) {
     const ScopedFolder folder;
     const std::string program = folder.write("p.nc", "G21 G0 X1\nM2\n");

@@ -26,7 +26,7 @@ protected:
         return project ? core::Error{} : project.error();
     }
 
-    /// The job of a program that a project with this text asks for.
+    /// The job that a project with this text defines for a program.
     CheckJob job(const std::string& text, const std::string& program, const CheckJob& asked = {}) {
         folder.write("feeler.toml", text);
         const auto plan = plan_batch({folder / "feeler.toml"}, asked);
@@ -103,7 +103,7 @@ TEST_F(ProjectFile, NamesTheLineOfAPatternThatNamesNothing) {
     EXPECT_THAT(plan->failures[0].message, HasSubstr("*.tap names no file"));
 }
 
-/// Projects in folders below each other; names are told relative to the uppermost.
+/// Projects in nested folders; names are relative to the outermost.
 class NestedProject : public testing::Test {
 protected:
     void SetUp() override {
@@ -131,7 +131,7 @@ protected:
         return made ? *made : BatchPlan{};
     }
 
-    /// Each program with its set-up and allowance.
+    /// The programs with their set-ups and allowances.
     std::vector<std::string> jobs(const BatchPlan& plan) const {
         std::vector<std::string> all;
         for (const CheckJob& job : plan.jobs)

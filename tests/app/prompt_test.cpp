@@ -23,14 +23,14 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-/// Cuts along Y10, passes a clamp too near in line 9, and calls a subprogram twice.
+/// Cuts along Y10, passes a clamp too closely in line 9, and calls a subprogram twice.
 constexpr const char* program =
     "%\nO1000 (TRY)\nG21 G90 G17 G54\nT1 M6\nM3 S2000\n"
     "N60 G43 H1 Z50.\nG0 X10. Y10.\nG1 Z-2. F800.\nX62.\n"
     "#100=5\nG0 Z50.\nM98 P2000\nM98 P2000\n(THE END)\nG0 Z60.\nM30\n%\n";
 constexpr const char* subprogram = "%\nO2000\nG0 X20.\nG0 X25.\nM99\n%\n";
 
-/// A prompt over a program with a clamp whose side is at X 68.
+/// A prompt for a program with a clamp whose side is at X 68.
 struct Talk {
     test_support::ScopedFolder folder;
     std::unique_ptr<app::DebugSession> session;
@@ -50,7 +50,7 @@ struct Talk {
         prompt = std::make_unique<app::Prompt>(*session);
     }
 
-    /// What is said to the last of some lines; none of them fails.
+    /// The reply to the last of several commands, none of which may fail.
     std::string say(std::initializer_list<const char*> lines) const {
         std::string text;
         for (const char* line : lines) {

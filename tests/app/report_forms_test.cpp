@@ -32,7 +32,7 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// The cells of a row that quotes as RFC 4180 says.
+/// The cells of a row with quoting as in RFC 4180.
 std::vector<std::string> cells_of(const std::string& row) {
     std::vector<std::string> cells{""};
     bool quoted = false;

@@ -34,7 +34,7 @@ ResultStore opened(const std::string& path, const std::string& version = "1") {
     return *std::move(store);
 }
 
-/// A program and a mesh, what a check of them read, and what it is taken to have said.
+/// A program and a mesh, the files that a check of them has read, and its assumed result.
 class Kept : public testing::Test {
 protected:
     Kept() {

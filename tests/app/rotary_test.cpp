@@ -21,7 +21,7 @@ std::string five_axes(const std::string& more = "") {
            + more;
 }
 
-/// A cube of 40 about the point where A and C meet; G54 is the middle of its top.
+/// A cube of 40 with its centre where the axes A and C intersect; G54 is the centre of its top.
 SetupWriter cube(const std::string& more = "") {
     return SetupWriter().machine(five_axes(more)).stock("box = [[-20, -20, -40], [20, 20, 0]]");
 }
@@ -40,23 +40,23 @@ TEST(Rotary, AnIndexedFaceIsCutLikeTheTop) {
     const double slot = 40.0 * 10.0 * 3.0;
     EXPECT_NEAR(checked.at_line(8).removed, slot, 0.02 * slot);
     EXPECT_NEAR(checked.at_line(13).removed, slot, 0.02 * slot);
-    // Across the first slot, of which nothing is left in the middle.
+    // Across the first slot, where the material in the middle is already removed.
     EXPECT_NEAR(checked.at_line(18).removed, slot - 10.0 * 10.0 * 3.0, 0.02 * slot);
 }
 
 TEST(Rotary, ATiltedPlaneIsDrilledAlongItsOwnAxis) {
-    // The plane stands on the middle of the face towards -Y and looks that way.
+    // The plane is in the middle of the face towards -Y and faces that way.
     const Checked checked =
         check(cube(), text("G43 H1 Z120.\nG68.2 X0 Y-20. Z-20. I0 J90. K0\nG53.1\nG0 X3. Y4. Z5.\n"
                            "G1 Z-6. F100.\nG0 Z5.\nG69\nG49\nG53 G0 Z0"));
     EXPECT_EQ(checked.errors(), "");
     const double hole = pi * 25.0 * 6.0;
     EXPECT_NEAR(checked.at_line(9).removed, hole, 0.03 * hole);
-    EXPECT_EQ(checked.at_line(7).motion, "rapid"); // G53.1 turns the table
+    EXPECT_EQ(checked.at_line(7).motion, "rapid"); // G53.1 rotates the table
 }
 
 TEST(Rotary, ARapidTurnIntoTheToolIsACollision) {
-    // The tip stands 1 mm above the top; a corner of the cube swings 8 mm higher.
+    // The tip is 1 mm above the top; a corner of the cube moves up to 8 mm higher.
     const Checked checked = check(cube(), text("G43 H1 Z50.\nX0 Y0\nZ1.\nA45.\nZ50."));
     EXPECT_EQ(checked.verdict, "collision");
     EXPECT_EQ(checked.at_line(8).verdict, "collision");
@@ -66,7 +66,7 @@ TEST(Rotary, ARapidTurnIntoTheToolIsACollision) {
 }
 
 TEST(Rotary, ATurnWithRoomIsClearAndItsDistanceKnown) {
-    // The corner of the cube reaches 20 sqrt 2 above the axis while A turns from 0 to 60.
+    // The corner of the cube reaches 20 sqrt 2 above the axis while A rotates from 0 to 60.
     const Checked checked = check(cube(), text("G43 H1 Z50.\nX0 Y0\nZ20.\nA60.\nZ50."));
     EXPECT_EQ(checked.errors(), "");
     const PairLine flutes = checked.at_line(8).pair("flutes stock");
@@ -79,9 +79,9 @@ TEST(Rotary, ATurnWithRoomIsClearAndItsDistanceKnown) {
 }
 
 TEST(Rotary, ToolCentreControlKeepsTheTipOnItsLineWhileTheTableTurns) {
-    // A swarf cut: the tip goes along the lower edge of a wall that leans from 0 to 20 degrees.
-    // Whatever A does, the tip's line at Z-10 is cut, and nothing is cut below it but by the lean
-    // of the end face, 5 sin 20 at most.
+    // A swarf cut: the tip follows the lower edge of a wall that tilts from 0 to 20 degrees.
+    // Whatever A does, the material along the tip's line at Z-10 is cut, and nothing below it
+    // except by the tilt of the end face, 5 sin 20 at most.
     const Checked checked =
         check(cube(), text("G43.4 H1 Z60.\nX-40. Y0 A0\nZ-10.\nG1 X40. A20. F600.\nG0 Z60.\nG49\n"
                            "G53 G0 Z0"));
@@ -103,7 +103,7 @@ TEST(MachineBody, OnTheTableIsMetByTheTool) {
     const std::string jaw = "[[machine.body]]\nname = \"rim\"\naxis = \"C\"\n"
                             "box = [[-320, -230, -480], [-310, -170, -420]]\n";
     const Checked clear = check(cube(jaw), text("G43 H1 Z50.\nX28. Y0\nZ5."));
-    // 5 mm above the rim's top at G54 Z0, and 2 mm from its side seen from above: 3 less 2.
+    // 5 mm above the top of the rim at G54 Z0, and in plan view 2 mm from its side: 3 minus 2.
     EXPECT_EQ(clear.errors(), "");
     const Checked near = check(cube(jaw), text("G43 H1 Z50.\nX24. Y0\nZ-5."));
     EXPECT_EQ(near.at_line(7).pair("flutes rim").verdict, "violation");

@@ -83,7 +83,7 @@ TEST(SaveStock, DoesNotWriteOverWhatItReads) {
     EXPECT_EQ(test_support::bytes_of(part), slot);
 }
 
-/// What a second program removes from the block that the first one left.
+/// The volume that a second program removes from the block left by the first.
 double removed_after(const ScopedFolder& folder, const std::string& stock,
                      const std::string& second) {
     const auto ran = feeler({"check", folder.write("second.nc", second), "--setup",
@@ -107,10 +107,10 @@ TEST(SaveStock, IsTheStockOfALaterSetUp) {
 TEST(SaveStock, CanBeTurnedOverForTheOtherSide) {
     const ScopedFolder folder;
     ASSERT_EQ(save(folder, slot, folder / "op10.feeler").status, 0);
-    // Over about X: what was Y0 is Y100, what was Z0 is Z-30.
+    // Turned over about X: Y0 becomes Y100, Z0 becomes Z-30.
     const std::string over =
         "model = \"op10.feeler\"\nrotate_deg = [180, 0, 0]\nat = [0, 100, -30]";
-    // A slot across on the other side, 27 deep: it meets the first one 2 mm above its floor.
+    // A slot across the other side, 27 deep: it meets the first one 2 mm above its floor.
     std::vector<std::string> blocks = {"G0 X50. Y-20."};
     for (int depth = 9; depth <= 27; depth += 9) {
         blocks.push_back("G0 Z-" + std::to_string(depth) + ".");

@@ -81,7 +81,7 @@ void expect_same_tool(const core::ToolAssembly& a, const core::ToolAssembly& b,
     }
 }
 
-/// That two checks are the same before their first block.
+/// Expects that two checks are equal before their first block.
 void expect_same(const app::PreparedCheck& a, const app::PreparedCheck& b,
                  const std::string& where) {
     const core::Setup &one = a.run.setup, &two = b.run.setup;
@@ -113,10 +113,10 @@ void expect_same(const app::PreparedCheck& a, const app::PreparedCheck& b,
     EXPECT_EQ(a.file.speed_by_hand, b.file.speed_by_hand) << where;
 }
 
-/// Saves the set-up of a job in a folder and holds what is read from there against it.
+/// Saves the set-up of a job to a folder and compares it with what is read from there.
 void expect_saved_as_it_is(const CheckJob& job, const std::string& path) {
     const auto before = app::read_check(job);
-    if (!before) return; // a program that nobody can read has no set-up
+    if (!before) return; // a program that cannot be read has no set-up
     const auto saved = app::save_setup(job, path, true, app::write_output);
     ASSERT_TRUE(saved) << job.program << ": " << saved.error().message;
     CheckJob again;
@@ -128,7 +128,7 @@ void expect_saved_as_it_is(const CheckJob& job, const std::string& path) {
     expect_same(*before, *after, job.program);
 }
 
-/// A job for a program of its own, without a set-up.
+/// A job for its own program, without a set-up.
 struct OwnProgram {
     test_support::ScopedFolder folder;
     CheckJob job;
@@ -138,8 +138,7 @@ struct OwnProgram {
     }
 };
 
-/// Edits as somebody makes them who wants another stock, other sizes of the first tool and a
-/// holder.
+/// Edits as a user would make to change the stock, sizes of the first tool, and a holder.
 SetupEdits some_edits(const app::SetupSheet& shown) {
     app::SetupSheet wanted = shown;
     wanted.stock = box_of({-10, -5, -20.25}, {60, 45.5, 0.1});

@@ -13,7 +13,7 @@ namespace {
 using test_support::flat_10;
 using test_support::SetupWriter;
 
-/// The error of a set-up, as it is printed; empty when it is good.
+/// The error of a set-up, as printed; empty if it is valid.
 std::string error_of(const std::string& text) {
     const test_support::ScopedFolder folder;
     const auto read = read_setup(folder.write("setup.toml", text));
@@ -27,7 +27,7 @@ void expect_error(const SetupWriter& setup, const std::vector<std::string>& word
     EXPECT_NE(error.find("setup.toml:"), std::string::npos) << error;
 }
 
-/// The place that an error names must be the line that holds `what`.
+/// Expects that the error's position is the line that contains `what`.
 void expect_at_line_of(const std::string& text, const std::string& what) {
     const auto line =
         1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(what)), '\n');
@@ -40,7 +40,7 @@ std::string fixture(const std::string& keys) { return "[[fixture]]\nname = \"vis
 
 const std::string box = "box = [[0, 0, 0], [1, 1, 1]]\n";
 
-/// A length offset in which one key says something else.
+/// A length offset with a replaced value for one key.
 std::string length_offset_with(const std::string& key, const std::string& is) {
     std::string text = "[[length_offset]]\n";
     for (const char* each : {"number", "length", "wear", "diameter"})

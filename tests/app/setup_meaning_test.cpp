@@ -14,16 +14,16 @@ using test_support::SetupWriter;
 
 const std::string slot = program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60."});
 
-/// Flutes to the clamp X40..60 Y104..130 Z-30..12 along the slot: 104 - 55.
+/// From the flutes to the clamp X40..60 Y104..130 Z-30..12 along the slot: 104 - 55.
 constexpr double to_clamp = 49.0;
 
 void expect_clamp_in_place(const SetupWriter& setup) {
     const BlockLine block = check(setup, slot).at_line(8);
     expect_encloses(block.pair("flutes clamp"), to_clamp, 1e-6);
-    // Across to Y104 and, from the shank's rim at Z15, down to Z12.
+    // Horizontally to Y104 and, from the rim of the shank at Z15, down to Z12.
     expect_encloses(block.pair("shank clamp"), std::hypot(49.0, 3.0), 1e-6);
     expect_encloses(block.pair("holder clamp"), std::hypot(34.0, 28.0), 1e-6);
-    // The clamp ends at X60: its corner to the flutes' side at X120 Y50, on the way up.
+    // The clamp ends at X60: from its corner to the side of the flutes at X120 Y50, on the way up.
     EXPECT_GT(block.pair("flutes clamp").at.value_or(-1.0), 59.9 / 140.0);
     EXPECT_LT(block.pair("flutes clamp").at.value_or(-1.0), 80.1 / 140.0);
 }
@@ -57,7 +57,7 @@ TEST(Frame, MayBeABodyThatStandsTurned) {
 }
 
 TEST(Frame, OfTheStockMovesTheStockOnly) {
-    // The same slot, half of it in the air: the stock stands 50 farther along X in G55.
+    // The same slot, half of it in the air: in G55 the stock is 50 farther along X.
     const SetupWriter setup = SetupWriter()
                                   .offsets("G54 = { X = -350, Y = -200, Z = -420 }\n"
                                            "G55 = { X = -300, Y = -200, Z = -420 }\n")
@@ -65,12 +65,12 @@ TEST(Frame, OfTheStockMovesTheStockOnly) {
                                   .fixture("clamp", "box = [[40, 104, -30], [60, 130, 12]]");
     const BlockLine block = check(setup, slot).at_line(8);
     expect_encloses(block.pair("flutes clamp"), to_clamp, 1e-6);
-    // From X50 to the tool's side at X125: a half circle of the flutes ends the slot.
+    // From X50 to the side of the tool at X125: a half circle of the flutes ends the slot.
     EXPECT_NEAR(block.removed, (70.0 * 10.0 + std::acos(-1.0) * 12.5) * 5.0, 8.0);
 }
 
 TEST(Placement, TurnsAboutXThenYThenZ) {
-    // A bar along Z: 90 about X lays it along -Y, 90 about Z brings that to +X.
+    // A bar along Z: rotating it by 90 about X takes it to -Y, then by 90 about Z to +X.
     const SetupWriter setup = SetupWriter().fixture(
         "clamp", "box = [[-13, -10, 0], [13, 10, 20]]\nrotate_deg = [90, 0, 90]\n"
                  "at = [40, 117, 2]");
@@ -134,7 +134,7 @@ TEST(LengthOffset, IsTheTrueLengthWhereTheTableSaysNothing) {
     expect_encloses(checked.at_line(8).pair("flutes stock"), 5.0, 0.5);
 }
 
-/// Flutes pass the clamp at 1.5, the shank too, the holder far above.
+/// Flutes and shank pass the clamp at 1.5 mm, the holder far above it.
 SetupWriter near_clamp() {
     return SetupWriter().fixture("clamp", "box = [[40, 104, -30], [60, 130, 12]]");
 }
@@ -191,7 +191,7 @@ TEST(Rules, ChangeTheSeverityAndWithItTheExitStatus) {
     const Checked off = with("off");
     EXPECT_EQ(off.status, 0);
     EXPECT_TRUE(off.findings.empty());
-    EXPECT_EQ(off.verdict, "violation"); // what is off is the finding, not the truth
+    EXPECT_EQ(off.verdict, "violation"); // the rule is off, but the verdict stays
 }
 
 TEST(Tools, StandInTheSpindleFromTheStartWhereTheProgramCallsNone) {

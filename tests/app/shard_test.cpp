@@ -16,7 +16,7 @@ using app::Shard;
 std::vector<uintmax_t> random_sizes(size_t count) {
     std::mt19937_64 random(11);
     std::vector<uintmax_t> sizes(count);
-    // From a hundred bytes to a hundred megabytes, as programs are.
+    // From a hundred bytes to a hundred megabytes, as real programs.
     for (uintmax_t& size : sizes)
         size = static_cast<uintmax_t>(
             std::pow(10.0, std::uniform_real_distribution<double>(2.0, 8.0)(random)));
@@ -25,7 +25,7 @@ std::vector<uintmax_t> random_sizes(size_t count) {
 
 TEST(ShareOf, TakesTheLargestFirstToTheLeastLoaded) {
     const std::vector<uintmax_t> sizes = {1, 7, 5, 5, 4, 0};
-    // 7 to share 1, 5 to 2, 5 to 3, 4 to 2 (a tie, the first), 1 to 3, the empty one to 3.
+    // 7 to shard 1, 5 to 2, 5 to 3, 4 to 2 (a tie: the first), 1 to 3, the empty one to 3.
     EXPECT_EQ(app::share_of(sizes, {1, 3}), (std::vector<size_t>{1}));
     EXPECT_EQ(app::share_of(sizes, {2, 3}), (std::vector<size_t>{2, 4}));
     EXPECT_EQ(app::share_of(sizes, {3, 3}), (std::vector<size_t>{0, 3, 5}));
@@ -44,7 +44,7 @@ TEST(ShareOf, GivesEveryProgramToOneShare) {
     }
 }
 
-/// Taken largest first, no share is heavier than four thirds of the best there can be.
+/// Assigned largest first, no shard exceeds four thirds of the optimum.
 TEST(ShareOf, IsBalanced) {
     const std::vector<uintmax_t> sizes = random_sizes(500);
     const double whole = std::accumulate(sizes.begin(), sizes.end(), 0.0);
@@ -69,7 +69,7 @@ TEST(ShareNamed, ReadsOneOfSomeAndNothingElse) {
     EXPECT_EQ(*app::share_named("1000000/1000000"), (app::ShardId{1'000'000, 1'000'000}));
 }
 
-/// Ten programs in three shares, as three machines would write them.
+/// Ten programs in three shards, as written by three machines.
 std::vector<Shard> three_shards() {
     std::vector<uintmax_t> sizes(10);
     std::iota(sizes.begin(), sizes.end(), 1);
@@ -231,7 +231,7 @@ TEST(Shard, SaysWhatATextIsThatIsNone) {
               "is a share of a batch that was cut off or changed");
 }
 
-/// A share of one program that comes too near, as its text without the seal.
+/// A shard of one program with a near miss, as text without the seal.
 std::string unsealed_share() {
     Shard shard{.version = "1", .share = {1, 1}, .programs = {{"a.nc", 9, "terms"}}, .places = {0}};
     shard.skipped = {{"part.stl", "is a mesh"}};
@@ -259,7 +259,7 @@ std::string unsealed_share() {
     return whole.substr(0, whole.rfind(",\n\"seal\""));
 }
 
-/// Why a share is refused in which the first of these texts is another, under a new seal.
+/// The error for a shard in which the first text is replaced by the second, with a new seal.
 std::string why_not_with(const std::string& text, const std::string& other) {
     std::string share = unsealed_share();
     const size_t at = share.find(text);
@@ -334,7 +334,7 @@ TEST(Shard, IsRefusedWhereItIsNestedTooDeep) {
         app::shard_from_json(app::sealed(unsealed_share() + ",\"x\": " + deep)).error().message,
         why);
     EXPECT_FALSE(app::result_from_json(deep));
-    // Brackets in a text are none, also behind a quotation mark that is part of it.
+    // Brackets inside a string do not count, even after an escaped quotation mark.
     EXPECT_EQ(why_not_with("rapids run", "\\\"" + deep.substr(0, 300) + "\\\\"), "");
 }
 

@@ -12,7 +12,7 @@ using test_support::flat_10;
 using test_support::program;
 using test_support::SetupWriter;
 
-/// What every machinist does every day, and what must not be told as a crash.
+/// Expects no finding for everyday practice.
 void expect_silence(const std::string& text, const SetupWriter& setup = {}) {
     const Checked checked = check(setup, text);
     EXPECT_EQ(checked.status, 0);

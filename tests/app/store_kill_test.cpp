@@ -24,7 +24,7 @@ TEST(ResultStore, KeepsWhatWasWrittenThroughThirtyKills) {
         ASSERT_GE(last.number, next - 1) << "it ended by itself";
         auto store = ResultStore::open(folder / "db", "1");
         ASSERT_TRUE(store) << store.error().message;
-        // The one in progress is there wholly or not at all.
+        // The result in progress is stored completely or not at all.
         const int count = count_in(*store, program, last.number + 3);
         EXPECT_GE(count, last.number + 1);
         EXPECT_LE(count, last.number + 2);

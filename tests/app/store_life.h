@@ -14,7 +14,7 @@
 #include "app/library/store/database.h"
 #include "app/library/store/result_store.h"
 
-/// Processes that keep results in a database until they are killed.
+/// Processes that store results in a database until they are killed.
 namespace store_life {
 
 inline constexpr int program_count = 2000;
@@ -28,7 +28,7 @@ struct Kept {
 inline Kept numbered(const std::string& program, int number) {
     Kept kept;
     kept.job.program = program;
-    kept.job.start_line = fmt::format("{}", number); // so that each is a job of its own
+    kept.job.start_line = fmt::format("{}", number); // so that each is a separate job
     kept.run.sha256 = app::sha256_of_file(program);
     kept.run.inputs = {{core::FileQuestion::content, program, {}, kept.run.sha256}};
     kept.result.program = program;
@@ -37,15 +37,15 @@ inline Kept numbered(const std::string& program, int number) {
     return kept;
 }
 
-/// How a process keeps results: whether it waits until each is written, and when it is killed: so
-/// many microseconds after its start, or after it has kept a result.
+/// How a process stores results: whether it waits until each is written, and when it is killed:
+/// `length` microseconds after its start, or after it has stored a result.
 struct Life {
     bool waits = false, is_from_first = false;
     useconds_t length = 0;
 };
 
-/// Keeps one result after the other and writes the number of each to a pipe once it is kept, until
-/// somebody ends it.
+/// Stores one result after another and writes its number to a pipe once it is stored, until the
+/// process is killed.
 [[noreturn]] inline void keep_on(const Life& life, const std::string& database,
                                  const std::string& program, int first, int pipe) {
     auto store = app::ResultStore::open(database, "1");
@@ -59,7 +59,7 @@ struct Life {
     ::_exit(0);
 }
 
-/// The last number that a process wrote, and the last that it wrote a second before its end.
+/// The last number that a process wrote, and the last one a second before its end.
 struct Last {
     int number = -1, second_before = -1;
 };
@@ -94,7 +94,8 @@ inline Last killed(const Life& life, const std::string& database, const std::str
     return WIFSIGNALED(status) ? last : Last{};
 }
 
-/// How many results are there, from the first on; of the others none may be. Each is what was kept.
+/// The number of stored results. They must be the first ones without a gap, and equal to what was
+/// stored.
 inline int count_in(app::ResultStore& store, const std::string& program, int most) {
     int count = 0;
     for (int i = 0; i < most; ++i) {

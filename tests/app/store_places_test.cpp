@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using app::RelativePaths;
 using test_support::ScopedFolder;
 
-/// A library with links, its database in it, and files beside it.
+/// A library with links, with its database inside and files next to it.
 class Places : public testing::Test {
 protected:
     Places() {
@@ -79,7 +79,7 @@ TEST_F(Places, MoveWithTheFolder) {
     EXPECT_EQ(from(".", "moved/r.db").path_of(place), folder / "moved/setups/s.toml");
 }
 
-/// Any path from any folder comes back to what the system takes it for.
+/// A path from any folder must lead to the file that the system opens for it.
 TEST_F(Places, LeadWhereThePathDoes) {
     const std::vector<std::string> folders = {".",           "lib",  "lib/sub",
                                               "lib/current", "link", "other"};

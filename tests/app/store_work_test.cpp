@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using store_life::ThousandResults;
 using test_support::io_counts;
 
-/// How many transactions have written to a database, from the header of its file.
+/// The number of writing transactions of a database, from its file header.
 uint32_t transactions_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     unsigned char bytes[4] = {};
@@ -33,7 +33,7 @@ TEST(ResultStore, WritesAThousandResultsInFewTransactions) {
 TEST(ResultStore, ReadsAFileOnceThatAThousandResultsDependOn) {
     const ThousandResults results;
     results.keep_all();
-    std::this_thread::sleep_for(100ms); // until none of the files counts as just written
+    std::this_thread::sleep_for(100ms); // until no file counts as just written
     const auto before = io_counts();
     results.find_all();
     const auto after = io_counts();

@@ -38,7 +38,7 @@ ResultStore opened(const std::string& path) {
     return *std::move(store);
 }
 
-/// Job `number` of a folder, each with a program of its own.
+/// Job `number` of a folder, each with its own program.
 struct Numbered {
     Numbered(const ScopedFolder& folder, int number) {
         job.program = folder.write(fmt::format("{}.nc", number), fmt::format("G0 X{}\n", number));
@@ -55,7 +55,7 @@ struct Numbered {
 
 class OneResult : public testing::Test {
 protected:
-    /// By somebody else.
+    /// The result as another process finds it.
     std::optional<ProgramResult> found() const { return *opened(path).find(each.job); }
 
     const ScopedFolder folder;
@@ -154,7 +154,7 @@ TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
     ResultStore shared = opened(folder / "db");
     for (int thread = 0; thread < 4; ++thread) {
         threads.emplace_back([&, thread] {
-            ResultStore own = opened(folder / "db"); // as another process would have
+            ResultStore own = opened(folder / "db"); // as in another process
             ResultStore& store = thread < 2 ? shared : own;
             for (int i = thread % 2; i < 60; i += 2)
                 if (!store.keep(jobs[i].job, jobs[i].run, jobs[i].result)) ++refused;
@@ -168,13 +168,12 @@ TEST(ResultStore, IsFilledByManyAtOnceAndLosesNothing) {
     EXPECT_EQ(store.history(jobs[0].job.program)->size(), 1u);
 }
 
-/// Runs something in a process that may make no file longer than so many bytes: a disk that is
-/// full.
+/// Runs an action in a process with a limited file size, to simulate a full disk.
 template <typename Action>
 void with_full_disk(rlim_t bytes, const Action& action) {
     const pid_t child = ::fork();
     if (child == 0) {
-        std::signal(SIGXFSZ, SIG_IGN); // writing then fails, as on a full disk
+        std::signal(SIGXFSZ, SIG_IGN); // makes writing fail, as on a full disk
         const rlimit limit{bytes, bytes};
         ::_exit(::setrlimit(RLIMIT_FSIZE, &limit) == 0 && action() ? 0 : 1);
     }
@@ -204,7 +203,7 @@ TEST(ResultStore, OnAFullDiskRefusesWhatItHasNoRoomForAndLosesNothing) {
                && store.flush())
             ++kept;
         const auto refused = store.keep(jobs[39].job, jobs[39].run, jobs[39].result);
-        // What was kept is found by who is still at it.
+        // The running process still finds what it has stored.
         return kept > before && kept < 40 && !refused && !refused.error().message.empty()
                && *store.find(jobs[kept - 1].job) == jobs[kept - 1].result;
     });
@@ -216,7 +215,7 @@ TEST(ResultStore, OnAFullDiskRefusesWhatItHasNoRoomForAndLosesNothing) {
     EXPECT_EQ(*store.find(jobs[39].job), jobs[39].result);
 }
 
-/// Another process that has the file of a store, and may only read it.
+/// Another process, with read-only access to the file of a store.
 TEST(ResultStore, ThatMayNotBeWrittenStillFindsResults) {
     const ScopedFolder folder;
     folder.write("vise.stl", "solid");
@@ -229,7 +228,8 @@ TEST(ResultStore, ThatMayNotBeWrittenStillFindsResults) {
         if (::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
         auto store = ResultStore::open(folder / "db", "1");
         const bool finds = store && *store->find(each.job) == each.result;
-        const bool sees = store && store->flush(); // that it cannot put that down is no matter
+        const bool sees =
+            store && store->flush(); // failing to write that it was used does not matter
         const bool refuses =
             store && store->keep(other.job, other.run, other.result) && !store->flush();
         ::_exit(finds && sees && refuses ? 0 : 1);

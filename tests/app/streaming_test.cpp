@@ -16,7 +16,7 @@ using test_support::usage_of;
 
 constexpr int many = 300000;
 
-/// A program of `count` feeds, each with a block number.
+/// A program of `count` feed moves, each with a block number.
 std::string long_program(const ScopedFolder& folder, int count, const std::string& end = "M30\n") {
     const std::string path = folder / (std::to_string(count) + ".nc");
     std::ofstream file(path, std::ios::binary);

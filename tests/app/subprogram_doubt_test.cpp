@@ -8,7 +8,7 @@
 namespace app_test {
 namespace {
 
-/// The second of two subprograms cuts without the tool's length, and calls the first again.
+/// The second of two subprograms cuts without the tool length and calls the first again.
 TEST(LengthMismatch, IsFollowedFromTheMiddleOfASubprogram) {
     const test_support::ScopedFolder folder;
     folder.write("O4000.nc", "O4000\nX40.\nM99\n");
@@ -28,7 +28,7 @@ TEST(LengthMismatch, IsFollowedFromTheMiddleOfASubprogram) {
             return finding.rule == "length-offset-cancelled";
         });
     EXPECT_TRUE(tells);
-    EXPECT_FALSE(run->taken_in.empty()); // crashes that are gone with the right length
+    EXPECT_FALSE(run->taken_in.empty()); // crashes that do not occur with the correct length
 }
 
 } // namespace

@@ -12,8 +12,8 @@
 
 namespace store_life {
 
-/// A thousand programs, the large mesh that all of them are checked with, and a database for what
-/// the checks found.
+/// A thousand programs, the large mesh that all of them are checked with, and a database for the
+/// results.
 class ThousandResults {
 public:
     static constexpr size_t count = 1000, mesh_bytes = 1'000'000;
@@ -23,7 +23,7 @@ public:
             folder.write(fmt::format("{}.nc", i), fmt::format("G0 X{}\n", i));
     }
 
-    /// As it does for the checks of one run.
+    /// Stores all results, like a batch that checks everything.
     void keep_all() const {
         auto store = app::ResultStore::open(database, "1");
         ASSERT_TRUE(store);
@@ -39,7 +39,7 @@ public:
         ASSERT_TRUE(store->flush());
     }
 
-    /// As it does for a run that finds all files unchanged.
+    /// Finds all results, like a batch in which no file has changed.
     void find_all() const {
         auto store = app::ResultStore::open(database, "1");
         ASSERT_TRUE(store);

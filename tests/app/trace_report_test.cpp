@@ -50,7 +50,7 @@ TEST(JsonLine, WritesAnyBytesAsAText) {
     }
 }
 
-/// The JSON of one command in a block of its own.
+/// The JSON of one command in its own block.
 Json json_of(const gcode::CanonicalCommand& command) {
     gcode::BlockCommands block{core::BlockIndex(4), 7, "the \"text\"", "sub.ngc", {2, 5}};
     block.commands = {command, gcode::ProgramEnd{}};
@@ -83,7 +83,7 @@ TEST(TraceJson, HasTheKeysOfEveryCommand) {
     EXPECT_EQ(json_of(gcode::Coolant{true, false})["mist"], true);
     gcode::SetOffset set;
     set.offsets.has_frame = true;
-    set.offsets.frame.linear[1][0] = 0.5; // the second column's first row
+    set.offsets.frame.linear[1][0] = 0.5; // first row of the second column
     set.offsets.frame.shift = {7.0, 8.0, 9.0};
     EXPECT_EQ(json_of(set)["frame"], Json::parse("[[1,0.5,0,7],[0,1,0,8],[0,0,1,9]]"));
     EXPECT_EQ(json_of(set)["number"], 1);

@@ -29,7 +29,7 @@ std::vector<Json> json_lines(const std::string& text) {
     return lines;
 }
 
-/// The first command of that name in the trace of the small program.
+/// The first command with that name in the trace of the small program.
 Json command(const std::string& name, const std::vector<std::string>& more = {}) {
     const ScopedFolder folder;
     std::vector<std::string> words = {
@@ -87,7 +87,7 @@ TEST(Trace, IsToldInWords) {
     const ScopedFolder folder;
     const Ran ran = feeler({"trace", folder.write("p.nc", small_program), "--dialect", "fanuc"});
     EXPECT_EQ(ran.status, 0);
-    // The program has no G43, which the control would not mind.
+    // The program has no G43, which the control would accept.
     EXPECT_NE(ran.err.find("tool 1 moves in Z without a length offset"), std::string::npos);
     EXPECT_NE(ran.out.find("6: arc_feed x=20 y=10 z=-5 plane=XY centre=10,10 turns=-1 feed=150\n"),
               std::string::npos)

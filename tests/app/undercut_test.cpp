@@ -12,7 +12,7 @@ using test_support::SetupWriter;
 const std::string end_mill = "number = 1\nshape = \"flat\"\ndiameter = 12\nflute_length = 22\n"
                              "stick_out = 45\nholder = \"BT40-ER32\"\n";
 
-/// A slot of 12 mm at Z-20, then the other tool along it at the same depth, and out as `last` says.
+/// A slot of 12 mm at Z-20, then the other tool along it at the same depth, and out as in `last`.
 std::string slot_and(const std::string& last) {
     return "G21 G90 G17 G54\nT1 M6\nS3000 M3\nG0 G43 H1 Z60.\nG0 X-20. Y50.\nZ-20.\n"
            "G1 X120. F800.\nG0 Z60.\nT2 M6\nS1000 M3\nG0 G43 H2 Z60.\nG0 X-20. Y50.\nZ-20.\n"
@@ -50,13 +50,14 @@ TEST(Undercut, IsNotLeftStraightUp) {
 }
 
 TEST(Undercut, RemovesWhatTheHeadIsWiderThanTheSlot) {
-    // 8 mm high, 4 mm on either side of the slot, to X 50 and round the head beyond it.
+    // 8 mm high, 4 mm on each side of the slot, to X 50 and around the head beyond it.
     const Checked checked = run(shapes[0], "G0 X-20.\nZ60.");
     const double slot = 12.0 * 20.0 * 100.0;
     const double straight = 8.0 * (20.0 - 12.0) * 50.0;
     double removed = 0.0;
     for (const BlockLine& block : checked.blocks) removed += block.removed;
-    // Beyond X 50 the half disc of 10 mm without the slot's 12 mm: two segments that begin at 6 mm.
+    // Beyond X 50, the half disc of radius 10 without the slot of 12 mm: two segments that begin at
+    // 6 mm.
     const double half_segments = 8.0 * (100.0 * std::acos(0.6) - 6.0 * 8.0);
     EXPECT_NEAR(removed, slot + straight + half_segments, 0.005 * removed);
 }

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A watch whose looks take no time that is worth telling.
+/// A watch whose scans take a negligible time.
 class WatchPaceTest : public testing::Test {
 protected:
     bool is_time_after(WatchPace::Clock::duration time, const WatchedFiles::Change& change) {

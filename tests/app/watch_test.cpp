@@ -24,7 +24,7 @@ using testing::Not;
 const std::string fine = program({"X-20. Y50.", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 
-/// Somebody at a terminal who watches a folder of programs.
+/// A user at a terminal who watches a folder of programs.
 class Watch : public testing::Test {
 protected:
     void SetUp() override {
@@ -44,7 +44,7 @@ protected:
         return Terminal(words, folder.path());
     }
 
-    /// What is said until all is checked and nothing more happens.
+    /// The output until everything is checked and nothing more happens.
     static std::string pass(Terminal& terminal) { return terminal.until("Ctrl-C ends it"); }
 
     static int end(Terminal& terminal) {

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::ScopedFolder;
 
-/// So long that nothing written before counts as written just now.
+/// Waits until earlier writes no longer count as just written.
 void let_it_rest() { std::this_thread::sleep_for(std::chrono::milliseconds(80)); }
 
 class WatchedFilesTest : public testing::Test {
@@ -25,7 +25,7 @@ protected:
         let_it_rest();
     }
 
-    /// Looks at places as a check does.
+    /// Records file accesses as a check does.
     template <typename Looks>
     void watch(Looks&& looks) {
         const core::FileAccessObserver listening(
@@ -33,8 +33,8 @@ protected:
         looks();
     }
 
-    /// Writes and looks within the moment in which a file counts as just written. A busy machine
-    /// may need several tries.
+    /// Writes and scans within the time in which a file counts as just written. On a busy machine
+    /// this may need several attempts.
     template <typename Action>
     void in_a_moment(const Action& write_and_look) {
         using Clock = std::chrono::steady_clock;
@@ -68,9 +68,9 @@ TEST_F(WatchedFilesTest, TellOfAFileThatWasWrittenOrReplacedOrTakenAway) {
         for (const char* name : {"a.nc", "b.nc", "c.nc"}) core::file_bytes(folder / name);
     });
     EXPECT_EQ(changed(), Names{});
-    folder.write("a.nc", "G0 X9\n"); // as long as before
+    folder.write("a.nc", "G0 X9\n"); // the same length as before
     fs::remove(folder / "b.nc");
-    folder.write("new", "G0 X3\n"); // as an editor does it
+    folder.write("new", "G0 X3\n"); // as editors save files
     fs::rename(folder / "new", folder / "c.nc");
     EXPECT_EQ(changed(), (Names{"a.nc", "b.nc", "c.nc"}));
 }

@@ -20,7 +20,7 @@ using test_support::ScopedFolder;
 using test_support::SetupWriter;
 using testing::HasSubstr;
 
-/// A session of a program, in files of its own.
+/// A session for a program, with its own files.
 struct Opened {
     ScopedFolder folder;
     std::unique_ptr<DebugSession> session;
@@ -42,7 +42,7 @@ struct Opened {
         ASSERT_TRUE(session->go_to(*place));
     }
 
-    /// Where the machine stands behind every block from here to the end.
+    /// The machine position after each block from here to the end.
     std::vector<core::AxisPosition> places() const {
         std::vector<core::AxisPosition> all;
         while (session->knows(session->at())) {
@@ -56,7 +56,7 @@ struct Opened {
 const std::string start = "G21 G90 G17 G54\nT1 M6\nM3 S2000\nG43 H1 Z50.\nG0 X10. Y10.\n";
 const std::string rest = "G1 Z-2. F800.\nG91 X30.\nG90 Y40.\nG2 X60. Y60. R20.\nG0 Z50.\nM30\n";
 
-/// Changes something behind `start`, and compares with a program that says it there.
+/// Applies a change after `start`, and compares with a program that contains it at that position.
 void expect_as_programmed(const SetupWriter& setup, const WhatIf& change, const std::string& lines,
                           const std::string& before = start, const std::string& behind = rest) {
     const Opened changed(setup, before + behind), programmed(setup, before + lines + behind);
@@ -137,7 +137,7 @@ TEST(WhatIf, ChangesTheLengthThatComesWithTheTool) {
     const Opened changed(setup, "0 BEGIN PGM P MM\n1 TOOL CALL 1 Z S2000\n2 M3\n"
                                 "3 L Z+50 R0 FMAX\n4 L X+10 Y+10 FMAX\n5 L Z+10 F500\n"
                                 "6 END PGM P MM\n");
-    changed.go_to_line(5); // as Klartext counts its blocks
+    changed.go_to_line(5); // in Klartext block numbers
     const double stood = *changed->state().machine.position[2];
     ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 100.0}));
     EXPECT_EQ(changed->state().machine.position[2], stood);
@@ -159,7 +159,7 @@ TEST(WhatIf, DoesNotChangeAnOffsetUnderTheFeetOfRadiusCompensation) {
     EXPECT_TRUE(changed->change(app::OtherWorkOffset{3, 0, -340.0}));
 }
 
-/// The parts of a tool as lower and upper ends along its axis.
+/// The parts of a tool with their lower and upper ends along its axis.
 std::string parts_of(const core::ToolAssembly& tool) {
     std::string text;
     for (const core::ToolPart& part : tool.parts) {
@@ -196,7 +196,7 @@ TEST(WhatIf, ChangesOnlyTheGaugeLengthOfAToolWithoutAHolder) {
     EXPECT_FALSE(changed->change(app::OtherToolLength{ToolNumber{1}, 10.0}));
 }
 
-/// All that a run says of its blocks: verdict, bounds, the pair.
+/// Verdict, deciding pair and bound of all blocks of a run, as text.
 std::string said_of(const app::CheckRun& run, size_t from = 0) {
     std::string text;
     for (size_t i = from; i < run.blocks.size(); ++i) {
@@ -213,7 +213,7 @@ std::string said_of(const app::CheckRun& run, size_t from = 0) {
     return text;
 }
 
-/// A deep slot beside a clamp, so that holder and clamp matter.
+/// A deep slot next to a clamp, so that holder and clamp matter.
 const std::string slot = start
                          + "G1 Z-18. F800.\nX60.\nG0 Z5.\nX90. Y90.\nG1 Z-5.\nX70.\nG0 Z50.\n"
                            "M30\n";
@@ -259,7 +259,7 @@ TEST(WhatIf, OfTheAllowanceGivesWhatASetUpWithItGives) {
 }
 
 TEST(WhatIf, OnTheWayForgetsNoBoundThatNoLongerHolds) {
-    // The clamp comes to stand in the way when the machine is already near where it will be.
+    // The clamp is moved into the way when the machine is already near its new position.
     const Opened changed(with_clamp("[300, 300, 0]"), slot), meant(with_clamp("[70, 80, 0]"), slot);
     for (int line = 6; line <= 11; ++line) {
         changed.go_to_line(line);

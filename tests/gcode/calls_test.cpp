@@ -23,7 +23,7 @@ std::string rapids(std::string_view text, DialectId dialect = DialectId::fanuc) 
     return rapids_of(run_text("G21\n" + std::string(text), dialect));
 }
 
-/// The same with subprograms in files.
+/// The X of each rapid of a program with subprograms in files.
 std::string rapids_with(const test_support::ScopedFolder& folder, std::string_view text,
                         DialectId dialect = DialectId::fanuc) {
     Environment environment = known_environment(dialect);

@@ -37,7 +37,7 @@ size_t memory_of(const BlockCommands& block) {
            + (block.own_text ? block.own_text->size() : 0);
 }
 
-/// What a state needs beyond what it shares with the one before.
+/// Memory of a state in addition to what it shares with the previous one.
 size_t memory_of(const InterpreterState& state, const InterpreterState* before) {
     size_t bytes = sizeof(InterpreterState) + state.modal_macros.size() * sizeof(ModalMacro);
     for (const Frame& frame : state.frames) bytes += memory_of(frame);

@@ -9,25 +9,25 @@
 
 namespace gcode {
 
-/// States of a run at intervals, from which any block of it can be reached again. The intervals
-/// grow so that the memory per block stays below a bound however much the states hold.
+/// States of a run at intervals, from which any block can be reached again. The intervals grow so
+/// that the average memory per block stays below a bound, however large the states are.
 class Checkpoints {
 public:
-    /// The bytes that a block may cost on average, once a run is longer than a few ten thousand.
+    /// Average bytes per block, once a run is longer than some ten thousand blocks.
     explicit Checkpoints(size_t bytes_per_block = 16) : bytes_per_block_(bytes_per_block) {}
 
-    /// Takes note of the state in which a run is after so many results of Interpreter::next; to be
-    /// called before each of them, in order.
+    /// Offers the state of a run after a number of results of Interpreter::next. To be called
+    /// before each call of next, in order.
     void note(uint64_t results, const InterpreterState& state);
 
-    /// How much memory the states need, those parts that they share counted once.
+    /// The memory of the stored states; shared parts are counted once.
     size_t memory() const { return memory_; }
     uint64_t interval() const { return interval_; }
 
-    /// The state after so many results, which is as the run was there.
+    /// The state after a number of results, equal to that of the original run.
     ///
-    /// Errors: those of Interpreter::next; invalid_value when the run is not that long.
-    /// Cost: the blocks since the nearest checkpoint are carried out again, at most interval().
+    /// Errors: those of Interpreter::next; invalid_value when the run is shorter.
+    /// Cost: executes the blocks since the nearest checkpoint again, at most interval().
     core::Result<InterpreterState> state_after(uint64_t results, Interpreter& interpreter) const;
 
 private:
@@ -37,7 +37,7 @@ private:
     size_t bytes_per_block_;
     uint64_t interval_ = 256;
     size_t memory_ = 0;
-    std::vector<InterpreterState> states_{}; // the one at index i after i intervals
+    std::vector<InterpreterState> states_{}; // index i: after i intervals
 };
 
 } // namespace gcode

@@ -43,7 +43,7 @@ TEST(Corners, AreChamferedByTheDistanceFromTheCorner) {
 }
 
 TEST(Corners, RoundBetweenALineAndAnArcTouchingBoth) {
-    // 2 beside the line and 12 from the centre of the arc: (18, 10 - sqrt(140)).
+    // 2 away from the line and 12 from the centre of the arc: (18, 10 - sqrt(140)).
     EXPECT_EQ(path_of("G0 X20. Y-20.\nG1 Y0 F100 ,R2.\nG2 X10. Y10. J10.\nM30\n"),
               "20000,-1832 18333,140(18000,-1832,1) 10000,10000(20000,10000,-1) ");
 }

@@ -55,8 +55,9 @@ TEST_P(Corpus, RunsOrSaysWhereAndWhyNot) {
                   std::string::npos)
             << path << ": " << error.message;
     }
-    // Of heidenhain, one calls a program that is stored under another name, one is that program,
-    // which stops without its parameters, and one divides by a distance that is jogged by hand.
+    // Of the heidenhain programs, one calls a program stored under another name, one is that
+    // program, which stops without its parameters, and one divides by a distance that is set by
+    // manual jogging.
     RecordProperty("finished", static_cast<int>(finished));
     const std::map<std::string, size_t> least = {{"fanuc-like", 16},
                                                  {"linuxcnc", 10},

@@ -91,7 +91,8 @@ TEST(Frames, G68UnderG91AddsToTheAngleAndSaysSo) {
 }
 
 TEST(Frames, TheFirstMoveAfterG68WithOneAxisKeepsTheOtherCoordinate) {
-    // The example of parameter 11600#5 as delivered: X10 stays X10, then everything is rotated.
+    // The example of parameter 11600#5 with its default value: X10 stays X10, then everything is
+    // rotated.
     expect_same_path("G0 X10 Y0\nG68 X0 Y0 R90\nG1 Y4 F9\nX3", "G0 X10 Y0\nG1 X-4 Y10 F9\nX-4 Y3");
     EXPECT_THAT(warnings_of("G21 G0 X10 Y0\nG68 X0 Y0 R90\nX3\nM30"),
                 HasSubstr("the first move after G68 has no Y word"));

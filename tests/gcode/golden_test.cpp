@@ -24,7 +24,7 @@ std::string trace_of_asset(const std::string& name) {
     return to_text(run(*program, environment));
 }
 
-/// On a difference the new trace is left in the test's folder, to be checked and copied.
+/// On a difference, the new trace is saved in the test's folder, to be checked and copied.
 void expect_golden(const std::string& asset, const std::string& name) {
     const std::string actual = trace_of_asset(asset);
     const std::filesystem::path golden = source_dir / "tests/golden/gcode" / name / "expected.txt";

@@ -133,8 +133,8 @@ TEST_F(KlartextFiles, CallsProgramsOfTheSearchPath) {
               "straight_traverse x=7 y=0 z=0\nstraight_traverse x=1 y=0 z=0\n");
 }
 
-/// The facing program whose file is called Plan.h: its spirals run through labels, tangential arcs,
-/// and roundings between motions that are joined by jumps.
+/// The facing program in the file Plan.h: its spirals use labels, tangential arcs, and roundings
+/// between motions that are connected by jumps.
 TEST_F(KlartextFiles, RunsTheSharedFacingCycle) {
     const auto shared = source_dir / "../shared/programs/heidenhain";
     if (!std::filesystem::exists(shared)) GTEST_SKIP() << shared << " is missing";

@@ -16,7 +16,7 @@ namespace {
 const std::filesystem::path canon =
     std::filesystem::path(FEELER_SOURCE_DIR) / "../shared/oracle/canon.py";
 
-/// A contour as a LinuxCNC program, and its result here.
+/// A contour as a LinuxCNC program, and the result of Feeler.
 struct Sample {
     std::string program;
     CompensatedMoves moves{};

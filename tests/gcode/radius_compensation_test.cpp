@@ -121,8 +121,8 @@ TEST(RadiusCompensation, MovesTheEndOfAnArcOntoTheOffsetOfTheLineAfterIt) {
 }
 
 TEST(RadiusCompensation, EndsALineWhereItMeetsTheOffsetOfAnArc) {
-    // The tool passes outside the circle of radius 5 about (25, 0), which the line runs into: at v
-    // = 2, 7 from the centre.
+    // The tool passes outside the circle of radius 5 about (25, 0), which the line ends at: at v =
+    // 2, 7 from the centre.
     const Contour contour =
         left(2.0).line(10.0, 0.0).line(20.0, 0.0).arc({30.0, 0.0}, {25.0, 0.0}, -1).end();
     ASSERT_EQ(contour.moves.size(), 3u);
@@ -173,7 +173,7 @@ TEST(RadiusCompensation, RefusesAMoveTooShortForItsInsideCorners) {
 }
 
 TEST(RadiusCompensation, RefusesAnInsideCornerThatTheToolCannotReach) {
-    // Beside the line the tool stays 3 from the centre of the arc, inside the arc 1.
+    // At the offset line the tool is 3 from the centre of the arc; at the offset arc, 1.
     const Contour contour =
         left(3.0).line(10.0, 0.0).line(20.0, 0.0).arc({12.0, 0.0}, {16.0, 0.0}, 1);
     EXPECT_THAT(contour.error.value().message, HasSubstr("the inside corner at the start"));

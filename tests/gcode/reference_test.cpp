@@ -18,11 +18,11 @@ const std::filesystem::path shared = FEELER_SOURCE_DIR "/../shared/programs/linu
 /// A feature for which the two interpreters are compared.
 struct Held {
     const char* feature;
-    bool generated; // random programs agree
-    bool spoilt;    // both refuse the same nearly valid programs
+    bool generated; // random programs give equal results
+    bool spoilt;    // both reject the same nearly valid programs
 };
 
-/// A feature is switched on once it is implemented, and stays on.
+/// A feature is enabled once it is implemented, and stays enabled.
 constexpr Held held[] = {
     {"straight", true, false},       {"rotary_axes", true, false},
     {"secondary_axes", true, false}, {"centre_arcs", true, false},

@@ -86,7 +86,7 @@ TEST(ShopMacro, FixAndFupGoByTheAmount) {
 }
 
 TEST(ShopMacro, RoundIsToTheSmallestStepBehindAnAddress) {
-    // The example of the manuals: the way there and back are equal only with ROUND.
+    // The example of the manuals: the distances there and back are equal only with ROUND.
     const std::string program = "#1=1.2346\n#2=2.3456\nG91 G1 F9. X-[ROUND[#1]]\nX-[ROUND[#2]]\n"
                                 "X[ROUND[#1]+ROUND[#2]]";
     for (const DialectId control : controls) {

@@ -101,7 +101,7 @@ TEST(Source, RefusesALineLongerThanTheLimitAndNamesIt) {
 }
 
 TEST(Source, RefusesAHugeFileOfOneLineAfterReadingLittleOfIt) {
-    // The writer sees how much was read: the pipe breaks.
+    // The writer of the pipe notices how much was read, because the pipe breaks.
     signal(SIGPIPE, SIG_IGN);
     const std::string path = scratch("pipe.nc");
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);

@@ -109,7 +109,7 @@ TEST(Nurbs, RefusesWeightsThatCancel) {
     EXPECT_FALSE(preview_chords({{{{0, 0}, 1.0}, {{1, 0}, -1.0}}, 2}));
 }
 
-/// A program with splines and our chords for it; empty where we refuse.
+/// A program with splines and our chords for it; empty if Feeler reports an error.
 struct SplineCase {
     std::string program;
     std::optional<std::vector<SplinePoint>> chords;

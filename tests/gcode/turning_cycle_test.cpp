@@ -18,7 +18,7 @@ TurningMove feed(double x, double z) { return {{x, z}, false}; }
 
 TEST(Roughing, CutsLevelsUntilTheContourIsReached) {
     // From X18 in steps of 4: the levels 18, 14 and 10. The lead-in is a line from (18, 4) to (10,
-    // 0), the cone has Z = -X; each cut retracts by 1.
+    // 0), on the cone Z = -X; each cut retracts by 1.
     RoughingWords words;
     words.depth = 4.0;
     words.retract = 1.0;
@@ -231,7 +231,7 @@ void expect_same_move(const TurningMove& ours, const test_support::ReferenceMoti
     EXPECT_EQ(ours.arc->counterclockwise ? 1 : -1, theirs.values[4]);
 }
 
-/// Whether the reference refused an arc of the cycle; here that is done by the interpreter.
+/// Whether the reference rejected an arc of the cycle; in Feeler the interpreter does that.
 bool refused_an_arc(const test_support::ReferenceRun& run) {
     return run.refusal.find("adius") != std::string::npos;
 }
