@@ -22,14 +22,14 @@ MeshSource BodyContext::meshes() { return {folder, file.assumptions}; }
 
 namespace {
 
-/// A body as written, in its own frame: a mesh, or a cylinder that stands on the origin.
+/// The sizes of a `cylinder`, which stands on the origin of its body.
 struct CylinderKey {
     double radius = 0.0;
     double height = 0.0;
     int axis = 2;
 };
 
-/// Where a body stands: its `at`, `rotate_deg` and `frame`.
+/// Position of a body: its `at`, `rotate_deg` and `frame`.
 struct Placement {
     core::Transform machine_from_frame;
     core::Transform frame_from_body;
@@ -56,7 +56,7 @@ Placement read_placement(TableReader& table, const BodyContext& context) {
     return {read_frame(table, context), read_pose(table)};
 }
 
-/// Exactly one of the shapes must be given.
+/// The shape that is given; exactly one must be.
 std::optional<std::string> only_shape(TableReader& table) {
     std::vector<std::string> given;
     for (const char* key : {"box", "cylinder", "mesh", "model"})
@@ -91,7 +91,7 @@ CylinderKey read_cylinder(TableReader& table) {
     return cylinder;
 }
 
-/// The mesh a body names, in the body's frame. Relative paths are relative to the set-up.
+/// Reads the mesh of a body, in the body's frame. Relative paths are relative to the set-up.
 core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
     const std::string name = table.string("mesh").value_or("");
     if (name.empty()) {
@@ -113,7 +113,7 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
     return mesh;
 }
 
-/// Box or mesh, moved, as a mesh.
+/// A box or mesh in the target frame, as a mesh.
 core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
                            const core::Transform& target_from_body) {
     core::Mesh mesh =
@@ -138,7 +138,7 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
             0.0};
 }
 
-/// A cylinder along one of its body's axes, standing on the body's origin.
+/// A cylinder along one of its body's axes, with its base centre at the body's origin.
 core::ConvexShape standing(const CylinderKey& cylinder) {
     const core::ConvexShape upright = core::convex(
         core::ProfileElement{0.0, cylinder.radius, cylinder.height, cylinder.radius, 0.0});
@@ -162,11 +162,11 @@ bool has_no_shape(const TableReader& table) {
     return true;
 }
 
-/// A stock that is what the cutting moves reach.
+/// Reads a stock without a shape, which is inferred from the cutting moves.
 void read_envelope(TableReader& table, BodyContext& context, const Placement& placement) {
     SetupFile& file = context.file;
     if (!has_no_shape(table))
-        table.refuse("margin", "applies only to an inferred stock, which has no shape here");
+        table.refuse("margin", "applies only to an inferred stock, that is, one without a shape");
     for (const char* key : {"at", "rotate_deg"})
         if (table.has(key)) table.refuse(key, "does not apply to a stock without a shape");
     if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= 1000.0))
@@ -184,7 +184,7 @@ core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
     return core::solid_mesh(moved(*std::get<core::SolidMesh>(body).mesh, by));
 }
 
-/// The number of an M code such as "M61"; empty for a text that is none.
+/// The number of an M code such as "M61"; empty for any other text.
 std::optional<int> m_code(const std::string& text) {
     if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != 'M') return {};
     const auto number = number_in(std::string_view(text).substr(1));
@@ -192,7 +192,7 @@ std::optional<int> m_code(const std::string& text) {
     return static_cast<int>(*number);
 }
 
-/// A `[[fixture.move]]` of the fixture that stands last; where it goes, if it is not taken away.
+/// Reads a `[[fixture.move]]` of the last fixture. Returns its new pose; empty if it is removed.
 std::optional<core::Transform> read_move(TableReader& table, core::Setup& setup, size_t last,
                                          std::set<int>& known_codes) {
     core::FixtureMove move{.from = last};
@@ -224,7 +224,7 @@ core::Result<core::StockRecord> read_record(const std::filesystem::path& path) {
     return core::stock_record(*bytes);
 }
 
-/// A stock as an earlier program left it (check --save-stock).
+/// Reads a stock saved after an earlier program (check --save-stock).
 void read_model(TableReader& table, BodyContext& context, const Placement& placement) {
     const std::string name = table.string("model").value_or("");
     auto record = read_record(context.folder / name);
@@ -323,7 +323,7 @@ void read_fixture(TableReader& table, BodyContext& context) {
     const core::Transform stock_from_frame =
         setup.stock_mount.link_from_body.inverse() * machine_from_frame;
     fixture.mount = setup.stock_mount;
-    if (table.has("model")) return table.refuse("model", "is for a stock only");
+    if (table.has("model")) return table.refuse("model", "applies only to the stock");
     const core::Transform frame_from_body = read_pose(table);
     const auto body = exact_body(table, context.meshes(), stock_from_frame * frame_from_body);
     if (!body) return;

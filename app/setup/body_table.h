@@ -18,7 +18,7 @@ namespace app {
 class TableReader;
 struct SetupFile;
 
-/// Where named frames stand in the machine: "machine", the work offsets, the bodies so far.
+/// Poses of named frames in the machine: "machine", the work offsets, the bodies read so far.
 struct Frames {
     std::map<std::string, core::Transform> machine_from;
 
@@ -29,38 +29,38 @@ struct Frames {
     }
 };
 
-/// Where the meshes of a table come from, and where it is said what had to be repaired.
+/// The folder of a table's meshes, and the list that receives notes about repairs.
 struct MeshSource {
-    std::filesystem::path folder; // that relative paths start from
+    std::filesystem::path folder; // for relative paths
     std::vector<std::string>& assumptions;
 };
 
-/// What the readers of bodies share.
+/// Context shared by the readers of bodies.
 struct BodyContext {
-    std::filesystem::path folder; // that relative mesh paths start from
+    std::filesystem::path folder; // for relative mesh paths
     Frames frames;
     SetupFile& file;
 
     MeshSource meshes();
 };
 
-/// A body by its box, cylinder or mesh, and its `at` and `rotate_deg`; empty after a mistake.
+/// Reads a body: its box, cylinder or mesh, with `at` and `rotate_deg`; empty after an error.
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
                                                const core::Transform& target_from_frame);
 
-/// Reads `[stock]`: the stock's frame becomes the frame of everything else.
+/// Reads `[stock]`. The frame of the stock becomes the frame of everything else.
 void read_stock(TableReader& table, BodyContext& context);
 
 /// Reads `[part]`. The stock must have been read.
 void read_part(TableReader& table, BodyContext& context);
 
-/// A stock that is inferred from the program, in the frame of G54.
+/// Requests a stock inferred from the program, in the frame of G54.
 void infer_stock(BodyContext& context);
 
 /// Reads one `[[fixture]]`. The stock must have been read.
 void read_fixture(TableReader& table, BodyContext& context);
 
-/// Adds the machine's own bodies that the tool can meet to the fixtures.
+/// Adds the machine bodies that the tool can reach to the fixtures.
 void add_machine_bodies(TableReader& table, core::Setup& setup);
 
 } // namespace app

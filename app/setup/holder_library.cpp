@@ -60,7 +60,7 @@ HolderLibrary shipped() {
     HolderLibrary all;
     for (const ShippedFile& file : shipped_holders()) {
         auto library = read_library(toml::parse(file.text));
-        assert(library); // a test reads every one of them
+        assert(library); // a test reads all of them
         if (library) all.merge(*library);
     }
     return all;
@@ -105,12 +105,13 @@ cones_of_outline(const std::vector<std::vector<double>>& points) {
         if (i == 0) continue;
         const double r_below = points[i - 1][0], z_below = points[i - 1][1];
         if (z < z_below)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("must go up: z falls from {:g} to {:g}", z_below, z));
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("z must not decrease: it falls from {:g} to {:g}", z_below, z));
         if (z == z_below) continue;
         if (r == 0.0 && r_below == 0.0)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("encloses nothing from z = {:g} to {:g}", z_below, z));
+                              fmt::format("has radius 0 from z = {:g} to {:g}", z_below, z));
         cones.push_back({2.0 * r_below, 2.0 * r, z - z_below});
     }
     if (cones.empty()) return core::fail(ErrorCode::invalid_value, "has no height");

@@ -11,38 +11,38 @@
 
 namespace app {
 
-/// Holders by name, from the end where the tool comes out up to the gauge line.
+/// Holders by name. Each is a list of cones from the lower face to the gauge line.
 using HolderLibrary = std::map<std::string, std::vector<core::ConeStep>>;
 
 /// Reads a library: `[[holder]]` with `name`, `description` and either `cones`, rows of lower
 /// diameter, upper diameter and length, or `profile`, rows of r and z.
 ///
-/// Errors: with file, line and column: no file, no TOML, an unknown key, sizes that make no holder,
-///         a name that was there before.
+/// Errors: with file, line and column: a missing file, invalid TOML, an unknown key, impossible
+///         sizes, a duplicate name.
 core::Result<HolderLibrary> read_holder_library(const std::string& path);
 
-/// The holders that come with the program.
+/// The holders shipped with Feeler.
 const HolderLibrary& shipped_holder_library();
 
-/// The names in a library that begin like `name`, else all of them: what a message offers.
+/// The names in a library that begin like `name`, else all names, for error messages.
 std::string names_like(const HolderLibrary& library, const std::string& name);
 
-/// The part of a tool that an outline describes, [r, z] from its lower end up.
+/// The cones of an outline, given as [r, z] points from the lower end up.
 ///
-/// Errors: invalid_value when it does not begin at z = 0, does not go up, or encloses nothing.
+/// Errors: invalid_value if it does not begin at z = 0, z decreases, or it encloses no volume.
 core::Result<std::vector<core::ConeStep>>
 cones_of_outline(const std::vector<std::vector<double>>& points);
 
-/// Cones that stand one upon the other.
+/// The cones of a profile, stacked from the lower end up.
 std::vector<core::ConeStep> cones_of_profile(const core::RevolvedProfile& profile);
 
-/// A file that is part of the program.
+/// A file compiled into the program.
 struct ShippedFile {
     const char* name;
     const char* text;
 };
 
-/// The holder libraries of assets/holders, as they were when the program was built.
+/// The holder libraries of assets/holders, compiled into the program.
 std::span<const ShippedFile> shipped_holders();
 
 } // namespace app

@@ -22,7 +22,7 @@ std::string trimmed(const std::string& text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// As LinuxCNC takes LINEAR_UNITS: by name, or as units in a millimetre.
+/// A value of LINEAR_UNITS as LinuxCNC interprets it: a name, or units per millimetre.
 std::optional<gcode::LengthUnit> unit_named(const std::string& name) {
     const auto per_mm = number_in(name);
     const auto is_near = [&](double wanted) {
@@ -34,7 +34,7 @@ std::optional<gcode::LengthUnit> unit_named(const std::string& name) {
     return std::nullopt;
 }
 
-/// The file line by line.
+/// Reads the file line by line.
 struct IniReader {
     std::filesystem::path folder;
     IniFile file{};
@@ -42,10 +42,11 @@ struct IniReader {
 
     std::string resolved(const std::string& name) const { return (folder / name).string(); }
 
-    /// Programs see numbers whose section and name have no small letters.
+    /// Stores a number. Programs can read only numbers whose section and key have no lower-case
+    /// letters.
     void note_number(const std::string& key, const std::string& value);
 
-    /// Why a value cannot be taken; empty when it was, or says nothing about programs.
+    /// Stores a setting. Returns why its value is invalid; empty if it is valid or irrelevant.
     std::string take(const std::string& key, const std::string& value);
 };
 
@@ -103,7 +104,7 @@ core::Result<IniFile> read_ini(const std::string& path) {
             continue;
         }
         const size_t equals = text.find('=');
-        if (equals == std::string::npos) continue; // LinuxCNC passes over it as well
+        if (equals == std::string::npos) continue; // LinuxCNC ignores such lines, too
         const std::string wrong =
             reader.take(trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)));
         if (!wrong.empty()) return tl::unexpected(line_error(path, line, wrong));
@@ -113,7 +114,7 @@ core::Result<IniFile> read_ini(const std::string& path) {
 
 namespace {
 
-/// The numbers of an ini file about one axis, in mm or degrees.
+/// The numbers of an ini file for one axis, in mm or degrees.
 class AxisNumbers {
 public:
     AxisNumbers(const gcode::Environment& environment, size_t axis, size_t joint)
@@ -125,7 +126,7 @@ public:
                      fmt::format("axis_{}", axis), fmt::format("joint_{}", joint)};
     }
 
-    /// What the first section that knows it says.
+    /// The number in the first section that has the key.
     std::optional<double> number(const std::string& key) const {
         for (const std::string& section : sections_)
             if (const auto found = values_.find("_ini[" + section + "]" + key);
@@ -146,7 +147,7 @@ private:
     std::array<std::string, 3> sections_;
 };
 
-/// Takes a number that the axis lacks; whether it did.
+/// Sets a value that the axis lacks. Whether it was set.
 bool take(std::optional<double>& value, std::optional<double> stated) {
     if (value || !stated) return false;
     value = stated;

@@ -23,7 +23,7 @@ void replace(T& value, const T& over) {
     if (over != T{}) value = over;
 }
 
-/// Takes the nine numbers from `first` on out of the parameters; empty when none is there.
+/// Moves nine numbers, from parameter `first` on, out of the parameters; empty if none is set.
 std::optional<gcode::AxisValues> take_place(gcode::Environment& environment, int first) {
     std::optional<gcode::AxisValues> place;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis) {
@@ -38,8 +38,8 @@ std::optional<gcode::AxisValues> take_place(gcode::Environment& environment, int
     return place;
 }
 
-/// LinuxCNC keeps the reference points at #5161 and #5181 and the work offsets at #5221, 20 numbers
-/// for each.
+/// LinuxCNC stores the reference points from #5161 and #5181 and the work offsets from #5221, with
+/// 20 numbers for each.
 void take_places(gcode::Environment& environment) {
     if (const auto home = take_place(environment, 5161)) environment.home = *home;
     if (const auto second = take_place(environment, 5181)) environment.second_home = *second;
@@ -48,15 +48,16 @@ void take_places(gcode::Environment& environment) {
             environment.work_offsets[i] = *offset;
 }
 
-/// A file that an ini file names, or nothing: LinuxCNC writes some of them only when it ends.
+/// The path of a file named in an ini file; empty, with a note, if it does not exist: LinuxCNC
+/// writes some files only when it ends.
 std::string existing(const std::string& path, const ProgramSettings& settings,
                      std::vector<std::string>& notes) {
     if (path.empty() || core::is_there(path)) return path;
-    notes.push_back(fmt::format("{}: {} does not exist and is taken as empty", settings.ini, path));
+    notes.push_back(fmt::format("{}: {} does not exist; treated as empty", settings.ini, path));
     return {};
 }
 
-/// The settings with what their ini file adds; what only programs see goes to the environment.
+/// Completes the settings from their ini file; values that only programs use go to the environment.
 core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environment& environment,
                                        std::vector<std::string>& notes) {
     if (settings.ini.empty()) return settings;
@@ -69,7 +70,7 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
     stated.search_path = ini.search_path;
     if (!ini.startup_code.empty())
         notes.push_back(fmt::format(
-            "{}: RS274NGC_STARTUP_CODE is not run; if it matters, add it to the program: {}",
+            "{}: RS274NGC_STARTUP_CODE is not run; if needed, add it to the program: {}",
             settings.ini, ini.startup_code));
     if (!ini.wrapped_axes.empty())
         notes.push_back(fmt::format("{}: WRAPPED_ROTARY of {} is ignored: an absolute position is "
@@ -219,7 +220,7 @@ core::Result<std::map<int, double>> read_variables(const std::string& path) {
         const bool more = words.size() > 2 && words[2][0] != ';' && words[2][0] != '#';
         if (!number || !value || more)
             return tl::unexpected(line_error(
-                path, line, "a line of a variables file is a number and its value: 5221 -350.0"));
+                path, line, "expected a parameter number and its value, as in 5221 -350.0"));
         if (!(*number >= 1.0 && *number <= gcode::highest_parameter)
             || *number != static_cast<int>(*number))
             return tl::unexpected(

@@ -20,7 +20,7 @@
 namespace app {
 namespace {
 
-constexpr double largest_stock = 20000.0; // mm; more is a slip of the finger
+constexpr double largest_stock = 20000.0; // mm; anything larger is a typing error
 bool is_place(const core::Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -42,11 +42,11 @@ void check_stock(const core::Solid& stock, std::vector<EditRefusal>& refused) {
         else if (!is_size(2.0 * round->radius) || !is_size(round->height))
             refused.push_back({{}, "cylinder", sizes});
     } else {
-        refused.push_back({{}, "mesh", "a mesh can only be stated in a set-up file"});
+        refused.push_back({{}, "mesh", "a mesh can only be given in a set-up file"});
     }
 }
 
-/// The key that a message about a tool begins with, or names first.
+/// The key that a message about a tool begins with, else the first one that it contains.
 std::string key_in(const std::string& why) {
     std::vector<std::string_view> keys = {"teeth", "holder"};
     for (const core::ToolSize& size : core::tool_sizes()) keys.emplace_back(size.key);
@@ -69,7 +69,7 @@ void check_tool(const core::ToolDescription& tool, std::vector<EditRefusal>& ref
     refused.push_back({tool.number, key_in(why), why});
 }
 
-/// What a set-up said to be open of a tool is no longer true.
+/// Replaces the notes that the set-up reader made about a tool.
 void renew_notes(SetupFile& file, const core::ToolDescription& tool) {
     const auto old = file.setup.tools.find(tool.number);
     if (old != file.setup.tools.end())
@@ -127,7 +127,7 @@ core::Result<void> apply(const SetupEdits& edits, SetupFile& file) {
 
 namespace {
 
-/// Visits every node below one, with its key; elements of lists have that of the list.
+/// Visits all nodes below `node`, with their keys; elements of a list have the key of the list.
 void visit(const toml::node& node, const std::string& key,
            const std::function<void(const std::string&, const toml::node&)>& see) {
     see(key, node);
@@ -138,7 +138,7 @@ void visit(const toml::node& node, const std::string& key,
         for (const toml::node& value : *list) visit(value, key, see);
 }
 
-/// Lines of a text, counted from 1, as tables of TOML stand in them.
+/// The lines of a TOML file, numbered from 1.
 class Lines {
 public:
     explicit Lines(const std::string& text) {
@@ -146,7 +146,7 @@ public:
         for (std::string line; std::getline(all, line);) lines_.push_back(line);
     }
 
-    /// Whether a line is the head of a table or of one of a list.
+    /// Whether a line is the header of a table or of an element of a list of tables.
     bool is_head(size_t line) const {
         const std::string& text = lines_[line - 1];
         const size_t at = text.find_first_not_of(" \t");
@@ -159,8 +159,8 @@ public:
                      lines_.begin() + static_cast<ptrdiff_t>(end) - 1);
         lines_.insert(lines_.begin() + static_cast<ptrdiff_t>(first) - 1, std::move(with));
     }
-    /// Where what belongs to a table ends that begins in `first`: before the blank lines and
-    /// comments that lead to the next one.
+    /// The line after the last one of the table that begins at `first`: excludes the blank lines
+    /// and comments before the next header.
     size_t end_of(size_t first, const std::set<size_t>& heads) const {
         const auto next = heads.upper_bound(first);
         size_t end = next == heads.end() ? lines_.size() + 1 : *next;
@@ -183,7 +183,7 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// A table that takes the place of another one, or is new where `first` is 0.
+/// The new text of a table at lines `first` to `end`; a new table if `first` is 0.
 struct NewTable {
     size_t first = 0, end = 0;
     std::string text;
@@ -191,7 +191,7 @@ struct NewTable {
 
 size_t line_of(const toml::node& node) { return node.source().begin.line; }
 
-/// Where tables begin that have a head of their own.
+/// The first lines of all tables that have a header.
 std::set<size_t> heads_of(const toml::table& root, const Lines& lines) {
     std::set<size_t> heads;
     visit(root, "", [&](const std::string& key, const toml::node& node) {
@@ -234,7 +234,7 @@ const toml::table* old_tool(const toml::table& root, core::ToolNumber number) {
     return nullptr;
 }
 
-/// The general allowance of a list of them, the one without a pair.
+/// The general rule in a list of allowances, the one without a pair; null if there is none.
 const toml::table* old_general(const toml::table& root) {
     const toml::array* rules = root["allowance"].as_array();
     if (!rules) return nullptr;
@@ -244,7 +244,7 @@ const toml::table* old_general(const toml::table& root) {
     return nullptr;
 }
 
-/// What stands in the root of the file is before all tables.
+/// Keys of the root must come before all tables.
 NewTable new_allowance(const toml::table& root, double allowance, const std::set<size_t>& heads,
                        size_t lines) {
     const std::string number = toml_number(allowance);
@@ -262,7 +262,7 @@ NewTable new_allowance(const toml::table& root, double allowance, const std::set
     return {before, before, text + "\n"};
 }
 
-/// Puts an edited table into the tree that the new text must mean.
+/// Replaces or adds a tool in the tree that the new text must give when read.
 void put(toml::table& root, const std::string& text, core::ToolNumber number) {
     toml::table fresh = toml::parse(text);
     toml::table tool = *fresh["tool"].as_array()->get(0)->as_table();
@@ -317,7 +317,7 @@ core::Result<std::string> rewritten_setup(const std::string& text, const SetupEd
     }
     for (NewTable& table : tables)
         if (table.first > 0 && table.end == 0) table.end = lines.end_of(table.first, heads);
-    // From the end on, so that the lines before stay where they are.
+    // Backwards, so that the line numbers of earlier tables stay valid.
     std::stable_sort(tables.begin(), tables.end(),
                      [](const NewTable& a, const NewTable& b) { return a.first > b.first; });
     std::string added;

@@ -15,48 +15,48 @@ namespace app {
 
 struct SetupFile;
 
-/// A tool as a person says that it is.
+/// A tool with changes by the user.
 struct StatedTool {
     core::ToolDescription tool;
-    std::set<std::string> stated; // keys of [[tool]] that the person has said; the rest was known
+    std::set<std::string> stated; // keys of [[tool]] that the user stated; the rest is unchanged
 };
 
-/// What a person states in place of what a set-up says, or of what was inferred without one.
+/// Values that the user states in place of stated or inferred ones of a set-up.
 struct SetupEdits {
     std::optional<core::Solid> stock; // box or cylinder, in the frame of the set-up's stock
     std::map<core::ToolNumber, StatedTool> tools;
     std::optional<double> allowance;
-    std::optional<core::ToolNumber> tool_at_start; // where the program cuts before it calls one
+    std::optional<core::ToolNumber> tool_at_start; // if the program cuts before its first tool call
 
     bool empty() const { return !stock && tools.empty() && !allowance; }
 };
 
-/// What is wrong with a field of an edit.
+/// An invalid field of an edit.
 struct EditRefusal {
-    std::optional<core::ToolNumber> tool; // empty: it is about the stock or the allowance
-    std::string key;                      // of the set-up: box, cylinder, allowance, flute_length;
-                                          // empty: it is about the tool as a whole
+    std::optional<core::ToolNumber> tool; // empty: the stock or the allowance
+    std::string key;                      // in the set-up: box, cylinder, allowance, flute_length;
+                                          // empty: the tool as a whole
     std::string why;
 };
 
-/// Everything that keeps edits from being made, in the order of the fields.
+/// All reasons why edits cannot be made, in the order of the fields.
 std::vector<EditRefusal> refusals_of(const SetupEdits& edits);
 
-/// Puts edits into a set-up that was read or begun, before what is missing is inferred: what is
-/// stated is not inferred, and all else is inferred with regard to it.
+/// Applies edits to a set-up before missing values are inferred: stated values are not inferred,
+/// and inference takes them into account.
 ///
-/// Errors: the first of refusals_of. Nothing has changed then.
+/// Errors: the first of refusals_of. The set-up is then unchanged.
 core::Result<void> apply(const SetupEdits& edits, SetupFile& file);
 
-/// The text of a set-up file with edits made in it: the tables of the stock and of tools that were
-/// edited are written anew, everything else stays as somebody wrote it, comments and all.
+/// Edits the text of a set-up file: rewrites the edited tables of the stock and of tools, and keeps
+/// everything else, including comments.
 ///
-/// Result: read again, it is the set-up with the edits. Where the file has its tables in a form
-///         that cannot be cut out (`stock = { ... }`), all of it is written anew.
-/// Errors: syntax; unsupported when the frame of other bodies would move with the stock.
+/// Result: when read, it gives the set-up with the edits. If a table has a form that cannot be
+///         replaced alone (`stock = { ... }`), the whole file is rewritten.
+/// Errors: syntax; unsupported if the edit would move the frame of other bodies with the stock.
 core::Result<std::string> rewritten_setup(const std::string& text, const SetupEdits& edits);
 
-/// Whether a set-up names files by paths that count from its own folder.
+/// Whether a set-up names files by paths relative to its folder.
 bool names_relative_files(const std::string& text);
 
 } // namespace app

@@ -19,20 +19,20 @@
 
 namespace app {
 
-/// Reads `[machine]`, or a machine file. What the table does not say stays as it was.
+/// Reads `[machine]` or a machine file. Values that it does not state are unchanged.
 void read_machine(TableReader& table, core::Machine& machine, const MeshSource& source);
 
 namespace {
 
 using core::LinkId;
 
-/// Axes in the order in which a file lists them, and what it says they stand on.
+/// Axes in file order, with the names of their parents.
 struct AxisList {
     std::vector<size_t> order;
     std::array<std::string, core::axis_count> parents;
 };
 
-/// A direction must be that of a unit vector.
+/// Reads a direction, which must be a unit vector.
 void read_direction(TableReader& table, core::MachineAxis& axis) {
     const auto direction = table.vector("direction");
     if (!direction) return;
@@ -41,7 +41,7 @@ void read_direction(TableReader& table, core::MachineAxis& axis) {
     axis.direction = *direction;
 }
 
-/// What an axis is unless the file says otherwise: along or about X, Y or Z by its letter.
+/// Default of an axis: along or about X, Y or Z, by its letter.
 core::MachineAxis plain_axis(size_t index) {
     core::MachineAxis axis;
     axis.direction[static_cast<int>(index % 3)] = 1.0;
@@ -88,7 +88,7 @@ void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
     table.finish();
 }
 
-/// The linear axes must span space without tilting it.
+/// Checks that the linear axes are perpendicular to each other.
 void check_directions(TableReader& table, const core::Machine& machine) {
     for (size_t i = 0; i < 3; ++i)
         for (size_t j = i + 1; j < 3; ++j)
@@ -96,7 +96,7 @@ void check_directions(TableReader& table, const core::Machine& machine) {
                 table.refuse("axis", "directions must be perpendicular to each other");
 }
 
-/// The link that a text names; empty for one that is no axis of this machine.
+/// The link of this name; empty if the machine has no such axis.
 std::optional<LinkId> link_named(const core::Machine& machine, const std::string& name) {
     if (name == "base") return LinkId::base;
     const size_t axis = name.size() == 1 ? core::axis_letters.find(name[0]) : std::string::npos;
@@ -104,8 +104,8 @@ std::optional<LinkId> link_named(const core::Machine& machine, const std::string
     return core::link_of(axis);
 }
 
-/// Lets every axis stand on what its `parent` says, else on the axis of its side that was listed
-/// before it. X, Y and Z that are not listed move the tool and come first.
+/// Connects every axis to its `parent`, else to the preceding axis on its side in the file. X, Y
+/// and Z, if not listed, move the tool and come first.
 void connect(TableReader& table, core::Machine& machine, AxisList list) {
     for (const size_t axis : {size_t{2}, size_t{1}, size_t{0}})
         if (std::find(list.order.begin(), list.order.end(), axis) == list.order.end())
@@ -155,7 +155,7 @@ void connect(TableReader& table, core::Machine& machine, AxisList list) {
     }
 }
 
-/// A `[[body]]` of the machine. Frame: the machine's, all axes at 0.
+/// Reads a `[[body]]` of the machine. Frame: the machine's, all axes at 0.
 void read_machine_body(TableReader& table, core::Machine& machine, const MeshSource& source) {
     core::MachineBody body;
     body.name = table.string("name").value_or("");
@@ -204,14 +204,14 @@ constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
 core::Result<toml::table> parse(const std::string& path) {
     auto parsed = read_toml(path);
     if (!parsed && parsed.error().message.find("'allowance'") != std::string::npos)
-        parsed.error().message +=
-            "; write the general allowance as an [[allowance]] with a distance and no between when "
-            "there are others";
+        parsed.error().message += "; if there are [[allowance]] tables, write the general "
+                                  "allowance as one of them, with a "
+                                  "distance and without between";
     return parsed;
 }
 
-/// The settings of the program's table and of the command line, in effect for all that follows: the
-/// frames of bodies stand on the work offsets of a variables file.
+/// Applies the settings of [program] and of the command line. Must come before the bodies are read:
+/// their frames depend on the work offsets of a variables file.
 void apply_settings(const ProgramSettings& settings, SetupFile& file,
                     std::optional<core::Error>& error) {
     if (error) return;
@@ -247,8 +247,8 @@ void read_offsets(TableReader& table, SetupFile& file) {
     table.finish();
 }
 
-/// One `[[allowance]]`; without `between` it is the general one, as `allowance = MM`. (TOML does
-/// not let a number and a list share a name.)
+/// Reads one `[[allowance]]`. Without `between` it is the general one, like `allowance = MM`: TOML
+/// does not allow a number and a list of the same name.
 void read_allowance(TableReader& table, core::Setup& setup) {
     core::AllowanceRule rule;
     const auto distance = table.number("distance");
@@ -279,7 +279,7 @@ void read_allowances(TableReader& root, core::Setup& setup) {
         root.refuse("allowance", "must lie between 0 and 1000 mm");
 }
 
-/// A name that no body has would make a rule that never counts.
+/// Refuses a rule with an unknown body name, which would never apply.
 void check_allowance_names(TableReader& table, const core::Setup& setup) {
     for (const core::AllowanceRule& rule : setup.allowances) {
         for (const std::string& name : rule.between) {
@@ -300,7 +300,7 @@ void read_rules(TableReader& table, SetupFile& file) {
         file.setup.rules[rule] = severity;
 }
 
-/// The machine from its own file, whose mistakes carry its own name.
+/// Reads the machine from its own file. Errors name that file.
 void read_machine_file(const std::string& path, core::Machine& machine,
                        std::vector<std::string>& assumptions, std::optional<core::Error>& error) {
     const auto parsed = parse(path);
@@ -333,7 +333,8 @@ void place_offsets(BodyContext& context) {
     context.frames.machine_from["machine"] = {};
     for (size_t i = 0; i < std::size(offset_names); ++i) {
         const gcode::AxisValues& set = context.file.environment.work_offsets[i];
-        // The work lies along the machine's axes while the rotary ones stand at their offsets.
+        // The frame of a work offset is aligned with the machine axes when the rotary axes are at
+        // their offsets.
         gcode::AxisValues rotary{};
         for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = set[axis];
         context.frames.machine_from[offset_names[i]] =
@@ -342,7 +343,7 @@ void place_offsets(BodyContext& context) {
     }
 }
 
-/// Where the machine stands at the first block: as stated, else at home, axis by axis.
+/// Sets the machine position at the first block: as stated, else the home position, per axis.
 void settle_start(SetupFile& file) {
     const core::AxisPosition home = file.setup.machine.home();
     for (size_t i = 0; i < core::axis_count; ++i) {

@@ -30,7 +30,7 @@ std::string outline(const core::ToolDescription& tool) {
     return rows.empty() ? "" : fmt::format("profile = [{}]\n", fmt::join(rows, ", "));
 }
 
-/// The tables and numbers that come before a size in a file.
+/// The keys that precede a size in the file.
 std::string before(std::string_view key, const core::ToolDescription& tool) {
     if (key == "neck_diameter") return outline(tool);
     if (key == "shank_diameter")
@@ -46,8 +46,8 @@ std::string sizes(const core::ToolDescription& tool) {
         if (const auto value = size.of(tool)) text += key(size.key, *value);
     }
     if (tool.touched_off)
-        text += fmt::format("touched_off = {}     # the control counts this as its length, and the "
-                            "work offset fits; take it out to have the true length count\n",
+        text += fmt::format("touched_off = {}     # length that the control uses, matching the "
+                            "work offset; remove it to use the true length\n",
                             toml_number(*tool.touched_off));
     return text;
 }
@@ -92,10 +92,11 @@ std::string stock_table(const core::Solid& stock, std::string_view frame) {
         text += fmt::format("     # two corners\nbox = [{}, {}]\n", triple(box->box.min),
                             triple(box->box.max));
     } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
-        text += fmt::format("     # stands on `at`\ncylinder = {{ radius = {}, height = {}, axis = "
-                            "\"{}\" }}\nat = {}\n",
-                            toml_number(round->radius), toml_number(round->height),
-                            "XYZ"[round->axis], triple(round->base));
+        text += fmt::format(
+            "     # base centre at `at`\ncylinder = {{ radius = {}, height = {}, axis = "
+            "\"{}\" }}\nat = {}\n",
+            toml_number(round->radius), toml_number(round->height), "XYZ"[round->axis],
+            triple(round->base));
     } else {
         return {};
     }
@@ -109,7 +110,7 @@ namespace {
 constexpr const char* offset_keys[] = {"G54", "G55",       "G56",       "G57",      "G58",
                                        "G59", "\"G59.1\"", "\"G59.2\"", "\"G59.3\""};
 
-/// Lines of a comment; what a program says must not end it.
+/// A text as comment lines; a line end in it does not end the comment.
 std::string comment(const std::string& text) {
     std::string lines;
     for (const char c : wrapped(utf8_text(text), 1, 2)) {
@@ -144,7 +145,7 @@ std::string program_text(const SetupFile& setup) {
     return text;
 }
 
-/// The axes with the home that was assumed.
+/// The axes with their assumed home.
 std::string machine_text(const SetupFile& setup) {
     if (!setup.environment.home) return {};
     constexpr const char* directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
@@ -178,10 +179,9 @@ std::string rules_text(const SetupFile& setup) {
 } // namespace
 
 std::string setup_text(const SetupFile& setup, const std::string& program) {
-    std::string text = comment("What the program " + program
-                               + " says about its set-up, and what was assumed where it says "
-                                 "nothing. Compare it with what stands in the machine, add the "
-                                 "fixtures, and check the program against it.");
+    std::string text = comment("Set-up inferred from the program " + program
+                               + ", with these assumptions. Compare it with the real machine, "
+                                 "add the fixtures, and check the program against it.");
     text += "#\n";
     for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
     text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));

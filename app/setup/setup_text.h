@@ -12,21 +12,21 @@ namespace app {
 
 struct SetupFile;
 
-/// A number as TOML has it, to the last bit; whole ones stay whole.
+/// A number in TOML, exact to the last bit; whole numbers are written without a fraction.
 std::string toml_number(double value);
 
-/// A text as TOML has it: read again it is the same, or utf8_text of it.
+/// A text as a TOML string that gives the text when read, or its utf8_text.
 std::string toml_text(std::string_view text);
 
-/// A `[[tool]]` that is read as this tool, every number to its last bit.
+/// A `[[tool]]` that gives this tool when read, exact to the last bit.
 std::string tool_table(const core::ToolDescription& tool);
 
-/// A `[stock]` that is read as this box or cylinder; empty for a mesh, which has a file of its own.
+/// A `[stock]` that gives this box or cylinder when read; empty for a mesh, which needs a file.
 std::string stock_table(const core::Solid& stock, std::string_view frame);
 
-/// A set-up as a file that `check --setup` takes, with what was assumed as comments.
+/// A set-up as a file for `check --setup`, with the assumptions as comments.
 ///
-/// Result: every number to its last bit, so that the file means what the set-up means.
+/// Result: numbers are exact to the last bit, so the file gives the same set-up when read.
 std::string setup_text(const SetupFile& setup, const std::string& program);
 
 } // namespace app

@@ -9,7 +9,7 @@
 namespace app {
 namespace {
 
-/// How many letters have to change to make one word of the other.
+/// The number of letter edits that turn one word into the other.
 size_t edit_distance(const std::string& a, const std::string& b) {
     std::vector<size_t> row(b.size() + 1);
     for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -27,7 +27,7 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string nearest(const std::string& word, const std::set<std::string>& known) {
     std::string best;
-    size_t least = 3; // farther apart it would be a guess
+    size_t least = 3; // a suggestion must be closer than this
     for (const std::string& candidate : known) {
         const size_t apart = edit_distance(word, candidate);
         if (apart >= least) continue;

@@ -15,13 +15,13 @@
 
 namespace app {
 
-/// Reads a TOML table key by key and refuses what nobody asked for.
+/// Reads a TOML table key by key, and refuses keys that the caller never reads.
 ///
-/// The first mistake is kept, with its place, and every later reading gives nothing; so a caller
-/// reads what it needs and looks at the error once, at the end.
+/// Only the first error is kept, with its position; after it all reads return nothing. So a caller
+/// can read everything and check for an error once, at the end.
 class TableReader {
 public:
-    /// `name` is how messages call the table: `[stock]`. `error` outlives the reader.
+    /// `name`: the table in messages, such as `[stock]`. `error` must outlive the reader.
     TableReader(const toml::table& table, std::string name, std::optional<core::Error>& error)
         : table_(table), name_(std::move(name)), error_(error) {}
 
@@ -29,7 +29,7 @@ public:
     bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
     bool is_text(const char* key) const { return table_.get(key) && table_.get(key)->is_string(); }
 
-    /// How long the first row of a list of rows is; 0 when there is none.
+    /// The length of the first row of a list of rows; 0 if there is none.
     size_t row_length(const char* key) const;
 
     std::optional<double> number(const char* key);
@@ -38,13 +38,13 @@ public:
     std::optional<std::string> string(const char* key);
     std::optional<bool> boolean(const char* key);
 
-    /// One of a few words.
+    /// A string that must be one of the given words.
     std::optional<std::string> word(const char* key, std::span<const char* const> words);
     std::optional<std::string> word(const char* key, std::initializer_list<const char*> words) {
         return word(key, std::span(words.begin(), words.size()));
     }
 
-    /// A list of texts, of a fixed length unless `length` is 0.
+    /// A list of strings, of a fixed length unless `length` is 0.
     std::optional<std::vector<std::string>> strings(const char* key, size_t length);
 
     /// A list of numbers, of a fixed length unless `length` is 0.
@@ -54,33 +54,33 @@ public:
     /// A list of rows of numbers, each of the given length.
     std::vector<std::vector<double>> rows(const char* key, size_t length);
 
-    /// A table in the table; empty when it is absent.
+    /// A nested table; empty if absent.
     std::optional<TableReader> table(const char* key, const std::string& name);
 
     /// The tables of a list of tables, as in `[[fixture]]`.
     std::vector<TableReader> tables(const char* key, const std::string& name);
 
-    /// Names of all keys, none of which counts as read by this.
+    /// The names of all keys. Does not mark them as read.
     std::vector<std::string> keys() const;
 
-    /// Notes a mistake in the value of a key, unless there was one before.
+    /// Records an error in the value of a key, unless there was one before.
     void refuse(const char* key, const std::string& why);
 
-    /// Notes a mistake of the table as a whole.
+    /// Records an error of the table as a whole.
     void refuse_whole(const std::string& why) { refuse_at(table_.source(), why); }
 
-    /// Notes a mistake in another file that this one names.
+    /// Records an error in another file that this one names.
     void refuse_with(const core::Error& error);
 
-    /// Notes that a key is missing.
+    /// Records that a key is missing.
     void need(const char* key);
 
-    /// Refuses the first key that was never asked for.
+    /// Refuses the first key that was never read.
     void finish();
 
     const std::string& name() const { return name_; }
 
-    /// Where the table begins in its file.
+    /// The line on which the table begins.
     uint32_t line() const { return table_.source().begin.line; }
 
 private:

@@ -9,14 +9,14 @@
 
 namespace app {
 
-/// A text in TOML as a table.
+/// Parses TOML text.
 ///
 /// Errors: syntax, with line and column.
 core::Result<toml::table> parsed_toml(std::string_view text);
 
-/// A TOML file as a table.
+/// Reads a TOML file.
 ///
-/// Errors: io when there is no such file; syntax, with line and column. All name the file.
+/// Errors: io if there is no such file; syntax, with line and column. All name the file.
 core::Result<toml::table> read_toml(const std::string& path);
 
 } // namespace app

@@ -25,8 +25,8 @@ void read_shape(TableReader& table, core::ToolDescription& tool) {
         tool.outline.push_back({row[0], row[1]});
 }
 
-/// The share of the diameter that an end mill leaves standing when it cannot plunge and nobody says
-/// how much it is.
+/// Diameter of the uncut centre of an end mill that cannot plunge, as a fraction of its diameter,
+/// if not stated.
 constexpr double usual_centre = 0.5;
 
 void read_centre(TableReader& table, core::ToolDescription& tool) {
@@ -96,18 +96,18 @@ void read_length_offset(TableReader& table, SetupFile& file) {
     const core::OffsetNumber key{*number};
     if (!file.lengths_set.insert(key).second)
         table.refuse("number", fmt::format("= {} is defined twice", *number));
-    file.environment.length_offsets[key] = offset; // a tool table may have had another
+    file.environment.length_offsets[key] = offset; // replaces the entry of a tool table
 }
 
 namespace {
 
-constexpr double mesh_tolerance = 0.005; // mm, by which cones may be wider than a mesh
-constexpr double same_level = 0.01;      // mm; meshes come in single precision
+constexpr double mesh_tolerance = 0.005; // mm by which cones may be larger than the mesh
+constexpr double same_level = 0.01;      // mm; meshes have single precision
 
 void read_named(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
     const std::string name = table.string("holder").value_or("");
     HolderLibrary library;
-    std::string where = "among the holders that come with Feeler";
+    std::string where = "among the holders shipped with Feeler";
     if (const auto file = table.string("holder_file")) {
         auto read = read_holder_library((context.folder / *file).string());
         if (!read) return table.refuse_with(read.error());
@@ -139,7 +139,7 @@ void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescri
                 name, lowest));
     tool.holder = cones_of_profile(core::revolved_hull(read->mesh, mesh_tolerance));
     context.file.assumptions.push_back(
-        fmt::format("tool {}: its holder is the smallest body of revolution around {}",
+        fmt::format("tool {}: its holder is the smallest body of revolution that contains {}",
                     core::value_of(tool.number), name));
 }
 

@@ -14,20 +14,20 @@ class TableReader;
 struct BodyContext;
 struct SetupFile;
 
-/// Reads one `[[tool]]` into the set-up and into what the control knows of tool lengths.
+/// Reads one `[[tool]]` into the set-up and into the control's tool lengths.
 void read_tool(TableReader& table, BodyContext& context);
 
-/// What a description leaves open, and what is taken for granted there.
+/// Notes on properties that a description leaves open, and on what is assumed for them.
 std::vector<std::string> notes_on(const core::ToolDescription& tool);
 
 /// Reads one `[[length_offset]]`.
 void read_length_offset(TableReader& table, SetupFile& file);
 
-/// Reads what holds a tool: `holder` as cones, as an outline or as a name from a library
-/// (`holder_file`, else those that come with the program), or `holder_mesh`.
+/// Reads the holder of a tool: `holder` as cones, an outline or a name in a library (`holder_file`,
+/// else the holders shipped with Feeler), or `holder_mesh`.
 void read_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool);
 
-/// A part of a tool given as cones, rows of three, or as an outline, rows of two.
+/// A part of a tool, given as cones (rows of three) or as an outline (rows of two).
 std::vector<core::ConeStep> read_steps(TableReader& table, const char* key);
 
 } // namespace app

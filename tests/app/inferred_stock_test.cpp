@@ -51,7 +51,7 @@ std::string faced_then_grooved(double x) {
 TEST(GuessedStock, EndsWhereARapidGoesDownBesideTheCuts) {
     const Inferred run = infer(faced_then_grooved(-15.0));
     EXPECT_EQ(run.count("rapid-in-stock"), 0u);
-    EXPECT_THAT(run.assumed, HasSubstr("it ends at X -12.000, where line 11 goes down beside it"));
+    EXPECT_THAT(run.assumed, HasSubstr("it ends at X -12.000, because line 11 plunges next to it"));
     EXPECT_DOUBLE_EQ(run.stock().min.x, -12.0);
     EXPECT_DOUBLE_EQ(run.stock().max.x, 123.0);
 }
@@ -87,8 +87,9 @@ TEST(StatedStock, IsTheBlankOfKlartext) {
                                "4 L X+0 Y+10 Z+5 R0 FMAX M3\n5 L Z-3 F200\n6 L X+50\n"
                                "7 L Z+50 FMAX M2\n8 END PGM P MM\n",
                                "p.h");
-    EXPECT_THAT(run.assumed, HasSubstr("the stock is the box of BLK FORM in line 3: X -10.000 to "
-                                       "90.000, Y 0.000 to 50.000, Z -20.000 to 0.000"));
+    EXPECT_THAT(run.assumed,
+                HasSubstr("the stock is the box given by BLK FORM in line 3: X -10.000 to "
+                          "90.000, Y 0.000 to 50.000, Z -20.000 to 0.000"));
     EXPECT_EQ(run.stock().min, core::Vec3(-10, 0, -20));
     EXPECT_EQ(run.stock().max, core::Vec3(90, 50, 0));
 }
@@ -225,8 +226,10 @@ TEST(NamedTool, IsWhatItsNameSays) {
               "N50 G1 Z-5 F100\nN60 G0 Z10\nN70 T=\"BALL_MILL_6MM\" M6\nN80 M3 S1000\n"
               "N90 G0 X20 Z10 D1\nN100 G1 Z-2 F100\nN110 X30\nN120 G0 Z10\nN130 M30\n",
               "p.mpf");
-    EXPECT_THAT(run.assumed, HasSubstr("tool 1 is a drill of 8.5 mm, by its name in line 2"));
-    EXPECT_THAT(run.assumed, HasSubstr("tool 2 is a ball end mill of 6 mm, by its name in line 7"));
+    EXPECT_THAT(run.assumed,
+                HasSubstr("tool 1 is a drill of 8.5 mm, according to its name in line 2"));
+    EXPECT_THAT(run.assumed,
+                HasSubstr("tool 2 is a ball end mill of 6 mm, according to its name in line 7"));
 }
 
 TEST(NamedTool, IsNoDrillWhereItCutsSideways) {
@@ -234,8 +237,9 @@ TEST(NamedTool, IsNoDrillWhereItCutsSideways) {
         infer("N10 G17 G710 G90 G54\nN20 T=\"DRILL 8.5\" M6\nN30 M3 S1000\nN40 G0 X0 Y0 Z10 D1\n"
               "N50 G1 Z-5 F100\nN60 X50\nN70 G0 Z10\nN80 M30\n",
               "p.mpf");
-    EXPECT_THAT(run.assumed, HasSubstr("tool 1 is a flat end mill of 8.5 mm, by its name in line 2 "
-                                       "and its use, as no drill cuts sideways"));
+    EXPECT_THAT(run.assumed,
+                HasSubstr("tool 1 is a flat end mill of 8.5 mm, according to its name in line 2 "
+                          "and its use, because drills do not cut sideways"));
 }
 
 TEST(GuessedStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {

@@ -41,7 +41,8 @@ TEST(InferredSetup, IsWhatTheProgramReaches) {
     const Inferred run = infer(pocket);
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.report["verdict"], "clear");
-    EXPECT_TRUE(run.assumes("tool 3 is a flat end mill of 6 mm, by the comment in line 3"));
+    EXPECT_TRUE(
+        run.assumes("tool 3 is a flat end mill of 6 mm, according to the comment in line 3"));
     EXPECT_TRUE(
         run.assumes("X 7.000 to 43.000, Y 7.000 to 33.000, Z -7.000 (2 mm below the deepest "
                     "cut) to 0.000 (at Z0"));
@@ -71,9 +72,9 @@ TEST(InferredSetup, PutsTheTopAtTheHighestCutWhenZeroIsBelow) {
 TEST(InferredSetup, TakesAnUnknownToolByItsUse) {
     const std::string head = "G21 G90\nT1 M6\nS1000 M3\nG43 H1 Z20\nG0 X5 Y5\n";
     const Inferred drill = infer(head + "G81 Z-9 R2 F100\nX15\nG80\nG0 Z20\nM2\n");
-    EXPECT_TRUE(drill.assumes("tool 1 is a drill of 6 mm, by its use alone"));
+    EXPECT_TRUE(drill.assumes("tool 1 is a drill of 6 mm, according to its use alone"));
     const Inferred mill = infer(head + "G1 Z-1 F100\nX15\nG0 Z20\nM2\n");
-    EXPECT_TRUE(mill.assumes("tool 1 is a flat end mill of 6 mm, by its use alone"));
+    EXPECT_TRUE(mill.assumes("tool 1 is a flat end mill of 6 mm, according to its use alone"));
 }
 
 TEST(InferredSetup, AssumesHandworkWhereTheProgramLeavesIt) {
@@ -144,7 +145,7 @@ TEST(StockEnvelope, CountsInASetUpAsWell) {
         const Checked checked = check(setup, program);
         EXPECT_EQ(checked.status, 0) << checked.err << checked.errors();
         for (const std::string& each : checked.assumptions)
-            if (each.find("the stock is what the tools reach") == 0) return each;
+            if (each.find("the stock is the box that cutting moves reach") == 0) return each;
         return std::string();
     };
     EXPECT_NE(assumed(SetupWriter().without_stock()).find("X 5.000 to 45.000"), std::string::npos);

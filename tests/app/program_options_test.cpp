@@ -152,7 +152,7 @@ TEST(IniFile, MayNameFilesThatAreNotThereYet) {
         traced.folder.write("mill.ini", "[RS274NGC]\nPARAMETER_FILE = new.var\nwhat is this\n");
     traced.run("g21 g0 x1\nm2\n", {"--ini", ini});
     EXPECT_EQ(traced.ran.status, 0) << traced.ran.err;
-    EXPECT_TRUE(traced.warns("new.var does not exist and is taken as empty"));
+    EXPECT_TRUE(traced.warns("new.var does not exist; treated as empty"));
 }
 
 TEST(MaxBlocks, StopsAProgramThatRunsLonger) {
@@ -262,15 +262,15 @@ TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
                              const std::string& told) {
         expect_refused({option, folder.write("bad.txt", text)}, told);
     };
-    refused("--parameters", "5221 1\nfive 1\n", "bad.txt:2: a line of a variables file");
+    refused("--parameters", "5221 1\nfive 1\n", "bad.txt:2: expected a parameter number");
     refused("--parameters", "5221 1 1\n", "bad.txt:1: ");
     refused("--parameters", "0 1\n", "there is no parameter #0");
     refused("--parameters", "99999 1\n", "there is no parameter #99999");
     refused("--parameters", "31 1\n31 2\n", "bad.txt:2: #31 is defined twice");
     refused("--tool-table", "T1 Z1\nT1 Z2\n", "bad.txt:2: T1 is defined twice");
     refused("--tool-table", "P1 Z1\n", "needs a T word");
-    refused("--tool-table", "T1 K1\n", "'K1': K is no letter");
-    refused("--tool-table", "T1 Zlong\n", "'Zlong': is no letter and number");
+    refused("--tool-table", "T1 K1\n", "'K1': K is not a letter");
+    refused("--tool-table", "T1 Zlong\n", "'Zlong': is not a letter and a number");
     refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
     refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
     refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not supported");

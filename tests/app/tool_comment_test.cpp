@@ -113,7 +113,8 @@ TEST(FoundTool, IsCompletedAndSaysWhatIsAssumed) {
     const ProgramTools found = tools_in("(T3 D=6. CR=0. - ZMIN=-1. - BALL END MILL)\nT3 M6" + code);
     const CompleteTool whole = complete(found.tools.at(ToolNumber{3}));
     EXPECT_EQ(whole.assumed,
-              "tool 3 is a ball end mill of 6 mm, by the comment in line 1; flutes 18 mm, shank 6 "
+              "tool 3 is a ball end mill of 6 mm, according to the comment in line 1; flutes 18 "
+              "mm, shank 6 "
               "mm, 38 mm from the tip to the end of its shank, no holder are assumed");
     EXPECT_EQ(whole.tool.flute_length, 18.0);
 }

@@ -84,7 +84,7 @@ TEST(ToolTable, TakesAShippedHolderByItsName) {
     EXPECT_EQ(core::bounds(holder(tool)).max.x, 31.5); // the flange of the taper
     EXPECT_EQ(core::bounds(tool.parts[1].profile).max.z, 45.0);
     expect_refused(flat + "holder = \"BT40-ER99\"\n",
-                   "\"BT40-ER99\" is not among the holders that come with Feeler");
+                   "\"BT40-ER99\" is not among the holders shipped with Feeler");
     expect_refused(flat + "holder = \"BT40-ER99\"\n", "BT40-ER32 ");
 }
 
@@ -110,7 +110,7 @@ TEST(ToolTable, TakesAHolderFromAMesh) {
     const std::string mesh = flat + "holder_mesh = \"holder.stl\"\n";
     EXPECT_EQ(core::bounds(holder(tool_of(mesh))).max.x, 5.0);
     EXPECT_EQ(tool_of(mesh).length, 50.0);
-    EXPECT_TRUE(assumes(mesh, "smallest body of revolution around holder.stl"));
+    EXPECT_TRUE(assumes(mesh, "smallest body of revolution that contains holder.stl"));
     expect_refused(mesh + "holder = [[5, 5, 5]]\n", "cannot be combined with holder");
     folder().write("low.stl",
                    test_support::binary_stl(test_support::box_mesh({-3, -4, -1}, {3, 4, 30})));

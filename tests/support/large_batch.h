@@ -37,8 +37,9 @@ inline app::ProgramResult one_of_many(size_t i, size_t findings) {
              .pair = {"holder", fmt::format("clamp-{}", k % 4)},
              .shortfall = 0.5});
     }
-    program.assumptions = {"rapids run straight",
-                           fmt::format("the stock is what the tools reach: X 0 to {}", i)};
+    program.assumptions = {
+        "rapids run straight",
+        fmt::format("the stock is the box that cutting moves reach: X 0 to {}", i)};
     program.tightest = app::Tightest{.block = 5,
                                      .line = 5,
                                      .pair = {"holder", "clamp-1"},

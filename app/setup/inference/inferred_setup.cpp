@@ -22,9 +22,9 @@ namespace {
 using core::ToolNumber;
 using core::Vec3;
 
-constexpr double zero_above_program = 500.0; // mm, of the machine
+constexpr double zero_above_program = 500.0; // mm; height of machine zero
 
-constexpr double between = 500.0; // mm of X from one part to the next, holders and rapids included
+constexpr double between = 500.0; // mm in X between workpieces, leaves room for holders and rapids
 
 std::string name_of_place(size_t offset) {
     if (offset < 6) return fmt::format("G{}", 54 + offset);
@@ -32,7 +32,7 @@ std::string name_of_place(size_t offset) {
     return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
 }
 
-/// The work offset in which most of the feeds are; empty if nothing is fed.
+/// The work offset with most of the feed travel; empty if nothing is cut.
 std::optional<size_t> main_place(const ProgramSurvey& seen) {
     std::optional<size_t> main;
     for (const auto& [offset, place] : seen.places)
@@ -40,8 +40,8 @@ std::optional<size_t> main_place(const ProgramSurvey& seen) {
     return main;
 }
 
-/// Moves the work offsets of a bare set-up apart, like parts that are clamped side by side, unless
-/// the program writes them itself.
+/// Moves the work offsets of a bare set-up apart, as for workpieces clamped side by side, unless
+/// the program sets them itself.
 ///
 /// Result: the assumptions; empty if nothing was moved.
 std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
@@ -57,15 +57,15 @@ std::vector<std::string> move_apart(gcode::Environment& environment, const Progr
         environment.work_offsets[offset][0] += shift;
         edge = place.reach.max.x + shift;
     }
-    return {fmt::format("the program works at {} and {}, which are assumed to be separate parts. "
-                        "The stock is at {}, where most is cut; there is none at {}, so what is "
-                        "done there is not checked: to check it, state the offsets and a stock in "
-                        "a set-up",
+    return {fmt::format("the program cuts in {} and {}, assumed to be separate workpieces. The "
+                        "stock is at {}, where most is cut; there is none at {}, so cuts there "
+                        "are not checked: to check them, state the offsets and a stock in a "
+                        "set-up",
                         name_of_place(*main), fmt::join(others, ", "), name_of_place(*main),
                         fmt::join(others, ", "))};
 }
 
-/// A number that no tool has.
+/// A tool number that is not in use.
 ToolNumber free_number(const ProgramSurvey& seen) {
     int number = 1;
     while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
@@ -73,17 +73,17 @@ ToolNumber free_number(const ProgramSurvey& seen) {
     return ToolNumber{number};
 }
 
-/// A tool that is called a drill and cuts sideways is some mill of that width.
+/// A tool called a drill that cuts sideways becomes a mill of that diameter.
 FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
     const auto use = seen.mills.find(tool.tool.number);
     const bool mills = use != seen.mills.end() && use->second;
     if (!mills || tool.tool.shape != core::ToolShape::drill || tool.tool.point_deg) return tool;
     tool.tool.shape = core::ToolShape::flat;
-    tool.source += " and its use, as no drill cuts sideways";
+    tool.source += " and its use, because drills do not cut sideways";
     return tool;
 }
 
-/// What is known of the tools that the program uses and the set-up has not.
+/// The tools that the program uses and the set-up lacks, with what is known of them.
 core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
                                                    const ProgramSurvey& seen) {
     FEELER_TRY(const OfferedTools offered, offered_tools(file, program));
@@ -95,7 +95,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     std::vector<FoundTool> missing;
     std::vector<ToolNumber> wanted = seen.tools;
     const bool only_empties = seen.tools.empty() && seen.empties_spindle;
-    if (file.is_inferred && only_empties) wanted.push_back(ToolNumber{0}); // T0 M6, and it cuts
+    if (file.is_inferred && only_empties) wanted.push_back(ToolNumber{0}); // it cuts after T0 M6
     for (const ToolNumber number : wanted) {
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
@@ -127,7 +127,7 @@ std::vector<std::string> put_tools(SetupFile& file, const std::vector<FoundTool>
     std::vector<std::string> assumed;
     for (const FoundTool& tool : tools) {
         auto length = seen.control_lengths.find(tool.tool.number);
-        if (length == seen.control_lengths.end()) // of what is in the spindle before any call
+        if (length == seen.control_lengths.end()) // the tool in the spindle before the first call
             length = seen.control_lengths.find(ToolNumber{0});
         assumed.push_back(put_tool(file, tool, least_flutes,
                                    length == seen.control_lengths.end() ? 0.0 : length->second));
@@ -144,7 +144,7 @@ SurveyTools sizes(const SetupFile& file, bool calls_tools) {
         known.lengths[number] = tool.length;
         known.radii[number] = widest;
     }
-    // A motion before any call is one of the tool that is held, or of the only one there is.
+    // A motion before the first call belongs to the tool stated for the start, or to the only tool.
     const bool only_one = !calls_tools && file.setup.tools.size() == 1;
     if (file.setup.tool_at_start || only_one) {
         const ToolNumber only = file.setup.tool_at_start.value_or(file.setup.tools.begin()->first);
@@ -154,7 +154,7 @@ SurveyTools sizes(const SetupFile& file, bool calls_tools) {
     return known;
 }
 
-/// Puts the stock where the program shows that it is, or says that it is.
+/// Adds the stock that the program states, else the one inferred from its cuts.
 core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
                                                       const gcode::Program& program,
                                                       const ProgramSurvey& seen,
@@ -173,7 +173,7 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     if (stated) {
         const Vec3 shift = seen.zero - frame;
         stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
-                 fmt::format("the stock is the box of {}: {}", stated->source,
+                 fmt::format("the stock is the box given by {}: {}", stated->source,
                              box_text({stated->box.min + shift, stated->box.max + shift}))};
     } else {
         stock = guessed_stock(seen, frame, margin);
@@ -186,9 +186,9 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     return std::vector<std::string>{stock.why};
 }
 
-/// A program that cuts nothing that could be known: no stock is put where it moves.
+/// Omits the stock for a program whose cuts cannot be known.
 ///
-/// Result: why, empty for all others.
+/// Result: the reason; empty for all other programs.
 std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
     if (!file.is_inferred) return std::nullopt;
     std::string why;
@@ -211,7 +211,7 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     return why;
 }
 
-/// What an operator does who runs such a program.
+/// Assumes what an operator does by hand when running such a program.
 void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
     if (!seen.turns_spindle) {
         file.setup.spindle_at_start = core::SpindleDirection::clockwise;
@@ -224,11 +224,10 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
     if (seen.offsets_lengths) return;
     file.setup.rules["missing-length-offset"] = core::Severity::off;
     file.assumptions.push_back(
-        "the program uses no tool length offset: the work offset is set anew for each tool");
+        "the program uses no tool length offset: Z is touched off with each tool");
 }
 
-/// Large stocks take a coarser model, so that its memory stays that of an ordinary one, and small
-/// ones a finer one.
+/// A coarser mesh for large stocks, to limit memory, and a finer one for small stocks.
 void choose_mesh_size(SetupFile& file) {
     constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
     if (!file.is_inferred) return;
@@ -257,9 +256,8 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
     if (!speeds.empty()) file.assumptions.push_back(speeds);
     file.assumptions.push_back(
-        fmt::format("no set-up: no fixtures, no limits of axes; all work offsets are at one place, "
-                    "and the machine's zero, where it starts and has its home, is {:g} mm above "
-                    "it",
+        fmt::format("no set-up: no fixtures, no axis limits; all work offsets are equal; machine "
+                    "zero, which is also the start and home position, is {:g} mm above them",
                     zero_above_program));
     file.assumptions.push_back("every tool was touched off: the control knows its true length");
     return file;
@@ -299,7 +297,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         about_stock.insert(about_stock.end(), notes.begin(), notes.end());
         choose_mesh_size(file);
     }
-    // Flutes of which nothing is said are as long as the program needs them.
+    // Flutes of unstated length are as long as the program needs them.
     const double top =
         core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
@@ -307,7 +305,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     for (size_t i = 0; i < tools.size(); ++i)
         file.inferred_tools.insert_or_assign(tools[i].tool.number, notes[i]);
     if (!about_stock.empty()) file.inferred_stock = about_stock.back();
-    if (!file.not_judged.empty()) notes.clear(); // mills that turn nothing
+    if (!file.not_judged.empty()) notes.clear(); // irrelevant: motions are not checked
     notes.insert(notes.end(), about_stock.begin(), about_stock.end());
     file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
@@ -315,12 +313,12 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
 
 namespace {
 
-/// The size of a tool of which nothing is known.
+/// Default diameter of an unknown tool, mm.
 double usual_diameter(gcode::LengthUnit unit) {
     return unit == gcode::LengthUnit::inch ? 6.35 : 6.0;
 }
 
-/// The plainest tool of that width, when the sizes that were found contradict each other.
+/// A plain tool of that diameter, for sizes that contradict each other.
 core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
     FoundTool plain;
     plain.tool.number = tool.number;
@@ -352,8 +350,8 @@ FoundTool unknown_tool(ToolNumber number, bool mills, gcode::LengthUnit unit) {
     guess.tool.shape = mills ? core::ToolShape::flat : core::ToolShape::drill;
     guess.tool.diameter = usual_diameter(unit);
     guess.has_shape = true;
-    guess.source = fmt::format("its use alone: it {}, and nothing is said about it",
-                               mills ? "cuts sideways" : "only goes up and down");
+    guess.source = fmt::format("its use alone: it {}, and nothing describes it",
+                               mills ? "cuts sideways" : "only moves up and down");
     return guess;
 }
 
@@ -362,7 +360,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
     if (file.is_inferred) tool.touched_off = control_length;
-    // The control's table knows how long a tool is, if it knows it at all.
+    // The control's tool table may give the tool length.
     const auto entry =
         file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
     const bool longer = entry != file.environment.length_offsets.end()
@@ -370,7 +368,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     if (!file.is_inferred && longer && !tool.gauge_length) tool.gauge_length = entry->second.length;
     auto assembled = core::assemble(tool);
     if (!assembled) {
-        whole.assumed = fmt::format("{}; it is taken as a flat end mill of {:g} mm",
+        whole.assumed = fmt::format("{}; treated as a flat end mill of {:g} mm",
                                     assembled.error().message, tool.diameter);
         assembled = plain_tool(tool);
     }

@@ -28,14 +28,14 @@ using core::Vec3;
 constexpr double below_the_cuts = 2.0; // mm of stock under the deepest cut
 constexpr double smallest_height = 1.0;
 
-/// Where the top of the material lies above a zero, and why.
+/// The top of the material relative to a zero, and why.
 struct Top {
     double z = 0.0;
     std::string why;
 };
 
 Top top_of(const ProgramSurvey& seen, double zero) {
-    constexpr double near = 2.0, share = 0.25; // how far above zero ramps and leads begin
+    constexpr double near = 2.0, share = 0.25; // ramps and leads begin up to this height above zero
     const double lowest = seen.lowest - zero;
     if (seen.retract && *seen.retract - zero < 0.0 && *seen.retract > seen.lowest)
         return {*seen.retract - zero, "where rapids travel"};
@@ -48,17 +48,17 @@ Top top_of(const ProgramSurvey& seen, double zero) {
     return {highest, "at the highest cut"};
 }
 
-/// A top above zero is no higher than where rapids go down to, holes before they are drilled.
+/// Lowers a top above zero to the end of the lowest rapid plunge, such as those before drilling.
 void lower_top(const std::vector<UncutPlunge>& plunges, double zero, Aabb& box, Top& top) {
     for (const UncutPlunge& plunge : plunges) {
         const double z = plunge.tip.z;
         if (z < zero || z >= box.max.z || z < box.min.z + smallest_height) continue;
         box.max.z = z;
-        top.why = fmt::format("where line {} goes down to by rapid", plunge.line);
+        top.why = fmt::format("where the rapid in line {} ends", plunge.line);
     }
 }
 
-/// The sides of a box that go back, and the plunge that each ends at.
+/// The sides of a box that move inwards, and the plunge that stops each.
 struct Sides {
     Aabb whole, box;
     std::array<const UncutPlunge*, 4> ends{}; // X from, X to, Y from, Y to
@@ -68,7 +68,7 @@ struct Sides {
                              : box.max[static_cast<int>(side / 2)];
     }
 
-    /// Where a side has to stand so that a plunge comes down beside it.
+    /// The position of a side that makes a plunge pass just outside.
     static double beside(const UncutPlunge& plunge, size_t side) {
         const double at = plunge.tip[static_cast<int>(side / 2)];
         return side % 2 == 0 ? at + plunge.radius : at - plunge.radius;
@@ -81,7 +81,7 @@ struct Sides {
     }
 
     void go_back(const UncutPlunge& plunge) {
-        constexpr double most = 0.2; // of the whole, from both sides together
+        constexpr double most = 0.2; // of the whole size, both sides together
         double least = most;
         std::optional<size_t> chosen;
         for (size_t side = 0; side < 4; ++side) {
@@ -104,7 +104,7 @@ struct Sides {
         for (size_t side = 0; side < 4; ++side)
             if (ends[side])
                 text +=
-                    fmt::format("{} {} {:.3f}, where line {} goes down beside it by rapid",
+                    fmt::format("{} {} {:.3f}, because line {} plunges next to it by rapid",
                                 text.empty() ? "; it ends at" : " and at", names[side],
                                 place(side) - frame[static_cast<int>(side / 2)], ends[side]->line);
         return text;
@@ -134,10 +134,10 @@ GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double 
         if (plunge.tip.z < box.max.z && sides.holds(plunge)) sides.go_back(plunge);
     const Vec3 low = sides.box.min - frame, high = sides.box.max - frame;
     return {sides.box,
-            fmt::format("the stock is what the tools reach on cutting moves{}: X {:.3f} to {:.3f}, "
+            fmt::format("the stock is the box that cutting moves reach{}: X {:.3f} to {:.3f}, "
                         "Y {:.3f} to {:.3f}, Z {:.3f} ({:g} mm below the deepest cut) to {:.3f} "
                         "({}){}",
-                        margin > 0.0 ? fmt::format(" and {:g} mm around", margin) : "", low.x,
+                        margin > 0.0 ? fmt::format(" plus {:g} mm per side", margin) : "", low.x,
                         high.x, low.y, high.y, low.z, below, high.z, top.why, sides.why(frame))};
 }
 
@@ -152,7 +152,7 @@ namespace {
 
 constexpr double same_height = 0.05; // mm
 
-/// How deep feeds have been, in square cells over a box.
+/// The lowest Z of feeds, in square cells over a box.
 class CutHeights {
 public:
     CutHeights(const Aabb& box, double widest)
@@ -171,8 +171,9 @@ public:
         }
     }
 
-    /// Whether a tool that stands there stands in what no feed has cut. Cells count by their
-    /// middle; between two places of a cut, its side is that much nearer than its radius.
+    /// Whether a tool at this point is in uncut material. Cells count by their centres. Because a
+    /// cut is recorded at discrete points, its side may be missing by up to `missed` between two of
+    /// them; the radius is reduced by that.
     bool is_uncut(const Vec3& tip, double radius) const {
         const double missed = 0.01 + cell_ * cell_ / (8.0 * std::max(radius, cell_));
         bool uncut = false;
@@ -186,7 +187,7 @@ private:
         visit(tip, radius, [&](size_t at) { heights_[at] = std::min(heights_[at], tip.z); });
     }
 
-    /// Calls for every cell whose middle lies within a radius, the one below the place at least.
+    /// Calls for every cell whose centre lies within the radius, and at least for the cell below.
     template <typename Visit>
     void visit(const Vec3& place, double radius, Visit&& call) const {
         const double x = (place.x - box_.min.x) / cell_, y = (place.y - box_.min.y) / cell_;
@@ -250,15 +251,15 @@ using core::Vec3;
 std::optional<double> number_in(std::string text) {
     if (text.starts_with('+')) text.erase(0, 1);
     for (char& c : text)
-        if (c == ',') c = '.'; // as controls with German settings write it
+        if (c == ',') c = '.'; // decimal comma of German settings
     double value = 0.0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (failure != std::errc() || end == text.data()) return std::nullopt;
     return value;
 }
 
-/// The corner behind BLK FORM 0.1 or 0.2, in a code without blanks: X-5Y+0Z-20. Where a coordinate
-/// has an I in front, it counts from the other corner.
+/// The corner after BLK FORM 0.1 or 0.2, in a code without blanks: X-5Y+0Z-20. A coordinate with an
+/// I in front is relative to the other corner.
 std::optional<Vec3> corner_in(const std::string& words, const Vec3& other) {
     Vec3 corner(0.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -308,7 +309,7 @@ struct MaterialHeader {
     bool announced = false; // (Material Size)
     std::optional<Vec3> size{};
     bool zero_on_table = false;
-    std::string corner; // of the zero: BOTTOMLEFT, CENTER; empty where it is not said
+    std::string corner; // position of zero: BOTTOMLEFT, CENTER; empty if not stated
     size_t line = 0;
 
     void comment(const std::string& words, size_t number) {
@@ -328,7 +329,7 @@ struct MaterialHeader {
         line = number;
     }
 
-    /// The low corner in units of the program, seen from its zero.
+    /// The low corner relative to program zero, in program units.
     std::optional<Vec3> low(const std::optional<core::Aabb>& reach, double scale) const {
         Vec3 result(0.0, 0.0, zero_on_table ? 0.0 : -size->z);
         if (corner == "CENT") {
@@ -340,7 +341,7 @@ struct MaterialHeader {
         } else {
             if (!reach) return std::nullopt;
             const auto holds = [&](const Vec3& low) {
-                constexpr double beyond = 0.1; // of the size, which outlines are cut outside
+                constexpr double beyond = 0.1; // of the size, because outlines are cut outside
                 const Vec3 room = (1.0 + beyond) * *size, from = low - beyond * *size;
                 return reach->min.x >= scale * from.x && reach->min.y >= scale * from.y
                        && reach->max.x <= scale * (low + room).x

@@ -22,8 +22,8 @@ using core::Motion;
 using core::MotionKind;
 using core::Vec3;
 
-/// The highest plane, to 0.1 mm, in which rapids travel much: a fifth of the way of the busiest
-/// one.
+/// The highest plane, to 0.1 mm, with much rapid travel: at least a fifth of that in the busiest
+/// plane.
 std::optional<double> plane_of(const std::map<long, double>& travel) {
     constexpr double much = 0.2;
     double most = 0.0;
@@ -33,7 +33,7 @@ std::optional<double> plane_of(const std::map<long, double>& travel) {
     return std::nullopt;
 }
 
-/// Ways sideways at one height each, by heights in tenths of a millimetre.
+/// Sideways travel by height, in tenths of a millimetre.
 struct Travel {
     std::map<long, double> of_rapids, of_feeds;
     bool has_rapids = false;
@@ -46,7 +46,7 @@ struct Travel {
             glm::distance(from, to);
     }
 
-    /// The plane in which the program travels; without any rapid, the highest one above zero.
+    /// The plane of rapid travel; without rapids, the highest plane above zero with feeds.
     std::optional<double> plane(double zero) const {
         if (has_rapids) return plane_of(of_rapids);
         if (of_feeds.empty()) return std::nullopt;
@@ -55,10 +55,10 @@ struct Travel {
     }
 };
 
-/// What a program says beside its motions.
+/// Records everything but motions.
 struct Notes {
     ProgramSurvey& result;
-    double length = 0.0; // that the control counts now
+    double length = 0.0; // currently used by the control
 
     void operator()(const core::ToolChange& change) {
         auto& tools = result.tools;
@@ -77,7 +77,7 @@ struct Notes {
         result.offsets_lengths = result.offsets_lengths || change.number.has_value();
     }
     template <typename Other>
-    void operator()(const Other&) {} // says nothing here
+    void operator()(const Other&) {} // irrelevant here
 };
 
 void note_cut(const TipTrack& path, double radius, ProgramSurvey& result) {
@@ -93,7 +93,7 @@ void note_cut(const TipTrack& path, double radius, ProgramSurvey& result) {
     result.highest_cut = std::max(result.highest_cut, path.lowest());
 }
 
-/// The zero of the program, machine frame, as far as G52 and G92 tell.
+/// Program zero, machine frame, including G52 and G92.
 Vec3 zero_of(const gcode::Offsets& offsets) {
     Vec3 zero(0.0);
     for (int axis = 0; axis < 3; ++axis)
@@ -114,7 +114,7 @@ void note_place(const ProgramEvent& event, const TipTrack& path,
             result.sets_offsets || event.offsets.work.origin != environment.work_offsets[active];
 }
 
-/// Of the place that is looked at, else of the first one.
+/// The zero of work offset `place`, else of the first one with feeds.
 Vec3 zero_of_place(const gcode::Environment& environment, const std::optional<size_t>& place,
                    const ProgramSurvey& seen) {
     auto found = seen.places.begin();
@@ -165,7 +165,7 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         });
     };
     look_at_cuts();
-    if (!result.feeds && result.retract) { // rapids travel at the depth of the cuts
+    if (!result.feeds && result.retract) { // rapids are at the depth of the cuts
         result.retract.reset();
         look_at_cuts();
     }
@@ -199,7 +199,7 @@ std::optional<Vec3> known(const core::AxisPosition& position) {
     return Vec3(*position[0], *position[1], *position[2]);
 }
 
-/// Places along an arc, so many that its box is found to a thousandth of its radius.
+/// Adds points along an arc, enough that their box is accurate to a thousandth of the radius.
 void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
              std::vector<Vec3>& places) {
     constexpr int places_of_turn = 72;
@@ -251,8 +251,8 @@ namespace {
 
 bool is_number_part(char c) { return (c >= '0' && c <= '9') || c == '.' || c == ']'; }
 
-/// A code that only turning has a use for: diameters or radii along X, a constant surface speed,
-/// and roughing and threading cycles by the words that they have there.
+/// A code used only in turning: diameters or radii along X, constant surface speed, or roughing and
+/// threading cycles, recognised by their words.
 std::optional<std::string> turning_code(const std::string& code) {
     const auto has = [&](const char* letters) {
         return code.find_first_of(letters) != std::string::npos;
@@ -273,7 +273,7 @@ std::optional<std::string> turning_code(const std::string& code) {
     return std::nullopt;
 }
 
-/// T0101: tool and offset in one word, as turrets have it.
+/// T0101: tool and offset in one word, as on turret lathes.
 std::optional<std::string> turret_word(const std::string& code) {
     for (size_t at = code.find('T'); at != std::string::npos; at = code.find('T', at + 1)) {
         const size_t end = std::min(code.size(), code.find_first_not_of("0123456789", at + 1));
@@ -283,7 +283,7 @@ std::optional<std::string> turret_word(const std::string& code) {
     return std::nullopt;
 }
 
-/// Whether a block says where an axis goes.
+/// Whether a block moves an axis.
 bool moves_axis(const std::string& code, char axis) {
     for (size_t at = code.find(axis); at != std::string::npos; at = code.find(axis, at + 1)) {
         const bool in_a_word = at > 0 && std::isalpha(static_cast<unsigned char>(code[at - 1]));

@@ -18,53 +18,53 @@ struct Program;
 
 namespace app {
 
-/// What a program feeds in the coordinates of one work offset.
+/// The feeds of a program in the coordinates of one work offset.
 struct WorkPlace {
-    core::Vec3 zero = core::Vec3(0.0); // of the program at the first feed, machine frame
+    core::Vec3 zero = core::Vec3(0.0); // program zero at the first feed, machine frame
     core::Aabb reach;                  // of the tip
-    double way = 0.0;                  // of the tip, mm
+    double way = 0.0;                  // travel of the tip, mm
 };
 
-/// What a program does as a whole, which its set-up can be guessed from.
+/// Facts about a whole program from which its set-up is inferred.
 struct ProgramSurvey {
     std::vector<core::ToolNumber> tools; // in the order in which they are first called
-    bool calls_tools = false;            // also T0
+    bool calls_tools = false;            // including T0
     bool empties_spindle = false;        // calls T0
     bool turns_spindle = false;
     bool states_speed = false;    // of the spindle, above 0
-    bool offsets_lengths = false; // G43 or its like, ever
+    bool offsets_lengths = false; // uses G43 or an equivalent
     bool feeds_before_call = false;
-    std::map<core::ToolNumber, double> control_lengths; // that are in effect as a tool first feeds
-    std::map<core::ToolNumber, bool> mills; // of each tool that feeds: it feeds sideways
+    std::map<core::ToolNumber, double> control_lengths; // in effect at the first feed of each tool
+    std::map<core::ToolNumber, bool> mills;             // of each tool that feeds: whether sideways
 
-    std::map<size_t, WorkPlace> places; // of each work offset, 0 is G54, where it feeds
-    bool sets_offsets = false;          // writes a work offset that it then uses
+    std::map<size_t, WorkPlace> places; // by work offset with feeds, 0 is G54
+    bool sets_offsets = false;          // sets a work offset that it then uses
 
-    core::Vec3 zero = core::Vec3(0.0); // of the place that is looked at, machine frame
-    bool feeds = false;                // there
-    core::Aabb cutting;                // of the tip on feeds below the retract plane; machine frame
-    double lowest = 0.0;               // where the tip feeds, machine Z
-    double highest_cut = 0.0;          // of feeds sideways below the retract plane
+    core::Vec3 zero = core::Vec3(0.0); // of the surveyed work offset, machine frame
+    bool feeds = false;                // in that work offset
+    core::Aabb cutting;                // box of feeds below the retract plane, machine frame
+    double lowest = 0.0;               // lowest tip position on feeds, machine Z
+    double highest_cut = 0.0;          // highest sideways feed below the retract plane
     bool cuts_sideways = false;
-    std::optional<double> retract; // the height of most rapid travel
+    std::optional<double> retract; // height of most rapid travel
 };
 
-/// Sizes of the tools that a survey needs.
+/// Tool sizes that a survey needs.
 struct SurveyTools {
-    std::map<core::ToolNumber, double> lengths, radii; // those that are not there count as 0
+    std::map<core::ToolNumber, double> lengths, radii; // mm; missing ones count as 0
 };
 
-/// The size of the tool that is in the spindle; the one without a number serves before any call.
+/// The size of the tool in the spindle; before any call, that of the entry for tool 0.
 double size_of(const std::map<core::ToolNumber, double>& sizes,
                const std::optional<core::ToolNumber>& tool);
 
-/// Looks at a whole program; at what it cuts only in the coordinates of the work offset `place`, if
-/// there is one.
+/// Surveys a whole program. Cuts are limited to those in the coordinates of work offset `place`, if
+/// given.
 ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
                      const SurveyTools& tools, const std::optional<size_t>& place = {});
 
-/// What a program does next, as far as it can be read: one event of one block, the tool that is in
-/// the spindle, the offsets that are in effect, and the line it comes from.
+/// One event of a block, with the tool in the spindle, the active offsets and the line of the
+/// block.
 struct ProgramEvent {
     const core::Event& event;
     std::optional<core::ToolNumber> tool;
@@ -73,11 +73,11 @@ struct ProgramEvent {
     bool is_cycle = false;
 };
 
-/// Runs a program to its end or its first error and shows every event. Nothing is checked.
+/// Runs a program to its end or its first error and reports every event. Checks nothing.
 void visit_events(const gcode::Program& program, const gcode::Environment& environment,
                   const std::function<void(const ProgramEvent&)>& visit);
 
-/// The way of a tool's tip over one motion, machine frame; arcs by places on them.
+/// The path of a tool tip over one motion, machine frame; arcs as points on them.
 struct TipTrack {
     std::vector<core::Vec3> places;
     bool sideways = false; // it moves in X or Y
@@ -86,15 +86,15 @@ struct TipTrack {
     double length() const;
 };
 
-/// The way of the tip of a tool of a length; empty where an end is not known.
+/// The path of the tip of a tool with the given length; empty if an end point is unknown.
 std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length);
 
-/// Why a program is one for a lathe, as it ends "because ...": it never moves Y, and it says a
-/// code that only turning has use for. Empty for any other.
+/// Why a program is for a lathe, to follow "because": it never moves Y, and it has a code used only
+/// in turning. Empty for any other program.
 std::optional<std::string> turning_reason(const gcode::Program& program);
 
-/// The line in which a Klartext program first asks where the axes stand: what it does then depends
-/// on where somebody jogged them.
+/// The line in which a Klartext program first reads the axis positions: what it does then depends
+/// on where the axes were jogged.
 std::optional<size_t> line_that_asks_for_places(const gcode::Program& program);
 
 } // namespace app

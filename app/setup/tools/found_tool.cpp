@@ -13,17 +13,17 @@ namespace {
 using core::ToolDescription;
 using core::ToolShape;
 
-/// What tools of a size usually have, in multiples of the diameter and in mm.
+/// Usual sizes of tools, in multiples of the diameter and in mm.
 constexpr double flutes_of_mill = 3.0, flutes_of_drill = 8.0, shank_beyond_flutes = 3.0;
 constexpr double longest_flutes_of_mill = 60.0, longest_flutes_of_drill = 250.0;
 constexpr double shortest_shank = 20.0, longest_shank = 60.0;
 
-/// How the sources of tools call the shapes.
+/// Names of shapes in the sources of tools.
 namespace shape_names {
 
 using enum core::ToolShape;
 
-// The first that fits counts: "BALL END MILL" is not a flat end mill.
+// The first match counts: "BALL END MILL" is not a flat end mill.
 constexpr ShapeName of_comments[] = {{"LOLLIPOP", lollipop},
                                      {"DOVETAIL", dovetail},
                                      {"DOVE MILL", dovetail},
@@ -117,7 +117,7 @@ double cone_height(const ToolDescription& tool, double angle_deg) {
            / std::tan(angle_deg * std::numbers::pi / 180.0);
 }
 
-/// Sizes that belong to the shape; those that are impossible together are left out.
+/// Completes the sizes that belong to the shape; drops impossible combinations.
 void complete_shape(ToolDescription& tool, std::vector<std::string>& assumed) {
     const auto assume_angle = [&](std::optional<double>& angle, double usual, const char* name) {
         if (angle && *angle > 0.0 && *angle < (angle == tool.point_deg ? 180.0 : 90.0)) return;
@@ -148,13 +148,13 @@ double usual_flutes(const ToolDescription& tool) {
         return cone_height(tool, *tool.angle_deg) + 0.5 * d;
     case ToolShape::tslot:
         return 0.25 * d;
-    case ToolShape::dovetail: // up to half its radius, so that something is left
+    case ToolShape::dovetail: // at most to half the radius, so that a neck remains
         return 0.25 * d / std::tan(*tool.angle_deg * std::numbers::pi / 180.0);
     case ToolShape::taper:
         return std::max(std::min(flutes_of_mill * d, longest_flutes_of_mill),
                         cone_height(tool, *tool.angle_deg));
     case ToolShape::ball:
-    case ToolShape::bull: // at least as high as they are round
+    case ToolShape::bull: // at least as high as the corner radius
         return std::max(std::min(flutes_of_mill * d, longest_flutes_of_mill), d);
     default:
         return std::min(flutes_of_mill * d, longest_flutes_of_mill);
@@ -210,10 +210,11 @@ CompleteTool complete(const FoundTool& found, double least_flutes) {
     complete_shape(whole.tool, assumed);
     complete_lengths(whole.tool, least_flutes, assumed);
     if (whole.tool.holder.empty()) assumed.emplace_back("no holder");
-    whole.assumed = fmt::format(
-        "tool {} is {} of {:.4g} mm, by {}; {} {} assumed", core::value_of(whole.tool.number),
-        core::description_of(found.tool.shape), whole.tool.diameter, found.source,
-        fmt::join(assumed, ", "), assumed.size() == 1 ? "is" : "are");
+    whole.assumed =
+        fmt::format("tool {} is {} of {:.4g} mm, according to {}; {} {} assumed",
+                    core::value_of(whole.tool.number), core::description_of(found.tool.shape),
+                    whole.tool.diameter, found.source, fmt::join(assumed, ", "),
+                    assumed.size() == 1 ? "is" : "are");
     if (assumed.empty()) whole.assumed = whole.assumed.substr(0, whole.assumed.find(';'));
     return whole;
 }

@@ -10,33 +10,33 @@
 
 namespace app {
 
-/// A tool as somebody mentions it who does not describe it whole.
+/// A tool that is described incompletely.
 struct FoundTool {
-    core::ToolDescription tool; // what is said; the rest is 0 or empty
-    bool has_shape = false;     // else it is taken for a flat end mill
-    bool has_diameter = true;   // else it is one that such tools often have
-    std::string source;         // "the comment in line 12", as it ends a sentence
+    core::ToolDescription tool; // what is stated; the rest is 0 or empty
+    bool has_shape = false;     // else a flat end mill is assumed
+    bool has_diameter = true;   // else a common diameter is assumed
+    std::string source;         // "the comment in line 12", to follow "according to"
 };
 
-/// A tool that can be assembled: what was not said is what such tools usually have.
+/// A tool completed with the sizes that such tools usually have.
 ///
-/// Flutes of which nothing is said are at least `least_flutes` long, what the program cuts with
-/// them. Result: `assumed` says in one sentence where it comes from and what was taken for granted.
+/// Flutes of unstated length are at least `least_flutes` long, the depth that the program cuts with
+/// them. Result: `assumed` says in one sentence where the tool comes from and what is assumed.
 struct CompleteTool {
     core::ToolDescription tool;
     std::string assumed;
 };
 CompleteTool complete(const FoundTool& found, double least_flutes = 0.0);
 
-/// A name of a shape in a source of tools.
+/// The name of a shape in some source of tools.
 struct ShapeName {
     std::string_view name;
     core::ToolShape shape;
 };
 
-/// Words of tool names in capitals, in the order in which they count.
+/// Words in tool names, in capitals; the first that matches counts.
 std::span<const ShapeName> shape_words();
-/// The shapes of FreeCAD's tool bits, in small letters.
+/// The shapes of FreeCAD's tool bits, in lower case.
 std::span<const ShapeName> freecad_shapes();
 /// The types of Fusion 360's tools.
 std::span<const ShapeName> fusion_shapes();

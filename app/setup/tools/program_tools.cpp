@@ -21,7 +21,7 @@ namespace {
 using core::ToolNumber;
 using core::ToolShape;
 
-/// The whole number that begins at a place of a text.
+/// The whole number at a position in a text.
 std::optional<int> whole_at(const std::string& text, size_t at) {
     int value = 0;
     const auto [behind, failure] =
@@ -30,7 +30,7 @@ std::optional<int> whole_at(const std::string& text, size_t at) {
     return value;
 }
 
-/// The tool that a block of code calls or defines.
+/// The tool that a block calls or defines.
 std::optional<int> tool_called(const std::string& code) {
     for (const char* words : {"TOOLCALL", "TOOLDEF"})
         if (const size_t at = code.find(words); at != std::string::npos)
@@ -43,7 +43,7 @@ std::optional<int> tool_called(const std::string& code) {
     return std::nullopt;
 }
 
-/// The radius in Klartext's TOOL DEF 3 L+0 R+5, if it is there and above 0.
+/// The radius in Klartext's TOOL DEF 3 L+0 R+5, if present and above 0.
 std::optional<double> radius_defined(const std::string& code) {
     const size_t tool = code.find("TOOLDEF");
     if (tool == std::string::npos) return std::nullopt;
@@ -60,7 +60,7 @@ bool moves(const std::string& code) {
            && code.find_first_of("0123456789") != std::string::npos;
 }
 
-/// Comments on the way to the tool that they describe.
+/// State of the scan that assigns comments to tools.
 struct Scan {
     gcode::LengthUnit unit;
     ProgramTools found{};
@@ -69,7 +69,7 @@ struct Scan {
     bool calls_tools = false;
     size_t moves_since_call = 0;
 
-    std::vector<std::string> names{}; // of Siemens' T="NAME", as their numbers count
+    std::vector<std::string> names{}; // of Siemens' T="NAME", in order of their numbers
 
     void comment(const std::string& words, size_t line);
     void code(const std::string& code, size_t line);
@@ -79,7 +79,8 @@ struct Scan {
     std::optional<FoundTool> best_waiting() const;
 };
 
-/// Whether a comment without the form of a list is a tool's name and no sentence about something.
+/// Whether a comment that is not in the form of a tool list is a tool's name rather than a
+/// sentence.
 bool is_name(const ToolText& text) {
     constexpr size_t longest = 14, longest_without_unit = 5;
     if (text.words > longest || text.prose) return false;
@@ -94,7 +95,7 @@ std::optional<FoundTool> Scan::tool_of(const ToolComment& comment, size_t line) 
     ToolText text = comment.text;
     named.has_shape = text.shape.has_value();
     if (!text.shape && (text.stated || comment.whole)) text.shape = ToolShape::flat;
-    // A V-bit is known by its angle; how wide it is at the top matters little.
+    // A V-bit is defined by its angle; its width at the top matters little.
     constexpr double usual_bit = 6.0;
     if (text.shape == ToolShape::chamfer && text.angle_deg && !text.diameter) {
         text.diameter = usual_bit;
@@ -108,7 +109,8 @@ std::optional<FoundTool> Scan::tool_of(const ToolComment& comment, size_t line) 
     return named;
 }
 
-/// The best of the comments before a call: the last that says it all, else two that do together.
+/// The best of the comments before a call: the last complete one, else two that complete each
+/// other.
 std::optional<FoundTool> Scan::best_waiting() const {
     std::optional<FoundTool> weak;
     for (auto it = waiting.rbegin(); it != waiting.rend(); ++it) {
@@ -120,7 +122,7 @@ std::optional<FoundTool> Scan::best_waiting() const {
     for (size_t i = waiting.size(); i-- > 1;) {
         ToolComment both = waiting[i].first;
         const ToolText& before = waiting[i - 1].first.text;
-        constexpr size_t most_words = 4; // of each
+        constexpr size_t most_words = 4; // per comment
         if (both.number || waiting[i - 1].first.number) continue;
         if (std::max(both.text.words, before.words) > most_words) continue;
         if (!both.text.shape) both.text.shape = before.shape;
@@ -147,7 +149,7 @@ void Scan::comment(const std::string& words, size_t line) {
         note(*read.number, read, line);
         return;
     }
-    // A number alone belongs to the sizes beside it, in whatever order they come.
+    // A number alone belongs to the sizes in adjacent comments, in any order.
     if (read.number && !read.text.shape) {
         for (const auto& [other, place] : waiting)
             if (other.text.diameter && !other.number) note(*read.number, other, place);
@@ -190,8 +192,8 @@ void Scan::code(const std::string& code, size_t line) {
     if (calls_tools) waiting.clear();
 }
 
-/// T="DRILL 8.5": the name says what the tool is. Names are numbered as they come, as the
-/// interpreter does.
+/// T="DRILL 8.5": the name describes the tool. Names are numbered in order of appearance, as in the
+/// interpreter.
 void Scan::name(std::string_view text, size_t line) {
     const size_t at = text.find("T=\""), end = text.find('"', at + 3);
     if (at == std::string_view::npos || end == std::string_view::npos) return;
@@ -274,7 +276,7 @@ int whole_of(const std::string& text) {
     return value;
 }
 
-/// A form of comment: its pattern in capitals, and what is read from a match.
+/// A form of comment: its pattern, in capitals, and a function that reads a match.
 struct Form {
     std::regex pattern;
     void (*read)(const std::smatch& match, LengthUnit unit, ToolComment& comment);
@@ -367,7 +369,7 @@ const std::vector<Form>& forms() {
     return all;
 }
 
-/// What stands alone on its line in headers of some systems: a key and a value.
+/// A key and a value alone on a line, as in the headers of some systems.
 void read_key_and_value(const std::string& capitals, LengthUnit unit, ToolComment& comment) {
     static const std::regex diameter = pattern(
         R"(^[ *]*(?:TOOL|CUTTER|END ?MILL|BIT) *(DIAMETER|DIA\.?|RADIUS) *[=:]? *<N>(.*)$)");
@@ -392,7 +394,7 @@ void read_key_and_value(const std::string& capitals, LengthUnit unit, ToolCommen
 } // namespace
 
 ToolComment read_tool_comment(std::string_view words, LengthUnit unit) {
-    constexpr size_t longest = 200; // no tool's name is longer, and no pattern should see more
+    constexpr size_t longest = 200; // longer than any tool name; limits the cost of the patterns
     ToolComment comment;
     if (words.size() > longest) return comment;
     std::string capitals(words);
@@ -414,7 +416,7 @@ ToolComment read_tool_comment(std::string_view words, LengthUnit unit) {
 
 namespace {
 
-/// Square brackets hold a value in most languages; a comment in them has words.
+/// In most languages square brackets hold a value; as a comment they contain words.
 bool is_prose(std::string_view text) {
     size_t letters = 0, words = 0;
     bool inside = false;

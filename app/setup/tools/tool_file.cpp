@@ -13,13 +13,13 @@ namespace {
 
 constexpr double highest_tool = 99999999.0;
 
-/// One line of the table, word by word.
+/// One line of the table, read word by word.
 struct ToolLine {
     gcode::LengthUnit unit;
     std::optional<core::OffsetNumber> number{};
     gcode::LengthOffset offset{};
 
-    /// Why a word cannot be taken; empty when it was.
+    /// Reads a word. Returns why it is invalid; empty if it is valid.
     std::string take(char letter, double value);
 };
 
@@ -46,8 +46,8 @@ std::string ToolLine::take(char letter, double value) {
     } else if (letter == 'Q') {
         if (!is_whole(value, 9.0)) return "Q must be an orientation from 0 to 9";
         offset.orientation = static_cast<int>(value);
-    } else if (letter != 'P') { // the pocket: where a tool is kept does not matter here
-        return fmt::format("{} is no letter of a tool table (T P X Y Z A B C U V W D I J Q)",
+    } else if (letter != 'P') { // the pocket is irrelevant here
+        return fmt::format("{} is not a letter of a tool table (T P X Y Z A B C U V W D I J Q)",
                            letter);
     }
     return {};
@@ -68,7 +68,8 @@ read_tool_file(const std::string& path, gcode::LengthUnit unit) {
             const auto value = number_in(std::string_view(word).substr(1));
             const char letter =
                 static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
-            const std::string wrong = value ? tool.take(letter, *value) : "is no letter and number";
+            const std::string wrong =
+                value ? tool.take(letter, *value) : "is not a letter and a number";
             if (!wrong.empty())
                 return tl::unexpected(line_error(path, line, fmt::format("'{}': {}", word, wrong)));
         }

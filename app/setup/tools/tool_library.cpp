@@ -20,16 +20,16 @@ namespace app {
 
 using ToolMap = std::map<core::ToolNumber, FoundTool>;
 
-/// The JSON in a file.
+/// Reads a JSON file.
 ///
 /// Errors: io and syntax, with the file.
 core::Result<nlohmann::json> read_json(const std::filesystem::path& path);
 
-/// A text or number of an object; what else stands there, or nothing, is empty or 0.
+/// A text or number of an object; empty or 0 if it is missing or has another type.
 std::string text_at(const nlohmann::json& object, const char* key);
 double number_at(const nlohmann::json& object, const char* key);
 
-/// FreeCAD: a library, which names its bits, or a single bit, which becomes tool 1.
+/// FreeCAD: a library that names its bits, or a single bit, which becomes tool 1.
 core::Result<ToolMap> tools_of_freecad_library(const nlohmann::json& library,
                                                const std::filesystem::path& path);
 core::Result<ToolMap> tools_of_freecad_bit(const nlohmann::json& bit,
@@ -39,13 +39,13 @@ core::Result<ToolMap> tools_of_freecad_bit(const nlohmann::json& bit,
 core::Result<ToolMap> tools_of_freecad_table(const nlohmann::json& table,
                                              const std::filesystem::path& path);
 
-/// Fusion 360 and HSM. A tool's number is that of its post process.
+/// Fusion 360 and HSM. The number of a tool is that of its post-processor data.
 core::Result<ToolMap> tools_of_fusion_library(const nlohmann::json& library,
                                               const std::filesystem::path& path);
 
-/// Puts a tool in the map.
+/// Adds a tool to the map.
 ///
-/// Errors: invalid_value when its number was there before or its diameter is none.
+/// Errors: invalid_value if its number is taken or its diameter is not above 0.
 core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
                             const std::filesystem::path& path);
 
@@ -74,14 +74,15 @@ core::Result<ToolMap> tools_of_json(const std::filesystem::path& path) {
     if (json.is_array() && !json.empty() && json[0].is_object() && json[0].contains("Tools"))
         return tools_of_freecad_table(json[0]["Tools"], path);
     if (has_numbers_as_keys(json)) return tools_of_freecad_table(json, path);
-    return tl::unexpected(core::Error{ErrorCode::syntax,
-                                      {},
-                                      "is no tool library of FreeCAD or Fusion 360 (tools, data, "
-                                      "Tools or parameter is missing)",
-                                      path.string()});
+    return tl::unexpected(
+        core::Error{ErrorCode::syntax,
+                    {},
+                    "is not a tool library of FreeCAD or Fusion 360 (tools, data, "
+                    "Tools or parameter is missing)",
+                    path.string()});
 }
 
-/// What stands behind the semicolon in each line of a tool table, by the number in its T word.
+/// The comment after the semicolon in each line of a tool table, by tool number.
 std::map<int, std::string> names_in_table(const std::vector<std::string>& lines) {
     std::map<int, std::string> names;
     for (const std::string& line : lines) {
@@ -101,7 +102,7 @@ core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit 
     std::map<int, std::string> names = names_in_table(lines);
     ToolMap tools;
     for (const auto& [number, offset] : offsets) {
-        if (offset.diameter <= 0.0) continue; // a touch probe, or nothing known
+        if (offset.diameter <= 0.0) continue; // a touch probe, or an empty entry
         ToolText text = read_tool_text(names[core::value_of(number)], unit);
         FoundTool found;
         found.has_shape = text.shape.has_value();
@@ -128,7 +129,8 @@ core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
         return tl::unexpected(core::Error{ErrorCode::io, {}, "cannot be read", path.string()});
     nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
     if (json.is_discarded())
-        return tl::unexpected(core::Error{ErrorCode::syntax, {}, "is no JSON", path.string()});
+        return tl::unexpected(
+            core::Error{ErrorCode::syntax, {}, "is not valid JSON", path.string()});
     return json;
 }
 
@@ -164,8 +166,8 @@ core::Result<std::map<ToolNumber, FoundTool>> read_tool_library(const std::strin
     if (extension == ".tbl") return tools_of_table(path, unit);
     return tl::unexpected(core::Error{ErrorCode::unsupported,
                                       {},
-                                      "is no tool library by its name: .fctl, .fctb, .json and "
-                                      ".tbl are known",
+                                      "is not a tool library: known types are .fctl, .fctb, "
+                                      ".json and .tbl",
                                       path});
 }
 
@@ -191,7 +193,7 @@ std::optional<double> quantity(const json& value) {
     return number.value * (inch ? 25.4 : 1.0);
 }
 
-/// A parameter by any of its names; they changed over the versions.
+/// A parameter by any of its names, which differ between versions.
 std::optional<double> parameter(const json& parameters, std::initializer_list<const char*> names) {
     if (!parameters.is_object()) return std::nullopt;
     for (const char* name : names)
@@ -230,7 +232,8 @@ void read_lengths(const json& parameters, ToolDescription& tool) {
     if (necked) tool.neck_diameter = parameter(parameters, {"NeckDiameter"});
     if (necked && tool.neck_diameter)
         tool.neck_length = parameter(parameters, {"NeckHeight", "NeckLength"});
-    if (tool.shape == ToolShape::threadmill) tool.flute_length = 0.0; // "Crest" is a tooth
+    if (tool.shape == ToolShape::threadmill)
+        tool.flute_length = 0.0; // "Crest" is the width of one tooth
 }
 
 core::Result<FoundTool> tool_of_bit(const json& bit, int number,
@@ -243,7 +246,7 @@ core::Result<FoundTool> tool_of_bit(const json& bit, int number,
     const auto known = shape_of_bit(shape);
     found.has_shape = known.has_value();
     found.tool.shape = known.value_or(ToolShape::flat);
-    if (!bit.is_object()) return tl::unexpected(error(path, "is no tool bit"));
+    if (!bit.is_object()) return tl::unexpected(error(path, "is not a tool bit"));
     const json& parameters = bit.contains("parameter") ? bit["parameter"] : bit;
     const auto diameter = parameter(parameters, {"Diameter"});
     if (!diameter) return tl::unexpected(error(path, "the bit has no Diameter"));
@@ -257,13 +260,13 @@ core::Result<FoundTool> tool_of_bit(const json& bit, int number,
         found.tool.corner_radius = parameter(parameters, {"CornerRadius", "TorusRadius"});
         if (!found.tool.corner_radius && flat) found.tool.corner_radius = 0.5 * *diameter - *flat;
     }
-    if (found.tool.shape == ToolShape::taper) // its Diameter is that of the ball at the tip
+    if (found.tool.shape == ToolShape::taper) // Diameter is that of the ball at the tip
         found.tool.corner_radius = 0.5 * *diameter,
         found.tool.diameter = parameter(parameters, {"TaperDiameter"}).value_or(2.0 * *diameter);
     return found;
 }
 
-/// The bits of a library lie beside it, in ../Bit, or where its path says.
+/// Finds a bit of a library: next to it, in ../Bit, or at the given path.
 std::optional<std::filesystem::path> find_bit(const std::filesystem::path& library,
                                               const std::string& name) {
     const std::filesystem::path folder = library.parent_path();
@@ -304,7 +307,7 @@ FoundTool freecad_tool(const json& entry, int number, const std::filesystem::pat
     }
     if (tool.shape == ToolShape::chamfer) tool.tip_diameter = 2.0 * size("flatRadius");
     tool.flute_length = size("cuttingEdgeHeight");
-    if (tool.flute_length < 0.5 * tool.diameter) tool.flute_length = 0.0; // often left as it was
+    if (tool.flute_length < 0.5 * tool.diameter) tool.flute_length = 0.0; // often left at a default
     if (const double length = size("lengthOffset"); length > 0.0) tool.gauge_length = length;
     return found;
 }
@@ -318,11 +321,11 @@ core::Result<ToolMap> tools_of_freecad_library(const json& library,
         const bool named = entry.is_object() && entry.contains("nr")
                            && entry["nr"].is_number_integer() && entry.contains("path")
                            && entry["path"].is_string();
-        if (!named) return tl::unexpected(error(path, "each of tools needs nr and path"));
+        if (!named) return tl::unexpected(error(path, "each entry of tools needs nr and path"));
         const std::string name = entry["path"];
         const auto place = find_bit(path, name);
         if (!place)
-            return tl::unexpected(error(path, fmt::format("there is no bit {} beside it or in "
+            return tl::unexpected(error(path, fmt::format("there is no bit {} next to it or in "
                                                           "../Bit",
                                                           name)));
         FEELER_TRY(const json bit, read_json(*place));
@@ -345,7 +348,7 @@ core::Result<ToolMap> tools_of_freecad_table(const json& table, const std::files
     for (const auto& [key, entry] : table.items()) {
         const auto number = number_in(key);
         if (!number || !entry.is_object())
-            return tl::unexpected(error(path, fmt::format("'{}' is no number of a tool", key)));
+            return tl::unexpected(error(path, fmt::format("'{}' is not a tool number", key)));
         const FoundTool tool = freecad_tool(entry, static_cast<int>(*number), path);
         if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
     }
@@ -361,7 +364,7 @@ std::optional<ToolShape> shape_of_type(const std::string& type) {
     return shape_of_words(plain_capitals(type));
 }
 
-/// One tool of the library, whose sizes are in its unit.
+/// Reads one tool of the library, converting its unit.
 struct Reader {
     const json& tool;
     double unit; // mm
@@ -404,7 +407,7 @@ void read_shape(const Reader& reader, ToolDescription& made) {
     }
 }
 
-/// The holder's segments stand from the tool's end up.
+/// The segments of the holder, from the tool end up.
 void read_holder(const json& tool, ToolDescription& made) {
     const auto holder = tool.find("holder");
     if (holder == tool.end() || !holder->is_object() || !holder->contains("segments")
@@ -457,13 +460,14 @@ core::Result<ToolMap> tools_of_fusion_library(const json& library,
         const std::string type = text_at(entry, "type");
         const auto number = number_of(entry);
         if (!number || type == "holder" || type == "probe" || type.starts_with("turning")) continue;
-        if (tools.contains(core::ToolNumber{*number})) continue; // a library of variants: the first
+        if (tools.contains(core::ToolNumber{*number}))
+            continue; // variants share a number: keep the first
         const FoundTool tool = fusion_tool(entry, *number, path);
         if (tool.tool.diameter > 0.0) tools.emplace(tool.tool.number, tool);
     }
     if (tools.empty())
         return tl::unexpected(core::Error{
-            core::ErrorCode::syntax, {}, "holds no milling tool with a number", path.string()});
+            core::ErrorCode::syntax, {}, "contains no milling tool with a number", path.string()});
     return tools;
 }
 

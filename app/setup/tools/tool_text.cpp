@@ -22,7 +22,7 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
         text.replace(at, what.size(), by);
 }
 
-/// From `at`, a number without a sign; moves `at` behind it.
+/// Reads a number without a sign at `at`, and moves `at` past it.
 std::optional<double> plain_number(const std::string& text, size_t& at) {
     const size_t first = at;
     size_t end = at;
@@ -35,7 +35,7 @@ std::optional<double> plain_number(const std::string& text, size_t& at) {
     return value;
 }
 
-/// "/2" behind a whole number, or "-1/2" and " 1/2" behind the inches.
+/// Adds "/2" after a whole number, or "-1/2" or " 1/2" after whole inches.
 void add_fraction(const std::string& text, size_t& at, TextNumber& number) {
     size_t next = at;
     double over = number.value, whole = 0.0;
@@ -56,7 +56,7 @@ void add_fraction(const std::string& text, size_t& at, TextNumber& number) {
     at = next;
 }
 
-/// Letters behind a number; the next word if a blank is between.
+/// Reads the letters after a number, or the next word after a blank.
 void add_suffix(const std::string& text, size_t at, TextNumber& number) {
     number.glued = at < text.size() && (is_letter(text[at]) || text[at] == '"');
     while (at < text.size() && text[at] == ' ') ++at;
@@ -67,7 +67,7 @@ void add_suffix(const std::string& text, size_t at, TextNumber& number) {
     while (at < text.size() && is_letter(text[at])) number.suffix += text[at++];
 }
 
-/// The letters right before a number, over one = or : or blank-free dot between.
+/// The letters directly before a number, skipping "=", ":", ".", "#", blanks and a minus sign.
 std::string prefix_before(const std::string& text, size_t at) {
     while (at > 0
            && (text[at - 1] == ' ' || text[at - 1] == '=' || text[at - 1] == ':'
@@ -79,8 +79,8 @@ std::string prefix_before(const std::string& text, size_t at) {
     return text.substr(first, at - first);
 }
 
-/// A number that begins in the middle of a word, as in ERP412 or C40-32, is none; letters that
-/// name a size may stand right before it.
+/// Whether a number begins inside a word, as in ERP412 or C40-32, and so does not count. Letters
+/// that name a size may directly precede it.
 bool begins_inside_a_word(const std::string& text, size_t at) {
     if (at == 0) return false;
     const char before = text[at - 1];
@@ -222,8 +222,8 @@ bool has_length_unit(const TextNumber& number) {
            || is_one_of(number.suffix, {"MM", "IN", "INCH", "INCHES", "\"", "ZOLL"});
 }
 
-/// Letters that run on from a number and are no unit make it a part of a word; so do those of
-/// counts.
+/// Whether a number is not a diameter: directly followed by letters that are not a unit, or
+/// labelled as a count, an offset or the like.
 bool says_something_else(const TextNumber& number) {
     const bool unit =
         has_length_unit(number) || is_one_of(number.suffix, {"X", "DIA", "D", "RAD", "R"});
@@ -270,7 +270,8 @@ void read_number(const TextNumber& number, LengthUnit unit, ToolText& text,
     }
 }
 
-/// Angles as catalogues have them: of the whole tip for drills and V-bits, of the flank in posts.
+/// Assigns an angle as catalogues give it: of the whole tip for drills and V-bits, of the flank for
+/// tapers and dovetails.
 void place_angle(const ToolText& text, core::ToolDescription& tool) {
     if (!text.angle_deg) return;
     const double angle = *text.angle_deg;
@@ -288,7 +289,7 @@ ToolText read_tool_text(std::string_view words, gcode::LengthUnit unit) {
     text.shape = shape_of_words(capitals);
     std::optional<double> named, first;
     const std::vector<TextNumber> numbers = numbers_of(capitals);
-    bool registers = false; // beside an H, a D is the number of an offset
+    bool registers = false; // next to an H, a D is an offset number
     for (const TextNumber& number : numbers) registers = registers || number.prefix == "H";
     for (const TextNumber& number : numbers)
         if (!registers || number.prefix != "D") read_number(number, unit, text, named, first);
@@ -302,7 +303,7 @@ ToolText read_tool_text(std::string_view words, gcode::LengthUnit unit) {
 
 std::optional<core::ToolDescription> tool_of_text(const ToolText& text) {
     if (!text.shape || !text.diameter) return std::nullopt;
-    constexpr double least = 0.05, most = 500.0; // mm; beyond, the number means something else
+    constexpr double least = 0.05, most = 500.0; // mm; other numbers are not diameters
     if (!(*text.diameter >= least && *text.diameter <= most)) return std::nullopt;
     core::ToolDescription tool;
     tool.shape = *text.shape;
