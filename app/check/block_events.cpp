@@ -16,15 +16,15 @@ void take_tool_zero(core::Event& event) {
     if (change && !change->tool) change->tool = core::ToolNumber{0};
 }
 
-/// Whether a code is carried out behind the motion of its block, on all controls: M0, M1 and M60
-/// stop the program there. Of others the builder decides.
+/// Whether an M code takes effect after the motion of its block on all controls: M0, M1 and M60,
+/// which stop the program. For other codes the machine builder decides.
 bool comes_after_motion(int code) { return code == 0 || code == 1 || code == 60; }
 
 bool is_of_line(const core::FixtureMove& move, const gcode::BlockCommands& block) {
     return move.line && block.file.empty() && block.line == *move.line;
 }
 
-/// What a block does to the fixtures, before and after its motions.
+/// The fixture changes of a block, before and after its motions.
 struct FixtureEvents {
     std::vector<core::Event> before, after;
 };
@@ -34,8 +34,7 @@ FixtureEvents fixture_events(const core::Setup& setup, const gcode::BlockCommand
     for (const size_t i : fixture_moves_of(setup, block)) {
         const core::FixtureMove& move = setup.fixture_moves[i];
         const bool coded = !is_of_line(move, block);
-        // Where nobody knows the order, a fixture is there while the block moves: where it goes
-        // from, and where it goes to.
+        // If the order is unknown, the fixture is present at both positions during the motion.
         (coded ? events.after : events.before).emplace_back(core::FixtureChange{move.from, false});
         if (!move.to) continue;
         (coded && comes_after_motion(*move.code) ? events.after : events.before)

@@ -14,26 +14,27 @@ namespace app {
 
 struct CheckRun;
 
-/// What measures clearances: the distance core, or the functional model of the coprocessor.
+/// The engine that measures clearances: the distance core, or the functional model of the
+/// coprocessor.
 enum class Engine : uint8_t { exact, coprocessor };
 
 /// "exact" or "coprocessor".
 const char* name_of(Engine engine);
 
-/// How far a check has come.
+/// Progress of a check.
 struct CheckProgress {
     size_t blocks = 0;
-    double share = 0.0; // of the program's lines, 0 to 1; loops make it go back
+    double share = 0.0; // of the program's lines, 0 to 1; loops make it decrease
     size_t findings = 0;
 };
 
-/// A check as a user asks for it.
+/// A check as requested by the user.
 struct CheckJob {
     std::string program;
     std::string setup;               // empty: inferred from the program
     std::optional<double> allowance; // replaces that of the set-up
     std::optional<double> mesh_size;
-    std::optional<double> memory_limit = {}; // bytes; replaces the set-up's
+    std::optional<double> memory_limit = {}; // bytes; replaces that of the set-up
     core::Detail detail = core::Detail::deciding_pair;
     bool needs_surface = false; // compute the surface of the remaining stock even without a part
     // Called with the approximate memory of the check in bytes; false: do not start.
@@ -55,8 +56,8 @@ void look_beside(CheckJob& job);
 /// Checks a program against its set-up, or against one inferred from the program if `setup` is
 /// empty.
 ///
-/// Errors: files that cannot be read or are invalid. An error in the program is not one: it ends
-///         the run, and the result holds the blocks before it.
+/// Errors: files that cannot be read or are invalid. An error in the program is not one of them: it
+///         ends the run, and the result holds the blocks before it.
 core::Result<CheckRun> run_check(const CheckJob& job);
 
 } // namespace app

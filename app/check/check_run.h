@@ -32,8 +32,8 @@ struct CheckedBlock {
     core::BlockIndex block{};
     uint32_t line = 0;
     std::string text;
-    std::string file;            // of a subprogram; empty for the main program
-    std::vector<uint32_t> calls; // lines that called it, the outermost first
+    std::string file;            // file of a subprogram; empty for the main program
+    std::vector<uint32_t> calls; // lines of the calls, the outermost first
     core::BlockResult result;
 };
 
@@ -44,8 +44,8 @@ struct CheckTimes {
     double check = 0.0; // interpreting, cutting, measuring
 };
 
-/// What a check starts from: read, completed and assumed before the first block. A run does not
-/// change it, except that it adds assumptions.
+/// The input of a check: everything read, inferred and assumed before the first block. A run
+/// changes it only by adding assumptions.
 struct CheckInput {
     std::string program_file;
     std::string sha256;            // of the program
@@ -54,20 +54,20 @@ struct CheckInput {
     Engine engine{}; // exact
     core::Setup setup;
     std::vector<std::string> assumptions;
-    double memory = 0.0; // expected size of the stock's model, bytes
+    double memory = 0.0; // expected size of the model of the stock, bytes
 };
 
-/// What is recorded block by block. It only grows while the program runs.
+/// The results by block. They only grow while the program runs.
 struct CheckRecord {
     std::vector<CheckedBlock> blocks;
     std::vector<core::Finding> findings; // after the run in the order of the blocks
     core::Verdict verdict = core::Verdict::clear;
-    std::optional<core::Error> stopped; // why the program was not run to its end
+    std::optional<core::Error> stopped; // why the program stopped early
     double removed = 0.0;               // mm3
     CheckTimes times;
 };
 
-/// What is known after the last block.
+/// The results after the last block.
 struct CheckReport {
     std::vector<core::Finding> taken_in; // findings that were combined into another one
     core::Statistics statistics;
@@ -75,7 +75,7 @@ struct CheckReport {
     size_t lines = 0;                               // scan lines
     double cycle_time = 0.0;                        // of the program, seconds
     std::shared_ptr<const core::CutModel> stock;    // the remaining stock
-    std::shared_ptr<const core::StockMesh> surface; // of the remaining stock, if asked for
+    std::shared_ptr<const core::StockMesh> surface; // of the remaining stock, if requested
     std::optional<SavedStock> saved_stock;
     std::shared_ptr<const core::PartComparison> comparison; // if the set-up has a part
 };

@@ -22,7 +22,7 @@
 namespace app {
 namespace {
 
-/// A program of which no motion could be judged has not been checked.
+/// Reports a program of which no motion could be judged: it has not been checked.
 void look_for_judged_motions(CheckRun& run) {
     const CheckedBlock* first = nullptr;
     for (const CheckedBlock& block : run.blocks) {
@@ -44,7 +44,7 @@ void look_for_judged_motions(CheckRun& run) {
     run.findings.push_back(finding);
 }
 
-/// Nobody shall take a program for checked whose motions were not looked at.
+/// Reports motions that were not checked, so that the program does not count as checked.
 void say_not_judged(CheckRun& run, const std::string& why) {
     const auto moves = [](const CheckedBlock& block) {
         return block.result.motion != core::BlockMotion::none;
@@ -59,7 +59,7 @@ void say_not_judged(CheckRun& run, const std::string& why) {
     run.findings.push_back(finding);
 }
 
-/// Findings in the order of their blocks, those about the program as a whole at the end.
+/// Sorts findings by block, those about the whole program last.
 void put_in_order(std::vector<core::Finding>& findings) {
     std::stable_sort(findings.begin(), findings.end(), [](const auto& a, const auto& b) {
         if (!a.block || !b.block) return a.block.has_value() && !b.block;
@@ -77,7 +77,7 @@ void conclude(PreparedCheck& check, core::SimulatorState end,
     run.lines = core::line_count(end.stock.lines);
     for (const std::string& assumption : end.assumptions) run.assumptions.push_back(assumption);
     look_for_judged_motions(run);
-    // Nobody shall take a program for clear of which a part was not checked.
+    // A program that was checked only in part must not count as clear.
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
     say_not_judged(run, check.file.not_judged);
@@ -106,7 +106,7 @@ std::string lines_text(const std::vector<uint32_t>& lines) {
     return (lines.size() == 1 ? "line " : "lines ") + text;
 }
 
-/// Takes a word off the front, if it is there.
+/// Removes a word from the front of a text, after blanks. Whether it was there.
 bool take(std::string_view& text, std::string_view word) {
     while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
     if (text.substr(0, word.size()) != word) return false;
@@ -145,7 +145,7 @@ core::Finding about_comment(const CheckedBlock& block, const AllowedRule& rule,
     return finding;
 }
 
-/// What is wrong with a name in a comment, if anything is.
+/// The finding for an invalid name in a comment; empty if the name is valid.
 std::optional<core::Finding> doubt_about(const CheckedBlock& block, const AllowedRule& rule,
                                          bool comments_count) {
     if (!core::default_severity(rule.name)) {
@@ -162,7 +162,7 @@ std::optional<core::Finding> doubt_about(const CheckedBlock& block, const Allowe
     return finding;
 }
 
-/// Looks at every comment of the lines that were run, once.
+/// Checks every comment of the executed lines once.
 void say_doubtful_comments(CheckRun& run, bool comments_count) {
     std::set<std::pair<std::string, uint32_t>> seen;
     std::vector<core::Finding> found;
@@ -222,7 +222,7 @@ std::vector<AllowedRule> allowed_rules(std::string_view line) {
 void apply_allowed_rules(CheckRun& run, bool comments_count) {
     say_severities(run);
     say_doubtful_comments(run, comments_count);
-    std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by what is said of them
+    std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by message
     const auto judge = [&](const core::Finding& finding) {
         if (!is_allowed(run, finding)) return false;
         const uint32_t line = run.blocks[core::value_of(*finding.block)].line;
@@ -247,7 +247,7 @@ void apply_allowed_rules(CheckRun& run, bool comments_count) {
 
 namespace {
 
-/// A motion as a number; what differs in end, kind or arc differs in it, but for rare chances.
+/// A hash of a motion: kind, both ends and arc angle.
 uint64_t digest_of(const core::Motion& motion) {
     uint64_t digest = 14695981039346656037U;
     const auto add = [&](double value) {
@@ -260,7 +260,7 @@ uint64_t digest_of(const core::Motion& motion) {
     return digest;
 }
 
-/// A motion, and the line that it comes from.
+/// A motion, and its line.
 struct Step {
     uint64_t digest;
     uint32_t line;
@@ -303,7 +303,7 @@ void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
 
 namespace {
 
-/// Regions beyond these are counted, not told one by one.
+/// Regions beyond this number are only counted.
 constexpr size_t most_findings = 10;
 
 core::Finding finding_of(const core::DeviationRegion& region) {
@@ -347,8 +347,8 @@ void add_findings(CheckRun& run, core::Deviation kind) {
     add(run, finding);
 }
 
-/// Green within the tolerance; from yellow to red where the part is gouged, from cyan to blue where
-/// too much is left, at five times the tolerance and beyond.
+/// Colour of a deviation: green within the tolerance; from yellow to red for gouges and from cyan
+/// to blue for excess material, with full colour from five times the tolerance on.
 core::Colour colour_of(double deviation, double tolerance) {
     const double off = std::abs(deviation);
     if (off <= tolerance) return {80, 170, 80};
@@ -370,8 +370,8 @@ void check_part(CheckRun& run) {
 
 std::string facts_of(const core::PartComparison& comparison, double tolerance) {
     return fmt::format(
-        "missing up to {} mm, left over up to {} mm; {} beyond {} mm; "
-        "measured every {} mm",
+        "gouges up to {} mm, excess up to {} mm; {} beyond {} mm; "
+        "sampled every {} mm",
         core::at_most(comparison.largest_gouge), core::at_most(comparison.largest_excess),
         comparison.regions.size() == 1 ? "1 region"
                                        : fmt::format("{} regions", comparison.regions.size()),
@@ -386,21 +386,20 @@ core::Result<std::string> comparison_file(const CheckRun& run, const std::string
     if (form != MeshForm::ply) return refused("cannot hold colours: the name must end in .ply");
     if (!run.comparison)
         return refused("was not written: the set-up has no [part] to compare with");
-    if (run.surface->mesh.triangles.empty())
-        return refused("was not written: nothing is left of the stock");
+    if (run.surface->mesh.triangles.empty()) return refused("was not written: no stock is left");
     const double tolerance = run.setup.part->tolerance;
     std::vector<core::Colour> colours;
     for (const double deviation : run.comparison->deviations)
         colours.push_back(colour_of(deviation, tolerance));
     return core::ply_bytes(
         run.surface->mesh,
-        {"what is left of the stock beside the part, by feeler; mm, in the frame of the stock",
+        {"remaining stock and its deviation from the part, by feeler; mm, frame of the stock",
          fmt::format("green: within {} mm of the part", tolerance),
-         fmt::format("yellow to red: part missing, {} to {} mm and more", tolerance,
+         fmt::format("yellow to red: gouged, {} to {} mm and more", tolerance, 5.0 * tolerance),
+         fmt::format("cyan to blue: excess material, {} to {} mm and more", tolerance,
                      5.0 * tolerance),
-         fmt::format("cyan to blue: left over, {} to {} mm and more", tolerance, 5.0 * tolerance),
          fmt::format(
-             "each corner has the colour of the largest deviation next to it; measured every {} mm",
+             "each corner has the colour of the largest deviation next to it; sampled every {} mm",
              core::at_most_figures(run.comparison->between_samples, 2))},
         colours);
 }

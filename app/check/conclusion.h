@@ -22,7 +22,7 @@ struct LengthMismatch;
 struct PreparedCheck;
 
 /// Completes a run after its last block: sorts the findings, combines those with one cause, applies
-/// comments that allow rules, compares with the part, and keeps the remaining stock.
+/// comments that allow rules, compares with the part, and stores the remaining stock.
 void conclude(PreparedCheck& check, core::SimulatorState end,
               const std::vector<LengthMismatch>& mismatches, bool needs_surface);
 
@@ -32,18 +32,18 @@ struct AllowedRule {
     size_t column = 0;
 };
 
-/// The rules that the comments of a line allow: (feeler: allow RULE, RULE), or the same after a
-/// semicolon.
+/// The rules that the comments of a line allow, written (feeler: allow RULE, RULE), or the same
+/// after a semicolon.
 std::vector<AllowedRule> allowed_rules(std::string_view line);
 
-/// Removes the findings that comments in their own lines allow, if the set-up permits that;
-/// findings of collisions stay. Adds to the assumptions what was removed, which comments had no
-/// effect, and each rule with another severity in the set-up. An unknown rule name is a warning, a
-/// comment that the set-up does not permit a note.
+/// Removes the findings that comments in their own lines allow, if the set-up permits such
+/// comments; findings of collisions stay. Adds to the assumptions: the removed findings, comments
+/// without effect, and each rule whose severity the set-up changes. An unknown rule name gives a
+/// warning; a comment that the set-up does not permit gives a note.
 void apply_allowed_rules(CheckRun& run, bool comments_count);
 
-/// Looks whether the machine moves otherwise when the switch for blocks with `/` is on, if the run
-/// has a note that there are such blocks. If so, the note gets the severity of its rule.
+/// If the run has a note about blocks with `/`, checks whether the path differs when block delete
+/// is on. If so, raises the note to the severity of its rule.
 void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
                                    const gcode::Environment& environment);
 
@@ -51,7 +51,7 @@ void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
 /// `run.comparison`, and adds a finding `gouge` or `rest-material` for each of the worst regions.
 void check_part(CheckRun& run);
 
-/// The result of the comparison in a line of text.
+/// The result of the comparison as one line of text.
 std::string facts_of(const core::PartComparison& comparison, double tolerance);
 
 /// The surface of the remaining stock as a PLY file, coloured by its deviation from the part. The

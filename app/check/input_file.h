@@ -10,12 +10,12 @@
 
 namespace app {
 
-/// A file access of a check, on which its result depends: the content of a file, or the fact that
-/// it does not exist.
+/// A file access that affects the result of a check: the content of a file, or the fact that it
+/// does not exist.
 struct InputFile {
     core::FileQuestion question{};
     std::string path;                  // of the file, or of the folder that was searched
-    std::string name;                  // that was searched for in the folder
+    std::string name;                  // name searched for in the folder
     std::optional<std::string> answer; // for content: its SHA-256
 
     auto operator<=>(const InputFile&) const = default;

@@ -12,7 +12,7 @@
 namespace app {
 namespace {
 
-constexpr double wear = 1.0; // mm between table and tool that count as tool wear
+constexpr double wear = 1.0; // mm; smaller differences between table and tool count as wear
 
 bool is_cause(std::string_view rule) {
     return rule == "missing-length-offset" || rule == "length-offset-cancelled"
@@ -24,7 +24,7 @@ bool has_cause(std::span<const gcode::Warning> warnings) {
                        [](const gcode::Warning& warning) { return is_cause(warning.rule); });
 }
 
-/// The tool and the counted length after the events of a block.
+/// The tool, and the length that the control uses, after the events of a block.
 struct Counted {
     std::optional<core::ToolNumber> tool;
     core::LengthOffsetChange offset;
@@ -50,20 +50,20 @@ bool can_be_caused_by_length(const core::Finding& finding) {
            || finding.rule == "offset-implausible";
 }
 
-/// The letter of the axis that a finding about a limit begins with.
+/// The axis letter, with which a finding about a limit begins.
 char axis_of(const core::Finding& finding) { return finding.message.substr(0, 1)[0]; }
 
 /// Whether a finding of the program as written and one of the corrected program have the same
-/// subject, whatever their severities.
+/// subject, regardless of severity.
 bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
     if (!found.pair[0].empty()) return found.block == left.block && found.pair == left.pair;
     if (found.rule != left.rule) return false;
     if (found.rule == "over-travel")
         return found.block == left.block && axis_of(found) == axis_of(left);
-    return true; // of a rule that looks at many blocks
+    return true; // a rule about many blocks
 }
 
-/// Whether a finding does not occur with the true length, in the blocks that were run with it.
+/// Whether the block of a finding was also run with the true length and then did not give it.
 bool is_consequence(const LengthMismatch& mismatch, const core::Finding& finding) {
     if (!finding.block || *finding.block < mismatch.first || *finding.block > mismatch.last)
         return false;
@@ -85,13 +85,13 @@ std::string listed(const std::set<std::string>& names) {
     return text;
 }
 
-/// Whether the block of a finding that is about one collides.
+/// Whether the block of a finding collides.
 bool collides_in(const CheckRun& run, const core::Finding& finding) {
     const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
     return block.verdict == core::Verdict::collision;
 }
 
-/// What a wrong length causes.
+/// The consequences of a wrong length.
 struct Consequences {
     std::set<core::BlockIndex> blocks;
     std::set<std::string> bodies;
@@ -131,8 +131,8 @@ std::optional<core::Finding> cause_of(const CheckRun& run, const LengthMismatch&
     return std::nullopt;
 }
 
-/// Adds the sentence to the finding of the cause; or, if that has a lower severity than its
-/// consequences, to the first of these.
+/// Adds the sentence to the finding of the cause, or to `first`, the first consequence, if the
+/// cause has a lower severity.
 void add_sentence(CheckRun& run, const core::Finding& cause, const Consequences& all,
                   double too_low, std::optional<core::Finding> first) {
     if (all.blocks.empty()) return;

@@ -20,14 +20,14 @@ namespace app {
 
 struct CheckRun;
 
-/// Blocks in which the tool is lower than intended, because the control uses a length shorter than
-/// that of the tool.
+/// Blocks in which the tool is lower than intended because the control uses a length that is too
+/// short.
 struct LengthMismatch {
     core::BlockIndex first{}, last{};         // the first has the finding that names the cause
     double too_low = 0.0;                     // mm
     double length = 0.0;                      // true length of the tool, mm
     std::optional<core::OffsetNumber> number; // of the offset with the wrong length
-    // The blocks up to here were run with the true length as well, with these findings.
+    // Blocks up to this one were also run with the true length, and gave these findings.
     std::optional<core::BlockIndex> corrected_to;
     std::vector<core::Finding> remaining;
 };
@@ -38,11 +38,11 @@ struct LengthWatch {
     bool is_open = false; // the last of them continues
 };
 
-/// Takes a block into account before it is run, and sets `length_in_doubt` of the state.
+/// Updates the watch before a block is run, and sets `length_in_doubt` of the state.
 void watch_length(LengthWatch& watch, const core::Setup& setup, const core::BlockEvents& block,
                   std::span<const gcode::Warning> warnings, core::SimulatorState& state);
 
-/// Takes into account that somebody changed the tool's length or its offset between two blocks.
+/// Updates the watch after the user changed the tool's length or its offset between two blocks.
 void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
                           core::SimulatorState& state);
 

@@ -16,12 +16,12 @@ namespace {
 
 constexpr const char* names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                  "G59", "G59.1", "G59.2", "G59.3"};
-constexpr double nearly_all = 0.9;  // of the way that is fed
-constexpr double cut_through = 3.0; // mm below the stock that cutting it off may go
-constexpr double in_the_air = 0.5;  // mm above the stock; what just touches it may be meant to
-constexpr double slack = 0.01;      // mm by which a cut along a face may miss it
+constexpr double nearly_all = 0.9;  // of the feed travel
+constexpr double cut_through = 3.0; // mm below the stock that cutting through may reach
+constexpr double in_the_air = 0.5;  // mm above the stock; feeds closer to its top may be intended
+constexpr double slack = 0.01;      // mm by which a cut along a face may miss the face
 
-/// The tip at both ends of a motion, in the frame of the stock.
+/// The tool tip at both ends of a motion, in the frame of the stock.
 struct TipWay {
     core::Vec3 from = core::Vec3(0.0), to = core::Vec3(0.0);
     bool upright = true;
@@ -49,7 +49,7 @@ std::optional<TipWay> tip_way(const core::Setup& setup, const core::Motion& moti
     return way;
 }
 
-/// Whether the tool passes over or under the stock, or through it.
+/// Whether the motion crosses the stock's outline in XY, at any height.
 bool crosses(const TipWay& way, const core::Aabb& stock, double radius) {
     for (int axis = 0; axis < 2; ++axis)
         if (std::max(way.from[axis], way.to[axis]) + radius < stock.min[axis]
@@ -108,7 +108,7 @@ void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::In
         OffsetUse& use = watch[index];
         use.is_judged = use.is_judged && way->upright;
         if (motion->kind == core::MotionKind::rapid) {
-            // Out of a cut that goes through, a rapid may leave upward.
+            // A rapid may retract upwards out of a cut that goes through the stock.
             const bool leaves = way->from.z < way->to.z;
             use.rapids_through =
                 use.rapids_through || (!leaves && way->low() < stock.max.z - slack);
@@ -141,9 +141,9 @@ std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const c
 namespace {
 
 constexpr double inch = 25.4;
-constexpr double doubt = 2.0; // a part and its stock differ by less
+constexpr double doubt = 2.0; // a part and its stock differ by less than this factor
 
-/// Whether a ratio of sizes is that of the two units.
+/// Whether a ratio of sizes is close to 25.4.
 bool is_units_apart(double ratio) { return ratio > inch / doubt && ratio < inch * doubt; }
 
 } // namespace

@@ -23,7 +23,7 @@
 namespace app {
 namespace {
 
-/// The dialect that was stated, else what the program looks like.
+/// The stated dialect, else the recognised one.
 core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcode::Program& program,
                                               CheckInput& run) {
     gcode::DialectId chosen{};
@@ -41,7 +41,7 @@ core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcod
                                   gcode::dialect(chosen).name));
 }
 
-/// What every check of this version takes for granted.
+/// Adds the assumptions that every check makes.
 void add_standing_assumptions(const core::Setup& setup, CheckInput& run) {
     run.assumptions.push_back(fmt::format("arcs are cut and checked as chords within {} mm of them",
                                           core::at_most(core::chord_error(setup.mesh_size), 4)));
@@ -59,15 +59,15 @@ core::Error stopped_before(const CheckJob& job) {
     return {core::ErrorCode::io, {}, "the check was stopped before its first block", job.program};
 }
 
-/// What a check takes beside the model of its stock, bytes: measured of programs of 1,000 to
-/// 400,000 blocks, their text, results and findings among it. A loop makes more of a line than
-/// that.
+/// Memory of a check in addition to the model of its stock, bytes. Measured with programs of 1,000
+/// to 400,000 blocks, including their text, results and findings. Loops execute a line several
+/// times and need more.
 double memory_beside_model(const gcode::Program& program) {
     constexpr double of_any = 16e6, of_line = 600.0;
     return of_any + of_line * static_cast<double>(program.line_starts.size());
 }
 
-/// Whether any block up to the end or the first error changes the tool.
+/// Whether any block up to the end or to the first error changes the tool.
 bool calls_tools(const PreparedCheck& check) {
     gcode::Interpreter interpreter(*check.library, check.file.environment);
     gcode::InterpreterState state = gcode::initial_state(check.file.environment);
@@ -88,7 +88,7 @@ void take_tool_at_start(PreparedCheck& check) {
                     core::value_of(*setup.tool_at_start)));
 }
 
-/// A program, and the digest of the very bytes that it was read from: a pipe gives them only once.
+/// Reads a program, with the digest of the same bytes: a pipe can be read only once.
 core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
     const core::FileAccessObserver listening([&](const core::FileAccess& look) {
         if (look.question == core::FileQuestion::content && look.answer)
@@ -138,7 +138,7 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     check.library = std::make_shared<gcode::ProgramLibrary>(
         *check.program, gcode::dialect(file.environment.dialect), file.environment.search_path);
     take_tool_at_start(check);
-    // What was looked over so far is not the whole program. From here on the run asks by itself.
+    // is_stopped may have cut the survey short. From here on the run polls it.
     if (job.is_stopped && job.is_stopped()) return tl::unexpected(stopped_before(job));
     file.environment.limits.is_stopped = {};
     add_standing_assumptions(run.setup, run);

@@ -28,14 +28,14 @@ struct PreparedCheck {
     ~PreparedCheck();
 
     std::unique_ptr<const gcode::Program> program;
-    std::shared_ptr<gcode::ProgramLibrary> library; // of the subprograms
+    std::shared_ptr<gcode::ProgramLibrary> library; // the subprograms
     SetupFile file;                                 // its setup has been moved to `run`
     CheckRun run;                                   // without blocks
     std::unique_ptr<core::SimulatorState> machine;  // before the first block
     bool stock_is_stated = true;                    // false: inferred from the program's cuts
 };
 
-/// Reads program and set-up and infers what is missing. place_check adds the simulator with the
+/// Reads program and set-up and infers missing values. place_check then adds the simulator with the
 /// model of the stock, which takes longest.
 ///
 /// Errors: as run_check.

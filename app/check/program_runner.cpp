@@ -19,8 +19,8 @@
 
 namespace app {
 
-/// Runs the blocks of a length mismatch with the tool's true length in the control. A finding that
-/// this run has as well is not caused by the wrong length.
+/// Runs the blocks of a length mismatch with the control using the tool's true length. A finding
+/// that also occurs in this run is not caused by the wrong length.
 ///
 /// Cost: that of the check itself, for these blocks.
 class CorrectedRun {
@@ -31,11 +31,11 @@ public:
                  const core::Setup& setup, bool speed_by_hand, const RunState& before,
                  const LengthMismatch& mismatch);
 
-    /// Runs the block that the program ran under a set-up. Does nothing once the corrected program
-    /// has taken another branch, or the set-up was replaced.
+    /// Runs the block that the program has just run under `setup`. Does nothing once the corrected
+    /// program has taken another branch or the set-up was replaced.
     void follow(const gcode::BlockCommands& real, const core::Setup& setup);
 
-    /// Writes the findings into the mismatch.
+    /// Stores the findings in the mismatch.
     void end(LengthMismatch& mismatch);
 
 private:
@@ -50,7 +50,7 @@ private:
     core::SimulatorState machine_;
     OffsetWatch offsets_;
     bool is_lost_ = false;
-    std::optional<core::BlockIndex> last_; // that was run
+    std::optional<core::BlockIndex> last_; // last block that was run
     std::vector<core::Finding> found_;
 };
 
@@ -111,7 +111,7 @@ void CorrectedRun::end(LengthMismatch& mismatch) {
 
 namespace {
 
-/// Makes a sentence: adds the full stop, and the capital unless the text begins with a name.
+/// Makes a sentence of a text: adds a full stop, and a capital unless the text begins with a name.
 std::string as_sentence(std::string text) {
     const auto is_small = [&](size_t i) {
         return i < text.size()
@@ -178,7 +178,7 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& bloc
 void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState& state,
                                std::vector<core::Finding>& findings) const {
     for (const gcode::Warning& warning : block.warnings) {
-        // An offset that the set-up states is set, even if it is all zeros.
+        // A work offset in the set-up counts as set even if it is all zeros.
         const auto active = static_cast<int>(state.control.modal.offsets.active);
         if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
             continue;
@@ -243,8 +243,8 @@ void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering l
 
 namespace {
 
-/// Drops the pairs that no report shows: a block keeps the deciding or else the nearest pair, and
-/// those that are not clear. Its findings are in the run already.
+/// Drops the pairs that no report shows. Keeps the deciding pair, else the nearest, and all pairs
+/// that are not clear. Findings of the block are already in the run.
 void drop_unreported(core::BlockResult& result) {
     const auto nearer = [](const core::PairClearance& a, const core::PairClearance& b) {
         return a.lower < b.lower;
@@ -412,14 +412,14 @@ void ProgramRunner::report_missing_moves() {
         core::Finding finding;
         finding.rule = "fixture-move";
         finding.severity = core::severity_of(run_.setup, finding.rule);
-        // One set-up may serve programs with and without a code; a line is meant for this one.
+        // A set-up with a code may serve programs without it, but a line refers to this program.
         if (!move.line) finding.severity = std::min(finding.severity, core::Severity::note);
         if (finding.severity == core::Severity::off) continue;
         finding.message =
             fmt::format("{} is never moved: the program {}.", run_.setup.fixtures[move.from].name,
-                        move.line ? fmt::format("runs no block of line {}", *move.line)
+                        move.line ? fmt::format("executes no block of line {}", *move.line)
                                   : fmt::format("has no M{}", *move.code));
-        finding.cure = move.line ? "Name a line that is run in the set-up, or an M code."
+        finding.cure = move.line ? "In the set-up, name a line that is executed, or an M code."
                                  : "Add the M code that stops the program for the move.";
         run_.findings.push_back(std::move(finding));
     }

@@ -33,7 +33,7 @@ using BlockVisit = std::function<bool(const gcode::BlockCommands&, std::span<con
 std::optional<std::vector<core::Event>>
 first_events(const std::function<void(const BlockVisit&)>& show);
 
-/// The outcome of one block.
+/// The result of one block.
 struct BlockStep {
     CheckedBlock checked;
     std::vector<core::Finding> findings;
@@ -46,10 +46,10 @@ class BlockRunner {
 public:
     explicit BlockRunner(const PreparedCheck& check);
 
-    // Called after the control has read a block and before anything moves, with the state before
+    // Called after the control has read a block and before it moves, with the state before
     // the block.
     std::function<void(const gcode::BlockCommands&, const RunState&)> before_block;
-    // Judges a block in place of the distance core; empty: clearances are measured.
+    // Judges a block in place of the distance core; empty: the distance core measures clearances.
     std::function<core::Result<core::Judgement>(std::span<const core::Event>,
                                                 const core::SimulatorState&)>
         judge;
@@ -60,13 +60,13 @@ public:
 
     /// Runs the next block; empty at the end of the program.
     ///
-    /// Result: the same bits from the same state.
-    /// Errors: alarms of the control, and blocks that the machine cannot run. The state is
-    ///         unchanged then.
+    /// Result: bit-identical for the same state.
+    /// Errors: alarms of the control, and blocks that the machine cannot run. The state is then
+    ///         unchanged.
     core::Result<std::optional<BlockStep>> step(RunState& state);
 
-    /// Reads the blocks that follow without running them, until `visit` returns false, the program
-    /// ends or has an error.
+    /// Reads the following blocks without running them, until `visit` returns false, the program
+    /// ends, or it has an error.
     void visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
                      const BlockVisit& visit);
 
@@ -90,7 +90,7 @@ public:
     /// Takes the simulator's state out of the check.
     explicit ProgramRunner(PreparedCheck& check);
     ~ProgramRunner();
-    // Its members refer to each other.
+    // Members refer to each other.
     ProgramRunner(const ProgramRunner&) = delete;
     ProgramRunner& operator=(const ProgramRunner&) = delete;
 
@@ -98,8 +98,8 @@ public:
     // Called for each block, in order, when its start and duration are final.
     std::function<void(const core::BlockTime&)> on_timed;
 
-    /// Judges blocks by `judge` in place of the distance core (BlockRunner::judge). The findings
-    /// that a wrong tool length causes are then reported block by block.
+    /// Judges blocks by `judge` in place of the distance core (BlockRunner::judge). Findings caused
+    /// by a wrong tool length are then reported for each block.
     void let_judge(decltype(BlockRunner::judge) judge);
 
     /// Starts in the middle of the program, at a line ("120") or block number ("N210"), with the
@@ -109,10 +109,10 @@ public:
     core::Result<void> start_at(const std::string& line);
 
     /// Runs the next block. False at the end of the program or on an error, which is then in the
-    /// run. The findings about the whole program are added then.
+    /// run. Then also adds the findings about the whole program.
     bool advance();
 
-    /// Ends the run after the last block, as stopped by the user. There must be a block.
+    /// Ends the run after the last block as stopped by the user. There must be a block.
     void stop_here();
 
     /// Runs the program to its end or to its first error.
@@ -127,29 +127,29 @@ public:
     RunState& mutable_state() { return state_; }
 
     /// Returns to an earlier state of this run: drops the blocks from there on; advance() runs them
-    /// again. The run must still hold its first `findings` findings in the order in which they were
-    /// found, and no length mismatch may be open in the state.
+    /// again. The first `findings` findings of the run must still be in their original order, and
+    /// the state must have no open length mismatch.
     void go_back(const RunState& state, size_t blocks, size_t findings);
 
     /// Blocks in which the control used a wrong tool length.
     std::vector<LengthMismatch> length_mismatches() const;
 
 private:
-    /// Runs the block of a length mismatch with the right length as well.
+    /// Runs a block of a length mismatch again with the true length.
     void follow_correction(const gcode::BlockCommands& block, const RunState& before);
     void end_correction();
     /// Ends the run at an error. An alarm of the control becomes a block and, if a rule names it, a
     /// finding.
     void stop(core::Error error);
-    /// Enters final times into the blocks.
+    /// Stores final times in the blocks.
     void enter(const std::vector<core::BlockTime>& timed);
-    /// Adds what only the whole program shows.
+    /// Adds findings about the whole program.
     void end();
-    /// Compares the feeds of the program with size and position of the stock.
+    /// Compares the feeds of the program with the size and position of the stock.
     void compare_with_stock();
-    /// Makes the fixture moves of the lines before a restart.
+    /// Makes the fixture moves of the lines before the start line.
     void make_moves_before(uint32_t line);
-    /// Reports fixture moves of the set-up that no block has made.
+    /// Reports fixture moves of the set-up that no block has triggered.
     void report_missing_moves();
 
     const PreparedCheck& check_;

@@ -18,8 +18,8 @@ struct Environment;
 
 namespace app {
 
-/// Everything between two blocks of a run: the state of control, machine and stock, and that of the
-/// rules. A plain value: keep a copy to return to it; copies share large data.
+/// The complete state between two blocks of a run: control, machine, stock and rules. A plain
+/// value: keep a copy to return to it; copies share large data.
 struct RunState {
     gcode::InterpreterState control;
     gcode::Lowering lowering;
@@ -31,14 +31,14 @@ struct RunState {
     std::set<size_t> moves_made = {}; // indices of the set-up's fixture moves
 };
 
-/// The state before the first block, with the simulator in a state.
+/// The state before the first block, with the given simulator state.
 RunState start_of_program(const gcode::Environment& environment, const core::Setup& setup,
                           core::SimulatorState machine);
 
-/// A hash of all that determines how the run continues and looks: the control, every scan line and
-/// the moves that cut it, the positions of the axes, tool, spindle and fixtures.
+/// A hash of everything that determines how the run continues and what it shows: the control, every
+/// scan line and the moves that cut it, axis positions, tool, spindle and fixtures.
 ///
-/// Cost: reads every line of the stock.
+/// Cost: reads every scan line of the stock.
 uint64_t digest_of(const RunState& state);
 
 } // namespace app

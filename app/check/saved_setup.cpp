@@ -26,7 +26,7 @@ core::Result<std::string> text_of_file(const std::string& path) {
 }
 
 bool are_one_file(const fs::path& a, const fs::path& b) {
-    std::error_code ignored; // of one that is not there, and so no other
+    std::error_code ignored; // a missing file equals no other
     return fs::equivalent(a, b, ignored);
 }
 

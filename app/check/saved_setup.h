@@ -9,8 +9,8 @@ namespace app {
 
 struct CheckJob;
 
-/// The set-up of a job as a file that `check --setup` takes: the job's edits in the file that it
-/// names, or all that was inferred and edited, with what is inferred as comments.
+/// The set-up of a job as a file for `check --setup`: the file that the job names, with the job's
+/// edits; or all inferred and edited values, with the assumptions as comments.
 ///
 /// Errors: as run_check and rewritten_setup.
 core::Result<std::string> setup_file_text(const CheckJob& job);
@@ -25,8 +25,8 @@ using FileWriter =
 /// Saves the set-up of a job.
 ///
 /// Errors: as setup_file_text and `write`; invalid_value for an existing file unless it may be
-///         replaced, for the program itself, and for a folder from which relative paths in the
-///         set-up would not be valid.
+///         replaced, for the program itself, and for a folder in which relative paths of the set-up
+///         would be invalid.
 core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                               const FileWriter& write);
 

@@ -12,7 +12,7 @@
 namespace app {
 namespace {
 
-/// A value for each field that there is, and what else a person can choose of a tool.
+/// The keys of all fields in which the tools differ, including shape and holder.
 std::set<std::string> differing_keys(const core::ToolDescription& a,
                                      const core::ToolDescription& b) {
     std::set<std::string> keys;
@@ -161,7 +161,7 @@ ToolDescription editable(ToolDescription tool) {
 ToolDescription reshaped(ToolDescription tool, ToolShape shape) {
     const ToolDescription before = tool;
     for (const ToolSize& size : core::tool_sizes())
-        if (!size.shapes.contains(ToolShape::profile)) // a profile has the sizes that all have
+        if (!size.shapes.contains(ToolShape::profile)) // a profile has only the sizes of all shapes
             size.put(tool, std::nullopt);
     tool.teeth.reset();
     tool.outline.clear();
@@ -170,7 +170,7 @@ ToolDescription reshaped(ToolDescription tool, ToolShape shape) {
     FoundTool found{.tool = tool, .has_shape = true};
     const ToolDescription kept = complete(found).tool;
     if (core::assemble(kept)) return kept;
-    // Its lengths do not suit the shape.
+    // Lengths of the old shape do not suit the new one.
     found.tool.flute_length = 0.0;
     found.tool.stick_out.reset();
     return complete(found).tool;

@@ -27,37 +27,37 @@ const char* name_of(SetupSource source);
 /// A tool in the set-up dialog.
 struct SheetTool {
     core::ToolDescription tool;             // editable
-    SetupSource source = SetupSource::file; // of all values that are not stated
-    std::string why;                        // it was inferred, as a sentence
+    SetupSource source = SetupSource::file; // of all values not in `stated`
+    std::string why;                        // reason for inferring it, a sentence
     std::set<std::string> stated;           // keys that the user has stated
 };
 
 /// The editable values of a set-up. To edit them, change a copy.
 struct SetupSheet {
     std::string path;  // of the set-up; empty: it was inferred
-    std::string frame; // that the stock's coordinates count in
+    std::string frame; // frame of the stock's coordinates
     core::Solid stock; // box, cylinder, or a mesh, which can only be replaced
     SetupSource stock_source = SetupSource::file;
-    std::string stock_why; // it was inferred, as a sentence
+    std::string stock_why; // reason for inferring it, a sentence
     std::vector<SheetTool> tools;
-    std::optional<double> allowance; // the general one; empty: the usual ones
+    std::optional<double> allowance; // the general one; empty: the defaults
     SetupSource allowance_source = SetupSource::file;
-    std::optional<core::ToolNumber> tool_at_start; // only where it was inferred
+    std::optional<core::ToolNumber> tool_at_start; // only if inferred
 };
 
 /// The editable values of a check after read_check.
 SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup, const SetupEdits& edits);
 
-/// The edits that turn `shown` into `wanted`, added to `made`, the edits behind `shown`.
+/// Adds the edits that turn `shown` into `wanted` to `made`, the edits already in `shown`.
 SetupEdits edits_between(const SetupSheet& shown, const SetupSheet& wanted, SetupEdits made);
 
 /// The sizes that can be edited for a shape, in the order of the dialog.
 std::vector<core::ToolSize> fields_of(core::ToolShape shape);
 
-/// The shapes that can be chosen in the dialog. An outline is stated in a set-up file only.
+/// The shapes offered in the dialog. An outline can only be given in a set-up file.
 std::vector<core::ToolShape> stateable_shapes();
 
-/// The same tool with editable lengths: a single-cylinder shank becomes a shank diameter and a
+/// Makes the lengths of a tool editable: turns a single-cylinder shank into a shank diameter and a
 /// stick-out.
 core::ToolDescription editable(core::ToolDescription tool);
 
@@ -65,7 +65,7 @@ core::ToolDescription editable(core::ToolDescription tool);
 /// usual values.
 core::ToolDescription reshaped(core::ToolDescription tool, core::ToolShape shape);
 
-/// The name of the tool's holder in the shipped library; empty if it is not in there.
+/// The name of the tool's holder in the shipped library; empty if it is not in it.
 std::string holder_name(const core::ToolDescription& tool);
 
 } // namespace app

@@ -19,7 +19,7 @@ tl::unexpected<core::Error> stock_file_error(const std::string& path, const std:
     return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
 }
 
-/// Single precision moves a corner by half of its last digit.
+/// Rounding to single precision moves a vertex by up to half a unit in the last place.
 double rounding_of(const core::Mesh& mesh) {
     const core::Aabb box = mesh.bounds();
     const core::Vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
@@ -40,10 +40,10 @@ core::Result<MeshForm> mesh_form(const std::string& path) {
 
 std::string facts_of(const SavedStock& saved) {
     if (saved.moves > 0 || saved.triangles == 0)
-        return fmt::format("{}: the raw stock and {} moves; a set-up takes it as [stock] model",
+        return fmt::format("{}: the raw stock and {} moves, for [stock] model in a set-up",
                            saved.file, saved.moves);
     std::string text = fmt::format(
-        "{}: {} triangles, within {} mm of the model's points, lines {} mm apart", saved.file,
+        "{}: {} triangles, within {} mm of the model's points, scan lines {} mm apart", saved.file,
         saved.triangles, core::at_most_figures(saved.error, 2), saved.mesh_size);
     if (saved.lost > 0)
         text += fmt::format("; {} points on thinner details are missing", saved.lost);
@@ -55,7 +55,7 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
     FEELER_TRY(const MeshForm form, mesh_form(path));
     assert(form != MeshForm::record);
     if (surface.mesh.triangles.empty())
-        return stock_file_error(path, "was not written: nothing is left of the stock");
+        return stock_file_error(path, "was not written: no stock is left");
     StockFile file;
     file.facts = {path, surface.mesh.triangles.size(), surface.error, mesh_size, surface.lost};
     if (form == MeshForm::stl) file.facts.error += rounding_of(surface.mesh);
@@ -67,7 +67,7 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
         return file;
     }
     std::vector<std::string> comments = {
-        "what is left of the stock, by feeler; mm, in the frame of the stock",
+        "remaining stock, by feeler; mm, frame of the stock",
         fmt::format("error: the points of the model lie within {} mm of this surface",
                     core::at_most_figures(file.facts.error, 3)),
         fmt::format("between scan lines {} mm apart the surface is interpolated",

@@ -15,7 +15,7 @@ namespace app {
 /// File formats of a stock: surfaces (.stl, .ply), or the raw stock with its cuts (.feeler).
 enum class MeshForm : uint8_t { stl, ply, record };
 
-/// The format of a file name's extension.
+/// The format for a file name's extension.
 ///
 /// Errors: invalid_value for another extension, with the file.
 core::Result<MeshForm> mesh_form(const std::string& path);
@@ -26,11 +26,11 @@ struct SavedStock {
     size_t triangles = 0;
     double error = 0.0;     // mm: largest distance of the model's points to the surface
     double mesh_size = 0.0; // mm: spacing of the lines between which the surface is interpolated
-    size_t lost = 0;        // points on details thinner than the mesh size, not in the surface
+    size_t lost = 0;        // points on details thinner than the mesh size, missing in the surface
     size_t moves = 0;       // in a .feeler file, which has no triangles and no error
 };
 
-/// The same in a line of text.
+/// The facts as one line of text.
 std::string facts_of(const SavedStock& saved);
 
 struct StockFile {

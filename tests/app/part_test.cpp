@@ -102,7 +102,7 @@ TEST(Part, IsSavedInColours) {
     ASSERT_TRUE(mesh) << mesh.error().message;
     EXPECT_NEAR(core::signed_volume(mesh->mesh), 300'000.0 - 5'000.0, 1.0);
     const std::string bytes = test_support::bytes_of(folder.path() / "seen.ply");
-    EXPECT_NE(bytes.find("comment yellow to red: part missing, 0.1 to 0.5 mm"), std::string::npos);
+    EXPECT_NE(bytes.find("comment yellow to red: gouged, 0.1 to 0.5 mm"), std::string::npos);
     EXPECT_NE(bytes.find("property uchar red"), std::string::npos);
     const auto none = save(SetupWriter(), "none.ply");
     EXPECT_EQ(none.status, 2);
