@@ -32,7 +32,7 @@ std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t 
     return bytes;
 }
 
-/// What exists under a path whose target cannot be reached.
+/// What exists under a path whose target cannot be determined.
 std::optional<std::string_view> leftover_of(const std::filesystem::path& path,
                                             const std::error_code& failure) {
     std::error_code ignored;
@@ -95,7 +95,7 @@ std::string why_no_file(const std::filesystem::path& path) {
     if (*found == "folder") return "is a folder, not a file";
     if (*found == "link") return "is a link that leads nowhere";
     if (*found == "other") return "is a pipe or a device, not a file";
-    return *found == "file" ? "" : "cannot be looked at";
+    return *found == "file" ? "" : "cannot be accessed";
 }
 
 bool is_there(const std::filesystem::path& path) { return presence_of(path).has_value(); }

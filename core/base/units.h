@@ -20,7 +20,7 @@ struct SinCos {
 ///          angle that is not finite.
 SinCos sin_cos(double angle);
 
-/// The same for degrees of any size. Multiples of 90 are exact.
+/// Sine and cosine of an angle of any size in degrees. Multiples of 90 are exact.
 SinCos sin_cos_deg(double angle_deg);
 
 /// The angle of the direction (cosine, sine), in -pi..pi. The direction need not have unit length.

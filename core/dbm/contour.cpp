@@ -46,7 +46,7 @@ Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
     const bool flat = std::all_of(points.begin(), points.end(), [&](const TangentPlane& point) {
         return point.normal == points.front().normal;
     });
-    if (flat) return glm::clamp(middle, room.min, room.max); // it is in their mean plane
+    if (flat) return glm::clamp(middle, room.min, room.max); // the mean is in their common plane
     Matrix a{}, frame{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     Vec3 right(0.0);
     for (const TangentPlane& point : points) {
@@ -105,8 +105,8 @@ Vec3 across_motion(const ProfileElement& e, const Vec3& p, const Vec3& normal, c
     return glm::dot(across, out) < 0.0 ? -across / size : across / size;
 }
 
-/// The same for the moving piece, at the time when the distance is least. `p` and `by` are in the
-/// frame of the tool, relative to the initial tip position.
+/// The signed distance from the moving piece at the time of least distance, and its gradient. `p`
+/// and `by` are in the frame of the tool, relative to the initial tip position.
 Facing facing_sweep(const ProfileElement& e, const Vec3& p, const Vec3& by) {
     // The distance is convex in time, and its normal gives the direction of descent.
     const auto at = [&](double t) { return facing(e, p - t * by); };
@@ -129,7 +129,7 @@ Facing facing_sweep(const ProfileElement& e, const Vec3& p, const Vec3& by) {
     return best;
 }
 
-/// Out of the stock means into the cut volume.
+/// The normal of a cut surface, which points out of the stock, into the cut volume.
 Vec3 normal_of_cut(const CutterSweep& sweep, const Vec3& point) {
     const Mat3 tool_from_stock = glm::transpose(sweep.orientation);
     const Vec3 p = tool_from_stock * (point - sweep.from);
@@ -160,7 +160,7 @@ Vec3 normal_of_cylinder(const SolidCylinder& c, const Vec3& point, int axis, con
     return glm::normalize(radial);
 }
 
-/// That of the triangle most nearly perpendicular to the line among those at the point.
+/// The normal of the triangle that is most nearly perpendicular to the line, of those at the point.
 Vec3 normal_of_mesh(const SolidMesh& mesh, const Vec3& point, const Vec3& outward) {
     constexpr double near = 1e-6;
     Vec3 best = outward;

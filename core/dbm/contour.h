@@ -23,8 +23,8 @@ struct TangentPlane {
 };
 
 /// The point of a box closest to all given tangent planes of a surface: on a face if they are one
-/// plane, on an edge or corner otherwise. Where the planes leave it open, the point closest to the
-/// mean of the given points.
+/// plane, on an edge or corner otherwise. In directions that the planes do not determine, the point
+/// closest to the mean of the given points.
 ///
 /// Source:  Ju, Losasso, Schaefer, Warren: Dual contouring of Hermite data, 2002.
 Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room);
@@ -77,7 +77,7 @@ Crossing crossing_at(const Dbm& lines, int axis, const std::array<int, 3>& node,
 /// The surface at a crossing.
 struct CrossedEdge {
     TangentPlane plane;
-    std::optional<uint32_t> sweep; // that cut it, by its number in the log; empty: raw stock
+    std::optional<uint32_t> sweep; // number in the log of the cut that made it; empty: raw stock
 };
 
 CrossedEdge crossed_edge(const CutModel& model, const Crossing& crossing);

@@ -120,7 +120,7 @@ Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
         Move move{tool_from_stock * sweep.from, tool_from_stock * sweep.to,
                   question.sideways - sweep.cutter->path_error};
         if (move.near <= 0.0) continue;
-        // The move below the path also cut above it, up to the top of all matter and beyond.
+        // The move below the path also cut above it, up to the top of all material and beyond.
         move.open = upwards && std::min(move.from.z, move.to.z) + height >= top;
         search.moves.push_back(move);
     }

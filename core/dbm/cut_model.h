@@ -11,8 +11,6 @@
 
 namespace core {
 
-/// A list that only grows, but for its last element, in chunks that copies share: a copy costs a
-/// pointer per chunk.
 template <typename T>
 /// An append-only list (only its last element can be replaced), stored in chunks that copies share:
 /// a copy costs a pointer per chunk.
@@ -74,7 +72,7 @@ private:
         Aabb body;
     };
     struct Entry {
-        uint32_t end; // the move goes from place end - 1 to place end
+        uint32_t end; // the move goes from position end - 1 to position end
         uint32_t attitude;
         uint32_t block;
     };
@@ -101,12 +99,12 @@ struct CutModel {
     Solid solid;
     Aabb outer_box; // of the solid with its tolerance
     Dbm lines;
-    ScanLines columns; // empty if the model was made without
+    ScanLines columns; // empty if the model has no columns
     std::array<TileBoxes, 3> line_boxes;
     TileBoxes column_boxes;
     SweepLog log; // the moves that came near the stock; marks are numbers + 1
     std::vector<SharedLog<SweepRun>> history; // per tile of columns: the moves that came near it
-    CutterSweep last;                         // of all moves, near or not
+    CutterSweep last;                         // last of all moves, also those away from the stock
     double volume_owed = 0.0;                 // removed but not yet reported (see cut), mm3
     size_t loose_tests = 0;                   // box tests by searches since all boxes were fitted
 
@@ -133,7 +131,8 @@ Result<CutModel> make_cut_model(Solid solid, double spacing,
 /// over to the next cuts, so no reported volume is negative and the sum is right.
 double cut(CutModel& model, const CutterSweep& sweep);
 
-/// The same for several moves in order on several threads; returns the volume that each removed.
+/// Removes what several moves sweep, in order, on several threads; returns the volume removed by
+/// each.
 ///
 /// Result:  the same bits for any number of threads.
 /// Cost:    with hundreds of moves, two threads take about half of the time of one.
@@ -146,17 +145,17 @@ void note_search(CutModel& model, size_t box_tests);
 /// The square of a column, clipped to the extent of the stock.
 Square cell_square(const CutModel& model, int i, int j);
 
-/// The heights at which the part `square` of cell (i, j) may contain matter, recomputed from the
+/// The heights at which the part `square` of cell (i, j) may contain material, recomputed from the
 /// log.
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square);
 
-/// The matter on a line along Z through cell (i, j), recomputed from the log.
+/// The material on a line along Z through cell (i, j), recomputed from the log.
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y);
 
 /// The numbers of the logged sweeps that may have reached into a box, in order.
 std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box);
 
-/// Whether the model contains no matter.
+/// Whether the model contains no material.
 bool is_gone(const CutModel& model);
 
 } // namespace core

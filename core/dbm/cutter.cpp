@@ -7,7 +7,8 @@ namespace {
 
 /// The box of a piece relative to the origin of the profile, for any direction of its axis.
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
-    // Circles about the axis reach as far along X as the axis leans away from X.
+    // A circle about the axis extends along X by its radius times the sine of the angle between the
+    // axis and X.
     const Vec3 lean(std::hypot(up.y, up.z), std::hypot(up.z, up.x), std::hypot(up.x, up.y));
     Aabb box;
     for (const auto& [z, r] : {std::pair(e.z0, e.r0), std::pair(e.z1, e.r1)})

@@ -25,7 +25,7 @@ double lines_for(const Aabb& bounds, double spacing) {
     return x * y + y * z + z * x;
 }
 
-/// The least mesh size of two digits or so whose model fits.
+/// A mesh size, near the smallest, whose model fits into `memory_limit`.
 double fitting_spacing(const Aabb& bounds, double spacing, double memory_limit) {
     double wider = spacing;
     while (memory_estimate(bounds, wider) > memory_limit && wider < 1e9) wider *= 1.05;
@@ -68,7 +68,7 @@ ScanGrid scan_grid(const Aabb& bounds, double spacing) {
     assert(spacing > 0.0 && !bounds.empty());
     ScanGrid grid{.centre = bounds.center(), .spacing = spacing, .half_count = {}};
     for (int axis = 0; axis < 3; ++axis) {
-        // Line k on one side stands at (k + 0.5) h; a line on the border itself would meet nothing.
+        // Line k on one side is at (k + 0.5) h; a line on the border itself would meet nothing.
         const double half_cells = 0.5 * bounds.size()[axis] / spacing;
         grid.half_count[static_cast<size_t>(axis)] =
             std::max(1, static_cast<int>(std::ceil(half_cells - 0.5)));

@@ -5,7 +5,7 @@
 namespace core {
 namespace {
 
-/// Corners of the sides, going round; the edge k of a side joins corners k and k + 1.
+/// Corners of the sides in cyclic order; edge k of a side joins corners k and k + 1.
 constexpr uint8_t sides[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                  {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
 

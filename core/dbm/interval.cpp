@@ -95,7 +95,7 @@ double IntervalList::subtract(const Interval& cut) {
 void IntervalList::add(const Interval& interval) {
     assert(!std::isnan(interval.lower) && !std::isnan(interval.upper));
     if (!(interval.lower < interval.upper)) return;
-    // Those that only touch are taken in too, so that neighbours keep a gap between them.
+    // Intervals that only touch are merged too, so that there is always a gap between neighbours.
     const Interval* const first = std::partition_point(
         begin(), end(), [&](const Interval& i) { return i.upper < interval.lower; });
     const Interval* const last = std::partition_point(

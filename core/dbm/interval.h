@@ -17,8 +17,8 @@ struct Interval {
     bool operator==(const Interval&) const = default;
 };
 
-/// The matter on one scan line: sorted, disjoint intervals with gaps between neighbours. A single
-/// interval, the usual case, is stored in place; more need the heap.
+/// The material on one scan line: sorted, disjoint intervals with gaps between neighbours. A single
+/// interval, the usual case, is stored in the object; more are stored on the heap.
 class IntervalList {
 public:
     IntervalList() = default;
@@ -66,7 +66,7 @@ private:
     uint32_t capacity_ = 1;
 };
 
-/// Read access to the matter on one line wherever it is stored: sorted, disjoint intervals with
+/// Read access to the material on one line wherever it is stored: sorted, disjoint intervals with
 /// gaps between neighbours. Valid until the line changes.
 class LineView {
 public:

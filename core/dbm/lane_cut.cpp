@@ -33,8 +33,8 @@ HWY_INLINE Stretch matter_of(const ScanTile& tile, size_t k, size_t place) {
     return {load(&tile.layers[k].lower[place]), load(&tile.layers[k].upper[place])};
 }
 
-/// The layers, as bits, with matter on any of the lines within a segment; all beyond the 32nd share
-/// one bit.
+/// The layers, as bits, that have material on any of the lines within a segment; all layers from
+/// the 32nd on share one bit.
 HWY_INLINE uint32_t layers_with_matter(const ScanTile& tile, size_t place, const Stretch& where,
                                        const RowMask& wanted) {
     uint32_t layers = 0;
@@ -53,7 +53,7 @@ HWY_INLINE void for_layers(const ScanTile& tile, uint32_t layers, const Act& act
         for (size_t k = 31; k < tile.layers.size(); ++k) act(k);
 }
 
-/// The lines of a chunk on which the plan may sweep matter of these layers.
+/// The lines of a chunk on which the plan may sweep material of these layers.
 HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t place,
                                    uint32_t layers, const double* u, double v) {
     return bits_of(in_reach(plan, u, v, [&](const auto& may_hold) HWY_ATTR {
@@ -64,7 +64,7 @@ HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, s
     }));
 }
 
-/// An end of matter for counting volume: the number of grid coordinates below it, and its height
+/// An end of material for counting volume: the number of grid coordinates below it, and its height
 /// above the border half way to the next one.
 struct Counted {
     Row points, beyond;
@@ -75,7 +75,7 @@ HWY_INLINE Counted counted(const TileTask& task, const Row& x, const RowMask& is
     const ScanGrid& grid = *task.grid;
     const double half = grid.half_count[static_cast<size_t>(task.axis)];
     const double centre = grid.centre[task.axis];
-    // Half way between two points either will do.
+    // Half way between two points, either is correct.
     const Row near = (x - centre) * (1.0 / grid.spacing) + (half - 0.5);
     const Row index = each<Row>([&](size_t k) HWY_ATTR { return hn::Round(near.part[k]); });
     const Row there = row_of(centre) + (index - half + 0.5) * grid.spacing;
@@ -84,7 +84,7 @@ HWY_INLINE Counted counted(const TileTask& task, const Row& x, const RowMask& is
     return {points, x - (row_of(centre) + (points - half) * grid.spacing)};
 }
 
-/// The weight of an end from its stored form, and back.
+/// The weight of an end from its stored form.
 HWY_INLINE Row facing_of(const uint8_t* tilts) {
     const Row tilt = each<Row>([&](size_t k) HWY_ATTR {
         const hn::Rebind<uint8_t, Tag> bytes;
@@ -128,7 +128,8 @@ HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t
                       const RowMask& from_below, const RowMask& from_above, TileCut& done) {
     const Row low = row_of(1.0) - tilt_of(gone.low_facing) * (1.0 / ScanTile::steepest);
     const Row high = row_of(1.0) - tilt_of(gone.high_facing) * (1.0 / ScanTile::steepest);
-    // The removed part ends at an old upper end or at the new lower end above it; likewise below.
+    // The removed segment ends at an old upper end or at the new lower end above it; likewise
+    // below.
     const Counted upper = counted(task, choose(from_above, old.upper, gone.ends.upper), from_above);
     const Counted lower =
         counted(task, choose(from_below, old.lower, gone.ends.lower), but_not(wanted, from_below));
@@ -183,7 +184,7 @@ void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone)
     }
 }
 
-/// Removes segments from a chunk of lines in the layers that hold matter.
+/// Removes segments from a chunk of lines in the layers that hold material.
 HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
                            const Swept& gone, TileCut& done) {
     RowMask hard = below(row_of(1.0), row_of(0.0));
@@ -207,8 +208,8 @@ HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, u
     note_blocks(done, place, bits_of(met));
 }
 
-/// Runs `act(row, first lane, place, layers, lines)` over the chunks of which the plan may sweep
-/// something: which lines, in which layers.
+/// Calls `act(row, first lane, place, layers, lines)` for the chunks that the plan may affect, with
+/// the lines and layers that it may affect.
 template <typename Act>
 HWY_INLINE void for_chunks_in_reach(const LanePlan& plan, const TileTask& task,
                                     const ScanTile& tile, const Act& act) {
@@ -259,7 +260,7 @@ HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, Ti
         });
 }
 
-/// The intersection over the four corners of each cell, shortened by the error bound.
+/// The intersection of the segments at the four corners of each cell, shortened by the error bound.
 HWY_INLINE Stretch shared(const CornerStretches& front, const CornerStretches& back, size_t first) {
     const auto both = [&](const auto& one, const auto& other, const auto& act) HWY_ATTR {
         return act(act(load(&one[first]), load(&one[first + 1])),

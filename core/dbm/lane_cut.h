@@ -19,7 +19,8 @@ struct TileTask {
     int axis = 0;                    // of the lines
 };
 
-/// A segment to be removed from a line outside of the lanes: it divides an interval or removes one.
+/// A segment that the lanes cannot remove from a line, because it divides an interval or removes
+/// one.
 struct HandCut {
     uint32_t place;
     double lower, upper;
@@ -32,14 +33,14 @@ struct TileCut {
     alignas(64) std::array<double, ScanTile::side> points{};
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
     size_t by_hand_count = 0;
-    std::array<HandCut, ScanTile::lines> by_hand; // still to do; 8 kB, not initialised
+    std::array<HandCut, ScanTile::lines> by_hand; // not done yet; 8 kB, not initialised
 };
 
 /// Lines of a tile, one bit each, row by row.
 using TileReach = std::array<uint16_t, ScanTile::side>;
 
-/// Segments at the corners of a row of cells, (+inf, -inf) where there is none or none was
-/// computed: one corner more than cells, padded to whole chunks of 8.
+/// Segments at the corners of a row of cells, (+inf, -inf) if there is none or it was not computed.
+/// There is one corner more than cells, padded to whole chunks of 8.
 struct alignas(64) CornerStretches {
     static constexpr size_t size = 24;
     std::array<double, size> lower, upper;
@@ -54,28 +55,29 @@ struct alignas(64) CornerStretches {
 /// same operations in the same order in every lane, without fused multiply-add: all instruction
 /// sets give the same bits.
 struct LaneCut {
-    /// The segments at the corners `u`, `v` inside what the plan sweeps; the ends are inside the
-    /// swept volume up to rounding (1e-9 mm within 2 m). Writes only chunks with corners in the bit
-    /// set `wanted`; other corners may come out empty.
+    /// The segments at the corners `u`, `v` inside the volume that the plan sweeps; the ends are
+    /// inside the swept volume up to rounding (1e-9 mm within 2 m). Writes only chunks with corners
+    /// in the bit set `wanted`; other corners may come out empty.
     void (*stretches)(const LanePlan& plan, const double* u, double v, uint32_t wanted,
                       CornerStretches& out);
 
     /// Whether the cut would change the tile.
     bool (*changes)(const LanePlan& plan, const TileTask& task, const ScanTile& tile);
 
-    /// Removes what the plan sweeps from the tile, except for cuts left to be done by hand.
+    /// Removes what the plan sweeps from the tile, except for the segments listed in
+    /// `done.by_hand`.
     void (*cut)(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done);
 
-    /// The lines in the rows of the task that the plan may sweep; it sweeps no others.
+    /// The lines in the rows of the task that the plan may affect; it affects no others.
     void (*in_reach)(const LanePlan& plan, const TileTask& task, const ScanTile& tile,
                      TileReach& out);
 
-    /// Whether these cells of a row contain matter within what their four corners share: corners 0
-    /// .. 16 in front and at the back.
+    /// Whether these cells of a row contain material within the intersection of the segments at
+    /// their four corners: corners 0 .. 16 at the front and at the back.
     bool (*meets_shared)(const ScanTile& tile, int row, const CornerStretches& front,
                          const CornerStretches& back, uint32_t cells);
 
-    /// Removes that from them, except for cuts left to be done by hand.
+    /// Removes that intersection from the cells, except for the segments listed in `done.by_hand`.
     void (*take_shared)(const TileTask& task, int row, const CornerStretches& front,
                         const CornerStretches& back, uint32_t cells, ScanTile& tile, TileCut& done);
 };

@@ -11,8 +11,8 @@ namespace core {
 /// v).
 ///
 /// Seen along the lines the move has a direction (cos_u, cos_v) and a length; a line is at g along
-/// it and e beside it. Its segment begins and ends at the times t = g * per_length + w * by_half +
-/// at, w = sqrt(r^2 - e^2), clamped to 0..1. For moves along the lines per_length and by_half are
+/// it and at e across it. Its segment begins and ends at the times t = g * per_length + w * by_half
+/// + at, w = sqrt(r^2 - e^2), clamped to 0..1. For moves along the lines per_length and by_half are
 /// 0.
 struct CapsuleLanes {
     double from_a, from_u, from_v;
@@ -21,9 +21,9 @@ struct CapsuleLanes {
     double cos_u, cos_v, length, per_length;
     double low_by_half, low_at, high_by_half, high_at;
     double low_end, high_end;     // added to the ends of a cylinder's segment: its end faces
-    bool opens_up;                // no stock above: every segment may end at high_end
+    bool opens_up;                // no stock above, so every segment may end at high_end
     double reach_low, reach_high; // bounds of the ball's centre or of the cylinder's ends
-    double u_most, v_most;        // beyond these another element covers this one
+    double u_most, v_most;        // beyond these, another element covers this one
 };
 
 /// An upright cylinder crossed from the side: (a, s) is the plane of its circle, z the height.
@@ -33,26 +33,28 @@ struct AcrossLanes {
     double by_a, by_side, by_z;
     double radius, z0, z1;
     double reach_low, reach_high; // bounds of the centre
-    double per_side, per_z;       // 1 / by_side, 1 / by_z; 0 if negligible
-    double low_at, high_at;       // the moments are side * per_side + these, ...
-    double by_radius; // ... less radius * by_radius for the low one, more for the high one
+    double per_side, per_z;       // 1 / by_side, 1 / by_z; 0 if the motion is negligible
+    double low_at, high_at;       // the times are side * per_side + these, ...
+    double by_radius;             // ... minus radius * by_radius (low), plus it (high)
 };
 
-/// A cone or a rounded corner. On a level or vertical move its section at a distance from the path,
-/// or at a height, is constant or only moves or only grows; otherwise it is `sloped`.
+/// A cone or a rounded corner. On a level or vertical move, its section at a given distance from
+/// the path or at a given height is constant, only moves or only grows; on any other move it is
+/// `sloped`.
 struct ElementLanes {
     ProfileElement element;
     CapsuleLanes path;  // for lines along Z
-    AcrossLanes across; // for the others; its radius is not used
+    AcrossLanes across; // for other lines; its radius is not used
     bool sloped;
 };
 
-/// How one convex piece on one move meets the lines of one family, in the form that the lanes use.
+/// Parameters for intersecting the sweep of a convex piece with the lines of one family, as the
+/// lanes need them.
 struct LanePlan {
     static constexpr size_t most = 4;
 
     int axis = 0;
-    bool by_lanes = false; // else line by line, with the profile and the sweep below
+    bool by_lanes = false; // else line by line, using `piece` and `sweep`
     size_t balls = 0, uprights = 0, across = 0, elements = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
     std::array<AcrossLanes, most> beside;         // cylinders met by lines along X and Y

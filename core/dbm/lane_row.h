@@ -18,7 +18,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// So many lines are worked on at a time, on every instruction set: half a row of a tile.
+/// Number of lines that are processed together on every instruction set: half a row of a tile.
 constexpr size_t chunk = 8;
 constexpr size_t chunks = ScanTile::side / chunk;
 
@@ -79,7 +79,7 @@ HWY_INLINE Row root(const Row& x) {
     return each<Row>([&](size_t k)
                          HWY_ATTR { return hn::Sqrt(hn::Max(x.part[k], hn::Zero(Tag()))); });
 }
-/// A root good to seven digits, for what need not be exact: half the cost.
+/// A square root accurate to seven digits, at half the cost.
 HWY_INLINE Row rough_root(const Row& x) {
     const hn::Rebind<float, Tag> f;
     return each<Row>([&](size_t k) HWY_ATTR {
@@ -137,8 +137,8 @@ HWY_INLINE RowMask overlap(const Stretch& a, const Stretch& b) {
     return below(a.lower, b.upper) & below(b.lower, a.upper);
 }
 
-/// What is swept of a chunk of lines, and how far its ends face along the lines: the square of that
-/// component of the normal, 1 where it is not known.
+/// The swept segments of a chunk of lines, and for each end the square of the normal's component
+/// along the line, 1 if unknown.
 struct Swept {
     Stretch ends;
     Row low_facing, high_facing;
@@ -160,10 +160,10 @@ HWY_INLINE void unite_high(Swept& all, const RowMask& valid, const Row& at, cons
     all.high_facing = choose(higher, facing, all.high_facing);
 }
 
-/// Where lines lie, seen along them, from the path of a capsule.
+/// Positions of lines, seen along them, relative to the path of a capsule.
 struct Beside {
     Row g, beyond; // along the path; w^2
-    Row past;      // how far before the path or beyond it
+    Row past;      // distance before the start or beyond the end of the path
     RowMask met;
 };
 
@@ -188,7 +188,8 @@ HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Swept& a
         const Row past = at.g - t * c.length;
         return root(at.beyond - past * past);
     };
-    // Where the surface is lowest or highest, a little off in time is nothing in height.
+    // At the lowest or highest point of the surface, a small error in time has no effect on the
+    // height.
     const Row half = rough_root(at.beyond);
     const Row t = moment(c, at, half, c.low_by_half, c.low_at);
     const double per_square = 1.0 / (c.radius * c.radius);

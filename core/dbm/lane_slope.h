@@ -13,14 +13,14 @@ namespace core {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Moments of a move, first .. last for each line, while `met`.
+/// Times of a move, first .. last for each line; valid if `met`.
 struct Moments {
     Row first, last;
     RowMask met;
 };
 
-/// Narrows the moments to those at which a point that moves evenly, and stands at `offset` from it,
-/// lies within low .. high; `per` is 1 / its way.
+/// Narrows the times to those at which the offset of the line from a point in uniform motion,
+/// initially `offset`, is within low .. high; `per` is 1 / the point's travel.
 HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, double per,
                        Moments& at) {
     const Row one = (offset - low) * per, other = (offset - high) * per;
@@ -28,7 +28,7 @@ HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, doubl
     at.last = least(at.last, most(one, other));
 }
 
-/// Where lines along X or Y lie from where a circle starts: beside it and above it.
+/// Offsets of lines along X or Y from the start position of a circle: sideways and in height.
 struct AsideAndAbove {
     Row s, z;
 };
@@ -37,8 +37,8 @@ HWY_INLINE AsideAndAbove aside_and_above(const AcrossLanes& c, const Row& u, dou
     return {(c.side_is_u ? u : row_of(v)) - c.from_side, (c.side_is_u ? row_of(v) : u) - c.from_z};
 }
 
-/// Circles of these radii, a line at `s` beside each, during these moments; `flatness` is the
-/// square of the part of the surface's normal that lies in their plane.
+/// Adds what circles of these radii sweep on lines at the sideways offset `s`, during these times.
+/// `flatness` is the square of the component of the surface normal in the plane of the circles.
 HWY_INLINE void add_circles(const AcrossLanes& c, const Row& s, const Row& radius,
                             const Row& flatness, Moments at, Swept& all) {
     const Row other_side = row_of(0.0) - radius;
@@ -78,7 +78,7 @@ HWY_INLINE void add_level_across(const ElementLanes& level, const Row& u, double
     const AcrossLanes& c = level.across;
     const ProfileElement& e = level.element;
     const auto [s, z] = aside_and_above(c, u, v);
-    // The heights of the piece that come by: one, or a stretch on the way up or down.
+    // The heights of the piece that pass the line: one, or a range on a move up or down.
     const Row low = z - std::max(0.0, c.by_z), high = z - std::min(0.0, c.by_z);
     Moments at{row_of(0.0), row_of(1.0), {}};
     if (e.margin > 0.0) {
@@ -98,19 +98,19 @@ HWY_INLINE void add_level_across(const ElementLanes& level, const Row& u, double
                     row_of(1.0 / (1.0 + slope * slope)), at, all);
 }
 
-/// A rounded disc on a move that climbs or sinks, met by lines along X or Y: at each moment by a
-/// circle, of which the half chord is S(t).
+/// A rounded disc on a move up or down, crossed by lines along X or Y. At each time its section is
+/// a circle with the half chord S(t).
 struct RoundedCircles {
     const AcrossLanes& c;
-    Row s, z; // of the lines, the height from the disc's plane, at the start
+    Row s, z; // offsets of the lines; z from the disc's plane, at the start
     double radius, margin;
 
-    /// The circle at moments t: its half chord S, how t changes S, and how S bends.
+    /// The circle at times t: its half chord S and the derivatives of S by t.
     struct Here {
         Row half, facing;
         Row push, bend; // S S' and S S''
-        Row towards;    // the derivative of what the circle reaches past the line
-        RowMask inside; // the line meets the circle
+        Row towards;    // derivative of the distance by which the circle extends past the line
+        RowMask inside; // whether the line meets the circle
     };
     HWY_INLINE Here at(const Row& t) const {
         const Row height = z - t * c.by_z, aside = s - t * c.by_side;
@@ -141,11 +141,11 @@ struct RoundedCircles {
     }
 };
 
-/// Offers the greatest of sign * by_a * t + S(t), a concave function: Newton's steps within a
-/// bracket. Whatever they come to lies in the swept volume.
+/// Adds the maximum of sign * by_a * t + S(t), a concave function, by Newton's method within a
+/// bracket. Every iterate is inside the swept volume.
 HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within, double sign,
                            Swept& all) {
-    constexpr int rounds = 50; // half a dozen will do, but where a line only grazes the body
+    constexpr int rounds = 50; // six are enough unless a line only grazes the body
     const double by = sign * circles.c.by_a;
     Row low = within.first, high = within.last;
     Row t = (low + high) * 0.5;
@@ -160,7 +160,7 @@ HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within,
         const RowMask good = here.inside & below(low, next) & below(next, high);
         const Row before = t;
         t = choose(good, next, (low + high) * 0.5);
-        // Off by this much in time is nothing along the line.
+        // A change of time this small has no effect along the line.
         const RowMask moved = below(row_of(1e-14), (t - before) * (t - before));
         if (!any(within.met & moved)) break;
     }
@@ -182,7 +182,7 @@ HWY_INLINE void add_round_across(const ElementLanes& sloped, const Row& u, doubl
     search_round(circles, within, 1.0, all);
 }
 
-/// An end of an element's stretch on lines along Z, at a distance from its axis, and how it faces.
+/// An end of an element's segment on lines along Z, and the facing of the surface there.
 struct EndAt {
     Row at, facing;
 };
@@ -201,15 +201,16 @@ HWY_INLINE EndAt lower_end(const ProfileElement& e, const Row& away) {
             choose(at_most(row_of(e.z0), slant), leans, row_of(1.0))};
 }
 
-/// The element upside down: its upper end is then a lower one, of the other sign.
+/// The element upside down: its upper end becomes a lower end with the opposite sign.
 ProfileElement turned_over(const ProfileElement& e) { return {-e.z1, e.r1, -e.z0, e.r0, e.margin}; }
 
-/// How far ahead of the axis a rounded disc that climbs or sinks touches what it leaves, on lines
-/// `aside` of its path: there the normal is square to the motion.
+/// For a rounded disc on a move up or down, the distance ahead of the axis at which it touches the
+/// surface that it leaves, on lines at the distance `aside` from its path. There the normal is
+/// perpendicular to the motion.
 ///
 /// Source: with the sine of the normal's angle from the axis, the circle has the radius
-///         d = r + m sine, and aside^2 = d^2 (1 + k^2 - k^2 / sine^2), k the move's slope. Newton's
-///         steps; an error in the place is one of second order in height.
+///         d = r + m sine, and aside^2 = d^2 (1 + k^2 - k^2 / sine^2), k the move's slope. Solved
+///         by Newton's method; an error in position is of second order in height.
 HWY_INLINE Row ahead_of_round(const ProfileElement& e, const Row& aside, double slope) {
     constexpr int rounds = 5;
     const double radius = std::max(e.r0, e.r1), whole = radius + e.margin;
@@ -231,8 +232,8 @@ HWY_INLINE Row ahead_of_round(const ProfileElement& e, const Row& aside, double 
     return root(d * d - square);
 }
 
-/// The same for the lower end of a cone. Where it is flat, the foremost point of its face; where
-/// the move is steeper than its flank, that of its rim.
+/// The same distance for the lower end of a cone. If that is flat, the foremost point of its face;
+/// if the move is steeper than its flank, the foremost point of its rim.
 HWY_INLINE Row ahead_of_cone(const ProfileElement& e, const Row& aside, double slope) {
     const double cosine = std::abs(slope) * (e.r1 - e.r0) / (e.z1 - e.z0);
     if (e.r1 < e.r0 || cosine >= 1.0) return row_of(infinity);
@@ -241,8 +242,8 @@ HWY_INLINE Row ahead_of_cone(const ProfileElement& e, const Row& aside, double s
     return most(flank, root((row_of(e.r0) - aside) * (aside + e.r0)));
 }
 
-/// The lower end of what a cone or a rounded disc sweeps while it climbs or sinks, on lines along
-/// Z.
+/// Lower ends of the segments that a cone or a rounded disc sweeps on lines along Z, on a move up
+/// or down.
 struct LowerEnds {
     EndAt end;
     RowMask met;
@@ -256,7 +257,7 @@ HWY_INLINE LowerEnds lower_ends(const CapsuleLanes& c, const ProfileElement& e, 
     const Row aside = ou * c.cos_v - row_of(ov * c.cos_u);
     const Row beyond = (row_of(c.radius) - aside) * (aside + c.radius);
     const Row rim = root(beyond);
-    // How far the line is ahead of the axis while the element meets it.
+    // Distances of the line ahead of the axis while the element meets it.
     const Row first = most(row_of(0.0) - rim, g - c.length), last = least(rim, g);
     LowerEnds found;
     found.met = at_most(first, last) & at_most(row_of(0.0), beyond);
@@ -264,7 +265,8 @@ HWY_INLINE LowerEnds lower_ends(const CapsuleLanes& c, const ProfileElement& e, 
     const double slope = by_z * c.per_length;
     const Row touch =
         e.margin > 0.0 ? ahead_of_round(e, aside, slope) : ahead_of_cone(e, aside, slope);
-    // Lower ends are a convex function of the moment: what lies beyond the move's ends, they serve.
+    // The lower end is a convex function of time, so a minimum outside the move is replaced by the
+    // move's end.
     const Row x = least(most(slope > 0.0 ? touch : row_of(0.0) - touch, first), last);
     found.end = lower_end(e, root(aside * aside + x * x));
     found.end.at = found.end.at + within_move((g - x) * c.per_length) * by_z + from_z;
@@ -280,9 +282,9 @@ HWY_INLINE void add_slope_along(const ElementLanes& sloped, const Row& u, double
     unite_high(all, high.met, row_of(0.0) - high.end.at, high.end.facing);
 }
 
-/// Narrows the moments to those at which at + t * by is not negative.
+/// Narrows the times to those at which at + t * by is not negative.
 HWY_INLINE void keep_where_positive(const Row& at, double by, Moments& moments) {
-    constexpr double least_change = 1e-12; // less is none, and off by no more
+    constexpr double least_change = 1e-12; // a smaller change is ignored; the error is no larger
     if (std::abs(by) <= least_change)
         moments.met = moments.met & at_most(row_of(0.0), at);
     else if (by > 0.0)
@@ -291,13 +293,13 @@ HWY_INLINE void keep_where_positive(const Row& at, double by, Moments& moments) 
         moments.last = least(moments.last, at * (-1.0 / by));
 }
 
-/// A circle that moves and grows evenly, met by lines across it.
+/// A circle that moves and grows uniformly, crossed by lines in its plane.
 struct GrowingCircles {
     const AcrossLanes& c;
     Row radius, s; // at the start
     double by_radius, flatness;
 
-    /// Offers what lines meet at these moments.
+    /// Adds the segments of the lines at these times.
     HWY_INLINE void offer(const Row& at, const Moments& within, Swept& all) const {
         const Row t = least(most(at, within.first), within.last);
         const Row r = radius + t * by_radius, aside = s - t * c.by_side;
@@ -309,8 +311,8 @@ struct GrowingCircles {
     }
 };
 
-/// Ends of the stretch: at the first or last moment, or where it stands still. Source: as
-/// extent_with_root has it.
+/// Extremes of the segment: at the first or last time, or at a stationary point. Source: see
+/// extent_with_root.
 HWY_INLINE void add_cone_across(const ElementLanes& sloped, const Row& u, double v, Swept& all) {
     const AcrossLanes& c = sloped.across;
     const ProfileElement& e = sloped.element;

@@ -46,7 +46,7 @@ HWY_INLINE void add_level_along(const ElementLanes& level, const Row& u, double 
     unite_high(all, met, (widens ? row_of(e.z1) : inside) + highest, widens ? flat : facing);
 }
 
-/// What the element sweeps; with `loosely`, an enclosing volume for sloped moves.
+/// Adds what the element sweeps; with `loosely`, an enclosing volume for sloped moves.
 HWY_INLINE void add_element(const LanePlan& plan, const ElementLanes& element, bool loosely,
                             const Row& u, double v, Swept& all) {
     const bool sloped = element.sloped && !loosely;
@@ -60,7 +60,7 @@ HWY_INLINE void add_element(const LanePlan& plan, const ElementLanes& element, b
         add_cone_across(element, u, v, all);
 }
 
-/// Line by line, for shapes and moves without a lane version.
+/// What the plan sweeps, line by line, for shapes and moves without a lane version.
 HWY_ATTR Swept swept_one_by_one(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
     alignas(64) std::array<double, chunk> lower, upper;
     for (size_t i = 0; i < chunk; ++i) {
@@ -97,15 +97,15 @@ HWY_ATTR Swept swept_of(const LanePlan& plan, const double* u, double v, uint32_
     return all;
 }
 
-/// What is swept of a chunk of lines lies within low - w .. high + w, w^2 = square: an
-/// enclosing range that needs no root.
+/// The swept segments of a chunk of lines are within low - w .. high + w, w^2 = square: an
+/// enclosing range that needs no square root.
 struct Reach {
     Row square;
     double low, high;
     RowMask met;
 };
 
-/// Whether it may contain matter, allowing for rounding.
+/// Whether the range may contain material, allowing for rounding.
 HWY_INLINE RowMask may_hold(const Reach& reach, const Stretch& matter) {
     constexpr double slack = 1e-6; // mm^2: 1e-9 mm at the end of a tool of 1 m
     const Row off =
@@ -131,8 +131,8 @@ HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) 
                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z) + slack))};
 }
 
-/// The lines of a chunk on which the plan may sweep matter; `holds(test)` runs a test of a segment
-/// over all matter.
+/// The lines of a chunk on which the plan may sweep material; `holds(test)` runs a test of a
+/// segment over all material.
 template <typename Holds>
 HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, const Holds& holds) {
     const RowMask all = at_most(row_of(0.0), row_of(0.0));

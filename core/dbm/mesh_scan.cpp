@@ -21,7 +21,7 @@ struct TriangleCrossing {
 bool comes_before(const TriangleCrossing& a, const TriangleCrossing& b) {
     if (a.line != b.line) return a.line < b.line;
     if (a.depth != b.depth) return a.depth < b.depth;
-    return a.step > b.step; // which of them does not matter, but the order is fixed
+    return a.step > b.step; // either order is correct, but it must be fixed
 }
 
 struct LineScan {
@@ -97,7 +97,8 @@ public:
         const auto& [a, b, c] = triangle.corner;
         const double lowest = std::min({a.y, b.y, c.y});
         const double highest = std::max({a.y, b.y, c.y});
-        // One line more on either side: the estimate is rounded, the decision on each line is not.
+        // One more line on either side: the estimate is rounded, but the decision on each line is
+        // exact.
         const int first = std::max(0, line_after(grid_, v_axis(axis_), lowest) - 1);
         const int last = line_after(grid_, v_axis(axis_), highest);
         for (int v = first; v <= last; ++v) add_row(triangle, v);

@@ -5,7 +5,7 @@
 namespace core {
 namespace {
 
-/// An interval with what made its ends.
+/// An interval with the marks of its ends.
 struct Marked {
     Interval interval;
     EndMarks marks;

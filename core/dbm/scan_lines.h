@@ -11,7 +11,7 @@
 
 namespace core {
 
-/// What made the ends of an interval: 0 for raw stock, else the number of a cut.
+/// Origin of the ends of an interval: 0 for raw stock, else the number of a cut.
 struct EndMarks {
     uint32_t lower = 0, upper = 0;
     uint8_t lower_tilt = 0, upper_tilt = 0; // see ScanTile::Marks
@@ -59,12 +59,12 @@ struct ScanTile {
     void keep_marks() { marks.resize(layers.size()); }
 };
 
-/// Replaces the matter of a line; all its ends count as raw stock.
+/// Replaces the material of a line; all its ends count as raw stock.
 void set_line(ScanTile& tile, size_t place, const LineView& matter);
 
 /// Removes `cut` from a line and returns the removed length. If the tile keeps marks, the new ends
-/// get those in `made`: the lower end of the remaining matter, at the upper end of `cut`, gets the
-/// lower mark.
+/// get those in `made`: the lower end of the remaining material, at the upper end of `cut`, gets
+/// the lower mark.
 double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made);
 
 /// The axes along which the first (u) and second (v) index of a family of lines count: (Y, Z) for
@@ -114,7 +114,7 @@ public:
     /// Write access to a line. Its tile is cloned first if another snapshot shares it.
     Edit edit(int u, int v) { return {edit_tile(tile_of(u, v)), place_in_tile(u, v)}; }
 
-    /// Tiles are numbered u fastest; null: no line of the tile holds anything.
+    /// Tiles are numbered u fastest; null if all lines of the tile are empty.
     size_t tile_count() const { return tiles_.size(); }
     const ScanTile* tile(size_t index) const { return tiles_[index].get(); }
     /// Write access to a tile, cloned first if another snapshot shares it.
@@ -126,10 +126,10 @@ public:
         return static_cast<size_t>(u / tile_side) + static_cast<size_t>(v / tile_side) * u_tiles_;
     }
 
-    /// Whether both share the tile that contains the line, so it need not be compared.
+    /// Whether both objects share the tile that contains the line, so that it need not be compared.
     bool shares_tile(const ScanLines& other, int u, int v) const;
 
-    /// Whether all lines hold the same matter; marks are ignored.
+    /// Whether all lines hold the same material; marks are ignored.
     bool operator==(const ScanLines& other) const;
 
 private:

@@ -6,7 +6,7 @@
 namespace core {
 namespace {
 
-/// Added to computed heights so that rounding never loses matter, mm.
+/// Added to computed heights so that rounding never loses material, mm.
 constexpr double rounding = 1e-9;
 
 template <typename... Cases>

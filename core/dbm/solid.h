@@ -41,7 +41,7 @@ Aabb bounds(const Solid& solid);
 /// The intersection of a line with the nominal solid.
 IntervalList line_of(const Solid& solid, int axis, double u, double v);
 
-/// Heights that contain all of the solid, tolerance included, above the square.
+/// Heights that contain all of the solid above and below the square, tolerance included.
 ///
 /// Proof for a mesh: move a point of the solid sideways within the square to a corner. Either it
 /// stays inside, then the line at the corner contains its height; or it crosses a triangle, then

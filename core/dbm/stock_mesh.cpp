@@ -109,7 +109,7 @@ NodeLayer Contouring::nodes(int k) {
     return layer;
 }
 
-/// The number of the point at which the line along `axis` leaves or enters the matter.
+/// The number of the point at which the line along `axis` leaves or enters the material.
 int32_t Contouring::cross(int axis, const std::array<int, 3>& node, bool from_inside,
                           std::vector<CrossedEdge>& points) {
     const Crossing crossing = crossing_at(model_.lines, axis, node, from_inside);
@@ -177,7 +177,8 @@ int32_t Contouring::vertex(const CellLayer& layer, int i, int j, size_t edge) co
 /// The quads across the edges along X and Y of a layer of nodes.
 void Contouring::add_flat_quads(const NodeLayer& nodes, const CellLayer& below,
                                 const CellLayer& above) {
-    // Only edges from the outermost nodes inwards pass the surface: the cells round it exist.
+    // Border nodes are outside the body, so the surface crosses only edges that have all four cells
+    // around them.
     for (int j = 0; j + 1 < depth_; ++j)
         for (int i = 0; i + 1 < width_; ++i) {
             const bool here = nodes.inside[at(i, j)] != 0;
@@ -233,8 +234,8 @@ struct QuadsAtVertices {
 };
 
 /// An upper bound of the distance of the samples from the mesh: the distance from their own
-/// triangles or from adjacent ones. Where a vertex is outside its cell, the sample lies on the
-/// latter.
+/// triangles or from adjacent ones. If a vertex is outside its cell, the sample is on an adjacent
+/// triangle.
 void Contouring::measure_error() {
     std::vector<uint32_t> order;
     for (uint32_t k = 0; k < from_own_triangles_.size(); ++k) order.push_back(k);

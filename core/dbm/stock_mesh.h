@@ -12,7 +12,7 @@ struct CutModel;
 /// A point where a scan line crosses the surface of a stock.
 struct SurfaceSample {
     Vec3 place = Vec3(0.0);
-    std::optional<uint32_t> sweep; // that cut it, by its number in the log; empty: raw stock
+    std::optional<uint32_t> sweep; // number in the log of the cut that made it; empty: raw stock
 };
 
 /// The surface of a model as triangles.
@@ -31,7 +31,7 @@ struct StockMesh {
 ///          Two triangles for each crossing of a scan line. Edges and corners of the stock are
 ///          kept: there is a vertex where the tangent planes meet. Between the lines the surface
 ///          follows these planes; details thinner than a mesh size may be missing.
-/// Result:  without triangles if nothing is left. The same bits for the same model.
+/// Result:  no triangles if nothing is left. The same bits for the same model.
 /// Cost:    memory for the result and for two layers of cells.
 /// Source:  dual contouring (Ju et al. 2002), with a vertex for each piece of the surface in a cell
 ///          (Nielson: Dual marching cubes, 2004).

@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t no_piece = ~uint32_t{0};
 constexpr int tile_side = ScanLines::tile_side;
 
-/// The first and the last line whose place along `axis` lies within lower .. upper, widened by
+/// The first and the last line whose position along `axis` is within lower .. upper, widened by
 /// `more` lines; first > last if there is none.
 std::pair<int, int> lines_within(const ScanGrid& grid, int axis, double lower, double upper,
                                  int more) {
@@ -34,8 +34,8 @@ const ScanLines& family(const CutModel& model, int axis) {
     return model.lines.families[static_cast<size_t>(axis)];
 }
 
-/// Whether matter of line (u, v) along Z is connected to matter of the next line along `towards`, X
-/// or Y.
+/// Whether material of line (u, v) along Z is connected to material of the next line along
+/// `towards`, X or Y.
 bool hang_together(const CutModel& model, int u, int v, int towards, const Interval& a,
                    const Interval& b) {
     const ScanGrid& grid = model.lines.grid;
@@ -55,11 +55,11 @@ bool hang_together(const CutModel& model, int u, int v, int towards, const Inter
 
 } // namespace
 
-/// The matter of a tile of lines along Z: its parts, and their connections to parts of the next
+/// The material of a tile of lines along Z: its parts, and their connections to parts of the next
 /// tiles along X and Y.
 struct PieceMap::Tile {
     std::vector<uint32_t> first;   // number of the first stretch of each line; one more at the end
-    std::vector<uint32_t> part;    // that each stretch belongs to
+    std::vector<uint32_t> part;    // part to which each stretch belongs
     std::vector<StockPiece> parts; // volume stored as length until they are joined
     std::array<std::vector<std::pair<uint32_t, uint32_t>>, 2> links;
 };
@@ -138,7 +138,7 @@ void PieceWork::number_parts(Tile& tile, const LineRange& range, UnionFind& grou
                 const ScanGrid& grid = model_.lines.grid;
                 const Vec3 low = point_on_line(grid, 2, u, v, matter.lower);
                 const Vec3 high = point_on_line(grid, 2, u, v, matter.upper);
-                if (root == stretch) { // the least of its group comes first
+                if (root == stretch) { // the first of its group
                     number[stretch] = static_cast<uint32_t>(tile.parts.size());
                     tile.parts.push_back({0.0, {}, 0.5 * (low + high)});
                 }

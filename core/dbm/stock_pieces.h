@@ -16,18 +16,18 @@ struct StockPiece {
     Vec3 place = Vec3(0.0); // one of its points
 };
 
-/// Connectivity of the matter of a model, tile by tile of its lines along Z. A plain value; copies
-/// share what neither has changed since.
+/// Connectivity of the material of a model, tile by tile of its lines along Z. A plain value;
+/// copies share what neither has changed since.
 class PieceMap {
 public:
-    /// Records that matter in a box may have been removed.
+    /// Records that material in a box may have been removed.
     void note_cut(const CutModel& model, const Aabb& box);
 
     /// The pieces, the largest first. Crumbs shorter than four mesh sizes or smaller than eight
     /// cells do not count: the lines are too far apart for them.
     ///
     /// Result:  two segments of neighbouring lines along Z are connected if a line across them has
-    ///          matter from one to the other; where no line runs between them, if they overlap.
+    ///          material from one to the other; where no line runs between them, if they overlap.
     /// Cost:    some 40 us for each tile cut since the last call, and a little for all.
     std::vector<StockPiece> pieces(const CutModel& model);
 
@@ -44,8 +44,8 @@ private:
 };
 
 /// Whether a cut within `box` cannot have separated anything: below it and below everything cut
-/// there before, lines along X and Y show one layer of matter over the whole box and one mesh size
-/// around it, and all lines along Z end on that layer.
+/// there before, lines along X and Y show one layer of material over the whole box and one mesh
+/// size around it, and all lines along Z end on that layer.
 ///
 /// Cost:    some microseconds. False proves nothing.
 bool cannot_have_parted(const CutModel& model, const Aabb& box);

@@ -14,7 +14,7 @@ constexpr std::string_view magic = "feeler stock 1\n";
 
 enum class ShapeTag : uint8_t { box, cylinder, mesh };
 
-/// What a move shares with the previous one and is therefore not written.
+/// Properties that a move shares with the previous one, which are therefore not written.
 enum SameAsBefore : uint8_t { goes_on = 1, same_cutter = 2, same_attitude = 4, same_block = 8 };
 
 /// FNV-1a, to detect damage.

@@ -84,7 +84,8 @@ inline Quadratic operator-(const Quadratic& p, const Quadratic& q) {
 
 namespace {
 
-/// Half the chord of a circle at a distance from its centre; at a cone's tip both are rounding.
+/// Half the chord of a circle at a distance from its centre; at a cone's tip, both may be rounding
+/// errors.
 double half_chord(double radius, double away) {
     return std::sqrt(std::max(0.0, (radius - away) * (radius + away)));
 }
@@ -100,9 +101,9 @@ std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& u
     const auto offer = [&](double t) { extent.add(along(t) - half(t), along(t) + half(t)); };
     offer(range.first);
     offer(range.last);
-    // Stationary where (a t + b)^2 = k (a t^2 + 2 b t + c), k = by^2. The discriminant of this is
-    // k (k - a) (b^2 - a c); multiplied out it would be noise where k is 0, as it is for every line
-    // across the motion. Its last factor is positive where the root is concave.
+    // Stationary where (a t + b)^2 = k (a t^2 + 2 b t + c), k = by^2. The discriminant of this is k
+    // (k - a) (b^2 - a c); multiplied out, it would be only rounding error if k is 0, which holds
+    // for every line across the motion. Its last factor is positive where the root is concave.
     const double k = along.by * along.by;
     const Quadratic stationary{under.a * (under.a - k), under.b * (under.a - k),
                                under.b * under.b - k * under.c};
@@ -117,7 +118,7 @@ std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& u
 
 /// Common to all cases: the position of the line relative to the moving origin, axis by axis.
 struct LineMotion {
-    std::array<Linear, 3> offset; // on `axis`: minus the origin's own place; else line minus origin
+    std::array<Linear, 3> offset; // on `axis`: minus the origin's position; else line minus origin
 
     LineMotion(const ElementSweep& sweep, int axis, double u, double v) {
         const std::array<double, 3> line = {0.0, u, v};
@@ -171,8 +172,8 @@ std::optional<Interval> cone_across(const ElementSweep& sweep, int axis, double 
     return extent_with_root(along, squared(radius) - squared(side), half, range);
 }
 
-/// Lower and upper end of a truncated cone at rest above a point `r` from its axis, at most its
-/// largest radius but for rounding.
+/// Lower and upper end of a truncated cone at rest at a distance `r` from its axis, which may
+/// exceed its largest radius only by rounding.
 Interval cone_heights(const ProfileElement& e, double r) {
     Interval ends{e.z0, e.z1};
     if (e.r0 == e.r1) return ends;
@@ -225,7 +226,8 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
 /// A disc with a margin (the rounded corner of a bull nose).
 std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, double u, double v) {
     const ProfileElement& e = sweep.element;
-    // Most lines near a sweep miss it: the cylinder round the piece tells them without a search.
+    // Most lines near a sweep miss it: the cylinder around the piece rules them out without a
+    // search.
     const double widest = std::max(e.r0, e.r1) + e.margin;
     const ProfileElement round{e.z0 - e.margin, widest, e.z0 + e.margin, widest, 0.0};
     if (!line_interval({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
@@ -258,14 +260,14 @@ namespace {
 constexpr Range everywhere{-infinity, infinity};
 constexpr Range nowhere{1.0, -1.0};
 
-/// What lies outside by no more than this counts as in, mm: where two borders meet, rounding must
-/// not have each leave the corner to the other.
+/// Points outside by at most this count as inside, mm. Otherwise, where two borders meet, rounding
+/// could exclude the corner from both.
 constexpr double slack = 1e-10;
 
 bool holds_any(const Range& range) { return range.first <= range.last; }
 
 /// The plane of (s, t): s along the line, t along the motion, both in mm. In the tool's frame the
-/// point is p + s d - t m; the sweep holds it where that lies in the piece.
+/// point is p + s d - t m; the sweep contains it where that point is in the piece.
 struct LineAndMotion {
     Vec3 p, d, m;  // d and m of length 1
     double length; // of the motion
@@ -273,7 +275,7 @@ struct LineAndMotion {
     Vec3 at(double t) const { return p - t * m; }
 };
 
-/// Where along the line s counts from: the place of the piece's origin at the start.
+/// s is counted from the position of the piece's origin at the start.
 LineAndMotion line_and_motion(const ElementSweep& sweep, const Mat3& stock_from_tool, int axis,
                               double u, double v) {
     Vec3 p(0.0), d(0.0);
@@ -287,14 +289,14 @@ LineAndMotion line_and_motion(const ElementSweep& sweep, const Mat3& stock_from_
     return {tool_from_stock * p, tool_from_stock * d, tool_from_stock * m, length};
 }
 
-/// A cone z0 <= z <= z1, x^2 + y^2 <= r(z)^2, in numbers that serve for all lines.
+/// A cone z0 <= z <= z1, x^2 + y^2 <= r(z)^2, with parameters that are common to all lines.
 struct Cone {
     double z0, z1, r0, slope;
 
     explicit Cone(const ProfileElement& e)
         : z0(e.z0), z1(e.z1), r0(e.r0), slope((e.r1 - e.r0) / (e.z1 - e.z0)) {}
 
-    /// x, y and the radius at z; directions (of which z0 says nothing) the same with `far`.
+    /// A point or a direction as (x, y, radius); for a direction, z0 has no effect.
     Vec3 place(const Vec3& q) const { return {q.x, q.y, r0 + slope * (q.z - z0)}; }
     Vec3 direction(const Vec3& d) const { return {d.x, d.y, slope * d.z}; }
 };
@@ -302,12 +304,13 @@ struct Cone {
 /// The form that is negative inside the cone: x x' + y y' - r r'.
 double form(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y - a.z * b.z; }
 
-/// Where a line through `at` crosses the flank, carried on over both nappes; nowhere if it passes
-/// by. `at` is the point of the line nearest to the cone's origin.
+/// Where a line through `at` crosses the flank, extended over both nappes; empty if it does not.
+/// `at` is the point of the line nearest to the cone's origin.
 Range flank_crossings(const Vec3& at, const Vec3& by) {
     const double a = form(by, by), b = form(at, by);
     if (std::abs(a) > 0.01 * glm::dot(by, by)) {
-        // Counted from half way between the two, so that nothing cancels even at the cone's tip.
+        // Counted from the middle of the two, so that there is no cancellation even at the cone's
+        // tip.
         const double middle = -b / a;
         const Vec3 f = at + middle * by;
         const double away = std::hypot(f.x, f.y);
@@ -325,10 +328,11 @@ Range flank_crossings(const Vec3& at, const Vec3& by) {
     return zeros(outside, std::max(0.0, bend));
 }
 
-/// The stretch of s in the cone at one moment of the motion.
+/// The range of s in the cone at one time of the motion.
 Range chord_at(const LineAndMotion& line, const Cone& cone, double t) {
     const Vec3 place = line.at(t);
-    // Counted from the foot of the perpendicular, lest distances along the line spoil the square.
+    // Counted from the foot of the perpendicular, so that distances along the line do not spoil the
+    // square's accuracy.
     const double shift = -glm::dot(place, line.d);
     const Vec3 q = place + shift * line.d;
     Range range = where_not_negative({q.z - cone.z0 + slack, line.d.z}, everywhere);
@@ -337,14 +341,14 @@ Range chord_at(const LineAndMotion& line, const Cone& cone, double t) {
     const Range flanks = flank_crossings(at, by);
     if (form(by, by) >= 0.0)
         range = {std::max(range.first, flanks.first), std::min(range.last, flanks.last)};
-    else if (by.z > 0.0) // steeper than the flank: in on one nappe, and the piece has no other
+    else if (by.z > 0.0) // steeper than the flank: only one nappe belongs to the piece
         range.first = std::max(range.first, flanks.last);
     else
         range.last = std::min(range.last, flanks.first);
     return holds_any(range) ? Range{range.first + shift, range.last + shift} : nowhere;
 }
 
-/// The stretch of s at which the line runs through one of the piece's end faces, at any time.
+/// The range of s in which the line passes through one of the piece's end faces, at any time.
 Range through_face(const LineAndMotion& line, double z, double radius) {
     const double steep = std::hypot(line.d.z, line.m.z);
     const double rise = z - line.p.z;
@@ -373,7 +377,7 @@ Range through_face(const LineAndMotion& line, double z, double radius) {
     return {std::min(one, other), std::max(one, other)};
 }
 
-/// Whether the point at (s, t) lies in the cone, or outside it by no more than may count as in.
+/// Whether the point at (s, t) is in the cone, or outside it by no more than a tolerance.
 bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
     constexpr double most = 5e-10;
     const Vec3 q = line.at(t) + s * line.d;
@@ -381,14 +385,14 @@ bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
     return std::hypot(q.x, q.y) - cone.place(q).z <= most * std::hypot(1.0, cone.slope);
 }
 
-/// Offers where the line touches the flank that the motion envelops: where s is least and greatest
-/// on it, were the flank and the motion endless.
+/// Adds the points at which the line meets the envelope of the moving flank: the least and greatest
+/// s on it, for an infinite flank and motion.
 ///
 /// Source: with D, M and P for line, motion and start, (x, y, r) each, the plane of (s, t) has the
-///         unit normal N along D x M and stands off the cone's apex by h = N P. The planes through
-///         the motion that touch the cone have normals n = N y + (N x M) with F(n, n) = 0, of which
-///         the discriminant is F(M, M). Everything scales with h, so that nothing cancels however
-///         near the line comes to the apex.
+///         unit normal N along D x M and the distance h = N P from the cone's apex. The planes
+///         through the motion that touch the cone have normals n = N y + (N x M) with F(n, n) = 0,
+///         whose discriminant is F(M, M). Everything scales with h, so there is no cancellation
+///         however near the line is to the apex.
 void offer_touches(const LineAndMotion& line, const Cone& cone, Extent& extent) {
     const Vec3 p = cone.place(line.p), d = cone.direction(line.d), m = cone.direction(line.m);
     const double c = form(m, m);
@@ -409,8 +413,8 @@ void offer_touches(const LineAndMotion& line, const Cone& cone, Extent& extent) 
 }
 
 /// The set of (s, t) is convex: a quadric's section, cut off at the end faces and at the ends of
-/// the motion. So its extremes in s lie on one of those four borders or where the section turns
-/// round.
+/// the motion. So its extremes in s are on one of those four borders or at a turning point of the
+/// section.
 std::optional<Interval> tilted_cone(const LineAndMotion& line, const ProfileElement& e) {
     if (!(e.z0 < e.z1)) return std::nullopt;
     const Cone cone(e);
@@ -433,7 +437,7 @@ struct RoundedDisc {
     struct Distance {
         double value, by_s, by_t; // and its slopes
         double bend_t;            // second derivative of half the square
-        double half_slope_t;      // first one
+        double half_slope_t;      // first derivative of half the square
     };
     Distance operator()(const LineAndMotion& line, double s, double t) const {
         const Vec3 q = line.at(t) + s * line.d;
@@ -454,8 +458,8 @@ struct RoundedDisc {
     }
 };
 
-/// The moment at which the point at s is nearest to the disc: where the slope of half the square
-/// changes sign, by Newton's steps that never leave the bracket.
+/// The time at which the point at s is nearest to the disc: where the slope of half the square
+/// changes sign, by Newton's method within a bracket.
 double nearest_moment(const LineAndMotion& line, const RoundedDisc& disc, double s, double guess) {
     double low = 0.0, high = line.length, t = guess;
     for (int i = 0; i < 60; ++i) {
@@ -464,7 +468,7 @@ double nearest_moment(const LineAndMotion& line, const RoundedDisc& disc, double
         (here.half_slope_t > 0.0 ? high : low) = t;
         double next = t - here.half_slope_t / here.bend_t;
         if (!(next > low && next < high)) {
-            // A step beyond the end of the motion: the end itself, if the slope agrees there.
+            // A step beyond the end of the motion: take the end itself if the slope there agrees.
             const double end = here.half_slope_t > 0.0 ? 0.0 : line.length;
             if (t == end) return t;
             const bool untried = here.half_slope_t > 0.0 ? low == 0.0 : high == line.length;
@@ -477,8 +481,8 @@ double nearest_moment(const LineAndMotion& line, const RoundedDisc& disc, double
 }
 
 /// The end of the swept rounded disc on the line, looking from outside: `sign` +1 for the upper
-/// one. Newton's steps on a convex function come from outside and never pass the border, so whoever
-/// sees the distance grow inwards has missed the body.
+/// one. Newton's method on a convex function approaches the border from outside and never passes
+/// it, so if the distance grows inwards, the line misses the body.
 std::optional<double> end_from_outside(const LineAndMotion& line, const RoundedDisc& disc,
                                        double sign) {
     constexpr double enough = 1e-11;
@@ -511,7 +515,7 @@ std::optional<Interval> tilted_round(const LineAndMotion& line, const ProfileEle
     return Interval{*lower, *upper};
 }
 
-/// Balls look the same from everywhere.
+/// A ball is the same in every orientation, so the upright case applies.
 std::optional<Interval> tilted_ball(const ElementSweep& sweep, const Mat3& stock_from_tool,
                                     int axis, double u, double v) {
     const Vec3 to_centre = sweep.element.z0 * stock_from_tool[2];

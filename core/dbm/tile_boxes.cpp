@@ -32,7 +32,7 @@ Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePlac
     return box;
 }
 
-/// The widest gap that stretches of matter leave among them.
+/// Finds the widest gap between stretches of material.
 class GapSearch {
 public:
     void add(double lower, double upper) {
@@ -91,7 +91,7 @@ BoxGap gap_of_tile(const TileBoxes& tiles, int axis, size_t tile) {
 
 constexpr int level_side = 4;
 
-/// How many boxes a level has, counted from the tiles, which are level 0.
+/// Number of boxes of a level along u and v; level 0 are the tiles.
 std::pair<int, int> level_size(const TileBoxes& tiles, size_t level) {
     if (level == 0) return {tiles.u_tiles, tiles.v_tiles};
     return {tiles.above[level - 1].u_count, tiles.above[level - 1].v_count};
@@ -107,7 +107,8 @@ void add_levels(TileBoxes& tiles) {
     }
 }
 
-/// Fits the boxes over those of the level below with these numbers; afterwards `fitted` are theirs.
+/// Fits the boxes above those of the level below with the numbers in `fitted`, and replaces these
+/// numbers by their own.
 void fit_level(TileBoxes& tiles, size_t level, std::vector<uint32_t>& fitted) {
     TileLevel& mine = tiles.above[level];
     const auto below_across = static_cast<uint32_t>(level_size(tiles, level).first);

@@ -7,22 +7,22 @@
 
 namespace core {
 
-/// Boxes around 4 x 4 boxes of the level below; empty where there is no matter.
+/// Boxes around 4 x 4 boxes of the level below; empty where there is no material.
 struct TileLevel {
     int u_count = 0, v_count = 0;
     std::vector<Aabb> boxes; // u fastest
 };
 
-/// A range along the lines, within a box, that contains no matter; empty if none is known.
+/// A range along the lines, within a box, that contains no material; empty if none is known.
 struct BoxGap {
     double from = 0.0, to = 0.0;
 
     bool empty() const { return from >= to; }
 };
 
-/// Boxes around the matter in each tile of a family of lines or columns and in each 4 x 4 block of
-/// a tile, with their widest gaps; empty where there is no matter. Boxes of recently cut blocks may
-/// be outdated: too large, never too small.
+/// Boxes around the material in each tile of a family of lines or columns and in each 4 x 4 block
+/// of a tile, with their widest gaps; empty where there is no material. Boxes of recently cut
+/// blocks may be outdated: too large, never too small.
 struct TileBoxes {
     static constexpr int block_side = 4;
     static constexpr int blocks_per_side = ScanLines::tile_side / block_side;
@@ -70,10 +70,10 @@ struct LineRange {
 /// The lines of the tile with this index.
 LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t tile);
 
-/// The lines of one of its 4 x 4 blocks.
+/// The lines of one of the 4 x 4 blocks of a tile.
 LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
 
-/// The tiles, or boxes of a level, under one box of the level above: those of its 4 x 4 that exist.
+/// The tiles, or boxes of a level, under one box of the level above: up to 4 x 4.
 LineRange below(const TileBoxes& tiles, size_t level, size_t index);
 
 /// Boxes for these lines, all empty and all outdated.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int side = ScanLines::tile_side;
 
-/// The places first .. last - 1 of an evenly spaced grid that lie within lower .. upper.
+/// The lines first .. last - 1 of the grid whose positions are within lower .. upper.
 std::pair<int, int> places_between(const ScanGrid& grid, int axis, double lower, double upper) {
     const double first = grid.coordinate(axis, 0);
     const double count = grid.count(axis);
@@ -17,13 +17,13 @@ std::pair<int, int> places_between(const ScanGrid& grid, int axis, double lower,
             static_cast<int>(std::clamp(to, 0.0, count))};
 }
 
-/// Bits for the places of `range` among those that begin at `first`.
+/// Bits for the lines range_first .. range_last - 1 in a tile that begins at line `first`.
 uint32_t lanes_of(int first, int range_first, int range_last) {
     const int from = std::max(range_first - first, 0), to = std::min(range_last - first, side);
     return ((1U << to) - 1U) & ~((1U << from) - 1U);
 }
 
-/// How many of the grid's coordinates lie below x, and those on it if so wanted.
+/// Number of grid coordinates below x, with `itself` also one exactly at x.
 double points_below(const ScanGrid& grid, int axis, double x, bool itself) {
     const double half = grid.half_count[static_cast<size_t>(axis)];
     const double index = std::nearbyint((x - grid.centre[axis]) / grid.spacing + (half - 0.5));
@@ -31,7 +31,7 @@ double points_below(const ScanGrid& grid, int axis, double x, bool itself) {
     return index + (there < x || (itself && there == x) ? 1.0 : 0.0);
 }
 
-/// What a line's matter counts for.
+/// The contribution of a line's material to the sums.
 LineSums counted(const TileTask& task, const ScanTile& tile, size_t place) {
     const double half = task.grid->half_count[static_cast<size_t>(task.axis)];
     const auto end = [&](double x, bool is_upper, uint8_t tilt) {
@@ -59,7 +59,7 @@ double sum_of(const std::array<double, ScanTile::side>& lanes) {
     return (quarters[0] + quarters[2]) + (quarters[1] + quarters[3]);
 }
 
-/// Does what the lanes have left, and sums up.
+/// Removes the segments that the lanes left, and sums up.
 LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
     LineSums sums{sum_of(done.beyond), sum_of(done.points)};
     for (size_t i = 0; i < done.by_hand_count; ++i) {
@@ -83,13 +83,13 @@ TilePlace place_of(const TileBoxes& boxes, size_t tile) {
             static_cast<int>(tile / static_cast<size_t>(boxes.u_tiles)) * side};
 }
 
-/// The stretches on rows of corners, worked out only where they are asked for.
+/// The segments on rows of corners, computed on demand.
 class CornerRows {
 public:
     CornerRows(const LanePlan& plan, const TileTask& task)
         : loops_(lane_cut()), plan_(plan), task_(task) {}
 
-    /// Those on the corners `wanted`, bit by bit.
+    /// The segments on the corners of a row whose bits are set in `wanted`.
     const CornerStretches& at(int row, uint32_t wanted) {
         Corners& kept = rows_[static_cast<size_t>(row % 2)];
         if (kept.of != row) kept.of = row, kept.known = 0;
@@ -142,7 +142,7 @@ LineRange lines_in(const CutModel& model, int axis, const Aabb& box) {
 
 LineRange cells_in(const CutModel& model, const Aabb& box) {
     const LineRange lines = lines_in(model, 2, box.grown(model.lines.grid.spacing));
-    // Cell i lies between lines i - 1 and i; the lines beyond the last one are not in the range.
+    // Cell i is between lines i - 1 and i, so there is one more cell than lines.
     return {lines.u_first, std::min(lines.u_last + 1, model.columns.u_count()), lines.v_first,
             std::min(lines.v_last + 1, model.columns.v_count())};
 }
@@ -193,7 +193,7 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
     TileCut done;
     ScanTile* own = nullptr;
     TileReach reach;
-    // What all four corners of a cell share is no more than what the first of them has.
+    // The intersection of the four corners of a cell is contained in the segment of the first.
     loops.in_reach(plan, task, *model.columns.tile(tile), reach);
     for (int row = task.row_first; row < task.row_last; ++row) {
         const ScanTile& now = *model.columns.tile(tile);
@@ -212,10 +212,10 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
 
 namespace {
 
-constexpr int column_family = 3; // beside the three of lines
+constexpr int column_family = 3; // after the three families of lines
 constexpr int families = 4;
 
-/// Notes the sweep for all tiles of columns that it may change; false when there are none.
+/// Records the sweep for all tiles of columns that it may change; false if there are none.
 bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
     const auto number = static_cast<uint32_t>(model.log.size());
     bool noted = model.columns.u_count() == 0;
@@ -232,14 +232,14 @@ bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
     return noted;
 }
 
-/// Whether the cutter stands where the last move left it, having cut there.
+/// Whether the cutter is where the last move ended, so that it has already cut there.
 bool continues_last_sweep(const CutModel& model, const CutterSweep& sweep) {
     const CutterSweep& last = model.last;
     return last.cutter == sweep.cutter && last.to == sweep.from
            && last.orientation == sweep.orientation;
 }
 
-/// The sweep as it will be cut, written down in the log; none if it does not come near the stock.
+/// Prepares a sweep for cutting and adds it to the log; empty if it does not come near the stock.
 std::optional<ReadySweep> begin(CutModel& model, const CutterSweep& sweep) {
     const bool on = continues_last_sweep(model, sweep);
     if (model.last.cutter != sweep.cutter) model.last.cutter = sweep.cutter;
@@ -259,7 +259,7 @@ TileBoxes& boxes_of(CutModel& model, int family) {
 }
 
 /// Runs `act(family, tile, outcome)` for every tile of lines and columns that `mine(family, tile)`
-/// accepts, always in the same order, with `cut_tile` having been done.
+/// accepts, always in the same order, after cutting the tile.
 template <typename Mine, typename Act>
 void cut_tiles(CutModel& model, const ReadySweep& ready, const Mine& mine, const Act& act) {
     const double top = model.outer_box.max.z;
@@ -281,7 +281,7 @@ void cut_tiles(CutModel& model, const ReadySweep& ready, const Mine& mine, const
     }
 }
 
-/// How many tiles of one family wait for their boxes, at most.
+/// Largest number of tiles of one family whose boxes are outdated.
 size_t most_stale(const CutModel& model) {
     size_t most = model.column_boxes.stale_tiles.size();
     for (const TileBoxes& boxes : model.line_boxes) most = std::max(most, boxes.stale_tiles.size());
@@ -292,7 +292,7 @@ void fit_when_many_are_stale(CutModel& model) {
     if (most_stale(model) >= TileBoxes::most_stale) fit_boxes(model);
 }
 
-/// What is to be reported of a volume that has been removed.
+/// Adds a removed volume to the volume owed and returns the part of it that can be reported now.
 double reported(CutModel& model, const LineSums& sums) {
     const double h = model.lines.grid.spacing;
     model.volume_owed += h * h * (sums.beyond + h * sums.points);
@@ -301,7 +301,7 @@ double reported(CutModel& model, const LineSums& sums) {
     return now;
 }
 
-/// What became of one tile, kept until all threads are done.
+/// The outcome of one tile, stored until all threads are done.
 struct StoredOutcome {
     uint32_t sweep;
     int family;
@@ -309,7 +309,7 @@ struct StoredOutcome {
     TileOutcome outcome;
 };
 
-/// Some moves in a row, each thread with tiles of its own: within a tile the order stays.
+/// Consecutive moves. Each thread has its own tiles, so the order within a tile is kept.
 class Batch {
 public:
     Batch(CutModel& model, std::span<const CutterSweep> sweeps) : model_(model) {
@@ -344,7 +344,8 @@ private:
         }
     }
 
-    /// Sums up in the order in which one thread would have come by, whoever did the work.
+    /// Sums up in the order of a single thread, so that the result does not depend on the number of
+    /// threads.
     std::vector<double> gather() {
         std::vector<StoredOutcome> all;
         for (const auto& some : kept_) all.insert(all.end(), some.begin(), some.end());
@@ -396,7 +397,7 @@ void note_search(CutModel& model, size_t box_tests) {
 }
 
 std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, unsigned threads) {
-    constexpr size_t batch = 512; // enough work that starting threads is nothing beside it
+    constexpr size_t batch = 512; // enough work to make the cost of starting threads negligible
     std::vector<double> volumes;
     for (size_t first = 0; first < sweeps.size(); first += batch) {
         Batch some(model, sweeps.subspan(first, std::min(batch, sweeps.size() - first)));
@@ -408,11 +409,11 @@ std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, un
 
 namespace {
 
-/// Added to where the front begins, mm: above what rounding may move it by.
+/// Added where the front begins, mm; more than its rounding error.
 constexpr double margin = 1e-6;
 
-/// How far behind the axis, seen along the move from above, the surface of an element still faces
-/// the motion `by`; its end faces only where they are not covered.
+/// Distance behind the axis, seen from above along the move, up to which the surface of an element
+/// faces the motion `by`; end faces count only if they are not covered.
 double reach_back(const ProfileElement& e, const Vec3& by, bool bottom_open, bool top_open) {
     if (by.z == 0.0) return 0.0;
     const double widest = std::max(e.r0, e.r1);
@@ -429,7 +430,8 @@ double reach_back(const ProfileElement& e, const Vec3& by, bool bottom_open, boo
     return back;
 }
 
-/// The part of a disc from which a cutter's front reaches forwards.
+/// The part of a disc from which the front of a cutter extends forwards: at least -back along the
+/// path.
 struct FrontDisc {
     double radius = 0.0, back = 0.0;
 };
@@ -451,8 +453,8 @@ FrontDisc front_disc(const CutterSweep& sweep, double top) {
     return disc;
 }
 
-/// How far the part of the disc that lies at least -back along a path reaches in a direction, given
-/// by its components along the path and across it.
+/// Extent of the part of the disc at least -back along a path in a direction, given by its
+/// components along the path and across it.
 double reach(const FrontDisc& disc, double along, double across) {
     if (along * disc.radius >= -disc.back) return disc.radius;
     const double chord = std::sqrt((disc.radius - disc.back) * (disc.radius + disc.back));

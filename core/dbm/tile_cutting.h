@@ -6,8 +6,8 @@
 
 namespace core {
 
-/// What was removed from lines, before conversion to a volume: grid points, one cell each, and how
-/// far the removed ends extend beyond the borders of these cells.
+/// Removed material, before conversion to a volume: grid points, one cell each, and the lengths by
+/// which removed segments extend beyond the borders of these cells.
 struct LineSums {
     double beyond = 0.0; // mm, each end weighted by the square of its normal along the line
     double points = 0.0; // counted on the lines along Z
@@ -30,11 +30,11 @@ struct ReadySweep {
 /// The tiles of a family that a range of lines touches: first .. last - 1 in both directions.
 LineRange tiles_of(const LineRange& lines);
 
-/// The lines of a family within the box; the cells that overlap it.
+/// The lines of a family within the box.
 LineRange lines_in(const CutModel& model, int axis, const Aabb& box);
+/// The cells that overlap the box.
 LineRange cells_in(const CutModel& model, const Aabb& box);
 
-/// Runs `act` over the tiles that a range of lines touches, u fastest.
 template <typename Act>
 /// Calls `act` for the tiles that a range of lines touches, u fastest.
 void for_tiles(const LineRange& lines, const TileBoxes& boxes, const Act& act) {
@@ -53,7 +53,7 @@ void fit_boxes(CutModel& model);
 TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
                       const ReadySweep& ready);
 
-/// The same for columns; removed volume is not counted.
+/// Removes a convex piece from the columns of one tile; removed volume is not counted.
 TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
                         const ReadySweep& ready);
 

@@ -10,7 +10,7 @@ Separation overlapping_at(const Vec3& point) {
     return {.lower = 0.0, .upper = 0.0, .point_a = point, .point_b = point, .time_a = 0.0};
 }
 
-/// A point of the shape at its first place.
+/// A point of the shape at its first position.
 Vec3 inner_point(const ConvexShape& shape) {
     const Vec3 place = shape.places[0].at;
     if (shape.core == ConvexShape::Core::points) return place + shape.points[0];
@@ -28,7 +28,8 @@ Separation turned_round(Separation found) {
     return found;
 }
 
-/// Two meshes. If the surfaces never meet, a mesh inside the other at the start stays inside.
+/// Distance of two meshes. If the surfaces never meet, a mesh that is inside the other at the start
+/// stays inside.
 Separation between_meshes(const SolidMesh& a, const SolidMesh& b, const Transform& a_from_b,
                           const Vec3& sweep, const SeparationGoal& goal) {
     for (const Vec3& p : b.shell_points)

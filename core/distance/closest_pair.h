@@ -17,11 +17,11 @@ struct PointPair {
 
 /// What a search for the closest pair of points should find, and what is known beforehand.
 struct PairGoal {
-    double limit = infinity;      // mm: pairs at this distance or farther do not count
-    bool any = false;             // any pair below the limit will do: "closer than m?"
-    double tolerance = 0.0;       // mm: how much closer than the result another pair may be
-    Vec3 sweep = Vec3(0.0);       // B moves by this; the least distance on the way counts
-    std::optional<Transform> end; // or every point of B moves straight to its position in this pose
+    double limit = infinity;        // mm: pairs at this distance or farther do not count
+    bool any = false;               // any pair below the limit will do: "closer than m?"
+    double tolerance = 0.0;         // mm: how much closer than the result another pair may be
+    Vec3 sweep = Vec3(0.0);         // B moves by this; the least distance on the way counts
+    std::optional<Transform> end;   // instead of `sweep`: B's points move straight to this pose
     std::optional<PointPair> first; // compared first: the last answer is a good guess
 };
 
@@ -47,7 +47,7 @@ inline double nearest_time(const Vec3& apart, const Vec3& sweep) {
     return std::clamp(glm::dot(apart, sweep) / length_squared, 0.0, 1.0);
 }
 
-/// The distance at that time.
+/// The distance at nearest_time().
 inline double swept_distance(const Vec3& apart, const Vec3& sweep) {
     return glm::length(apart - nearest_time(apart, sweep) * sweep);
 }

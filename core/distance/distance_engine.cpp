@@ -13,7 +13,7 @@ namespace {
 
 constexpr double farthest = 1e12; // mm, as for points
 constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
-constexpr double rigid_to = 1e-9; // how far the columns may be from unit length and right angles
+constexpr double rigid_to = 1e-9; // tolerance for unit length and right angles of the columns
 
 bool is_rigid(const Transform& t) {
     return distortion(t.rotation) <= rigid_to && glm::determinant(t.rotation) > 0.0;

@@ -16,7 +16,7 @@ namespace core {
 enum class PointBody : uint32_t {};
 
 /// Finds closest pairs of bodies given by points. All engines give the same distance to the last
-/// bit; of equally near pairs each may return another.
+/// bit; of equally near pairs, they may return different ones.
 class DistanceEngine {
 public:
     virtual ~DistanceEngine() = default;

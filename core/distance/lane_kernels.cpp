@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t width = PointTree::width;
 constexpr size_t leaf_size = PointTree::leaf_size;
 
-constexpr float least_squared = 1e-30F; // of a path that counts as one, mm2
+constexpr float least_squared = 1e-30F; // mm2, of a path that is not negligible
 
 using BoxTag = hn::CappedTag<float, width>;
 using PointTag = hn::CappedTag<float, leaf_size>;
@@ -125,7 +125,7 @@ HWY_ATTR uint32_t near_box(const PointLanes& points, const FrameBox& box, float 
     return bits;
 }
 
-/// Which points of A are no farther from the path of one of B than the limit.
+/// The points of A, as bits, that are within the limit of the path of a point of B.
 HWY_INLINE HWY_ATTR uint16_t near_path(const PointLanes& a, const Float3& from, const Float3& sweep,
                                        float per_length, float limit_squared) {
     const PointTag d;

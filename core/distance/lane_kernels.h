@@ -24,7 +24,7 @@ struct alignas(64) BoxLanes {
     std::array<PointTree::Lanes, 3> lower, upper;
 };
 
-/// One of them.
+/// One box in the frame of a search.
 struct FrameBox {
     Float3 lower, upper;
 };
@@ -60,7 +60,7 @@ struct LaneKernels {
                         const Float3& sweep, float per_length, float limit_squared,
                         std::array<uint16_t, PointTree::leaf_size>& columns);
 
-    /// The same while each point of B moves straight to its position in `end`.
+    /// near_points() for points of B that each move straight to their positions in `end`.
     void (*near_paths)(const PointLanes& a, const PointLanes& b, const PointLanes& end,
                        uint32_t rows, float limit_squared,
                        std::array<uint16_t, PointTree::leaf_size>& columns);

@@ -25,13 +25,13 @@ struct OuterModel {
 
 /// Positions along `axis` at which a body may have a point over a closed rectangle of the plane
 /// across it (the next two axes in cyclic order, as `square.x` and `square.y`). May be off by
-/// scan_rounding() along the axis, and be that of a rectangle smaller by as much.
+/// scan_rounding() along the axis, and may refer to a rectangle that is smaller by that amount.
 using ColumnFunction = std::function<IntervalList(int axis, const Square& square)>;
 
 ColumnFunction columns_of(const Primitive& primitive);
 ColumnFunction columns_of(const RevolvedProfile& profile);
 
-/// By column_of(), with the body turned so that the axis becomes Z.
+/// Uses column_of() on the body rotated so that the axis becomes Z.
 ColumnFunction columns_of(const Solid& solid);
 
 /// The model of a body given by a function for single columns. `bounds` must contain it; columns
@@ -53,7 +53,7 @@ Interval cell_of(const OuterModel& model, int axis, int i);
 /// Proof:   README.md, "Outer models".
 std::vector<Aabb> boxes_of(const OuterModel& model);
 
-/// Whether all matter on the lines is within the columns along them, up to `error`.
+/// Whether all material on the lines is within the columns along them, up to `error`.
 bool holds(const OuterModel& model, const Dbm& lines, double error);
 
 } // namespace core

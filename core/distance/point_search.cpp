@@ -129,7 +129,7 @@ public:
 
 private:
     /// Bound of the rounding of point distances in double precision at this pose and at another:
-    /// some ten operations; squares below 1e-150 mm have lost their digits.
+    /// some ten operations; squares of lengths below 1e-150 mm underflow.
     double rounding(const Transform& other) const {
         const auto reach = [](const PointTree& body) {
             const PointTree::Node& root = body.nodes[0];

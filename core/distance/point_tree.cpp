@@ -128,7 +128,7 @@ private:
         return id;
     }
 
-    /// Divides a range into `parts` of nearly equal size and appends where each ends.
+    /// Divides a range into `parts` ranges of nearly equal size and appends the end of each.
     void part(size_t first, size_t last, size_t parts, std::vector<size_t>& bounds) {
         if (parts == 1) {
             bounds.push_back(last);
@@ -215,7 +215,7 @@ Axes rounded(const Axes& axes) {
     return {to_single(axes[0]), to_single(axes[1]), to_single(axes[2])};
 }
 
-/// Eigenvectors of the points' scatter, largest first, by Jacobi's rotations.
+/// Eigenvectors of the points' scatter matrix, largest eigenvalue first, by Jacobi rotations.
 Axes principal_axes(std::span<const Vec3> points) {
     Vec3 mean(0.0);
     for (const Vec3& p : points) mean += p - points[0];
@@ -295,8 +295,9 @@ TurnedBox box_of(const Extent& e, const Axes& axes) {
     }
     const double radius = std::sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]);
     for (size_t k = 0; k < 3; ++k) {
-        // Rounded axes are orthonormal to 4e-7, so a projection is off by that share of the radius;
-        // so much more on each axis covers it, as |u . axis| add up to at least 1.
+        // Rounded axes are orthonormal to 4e-7, so the error of a projection is at most that
+        // fraction of the radius. Adding this amount on each axis covers it, because |u . axis| add
+        // up to at least 1.
         box.half[k] = rounded_up(half[k] + 1e-6 * radius);
         box.centre[k] = static_cast<float>(centre[static_cast<int>(k)]);
         for (int j = 0; j < 3; ++j)

@@ -30,7 +30,7 @@ struct PointTree {
         Lanes radius{};                             // of a ball around the centre
         std::array<uint32_t, width> child{};        // a node, or with the flag a leaf
         Vec3 origin = Vec3(0.0);
-        float reach = 0.0F; // no box reaches farther from `origin`
+        float reach = 0.0F; // greatest distance of any box from `origin`
         uint32_t used = 0;
     };
 
@@ -40,7 +40,7 @@ struct PointTree {
         std::array<std::array<float, leaf_size>, 3> place{};
         Vec3 origin = Vec3(0.0);
         float reach = 0.0F;
-        uint32_t first = 0; // in `points`
+        uint32_t first = 0; // index in `points`
         uint32_t count = 0;
         std::array<float, 3> normal{}; // the thinnest axis of its box
         std::array<float, 3> along{};  // the longest axis
@@ -69,9 +69,9 @@ void set_box(PointTree::Node& node, size_t lane, const TurnedBox& box);
 /// Cost:   O(n log n) time, some 95 bytes per point.
 Result<PointTree> point_tree(std::span<const Vec3> points);
 
-/// A box round points, turned as they lie, in single precision: every point p has
-/// |axis[k] . (p - origin - centre)| <= half[k], and for any unit vector u
-/// |u . (p - origin - centre)| <= sum of half[k] |axis[k] . u|, although the axes are rounded.
+/// A box around points, aligned to their spread, in single precision: every point p has |axis[k] .
+/// (p - origin - centre)| <= half[k], and for any unit vector u |u . (p - origin - centre)| <= sum
+/// of half[k] |axis[k] . u|, although the axes are rounded.
 struct TurnedBox {
     std::array<float, 3> centre{}; // from the origin given
     std::array<std::array<float, 3>, 3> axis{};

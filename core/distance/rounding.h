@@ -7,11 +7,11 @@
 
 namespace core {
 
-/// How far the matter found on a scan line may extend beyond the body, mm; `reach` is the distance
-/// of the farthest point of the body from the origin.
+/// How far the material found on a scan line may extend beyond the body, mm; `reach` is the
+/// distance of the farthest point of the body from the origin.
 constexpr double scan_rounding(double reach) { return 1e-9 + 1e-11 * reach; }
 
-/// Larger coordinates are refused, mm.
+/// Larger coordinates are rejected, mm.
 constexpr double farthest_coordinate = 1e12;
 
 /// The number of points, if they are valid as a body.

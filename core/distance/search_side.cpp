@@ -54,8 +54,9 @@ void extend(BoxLanes& boxes, const BoxLanes& by) {
         }
 }
 
-/// Coordinates in the frame, and the distances of points, take some ten operations on doubles as
-/// large as these lengths; a path of less than 1e-15 mm counts as none.
+/// Bound of rounding in double precision: coordinates in the frame and distances of points take
+/// about ten operations on numbers as large as these lengths. A path of less than 1e-15 mm is
+/// ignored.
 float coarse(const PointTree& tree, const Vec3& origin, const StraightMotion* motion) {
     const PointTree::Node& root = tree.nodes[0];
     double reach = glm::length(root.origin) + static_cast<double>(root.reach) + glm::length(origin);

@@ -30,7 +30,7 @@ struct VisitedNode {
     BoxLanes boxes;
     PointTree::Lanes size; // of the children: the larger one is opened first; -1: a leaf
     std::array<uint32_t, PointTree::width>
-        below;      // their numbers among the visited nodes, or `none`
+        below;      // numbers of the children among the visited nodes, or `none`
     uint32_t count; // of the children
     const PointTree::Node* node;
 };
@@ -63,7 +63,7 @@ public:
     static constexpr uint32_t none = 0xFFFF'FFFFU;
 
     std::vector<VisitedNode> nodes;  // entries beyond the visited ones are from earlier searches
-    std::vector<VisitedLeaf> leaves; // the same
+    std::vector<VisitedLeaf> leaves; // likewise
 
     /// Clears the visited nodes and visits the root. `motion` is null for A, which does not move.
     void begin(const PointTree& tree, const SearchFrame& frame, const StraightMotion* motion);
@@ -95,7 +95,7 @@ private:
     uint32_t node_count_ = 0, leaf_count_ = 0; // visited
     Pose start_, end_;
     bool spreads_ = false;   // the points do not all move alike
-    Vec3 sweep_ = Vec3(0.0); // along the directions, if they do
+    Vec3 sweep_ = Vec3(0.0); // common displacement along the directions, otherwise
     float coarse_ = 0.0F;    // rounding of double precision, for a body far away
 };
 

@@ -126,7 +126,7 @@ public:
 private:
     /// Bound of the rounding of a gap computed from radii and mapped centres: some 10 operations on
     /// numbers up to the sum of all these lengths, and B's spheres becoming larger where its
-    /// transform is not quite a rotation. Squares of less than 1e-150 mm have lost their digits.
+    /// transform is not quite a rotation. Squares of lengths below 1e-150 mm underflow.
     static double rounding_of(const Node& a, const Node& b, const StraightMotion& motion) {
         const double reach = glm::length(a.centre) + a.radius + glm::length(b.centre) + b.radius
                              + glm::length(motion.start.translation)

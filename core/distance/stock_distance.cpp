@@ -10,8 +10,8 @@
 namespace core {
 namespace {
 
-/// Differences below this are ignored, mm: matter closer than the best so far by less is skipped,
-/// and its bound is kept.
+/// Differences below this are ignored, mm: material that is closer than the best so far by less
+/// than this is skipped, and the bound allows for it.
 constexpr double same = 1e-7;
 
 /// Up to sixteen boxes that may be within a limit.
@@ -40,7 +40,8 @@ private:
     size_t count_ = 0;
 };
 
-/// A box for the general search; matter on a line is a segment to it.
+/// A box as a convex shape for the general search; a flat one in two directions, such as material
+/// on a line, as a segment.
 ConvexShape convex_body(const Aabb& box) {
     const Vec3 size = box.size();
     const int flat = int(size.x == 0.0) + int(size.y == 0.0) + int(size.z == 0.0);
@@ -87,7 +88,7 @@ private:
         return bound;
     }
 
-    /// The same for a box round lines along `axis` that has a gap.
+    /// box_bound() for a box with a gap around lines along `axis`.
     double box_bound(const Aabb& box, const BoxGap& gap, int axis, double limit) {
         const double whole = box_bound(box, limit);
         if (whole >= limit || gap.empty()) return whole;
@@ -121,14 +122,14 @@ private:
         return best;
     }
 
-    /// Calls `act` for the tiles with matter that may be within `limit`, roughly nearest first.
+    /// Calls `act` for the tiles with material that may be within `limit`, roughly nearest first.
     template <typename Limit, typename Act>
     void for_near_tiles(const TileBoxes& tiles, int axis, const Limit& limit, const Act& act) {
         if (!tiles.above.empty())
             for_tiles_below(tiles, axis, tiles.above.size() - 1, 0, limit, act);
     }
 
-    /// The same for the tiles under one box of a level.
+    /// for_near_tiles() for the tiles under one box of a level.
     template <typename Limit, typename Act>
     void for_tiles_below(const TileBoxes& tiles, int axis, size_t level, size_t index,
                          const Limit& limit, const Act& act) {
@@ -192,7 +193,7 @@ private:
         if (line_limit() < before) result_.line = id;
     }
 
-    /// Matter known to exist, from `a` to `b`.
+    /// Material known to exist, from `a` to `b`.
     void offer_matter(const Vec3& a, const Vec3& b) {
         const Aabb matter{glm::min(a, b), glm::max(a, b)};
         const double bound = box_bound(matter, line_limit());
@@ -229,7 +230,7 @@ private:
         lower_ = std::max(0.0, limit());
     }
 
-    /// Matter near the nearest column, as the start of the next search.
+    /// Material near the nearest column, as the start of the next search.
     void search_lines_of_nearest_cell() {
         const auto [i, j] = nearest_cell_;
         const ScanLines& lines = stock_.lines.families[2];
@@ -305,9 +306,9 @@ private:
     const CutModel& stock_;
     StockGoal goal_;
     std::vector<ShapeOutline> outlines_;
-    Aabb whole_;           // round all of them
+    Aabb whole_;           // around all of them
     bool is_exact_ = true; // outline distances are exact up to rounding
-    /// Matter on a line at this distance according to the outlines.
+    /// Material on a line at this distance according to the outlines.
     struct Promise {
         double bound = infinity;
         Aabb matter;

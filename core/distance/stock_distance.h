@@ -14,14 +14,14 @@ struct LineId {
     int axis = 0, u = 0, v = 0;
 };
 
-/// The bounds of the distance to compute. The other one is whatever the search happens to find.
+/// The bounds of the distance to compute. The other one is valid but not tight.
 enum class StockBound : uint8_t { both, lower, upper };
 
 /// What a search against a stock should decide, and its budget.
 struct StockGoal {
     double limit = 50.0; // mm: larger distances do not matter
     StockBound bound = StockBound::both;
-    double enough = 0.0;              // mm: an upper bound this small need not be improved
+    double enough = 0.0;              // mm: an upper bound of at most this need not be improved
     double threshold = 0.0;           // mm: the interval is narrowed until it does not contain this
     double finest = 0.03;             // mm: squares are not divided below this side
     size_t work_limit = 100'000;      // squares that may be recomputed
@@ -30,7 +30,7 @@ struct StockGoal {
 
 /// The distance of a shape from a stock that is being cut.
 struct StockSeparation {
-    Separation separation;      // `upper` to matter on a scan line, `lower` to the outer model
+    Separation separation;      // `upper` to material on a scan line, `lower` to the outer model
     std::optional<LineId> line; // that gave `upper`
     size_t refined = 0;         // recomputed squares
     size_t box_tests = 0;       // pairs of boxes compared
@@ -40,7 +40,7 @@ struct StockSeparation {
 /// The distance from several convex shapes to a stock.
 ///
 /// Result:  lower <= distance to the stock as cut by the logged sweeps <= upper. `upper` is
-///          infinite if no matter on a scan line is within `goal.limit`; `lower` is at most the
+///          infinite if no material on a scan line is within `goal.limit`; `lower` is at most the
 ///          limit. While the interval contains `goal.threshold`, columns that are too near are
 ///          divided and recomputed; it may still contain it when the budget or the finest square is
 ///          reached.

@@ -84,7 +84,7 @@ struct Moment {
     double distance = 0.0; // of the piece without its margin
     double slope = 0.0;
     Pair2 near;
-    double x = 0.0, y = 0.0; // of the place in the box, seen from above, that is nearest the axis
+    double x = 0.0, y = 0.0; // of the point of the box nearest to the axis, seen from above
 };
 
 class SweepSearch {

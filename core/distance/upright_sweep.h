@@ -16,11 +16,11 @@ struct UprightSweep {
 /// Result:  bounds of the least distance over the whole motion, no farther apart than
 ///          `goal.tolerance` unless `lower` is at least `goal.limit`, and the points and the time
 ///          that give `upper`. A box may be flat or a line.
-/// Cost:    one evaluation of the piece where that decides, mostly two, seldom ten.
-/// Source:  README.md, "Upright pieces".
+/// Cost:    one evaluation of the piece if that decides, usually two, rarely ten. Source:
+/// README.md, "Upright pieces".
 Separation separation(const UprightSweep& sweep, const Aabb& box, const SeparationGoal& goal = {});
 
-/// Only the lower bound.
+/// The lower bound of separation().
 double distance_bound(const UprightSweep& sweep, const Aabb& box, double limit);
 
 /// Encloses a shape along its path, for cheap bounds of its distance to boxes: an upright piece of

@@ -133,8 +133,7 @@ namespace {
 
 constexpr int max_steps = 100;
 
-/// Bodies closer than this touch: a point of the simplex that should be the origin is off by
-/// rounding.
+/// Bodies closer than this touch: rounding moves a point of the simplex that should be the origin.
 constexpr double gjk_touching = 1e-10;
 
 Simplex::Vertex support_pair(const ConvexShape& a, const ConvexShape& b, const Vec3& towards_a) {
@@ -228,9 +227,10 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
 }
 
 /// Where bodies almost touch, the vector between them is dominated by rounding and gives no
-/// direction. After one body is moved back by a step it does: the nearest points found there are
-/// also points of the bodies here, and their direction gives a plane. Each iteration improves the
-/// direction: on a surface of radius R its angle error is multiplied by step / R.
+/// direction. If one body is moved back by a step, the vector has a direction: the nearest points
+/// found there are also points of the bodies here, and their direction gives a plane. Each
+/// iteration improves the direction: on a surface of radius R its angle error is multiplied by step
+/// / R.
 void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal,
                Separation& found) {
     const double step =
@@ -269,7 +269,8 @@ Separation separation(const ConvexShape& a, const ConvexShape& b, const Separati
 
 namespace {
 
-/// Weights of the point of a face, edge or corner that is nearest to the origin; up to three used.
+/// Weights of the point of a face, edge or corner that is nearest to the origin; up to three are
+/// used.
 struct Nearest {
     std::array<int, 3> index{};
     std::array<double, 3> weight{};

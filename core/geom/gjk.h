@@ -59,12 +59,13 @@ SupportPoint support(const ConvexShape& shape, const Vec3& direction);
 /// The box of the shape including its margin and its sweep.
 Aabb bounds(const ConvexShape& shape);
 
-/// The distance of two bodies: lower <= true distance <= upper, and the points that give `upper`.
+/// The distance between two bodies: lower <= true distance <= upper, and the points that give
+/// `upper`.
 struct Separation {
     double lower = infinity;
     double upper = infinity;
     Vec3 point_a = Vec3(0.0), point_b = Vec3(0.0); // on A and on B; equal when they overlap
-    double time_a = 0.0;                           // when in A's sweep, 0..1
+    double time_a = 0.0;                           // time in A's sweep, 0..1
 
     bool found() const { return upper < infinity; }
 };
@@ -81,8 +82,8 @@ struct SeparationGoal {
 ///          `upper` from a pair of points, each recomputed from the support functions. 0 if the
 ///          shapes overlap. Rounding is below 1e-9 mm for coordinates within 2 m and is not
 ///          subtracted here.
-/// Cost:    some 3-20 supports of each shape; 1-3 if `limit` decides.
-/// Source:  Gilbert, Johnson, Keerthi 1988; sub-distances as in Ericson, Real-Time Collision
+/// Cost:    about 3-20 support evaluations for each shape; 1-3 if `limit` decides. Source:
+/// Gilbert, Johnson, Keerthi 1988; sub-distances as in Ericson, Real-Time Collision
 ///          Detection, 5.1.
 Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal = {});
 

@@ -15,10 +15,10 @@ ProjectedTriangle project(const Triangle& triangle, int axis) {
 }
 
 int edge_step(const Vec2& a, const Vec2& b, const Vec2& p) {
-    // The shifted line lies above a corner at its own height: half-open spans.
+    // The shifted line is above a corner at its own height: half-open spans.
     if ((a.y <= p.y) == (b.y <= p.y)) return 0;
     const bool upwards = a.y <= p.y;
-    // Both triangles of an edge ask about the same upward edge. A line on it is shifted to +u, so
+    // Both triangles of an edge evaluate the same upward edge. A line on it is shifted to +u, so
     // the edge passes on its -u side: zero counts as "not left of the edge".
     const double side = upwards ? orientation(a, b, p) : orientation(b, a, p);
     if (!(side > 0.0)) return 0;
@@ -78,7 +78,7 @@ private:
 };
 
 double exact_orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
-    // Multiplied out, so that no difference is rounded: c.x c.y cancels.
+    // Multiplied out, so that no difference is rounded; c.x c.y cancels.
     ExactSum sum;
     sum.add_product(a.x, b.y);
     sum.add_product(-a.x, c.y);
@@ -95,8 +95,8 @@ double orientation(const Vec2& a, const Vec2& b, const Vec2& c) {
     const double left = (a.x - c.x) * (b.y - c.y);
     const double right = (a.y - c.y) * (b.x - c.x);
     const double area = left - right;
-    // Each product is within 2.0e-16 * 3 of itself; asking for 0.004 leaves 1e-13 of the
-    // difference.
+    // The relative error of each product is at most 2.0e-16 * 3; requiring 0.004 leaves 1e-13 of
+    // the difference.
     if (std::abs(area) > 0.004 * (std::abs(left) + std::abs(right))) return area;
     return exact_orientation(a, b, c);
 }

@@ -17,7 +17,8 @@ Aabb Mesh::bounds() const {
 }
 
 double signed_volume(const Mesh& mesh) {
-    // Tetrahedra against the middle of the box, so that a mesh far from the origin loses no digits.
+    // Tetrahedra with their apex at the middle of the box, so that a mesh far from the origin loses
+    // no digits.
     const Vec3 origin = mesh.bounds().center();
     double six_volumes = 0.0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -39,7 +40,7 @@ Mesh mesh_of(const Aabb& box) {
 
 namespace {
 
-/// The bytes of a number, the lowest first.
+/// Appends the bytes of a number, the lowest first.
 template <typename T>
 void put(std::string& bytes, T value) {
     static_assert(std::endian::native == std::endian::little);

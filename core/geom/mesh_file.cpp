@@ -103,7 +103,7 @@ namespace {
 
 void turn(Mesh::Corners& triangle) { std::swap(triangle[1], triangle[2]); }
 
-/// Joins pieces at an edge of more than two uses that do not use it equally often in both
+/// Joins the pieces at an edge of more than two uses that use it unequally often in the two
 /// directions.
 void join_at_edge(std::span<const EdgeUse> uses, UnionFind& pieces) {
     std::map<uint32_t, int> balance;
@@ -141,7 +141,7 @@ bool holds(const Aabb& outer, const Aabb& inner) {
            && glm::all(glm::lessThanEqual(inner.max, outer.max));
 }
 
-/// Whether `inner`, by its first triangle, lies within `outer`.
+/// Whether `inner` is within `outer`, judged by its first triangle.
 bool holds(const Mesh& mesh, const Shell& outer, const Shell& inner) {
     if (!(std::abs(outer.volume) > std::abs(inner.volume)) || !holds(outer.box, inner.box))
         return false;
@@ -156,7 +156,7 @@ bool holds(const Mesh& mesh, const Shell& outer, const Shell& inner) {
     return winding != 0;
 }
 
-/// The shell around this one that has none around itself; `shell` if nothing is around it.
+/// The outermost shell around this one; `shell` itself if there is none around it.
 uint32_t outermost_around(const Mesh& mesh, const std::vector<Shell>& shells, uint32_t shell) {
     uint32_t outermost = shell;
     for (uint32_t i = 0; i < shells.size(); ++i)
@@ -270,10 +270,11 @@ Result<bool> check_coordinates(const Mesh& mesh) {
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         for (const uint32_t corner : mesh.triangles[i]) {
             if (corner >= mesh.vertices.size())
-                return fail(ErrorCode::invalid_value,
-                            fmt::format("triangle {} names vertex {}, but there are {}, counted "
-                                        "from 0",
-                                        i + 1, corner, mesh.vertices.size()));
+                return fail(
+                    ErrorCode::invalid_value,
+                    fmt::format("triangle {} refers to vertex {}, but there are {}, counted "
+                                "from 0",
+                                i + 1, corner, mesh.vertices.size()));
             const Vec3& p = mesh.vertices[corner];
             if (!is_finite(p))
                 return fail(ErrorCode::invalid_value,
@@ -296,7 +297,7 @@ Mesh welded(const Mesh& mesh) {
     };
     std::sort(order.begin(), order.end(),
               [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-    std::vector<uint32_t> same(mesh.vertices.size()); // the least index at the same place
+    std::vector<uint32_t> same(mesh.vertices.size()); // the least index with the same position
     for (size_t i = 0; i < order.size(); ++i)
         same[order[i]] =
             i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
@@ -362,7 +363,7 @@ Result<bool> close(Mesh& mesh, std::vector<std::string>& repairs) {
     const size_t turned = turn_to_agree(mesh);
     count = count_edges(mesh);
     if (count.unbalanced > 0)
-        return fail_at_edge(mesh, count.unbalanced, "edges have triangles that face both ways",
+        return fail_at_edge(mesh, count.unbalanced, "edges join triangles that face opposite ways",
                             count.an_unbalanced_one);
     repairs.push_back(
         fmt::format("{} triangles faced opposite to their neighbours and were flipped", turned));
@@ -377,7 +378,7 @@ Result<Mesh> checked_solid(Mesh mesh, std::vector<std::string>& repairs) {
     mesh = welded(mesh);
     if (const size_t dropped = drop_degenerate(mesh); dropped > 0)
         repairs.push_back(fmt::format("{} triangles with two equal corners were removed", dropped));
-    mesh = welded(mesh); // without the corners of those
+    mesh = welded(mesh); // without the corners of the removed triangles
     FEELER_TRY([[maybe_unused]] const bool closed, close(mesh, repairs));
     if (const size_t turned = turn_outwards(mesh); turned > 0)
         repairs.push_back(fmt::format("{} of its shells faced inwards and were flipped", turned));

@@ -32,8 +32,8 @@ double rounding_of(const TriangleBvh& a, const TriangleBvh& b, const Transform& 
 
 Triangle moved(const Triangle& t, const Transform& by) { return {by * t.a, by * t.b, by * t.c}; }
 
-/// Depth first through pairs of boxes, the nearer one first. Best-first would open a third fewer,
-/// but the priority queue costs more than that.
+/// Depth first through pairs of boxes, the nearer one first. Best-first search would open a third
+/// fewer pairs, but its priority queue costs more than that.
 class MeshPairSearch {
 public:
     MeshPairSearch(const TriangleBvh& a, const TriangleBvh& b, const Transform& a_from_b,
@@ -88,7 +88,7 @@ private:
                - a.half_along(along_) - b.half_along(along_in_b_);
     }
 
-    /// A first pair of triangles, for the way between them.
+    /// Finds a first pair of triangles, for the direction between them.
     void descend() {
         Pair pair{0.0, 0, 0};
         for (;;) {
@@ -191,10 +191,10 @@ private:
     double rounding_ = 0.0;
     std::vector<Pair> stack_;
     Separation best_;
-    double least_ = infinity;     // of the lower bounds of all that was decided
-    Vec3 along_ = Vec3(0.0);      // from A to B; zero before a pair was found
-    Vec3 along_in_b_ = Vec3(0.0); // the same in the frame of B
-    double sweep_start_ = 0.0;    // how far B comes back along it
+    double least_ = infinity;     // least lower bound of all pairs that were decided
+    Vec3 along_ = Vec3(0.0);      // direction from A to B; zero before a pair is found
+    Vec3 along_in_b_ = Vec3(0.0); // the same direction in the frame of B
+    double sweep_start_ = 0.0;    // distance by which B moves back along it
 };
 
 } // namespace

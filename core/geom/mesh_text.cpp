@@ -95,8 +95,8 @@ struct ReadingStopped : std::exception {
     std::string why;
 };
 
-/// Takes vertices and faces from OpenMesh's readers as they come. A half-edge mesh would drop the
-/// faces it cannot join, as where two cubes share an edge.
+/// Collects vertices and faces from OpenMesh's readers. A half-edge mesh would drop the faces that
+/// it cannot join, for example where two cubes share an edge.
 class SoupImporter final : public IO::BaseImporter {
 public:
     explicit SoupImporter(const std::istream& stream) : stream_(stream) {}
@@ -114,7 +114,7 @@ public:
     void set_point(VertexHandle vertex, const Vec3f& p) override {
         // The readers do not check whether a number was read.
         if (stream_.fail())
-            throw ReadingStopped(fmt::format("vertex {} is not there", vertex.idx() + 1));
+            throw ReadingStopped(fmt::format("vertex {} is missing", vertex.idx() + 1));
         const Vec3 point(p[0], p[1], p[2]);
         if (!is_finite(point))
             throw ReadingStopped(
@@ -123,13 +123,13 @@ public:
     }
     FaceHandle add_face(const VHandles& corners) override {
         const size_t face = soup.faces.size();
-        if (stream_.fail()) throw ReadingStopped(fmt::format("face {} is not there", face + 1));
+        if (stream_.fail()) throw ReadingStopped(fmt::format("face {} is missing", face + 1));
         if (corners.size() < 3)
             throw ReadingStopped(fmt::format("face {} has {} corners", face + 1, corners.size()));
         auto& outline = soup.faces.emplace_back();
         for (const VertexHandle corner : corners) {
             if (corner.idx() < 0 || static_cast<size_t>(corner.idx()) >= soup.vertices.size())
-                throw ReadingStopped(fmt::format("face {} names vertex {} of {}", face + 1,
+                throw ReadingStopped(fmt::format("face {} refers to vertex {} of {}", face + 1,
                                                  int64_t{corner.idx()} + 1, soup.vertices.size()));
             outline.push_back(static_cast<uint32_t>(corner.idx()));
         }
@@ -275,7 +275,7 @@ private:
 } // namespace
 
 Result<Mesh> triangulated(PolygonSoup soup) {
-    constexpr size_t most_corners = 4096; // cutting takes up to the cube of it
+    constexpr size_t most_corners = 4096; // cutting takes up to the cube of this number of steps
     Mesh mesh;
     mesh.vertices = std::move(soup.vertices);
     mesh.triangles.reserve(soup.faces.size());

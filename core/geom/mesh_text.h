@@ -22,7 +22,7 @@ struct MeshText {
     size_t degenerate_faces = 0; // STL only: triangles that use a vertex twice, kept in `text`
 };
 
-/// Check a file word by word and return it in the plainest form of its format.
+/// Check a file word by word and return it in the simplest form of its format.
 ///
 /// Errors:  the line and the problem: not a number, not finite, an index out of range, an
 ///          incomplete facet, a missing end, no faces. Textures, normals, colours and names are
@@ -31,7 +31,7 @@ Result<MeshText> checked_ascii_stl(std::string_view bytes);
 Result<MeshText> checked_obj(std::string_view bytes);
 Result<MeshText> checked_off(std::string_view bytes);
 
-/// The same for a PLY file in any of its three forms, up to its last face.
+/// Checks a PLY file in any of its three forms, up to its last face, in the same way.
 Result<MeshText> checked_ply(std::string_view bytes);
 
 using Words = std::vector<std::string_view>;

@@ -13,8 +13,9 @@ Result<int64_t> obj_index(std::string_view word, size_t vertices_before, size_t 
     const int64_t counted =
         *index < 0 ? static_cast<int64_t>(vertices_before) + *index + 1 : *index;
     if (counted < 1 || counted > static_cast<int64_t>(vertices))
-        return fail_in_line(line, fmt::format("a face names vertex {}, but there are {} vertices",
-                                              *index, vertices));
+        return fail_in_line(
+            line,
+            fmt::format("a face refers to vertex {}, but there are {} vertices", *index, vertices));
     return counted;
 }
 
@@ -125,15 +126,15 @@ private:
         if (!corners || *corners < 3)
             return fail_in_line(lines_.line(), fmt::format("a face has '{}' corners", words_[0]));
         if (static_cast<size_t>(*corners) >= words_.size())
-            return fail_in_line(lines_.line(), fmt::format("a face of {} corners names {}",
+            return fail_in_line(lines_.line(), fmt::format("a face of {} corners lists only {}",
                                                            *corners, words_.size() - 1));
         out_.text += fmt::format("{}", *corners);
         for (size_t i = 1; i <= static_cast<size_t>(*corners); ++i) {
             const auto index = integer_of(words_[i]);
             if (!index || *index < 0 || *index >= static_cast<int64_t>(out_.vertices))
                 return fail_in_line(lines_.line(),
-                                    fmt::format("a face names vertex {}, but there are {}, counted "
-                                                "from 0",
+                                    fmt::format("a face refers to vertex {}, but there are {}, "
+                                                "counted from 0",
                                                 words_[i], out_.vertices));
             out_.text += fmt::format(" {}", *index);
         }

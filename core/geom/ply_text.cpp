@@ -63,7 +63,7 @@ public:
             }
             if (is_vertex) out_.vertices += element.count;
             if (is_face) out_.faces = element.count;
-            if (is_face) break; // what follows the faces is no part of the surface
+            if (is_face) break; // elements after the faces are not part of the surface
         }
         if (out_.faces == 0) return fail(ErrorCode::missing_value, "it has no faces");
         out_.text = plain_header() + points + outlines;
@@ -129,7 +129,7 @@ private:
         return true;
     }
 
-    /// What counts of one line of an element.
+    /// The relevant values of one entry of an element.
     struct Entry {
         std::array<double, 3> point = {NAN, NAN, NAN};
         std::vector<double> outline;
@@ -176,9 +176,10 @@ private:
         outlines += fmt::format("{}", entry.outline.size());
         for (const double corner : entry.outline) {
             if (!(corner >= 0.0 && corner < static_cast<double>(out_.vertices)))
-                return fail(ErrorCode::invalid_value,
-                            fmt::format("face {} names vertex {}, but there are {}, counted from 0",
-                                        i + 1, corner, out_.vertices));
+                return fail(
+                    ErrorCode::invalid_value,
+                    fmt::format("face {} refers to vertex {}, but there are {}, counted from 0",
+                                i + 1, corner, out_.vertices));
             outlines += fmt::format(" {}", static_cast<uint32_t>(corner));
         }
         outlines += '\n';

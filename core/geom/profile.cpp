@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// How much wider a cone becomes across its axis when its side moves outwards by 1.
+/// Increase of a cone's radius when its side moves outwards by 1.
 double widening(const ProfileElement& e) {
     if (e.z1 <= e.z0) return 1.0;
     const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
@@ -26,7 +26,7 @@ std::optional<ProfileElement> inner_cone(const ProfileElement& e, double narrowe
     if (!(z0 < z1)) return std::nullopt;
     double r0 = radius_at(e, z0) - narrower, r1 = radius_at(e, z1) - narrower;
     if (r0 <= 0.0 && r1 <= 0.0) return std::nullopt;
-    // Where the side reaches the axis the cone now has its tip.
+    // If the side now reaches the axis, the cone has its tip there.
     if (r0 < 0.0) {
         z0 += (z1 - z0) * (-r0 / (r1 - r0));
         r0 = 0.0;
@@ -49,7 +49,8 @@ std::optional<ProfileElement> inner_round(const ProfileElement& e, double by) {
     return inner;
 }
 
-/// Whether the element shows a flat face downwards: the tip, or a step to a wider piece above.
+/// Whether the element has a flat downward face: at the tip, or at a step from a narrower piece
+/// below.
 bool faces_down(const RevolvedProfile& profile, size_t i) {
     const ProfileElement& e = profile.elements[i];
     if (i == 0) return true;
@@ -57,15 +58,15 @@ bool faces_down(const RevolvedProfile& profile, size_t i) {
     return e.r0 > below.r1 + below.margin;
 }
 
-/// Whether the element shows a flat face upwards, round a narrower piece above.
+/// Whether the element has a flat upward face around a narrower piece above.
 bool faces_up(const RevolvedProfile& profile, size_t i) {
     if (i + 1 == profile.elements.size()) return false;
     const ProfileElement& above = profile.elements[i + 1];
     return above.margin == 0.0 && above.r0 < profile.elements[i].r1;
 }
 
-/// What joins a piece, raised by `by`, to the narrower one below: the points that deep lie within
-/// the chord of the circle round the inner edge of the step.
+/// The collar that joins a piece, raised by `by`, to the narrower one below. Points deeper than
+/// `by` are within the chord of the circle around the inner edge of the step.
 std::optional<ProfileElement> lower_collar(const ProfileElement& e, const ProfileElement& below,
                                            double by) {
     const double rim = below.r1 + below.margin;
@@ -75,7 +76,7 @@ std::optional<ProfileElement> lower_collar(const ProfileElement& e, const Profil
                           0.0};
 }
 
-/// The same between a piece, lowered by `by`, and the narrower one above.
+/// The collar between a piece, lowered by `by`, and the narrower one above.
 std::optional<ProfileElement> upper_collar(const ProfileElement& e, const ProfileElement& above,
                                            double by) {
     const double foot = std::max(e.z1 - by, e.z0);
@@ -84,9 +85,9 @@ std::optional<ProfileElement> upper_collar(const ProfileElement& e, const Profil
                           std::max(0.0, above.r0 - by), 0.0};
 }
 
-/// Whether a cone takes up where a rounding below it has its direction, and reaches over its top.
+/// Whether a cone continues a rounding below it tangentially and extends above its top.
 bool continues_round(const ProfileElement& round, const ProfileElement& cone) {
-    constexpr double rounding = 1e-11; // mm; what is computed by sine and cosine meets no better
+    constexpr double rounding = 1e-11; // mm; points computed by sine and cosine match no better
     const double out = cone.r0 - round.r0, up = cone.z0 - round.z0;
     const double along = std::hypot(cone.r1 - cone.r0, cone.z1 - cone.z0);
     const double turned = out * (cone.r1 - cone.r0) + up * (cone.z1 - cone.z0);
@@ -109,11 +110,11 @@ Aabb bounds(const RevolvedProfile& profile) {
 }
 
 bool is_convex(const RevolvedProfile& profile) {
-    // Walking up the outline, the angle from the axis may only turn inwards.
+    // Going up the outline, the direction may only turn inwards.
     double last_slope = infinity, last_r = 0.0, last_z = -infinity;
     for (size_t i = 0; i < profile.elements.size(); ++i) {
         const ProfileElement& e = profile.elements[i];
-        if (e.margin > 0.0) { // from the flat or the tip tangentially to upright
+        if (e.margin > 0.0) { // from a flat or a tip, tangentially to vertical
             if (last_z != -infinity) return false;
             last_slope = 0.0;
             last_r = e.r0 + e.margin;
@@ -144,8 +145,9 @@ RevolvedProfile shrunk_within(const RevolvedProfile& profile, double by) {
 }
 
 RevolvedProfile shrunk_around(const RevolvedProfile& profile, double by) {
-    // Beside a seam that turns outwards a point may be deep in the body though the flank of its
-    // own piece, carried on beyond the seam, is near. What lies on its own level is always near.
+    // Near a seam that turns outwards, a point may be deep in the body although the flank of its
+    // own piece, extended beyond the seam, is near. Surface at the point's own height is always
+    // near.
     const bool convex = is_convex(profile);
     RevolvedProfile inner;
     for (size_t i = 0; i < profile.elements.size(); ++i) {
@@ -190,7 +192,7 @@ namespace {
 
 constexpr size_t most_levels = 400;
 
-/// Heights and others between them, so that no two are far apart.
+/// The heights, with others added between them so that no two neighbours are far apart.
 std::vector<double> filled(const std::vector<double>& levels) {
     const double widest = (levels.back() - levels.front()) / most_levels;
     std::vector<double> all;
@@ -204,7 +206,7 @@ std::vector<double> filled(const std::vector<double>& levels) {
     return all;
 }
 
-/// Heights that cut the mesh into slices: those of its vertices, thinned out when there are many.
+/// Heights that cut the mesh into slices: those of its vertices, thinned out if there are many.
 std::vector<double> levels_of(const Mesh& mesh) {
     std::vector<double> all;
     for (const Vec3& v : mesh.vertices) all.push_back(v.z);
@@ -222,8 +224,9 @@ double radius_on(const Vec3& a, const Vec3& b, double z) {
     return std::hypot(p.x, p.y);
 }
 
-/// Widens a slice for an edge. The distance from the axis is convex along it, so what it is at the
-/// ends of the slice bounds it in between; an edge that ends within is held by a cylinder.
+/// Widens a slice for an edge. The distance from the axis is convex along the edge, so its values
+/// at the ends of the slice bound it in between; an edge that ends within the slice is contained in
+/// a cylinder.
 void widen(ProfileElement& slice, const Vec3& a, const Vec3& b) {
     const Vec3& low = a.z <= b.z ? a : b;
     const Vec3& high = a.z <= b.z ? b : a;
@@ -233,7 +236,7 @@ void widen(ProfileElement& slice, const Vec3& a, const Vec3& b) {
         slice.r1 = std::max(slice.r1, radius_on(low, high, slice.z1));
         return;
     }
-    if (high.z == slice.z0 || low.z == slice.z1) return; // its own slice holds it
+    if (high.z == slice.z0 || low.z == slice.z1) return; // its own slice contains it
     const Vec3 from =
         low.z < slice.z0 ? low + (slice.z0 - low.z) / (high.z - low.z) * (high - low) : low;
     const Vec3 to =
@@ -243,14 +246,14 @@ void widen(ProfileElement& slice, const Vec3& a, const Vec3& b) {
     slice.r1 = std::max(slice.r1, r);
 }
 
-/// How much wider a slice is than a cone at its lower and upper end.
+/// Amounts by which a slice is wider than a cone at the slice's lower and upper end.
 std::array<double, 2> lacking(const ProfileElement& cone, const ProfileElement& slice) {
     const double slope = (cone.r1 - cone.r0) / (cone.z1 - cone.z0);
     return {slice.r0 - cone.r0 - slope * (slice.z0 - cone.z0),
             slice.r1 - cone.r0 - slope * (slice.z1 - cone.z0)};
 }
 
-/// One cone for several slices, if it need not be wider than they are by more than the tolerance.
+/// Replaces several slices by one cone if that is wider than they are by at most the tolerance.
 bool join(const std::vector<ProfileElement>& slices, size_t first, size_t last, double tolerance,
           ProfileElement& cone) {
     ProfileElement joined{slices[first].z0, slices[first].r0, slices[last].z1, slices[last].r1,

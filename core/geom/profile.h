@@ -47,7 +47,8 @@ RevolvedProfile grown(const RevolvedProfile& profile, double by);
 ///
 /// Result:  the whole mesh is inside. It is too wide by at most `tolerance` plus the sagitta of the
 ///          chord of an edge's rotation about the axis over a 400th of the height; if the vertices
-///          have more than 400 heights, also by what flanks widen over some of them.
+///          have more than 400 heights, also by the widening of flanks between some of these
+///          heights.
 /// Cost:    triangles times heights, at most 800 of them.
 RevolvedProfile revolved_hull(const Mesh& mesh, double tolerance);
 

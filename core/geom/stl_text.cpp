@@ -7,7 +7,7 @@
 namespace core {
 namespace {
 
-/// The words of an ASCII STL, whatever the line they stand in.
+/// Reads the words of an ASCII STL, independent of line breaks.
 class StlReader {
 public:
     explicit StlReader(std::string_view bytes) : lines_(bytes) {}
@@ -56,7 +56,8 @@ private:
     Result<bool> read_facet() {
         FEELER_TRY([[maybe_unused]] const bool facet, expect("facet"));
         FEELER_TRY([[maybe_unused]] const bool normal, expect_next("normal"));
-        for (int i = 0; i < 3; ++i) advance(); // recomputed by everyone, and often nan
+        for (int i = 0; i < 3; ++i)
+            advance(); // normals are ignored: readers recompute them, and they are often nan
         FEELER_TRY([[maybe_unused]] const bool outer, expect_next("outer"));
         FEELER_TRY([[maybe_unused]] const bool loop, expect_next("loop"));
         out_.text += "facet normal 0 0 0\nouter loop\n";

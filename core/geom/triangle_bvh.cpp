@@ -8,7 +8,7 @@
 namespace core {
 namespace {
 
-/// Covers rounding in the box, as a share of the coordinates: see README.md, "Boxes".
+/// Covers rounding in the box, as a fraction of the coordinates: see README.md, "Boxes".
 constexpr double rounding = 1e-14;
 
 Aabb bounds_of(std::span<const Triangle> triangles) {
@@ -18,7 +18,7 @@ Aabb bounds_of(std::span<const Triangle> triangles) {
     return box;
 }
 
-/// Second moments of the area about a point, but for a factor.
+/// Second moments of the area about a point, up to a constant factor.
 Mat3 moments(std::span<const Triangle> triangles, const Vec3& about) {
     Mat3 sum(0.0);
     double area = 0.0;
@@ -37,7 +37,7 @@ Mat3 moments(std::span<const Triangle> triangles, const Vec3& about) {
     return sum - (4.0 / 3.0 / area) * glm::outerProduct(first, first);
 }
 
-/// The eigenvectors of a symmetric matrix, by Jacobi's rotations.
+/// The eigenvectors of a symmetric matrix, by Jacobi rotations.
 Mat3 eigenvectors(Mat3 m) {
     Mat3 vectors(1.0);
     for (int sweep = 0; sweep < 12; ++sweep)
@@ -125,7 +125,7 @@ double distance_bound(const OrientedBox& a, const OrientedBox& b, const Vec3& sw
     const Vec3 half_sweep = 0.5 * sweep;
     const Vec3 apart = b.center + half_sweep - a.center;
     // Written out: this is where searches spend their time, and glm's products cost twice as much.
-    double reach_a[3] = {a.half.x, a.half.y, a.half.z}; // of both along A's axes
+    double reach_a[3] = {a.half.x, a.half.y, a.half.z}; // sum of both half extents along A's axes
     double square_b = 0.0;
     for (int j = 0; j < 3; ++j) {
         const Vec3& axis = b.axes[j];

@@ -22,7 +22,7 @@ struct OrientedBox {
     }
 };
 
-/// How far the columns are from an orthonormal base: the sum of the entries of |M'M - 1|.
+/// Deviation of the columns from an orthonormal basis: the sum of the entries of |M'M - 1|.
 double lean(const Mat3& m);
 
 /// Upper bound of lean() of the axes of fitted boxes.

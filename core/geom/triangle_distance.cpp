@@ -27,8 +27,8 @@ struct Sides {
     const Vec3& across(size_t i) const { return corner[(i + 2) % 3]; }
 };
 
-/// A point of each triangle, and the direction from the first to the second, where something is
-/// known that is more accurate than their difference.
+/// A point of each triangle and the direction from the first to the second, which may be known more
+/// accurately than from their difference.
 struct Candidate {
     Vec3 on_a = Vec3(0.0), on_b = Vec3(0.0);
     Vec3 way = Vec3(0.0);
@@ -43,7 +43,8 @@ Candidate between_sides(const Sides& a, size_t i, const Sides& b, size_t j) {
     const double both = glm::dot(a.along[i], b.along[j]);
     const double on_a = glm::dot(a.along[i], apart) * a.per_square[i];
     const double on_b = glm::dot(b.along[j], apart) * b.per_square[j];
-    // Each side's foot of the other's start, and how it slides while the other's point does.
+    // For each side, the foot of the perpendicular from the other's start, and its change as the
+    // other's point moves.
     const double slide_a = both * a.per_square[i], slide_b = both * b.per_square[j];
     const double flat = 1.0 - slide_a * slide_b; // sine squared of the angle between them
     double s = flat > 0.0 ? clamped((on_a - slide_a * on_b) / flat) : 0.0;
@@ -76,15 +77,15 @@ Candidate between_all_sides(const Sides& a, const Sides& b) {
     return best;
 }
 
-/// The foot of `p` on the plane of the face as a mean of its corners, which is a point of it
-/// however badly the normal is known; nothing if it lies outside.
+/// The foot of the perpendicular from `p` on the plane of the face, as a weighted mean of the
+/// corners, which is in the face however inaccurate the normal is; empty if the foot is outside.
 std::optional<Vec3> foot_in(const Sides& face, const Vec3& normal, const Vec3& p) {
     const double square = glm::dot(normal, normal);
     if (!(square > 0.0)) return std::nullopt;
     std::array<double, 3> weight = {1.0, 0.0, 0.0};
     Vec3 foot = face.corner[0];
     for (int pass = 0; pass < 2;
-         ++pass) { // of a sliver the first is off by much, the second by little
+         ++pass) { // for a sliver the first pass has a large error, the second a small one
         const Vec3 scaled = glm::cross(p - foot, normal) / square;
         for (size_t i = 0; i < 3; ++i) weight[(i + 2) % 3] += glm::dot(face.along[i], scaled);
         const double sum = weight[0] + weight[1] + weight[2];
@@ -95,8 +96,8 @@ std::optional<Vec3> foot_in(const Sides& face, const Vec3& normal, const Vec3& p
     return inside ? std::optional(foot) : std::nullopt;
 }
 
-/// The corner of B nearest to the plane of A, if all are on one side of it and this one is above A:
-/// only then can a face and a corner be nearest.
+/// The corner of B nearest to the plane of A, if all corners are on one side of the plane and this
+/// one is above the face of A: only then can a face and a corner be nearest.
 Candidate between_face_and_corner(const Sides& a, const Sides& b) {
     const Vec3 normal = glm::cross(a.along[0], a.along[1]);
     std::array<double, 3> height;
@@ -119,8 +120,8 @@ Candidate turned_round(Candidate c) {
     return c;
 }
 
-/// Every corner of B, and every point where a side of B passes the plane of A, against the point of
-/// A nearest to it: finds crossings, and what rounding took from the others.
+/// Pairs every corner of B, and every point where a side of B crosses the plane of A, with the
+/// nearest point of A. Finds crossings, and pairs that the other functions miss by rounding.
 Candidate between_face_and_sides(const Triangle& face, const Sides& a, const Sides& b) {
     const Vec3 normal = glm::cross(a.along[0], a.along[1]);
     Candidate best;
@@ -259,7 +260,7 @@ NearestSurface nearest_surface(const TriangleBvh& mesh, const Vec3& point, doubl
 }
 
 NearestSurface SurfaceTracker::at(const Vec3& point) {
-    // No point of the surface is farther from here than the one found last is.
+    // The point found last is at most this far from here, so the nearest one is, too.
     const double limit = last_distance_ + glm::distance(point, last_place_);
     const NearestSurface found = nearest_surface(mesh_, point, limit * (1.0 + 1e-9) + 1e-9);
     last_place_ = point;

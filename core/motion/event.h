@@ -42,7 +42,7 @@ enum class LinkId : uint8_t { base = 255 };
 
 constexpr LinkId link_of(size_t axis) { return static_cast<LinkId>(axis); }
 
-/// Something fixed to a link. Frame of the link: the machine's with all axes at 0.
+/// A frame fixed to a link. The link's own frame is the machine's with all axes at 0.
 struct Mount {
     LinkId link = LinkId::base;
     Transform link_from_body;
@@ -74,7 +74,7 @@ struct Motion {
     double feed = 0.0;               // mm/min along the path; 0 on rapids
 };
 
-/// The tool in the spindle from now on; empty for T0, an empty spindle.
+/// The new tool in the spindle; empty for T0, an empty spindle.
 struct ToolChange {
     std::optional<ToolNumber> tool;
 };
@@ -90,7 +90,7 @@ struct Dwell {
     double seconds = 0.0;
 };
 
-/// The length that the control adds along Z from now on; empty after G49.
+/// The new length that the control adds along Z; `number` is empty after G49.
 struct LengthOffsetChange {
     std::optional<OffsetNumber> number;
     double length = 0.0; // mm
@@ -101,14 +101,14 @@ struct LengthOffsetChange {
 /// continuous: corners are rounded within a tolerance (G64).
 enum class Blending : uint8_t { exact_stop, exact_path, continuous };
 
-/// How corners are passed from now on.
+/// The new way in which corners are passed.
 struct PathModeChange {
     Blending blending = Blending::continuous;
     std::optional<double> tolerance; // mm; empty: not stated
     double joining = 0.0;            // short moves this close to a line may be joined into it, mm
 };
 
-/// A fixture that is put in place or removed, by its index in the set-up.
+/// A fixture that is mounted or removed, by its index in the set-up.
 struct FixtureChange {
     size_t fixture = 0;
     bool is_there = true;

@@ -47,7 +47,7 @@ std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
     return chain;
 }
 
-/// A direction fixed to the spindle, in the frame of the table.
+/// Direction of the tool axis, from the tip up, in the frame of the table.
 Vec3 tool_axis_at(const Machine& machine, const AxisValues& values) {
     const Transform table = machine_from_link(machine, machine.table, values);
     const Transform spindle = machine_from_link(machine, machine.spindle, values);

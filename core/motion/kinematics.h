@@ -42,8 +42,8 @@ double turn_of(const Machine& machine, const AxisValues& from, const AxisValues&
 double tip_reach(const Machine& machine, const Vec3& tip, double tool_length);
 
 /// How one mounted body moves relative to another over a leg: with constant orientation, its origin
-/// straight from place to place (or anywhere in their hull). Every point may be `error` away from
-/// that motion. Frame: the target's.
+/// moves straight from position to position (or anywhere in their hull). Every point may be `error`
+/// away from that motion. Frame: the target's.
 struct RelativeLeg {
     Mat3 orientation = Mat3(1.0);
     std::vector<Vec3> places; // of the mover's origin

@@ -26,7 +26,7 @@ struct MachineAxis {
     Side side = Side::tool;
     Vec3 point = Vec3(0.0);        // rotary: a point on the axis of rotation
     LinkId carrier = LinkId::base; // the link that carries this axis
-    bool shortest_way = false;     // rotary: goes to an angle by at most half a turn
+    bool shortest_way = false;     // rotary: takes the shorter direction to an angle
 };
 
 /// straight: all axes arrive together. dogleg: each axis moves at its own speed.
@@ -36,7 +36,7 @@ enum class RapidStyle : uint8_t { straight, dogleg };
 struct MachineBody {
     std::string name;
     ExactBody body;
-    LinkId link = LinkId::base; // that carries the body
+    LinkId link = LinkId::base; // the link that carries the body
 };
 
 /// A machine: linear and rotary axes from the base to the spindle and from the base to the table.
@@ -46,7 +46,7 @@ struct MachineBody {
 struct Machine {
     std::array<MachineAxis, axis_count> axes = three_axes();
     RapidStyle rapid = RapidStyle::straight;
-    std::optional<double> corner_tolerance; // mm, where the program states none
+    std::optional<double> corner_tolerance; // mm, if the program gives none
     LinkId spindle = link_of(2);            // carries the tool
     LinkId table = LinkId::base;            // carries the work
     std::vector<MachineBody> bodies;

@@ -66,7 +66,7 @@ double feed_length(const AxisValues& from, const AxisValues& to) {
     return fed_length(by);
 }
 
-/// The corners of the box of X, Y and Z between two places; other axes as in the first.
+/// The corners of the box of X, Y and Z between two positions; other axes as in the first.
 std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& high) {
     std::vector<AxisValues> corners;
     for (unsigned i = 0; i < 8; ++i) {
@@ -79,7 +79,7 @@ std::vector<AxisValues> box_corners(const AxisValues& low, const AxisValues& hig
     return corners;
 }
 
-/// Each axis moves at its own speed: the path bends where an axis arrives.
+/// Number of axes that move.
 size_t moving_axes(const AxisValues& from, const AxisValues& to) {
     size_t count = 0;
     for (size_t i = 0; i < axis_count; ++i) count += from[i] != to[i];
@@ -147,8 +147,8 @@ std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
 /// The curvature factor of an arc or spiral: for a step of the angle, its distance from a chord
 /// passed at constant speed is at most this times the square of the step.
 ///
-/// That is an eighth of the second derivative by the angle, whose part towards the centre is the
-/// radius, and whose part across is twice what the radius changes by.
+/// It is an eighth of the second derivative by the angle. The component of that towards the centre
+/// is the radius, and the tangential component is twice the change of the radius per angle.
 double bend(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
     const auto [first, last] = arc_radii(arc, from, to);
     const double drift = arc.angle != 0.0 ? 2.0 * (last - first) / arc.angle : 0.0;
@@ -162,7 +162,7 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     const double radius = std::max(first_radius, last_radius);
     const double widest = radius > max_error ? 2.0 * std::acos(1.0 - 0.5 * max_error / radius)
                                              : std::numbers::pi / 2.0;
-    // Where the radius changes fast, that chord would be too long.
+    // If the radius changes fast, that chord would be too long.
     const double most = std::sqrt(max_error / std::max(bend(arc, from, to), 1e-12));
     const double step = std::min({widest, most, std::numbers::pi / 2.0});
     const int count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.angle) / step)));
@@ -187,9 +187,9 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
 /// A path of the tip as legs with constant axis rates.
 ///
 /// Between two moments the linear axes deviate from constant rates by an eighth of their
-/// acceleration. The tip lies at most r from every rotary axis and moves by v against the work
-/// while the rotary axes turn by w in all: the linear axes make up for that, so their acceleration
-/// is at most 2 w (w r + v).
+/// acceleration. The tip is at most r from every rotary axis and moves by v relative to the work
+/// while the rotary axes turn by w in all. The linear axes compensate for that, so their
+/// acceleration is at most 2 w (w r + v).
 void add_tip_path(Path& path, const Machine& machine, const Motion& motion, const AxisValues& from,
                   const AxisValues& to, double max_error) {
     const TipPath& tip = *motion.tip;
@@ -333,7 +333,7 @@ AxisRange axis_range(const Motion& motion, const Machine& machine, double max_er
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
     const double start = std::atan2(from[static_cast<size_t>(b)] - arc.centre[b],
                                     from[static_cast<size_t>(a)] - arc.centre[a]);
-    // The extremes of the two axes lie where the angle is a multiple of a quarter turn.
+    // The extremes of the two axes are at multiples of a quarter turn.
     const double quarter = std::numbers::pi / 2.0;
     const double first = std::min(start, start + arc.angle), last = first + std::abs(arc.angle);
     for (double k = std::ceil(first / quarter); k * quarter <= last; ++k) {

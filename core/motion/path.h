@@ -19,21 +19,21 @@ struct ArcPiece {
 
 /// A piece of a motion that is checked as a whole.
 ///
-/// `straight`: all axes move at constant rates from the first to the second of two places.
-/// Otherwise the linear axes take an unknown path within the hull of the places, of which only
-/// `certain` ones are known to be passed; the rotary axes do not move then.
+/// `straight`: all axes move at constant rates from the first to the second of two positions.
+/// Otherwise the linear axes take an unknown path within the hull of `places`, and only the
+/// `certain` positions are known to be passed; the rotary axes do not move.
 struct Leg {
     std::vector<AxisValues> places;
-    double begin = 0.0; // seconds after the motion's start
+    double begin = 0.0; // seconds from the motion's start
     double end = 0.0;
-    double path_error = 0.0; // every point of the tool is really within this distance, mm
+    double path_error = 0.0; // bound on the distance of the tool from its real position, mm
     bool straight = true;
     bool start_known = true; // false: the machine may start anywhere within its limits
     std::vector<AxisValues> certain = {};
     ArcPiece arc = {}; // the arc of which this is a chord
 };
 
-/// The part of a straight leg between two fractions of it, 0..1.
+/// The piece of a straight leg between two of its fractions, 0..1.
 Leg stretch(const Leg& leg, double first, double last);
 
 /// The halves of a straight leg. Those of a chord meet on the arc and are closer to it.
@@ -47,7 +47,7 @@ Leg still_half_way(const Leg& leg);
 struct Path {
     std::vector<Leg> legs;
     double duration = 0.0;      // seconds
-    bool assumed_speed = false; // a rapid with an axis whose speed is not stated
+    bool assumed_speed = false; // a rapid used an axis without a stated speed
 };
 
 /// The rapid speed of axes for which none is stated, mm/min.
@@ -71,8 +71,8 @@ struct AxisRange {
     AxisValues min, max;
 };
 
-/// The range of every axis over a motion with known ends, including extremes on the way. For a path
-/// of the tip it is taken from the legs and may be up to `max_error` too wide.
+/// The range of every axis over a motion with known ends, including extremes between them. For a
+/// path of the tip it is taken from the legs and may be up to `max_error` too wide.
 AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error);
 
 } // namespace core

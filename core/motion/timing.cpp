@@ -167,8 +167,8 @@ std::optional<AxisValues> travels(const Motion& motion) {
     return by;
 }
 
-/// The length that a feed is counted along: where the control follows the tip, the length of its
-/// path, unless it only rotates.
+/// The length to which a feed refers: with tool centre point control, the length of the tip's path,
+/// unless the tool only rotates about the tip.
 double feed_length(const Motion& motion, const AxisValues& by) {
     if (motion.tip && motion.kind != MotionKind::rapid)
         if (const double way = glm::distance(motion.tip->from, motion.tip->to); way > 0.0)
@@ -196,7 +196,8 @@ double greatest_cosine(double first, double last) {
     return std::max(std::abs(sin_cos(first).cos), std::abs(sin_cos(last).cos));
 }
 
-/// A circle, helix or spiral: s/L of the way along, it has turned by that share of the angle.
+/// A circle, helix or spiral: at the path length s of L, it has turned by the fraction s/L of the
+/// angle.
 std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) {
     const ArcPath& arc = *motion.arc;
     const auto a = static_cast<size_t>((arc.normal + 1) % 3);
@@ -233,10 +234,10 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) 
 
 /// The axis motion while the control keeps the tip on a line, sampled at even steps.
 ///
-/// The linear axes make up for w radians of turning at a distance of at most r and for the tip's
-/// way v: per share of the motion they go no faster than w r + v, bend no more than 2 w (w r + v),
-/// and that changes by no more than 3 w^2 (w r + v). So what lies between the steps is bounded,
-/// too.
+/// The linear axes compensate for w radians of turning at a distance of at most r and for the tip's
+/// travel v. With the motion's fraction as parameter, their rate is at most w r + v, its derivative
+/// at most 2 w (w r + v), and the derivative of that at most 3 w^2 (w r + v). This bounds the
+/// values between the steps, too.
 PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisValues& by,
                      double length) {
     constexpr int steps = 64;
@@ -270,8 +271,8 @@ PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisVal
         path.start[i] = rate(0) - 0.5 * (rate(1) - rate(0));
         path.end[i] = rate(steps - 1) + 0.5 * (rate(steps - 1) - rate(steps - 2));
         path.fastest[i] = fastest + 0.5 * bend * length / steps;
-        // Speeding up and bending may act along one axis at once, other than on a circle: each
-        // gets half of the acceleration.
+        // Unlike on a circle, speed change and curvature may need the same axis at once: each gets
+        // half of the acceleration.
         path.bend[i] = turn > 0.0 ? std::numbers::sqrt3 * bend : 0.0;
     }
     return path;

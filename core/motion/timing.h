@@ -25,8 +25,8 @@ using MachineLimits = std::array<AxisLimits, axis_count>;
 /// Tolerance of corner rounding if none is stated, mm.
 constexpr double default_blend_tolerance = 0.05;
 
-/// Cycle time of the control, seconds. A jump in the speed of an axis that its acceleration makes
-/// up for within one cycle does not count as a corner.
+/// Cycle time of the control, seconds. A jump in the speed of an axis that its acceleration can
+/// produce within one cycle does not count as a corner.
 constexpr double control_cycle = 0.001;
 
 /// The number of motions that the planner knows ahead.
@@ -65,17 +65,17 @@ struct WaitingMotion {
         entry_squared; // square of the greatest speed there from which the known end can be reached
 };
 
-/// The motions known so far, in order. A plain value: copy it to go back.
+/// The motions known so far, in order. A plain value: copy it to step back.
 ///
-/// A motion becomes final when `look_ahead` more have been added, or one at standstill. Its end
-/// speed is then one from which all known motions can be executed with the last one ending at rest.
-/// The result does not depend on when or in which portions motions are added.
+/// A motion becomes final when `look_ahead` more motions have been added, or when the machine
+/// stops. Its end speed is then one from which all known motions can be executed with the last one
+/// ending at rest. The result does not depend on when or in which portions motions are added.
 struct TimePlan {
     MachineLimits limits;
     Blending blending = Blending::continuous;
     double tolerance = default_blend_tolerance;
     std::deque<WaitingMotion> waiting;
-    std::optional<PathMotion> last; // the motion before a corner that may come; empty: at rest
+    std::optional<PathMotion> last; // the motion before the next corner; empty: at rest
     double enter = 0.0;             // speed at the start of the first waiting motion
 };
 
@@ -100,14 +100,14 @@ double path_acceleration(const MachineLimits& limits, const PathMotion& motion);
 /// A rounded corner is a parabola: the axes change from one rate to the other at constant
 /// acceleration. It stays within the tolerance of the corner and uses at most half of either
 /// motion. Next to a curved path it gets half of the acceleration and the curvature the other half.
-/// Without rounding, or where that is faster, axis speeds jump by what the axes can make up for in
-/// one control cycle.
+/// Without rounding, or where that is faster, axis speeds jump by as much as the axes can
+/// accelerate in one control cycle.
 double corner_speed(const TimePlan& plan, const PathMotion& before, const PathMotion& after);
 
-/// The limits that the machine states; a speed that is not stated is no limit.
+/// The limits stated for the machine; a speed that is not stated is unlimited.
 MachineLimits limits_of(const Machine& machine);
 
-/// A motion in the form that the planner takes.
+/// A motion in the form that the planner needs.
 ///
 /// Units:   the speed of a feed is along X, Y and Z if one of these moves, else along U, V and W,
 ///          else along the rotary axes, in degrees. Where the control follows the tip, it is along
@@ -119,8 +119,7 @@ std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machi
 /// Whether each axis moves on its own, from rest to rest.
 bool is_dogleg(const Motion& motion, const Machine& machine);
 
-/// The time of the slowest axis of a dog-leg rapid, seconds: with its acceleration, and at full
-/// speed all the way.
+/// Duration of a dog-leg rapid, that of its slowest axis, seconds: with and without accelerations.
 struct DoglegTime {
     double duration = 0.0;
     double at_full_speed = 0.0;

@@ -56,7 +56,7 @@ TEST(FileReads, SayWhatANameLeadsTo) {
     EXPECT_EQ(core::why_no_file(folder / "a"), "");
     EXPECT_EQ(core::why_no_file(folder / "b"), "there is no such file");
     EXPECT_EQ(core::why_no_file(folder / "gone"), "is a link that leads nowhere");
-    EXPECT_EQ(core::why_no_file(folder / "loop/b"), "cannot be looked at");
+    EXPECT_EQ(core::why_no_file(folder / "loop/b"), "cannot be accessed");
     EXPECT_EQ(core::why_no_file(folder / "pipe"), "is a pipe or a device, not a file");
     EXPECT_EQ(core::why_no_file(folder.path()), "is a folder, not a file");
 }

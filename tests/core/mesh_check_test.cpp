@@ -126,7 +126,7 @@ TEST(MeshCheck, RefusesASurfaceWithOneSide) {
                       {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
     const auto [checked, repairs] = check(mesh);
     ASSERT_FALSE(checked);
-    EXPECT_THAT(checked.error().message, HasSubstr("triangles that face both ways"));
+    EXPECT_THAT(checked.error().message, HasSubstr("triangles that face opposite ways"));
 }
 
 TEST(MeshCheck, RefusesAMeshWithoutVolume) {
@@ -145,7 +145,7 @@ TEST(MeshCheck, RefusesCoordinatesThatCannotBe) {
     }
     Mesh mesh = cube(0.0, 5.0);
     mesh.triangles[4][1] = 8;
-    EXPECT_THAT(check(mesh).mesh.error().message, HasSubstr("names vertex 8"));
+    EXPECT_THAT(check(mesh).mesh.error().message, HasSubstr("refers to vertex 8"));
 }
 
 } // namespace

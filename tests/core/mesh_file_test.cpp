@@ -257,11 +257,11 @@ TEST(MeshFile, RefusesAnAsciiStlThatIsNotInOrder) {
 
 TEST(MeshFile, RefusesAnObjThatIsNotInOrder) {
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "f 5 6 7 8", "f 5 6 7 9")),
-                HasSubstr("line 13: a face names vertex 9, but there are 8"));
+                HasSubstr("line 13: a face refers to vertex 9, but there are 8"));
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "f 5 6 7 8", "f 5 6 7 0")),
-                HasSubstr("names vertex 0"));
+                HasSubstr("refers to vertex 0"));
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "f 5 6 7 8", "f 5 6 7 -9")),
-                HasSubstr("names vertex -9"));
+                HasSubstr("refers to vertex -9"));
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "f 5 6 7 8", "f 5 6")), HasSubstr("2 corners"));
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "f 5 6 7 8", "f 5 6 7 x")), HasSubstr("'x'"));
     EXPECT_THAT(error_of("o.obj", with(cube_obj, "v 10 0 0", "v 10 0")),
@@ -272,7 +272,7 @@ TEST(MeshFile, RefusesAnObjThatIsNotInOrder) {
 
 TEST(MeshFile, RefusesAnOffThatIsNotInOrder) {
     EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 5 8")),
-                HasSubstr("names vertex 8, but there are 8, counted from 0"));
+                HasSubstr("refers to vertex 8, but there are 8, counted from 0"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 -5 4")), HasSubstr("-5"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 5")), HasSubstr("names 3"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "8 6 12", "8 7 12")),
@@ -285,7 +285,7 @@ TEST(MeshFile, RefusesAnOffThatIsNotInOrder) {
 
 TEST(MeshFile, RefusesAPlyThatIsNotInOrder) {
     EXPECT_THAT(error_of("p.ply", with(cube_ply, "4 0 1 5 4", "4 0 1 5 8")),
-                HasSubstr("face 3 names vertex 8"));
+                HasSubstr("face 3 refers to vertex 8"));
     EXPECT_THAT(error_of("p.ply", with(cube_ply, "4 0 1 5 4", "2 0 1")), HasSubstr("2 corners"));
     EXPECT_THAT(error_of("p.ply", with(cube_ply, "10 10 0 1", "10 nan 0 1")),
                 HasSubstr("vertex 3"));
