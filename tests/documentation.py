@@ -33,7 +33,7 @@ EXTERNAL = re.compile(r"^[a-zA-Z][a-zA-Z0-9+.-]*:")
 
 
 def prose_lines(text):
-    """Line numbers and lines of a page without fenced blocks; indented blocks are left out as well."""
+    """Line numbers and lines of a page without fenced blocks; or indented blocks."""
     fence = None
     after_blank = True
     in_block = False
@@ -58,7 +58,7 @@ def prose_lines(text):
 
 
 def slug(heading):
-    """The anchor that GitHub gives a heading."""
+    """The anchor that GitHub generates for a heading."""
     text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading.replace("`", ""))
     text = re.sub(r"<[^>]*>", "", text)
     return re.sub(r"[^\w\- ]", "", text.strip().lower()).replace(" ", "-")
@@ -88,7 +88,7 @@ def links(text):
 
 
 def unknown_sources(text, sources):
-    """Line numbers and names of C++ files that no path of the tree ends in."""
+    """Line numbers and names of C++ files that do not exist in the tree."""
     for number, line in prose_lines(text):
         for name in SOURCE_NAME.findall(line):
             if not any(f"/{source}".endswith(f"/{name}") for source in sources):
@@ -196,7 +196,7 @@ RULE_ROW = re.compile(r"^\| `([a-z-]+)` \| .*\|$", flags=re.M)
 
 
 def cell(sentence):
-    """A sentence of the table of rules as a cell of the manual: without full stop and first capital."""
+    """A sentence of the table of rules as a cell of the manual: no full stop, lower-case first letter."""
     text = sentence.removesuffix(".")
     return text[0].lower() + text[1:] if re.match(r"A |[A-Z][a-z]", text) else text
 
@@ -212,14 +212,14 @@ def rule_rows(root, feeler):
 
 
 def undocumented_rules(root, feeler):
-    """Rules that SARIF lists and the manual does not, or in other words."""
+    """Rules in SARIF that the manual lacks or describes differently."""
     text = (root / "docs" / "manual" / "rules.md").read_text(encoding="utf-8")
     return [f"docs/manual/rules.md: missing: {row}" for row in rule_rows(root, feeler).values()
             if row not in text.splitlines()]
 
 
 def update_rules(root, feeler):
-    """Writes the rows into the manual; a new one below that of the rule before it."""
+    """Writes the rows into the manual; a new row goes below that of the preceding rule."""
     page = root / "docs" / "manual" / "rules.md"
     rows = rule_rows(root, feeler)
     text = RULE_ROW.sub(lambda old: rows.get(old[1], old[0]), page.read_text(encoding="utf-8"))

@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
-"""Carries out the recipes of docs/recipes.md on a copy of the files that they change.
+"""Applies the recipes of docs/recipes.md to a copy of the files that they change.
 
     recipes.py ROOT BUILD      fails with the first recipe step that is out of date
     recipes.py --self-check    checks this script against a small tree with known mistakes
 
-The first words after the ``` of a code block say what it is:
+The first words after the ``` of a code block give its kind:
 
-    ```diff FILE       an edit of FILE: lines that begin with a blank or - must be in it, side by side and
-                       once; a line of three dots separates two edits
+    ```diff FILE       an edit of FILE: the lines that begin with a blank or - must occur in it once, in
+                       sequence; a line of three dots separates two edits
     ```LANGUAGE FILE   a new file
-    ```console         commands ($ ...) with what they print, run in ROOT with the feeler of the recipes
+    ```console         commands ($ ...) with their output, run in ROOT with the feeler of the recipes
 
-All recipes go into one copy. Only the changed sources are compiled; they are linked in front of the
-libraries in BUILD. So an edit of a header must not change the size or order of anything that other
-sources read, and an example must not change a function that the compiler inlines elsewhere. Rows that a recipe adds to tests/planted/table.txt are run like those that are there.
+All recipes are applied to the same copy. Only the changed sources are compiled; they are linked before
+the libraries in BUILD. So an edit of a header must not change the layout of data that other sources
+read, and an example must not change a function that the compiler inlines elsewhere. Rows that a recipe
+adds to tests/planted/table.txt are run like the existing ones.
 """
 import json
 import os
@@ -31,7 +32,7 @@ PLANTED = "tests/planted/table.txt"
 
 
 class Stale(Exception):
-    """A step of a recipe that does not fit the code."""
+    """A step of a recipe that no longer matches the code."""
 
 
 def blocks_of(text):
@@ -47,7 +48,7 @@ def blocks_of(text):
 
 
 def hunks_of(lines):
-    """The edits of a diff: lines to be found, lines to take their place."""
+    """The edits of a diff: lines to be found, and lines that replace them."""
     old, new = [], []
     for line in [*lines, "..."]:
         if line == "...":
@@ -71,7 +72,7 @@ def edited(text, lines):
 
 
 class Overlay:
-    """The files that recipes change or add, in a folder of their own beside the tree."""
+    """The files that recipes change or add, in a separate folder."""
 
     def __init__(self, root, folder):
         self.root, self.folder, self.added = root, folder, []
@@ -104,7 +105,7 @@ class Overlay:
         file.write_text(text, encoding="utf-8")
 
     def complete_folders_of_tests(self):
-        """Links to the files beside those in `tests` and `docs`, which commands and tests read."""
+        """Links to the unchanged files in `tests` and `docs` that commands and tests read."""
         for name in ("assets", "tests/planted", "docs/manual"):
             self.link(name)
 
@@ -118,7 +119,7 @@ class Overlay:
 
 
 def apply_recipes(text, overlay):
-    """Edits and adds the files of all recipes; the console blocks come back for later."""
+    """Edits and adds the files of all recipes; returns the console blocks."""
     consoles = []
     for number, info, lines in blocks_of(text):
         try:
@@ -143,7 +144,7 @@ def run(command, **options):
 
 
 def compile_commands(build):
-    """The command that compiles each source, and whether it is compiled in a group with others."""
+    """The compile command of each source, and whether it is part of a unity build."""
     found = {}
     for entry in json.loads((build / "compile_commands.json").read_text(encoding="utf-8")):
         file = entry["file"]
@@ -158,8 +159,8 @@ def compile_commands(build):
 
 
 def objects_of(overlay, build):
-    """Compiles the sources that the recipes change or add, those of one library together where the build
-    has groups; new sources as their neighbours are compiled."""
+    """Compiles the sources that the recipes change or add. In a unity build, those of one library are
+    compiled together; new sources are compiled like the others of their folder."""
     commands = compile_commands(build)
     neighbours = {os.path.dirname(source): command for source, command in commands.items()}
     listed = "".join((overlay.folder / name).read_text(encoding="utf-8") for name in overlay.names
@@ -191,7 +192,7 @@ def compiled_object(overlay, build, command, names, number):
 
 
 def link_feeler(overlay, build, objects):
-    """A feeler whose changed sources are those of the recipes: they come before the libraries."""
+    """Links a feeler with the sources of the recipes, which come before the libraries."""
     feeler = overlay.folder / "bin" / "feeler"
     feeler.parent.mkdir()
     command = run(["ninja", "-C", str(build), "-t", "commands", "-s", "app/feeler"]).strip().splitlines()[-1]
@@ -251,7 +252,7 @@ def carry_out(root, build):
 
 
 def self_check():
-    """Edits that fit and edits that do not."""
+    """Self-check with edits that match and edits that do not."""
     text = "one\ntwo\nthree\ntwo\n"
     assert edited(text, [" one", "+one and a half", "...", "-three"]) == "one\none and a half\ntwo\ntwo\n"
     for wrong in (["+x", " two"], [" four"], [" one", " three"]):

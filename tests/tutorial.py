@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Carries out the tutorial of the manual and compares what is printed with what it shows.
+"""Runs the commands of the tutorial in the manual and compares their output with the tutorial.
 
     tutorial.py FEELER ROOT             fails with the first difference
-    tutorial.py FEELER ROOT --update    writes what is printed into the tutorial
+    tutorial.py FEELER ROOT --update    writes the actual output into the tutorial
 
-A block ```console holds commands ($ ...) with their output; a line [...] stands for any lines. A block ```toml
-FILE is written to that file, ```toml append FILE is appended to it. Seconds of computing time do not count.
+A block ```console holds commands ($ ...) with their output; a line [...] matches any lines. A block ```toml
+FILE is written to that file, ```toml append FILE is appended to it. Seconds of computing time are not compared.
 """
 import difflib
 import os
@@ -24,7 +24,7 @@ def without_seconds(line):
 
 
 def matches(shown, printed):
-    """Whether the printed lines are the shown ones, where [...] stands for any lines."""
+    """Whether the printed lines equal the shown ones, where [...] matches any lines."""
     if not shown:
         return not printed
     if shown[0] == LEFT_OUT:
@@ -34,7 +34,7 @@ def matches(shown, printed):
 
 
 def updated(shown, printed):
-    """What is printed, shortened where the shown text is: after a [...] goes on the line that is most alike."""
+    """The output, shortened like the shown text: after a [...] it continues at the most similar line."""
     result, at, after_gap = [], 0, False
     for line in shown:
         if line == LEFT_OUT:
@@ -51,7 +51,7 @@ def updated(shown, printed):
 
 
 class Shell:
-    """A shell that keeps its folder and its last status from command to command."""
+    """A shell that keeps its folder and last exit status between commands."""
 
     def __init__(self, feeler, root, home):
         self.root, self.folder, self.status = root, root, 0
@@ -72,7 +72,7 @@ class Shell:
 
 
 def commands_of(block):
-    """The commands of a console block with the lines shown below each."""
+    """The commands of a console block with the output shown below each."""
     commands = []
     for line in block:
         if line.startswith("$ "):
@@ -90,7 +90,7 @@ def write_file(shell, info, block):
 
 
 def carried_out(text, shell, update):
-    """The tutorial with its output as it is now; stops at the first difference unless it is to be updated."""
+    """The tutorial with its current output; stops at the first difference unless updating."""
     lines, result = text.splitlines(), []
     at = 0
     while at < len(lines):

@@ -22,7 +22,7 @@ struct RuleWatch {
     }
 };
 
-/// Warns of mistakes that a control accepts, as far as program, tool table and work offsets show
+/// Warns of mistakes that a control accepts, if program, tool table and work offsets show
 /// them. Call after a block was executed, with the modes before it.
 ///
 /// Rules: missing-length-offset, length-offset-cancelled, work-offset-unset, home-through-part,

@@ -1,6 +1,6 @@
 #!/bin/bash
-# check_only.sh PROGRAM SOURCES: a program that only checks finds a collision, and links no library
-# of the window and not the database.
+# check_only.sh PROGRAM SOURCES: verifies that a program that only checks finds a collision, and that
+# it links neither the libraries of the window nor the database.
 set -u
 program=$1 sources=$2
 libraries=$(ldd "$program") || { echo "ldd failed"; exit 1; }

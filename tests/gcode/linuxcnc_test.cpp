@@ -110,7 +110,7 @@ TEST(Linuxcnc, ContoursMoveAsideByTheCuttersRadius) {
     // Entry next to the first point, around an outside corner, and back at the exit.
     EXPECT_EQ(traced("F100\nG0 X-10 Y-10\nG41.1 D4 G1 X0 Y0\nY20\nX20\nG40\nG0 X30"),
               "straight_traverse x=-10 y=-10 z=0\n"
-              "straight_feed x=-2 y=0.828427 z=0 feed=100\n" // 2 beside both lines
+              "straight_feed x=-2 y=0.828427 z=0 feed=100\n" // 2 away from both lines
               "straight_feed x=-2 y=20 z=0 feed=100\n"
               "arc_feed x=0 y=22 z=0 plane=XY centre=0,20 turns=-1 feed=100\n"
               "straight_feed x=20 y=22 z=0 feed=100\n"

@@ -16,7 +16,7 @@ STRAIGHT = {"straight_traverse", "straight_feed", "rigid_tap"}
 
 
 def prepare_home(home):
-    """The tool table is in the home folder: a private one separates runs."""
+    """Uses a private home folder, where the tool table is, so that runs do not interfere."""
     os.environ["HOME"] = home
     ctypes.CDLL(None).setenv(b"HOME", home.encode(), 1)
     empty = os.path.join(home, "empty.ngc")

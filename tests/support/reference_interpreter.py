@@ -65,7 +65,7 @@ def read_tools(path):
 
 
 def inch_table(rows):
-    """The same table for rs274, whose machine unit is the inch."""
+    """The tool table for rs274, whose machine unit is the inch."""
     text = ''
     for row in rows:
         for letter, value in row.items():
@@ -128,7 +128,7 @@ class Canon:
 
 
 def module_calls(gcode, path, rows, folder, seconds):
-    """The calls of the module and how it ended: ('accepted'|'refused'|'endless', line, text)."""
+    """Returns the calls of the module and how the run ended: ('accepted'|'refused'|'endless', line, text)."""
     answer = folder + '/answer'
     child = os.fork()
     if child == 0:
@@ -153,7 +153,7 @@ def module_calls(gcode, path, rows, folder, seconds):
 
 
 def rs_calls(path, folder, seconds):
-    """The calls that rs274 prints, how it ended, and the output of the program."""
+    """Returns the calls that rs274 prints, how the run ended, and the output of the program."""
     out = folder + '/out'
     try:
         ran = subprocess.run(['/usr/bin/rs274', '-t', folder + '/tool.tbl', '-v',
@@ -176,8 +176,8 @@ def rs_calls(path, folder, seconds):
 
 
 def line_of_refusal(path, line, text, message):
-    """The module counts a line too many where a line could not be read, and names the call where the
-    line is in a subprogram; rs274 gives the text of the line."""
+    """The faulty line. After a line that could not be read the module counts one too many, and for a line
+    in a subprogram it names the call; rs274 prints the text of the line."""
     with open(path, encoding='latin-1') as program:
         lines = [''] + [each.strip() for each in program]
     sought = re.search(r'seeking o-word: .* from line: (\d+)', message)
@@ -197,7 +197,7 @@ def line_of_refusal(path, line, text, message):
 
 
 def line_of_module_refusal(gcode, path, line, rows, folder, seconds):
-    """The line that the module refused, where rs274 cannot tell: the lines before are not sufficient."""
+    """The line refused by the module, if rs274 does not give it because the lines before it are missing."""
     with open(path, encoding='latin-1') as program:
         lines = program.readlines()
     before = folder + '/before.ngc'
@@ -224,7 +224,7 @@ class Plain:
         self.is_per_turn = False
 
     def say_feed(self):
-        """In mm/min, with G95 as well."""
+        """The feed rate in mm/min, also with G95."""
         turns = self.state.get('speed', (0.0,))[0] if self.is_per_turn else 1.0
         self.state['feed'] = (self.feed * turns,)
 
