@@ -21,8 +21,7 @@ struct SeenArc {
     double start[2], end[2];
 };
 
-/// By how much the diameter from an R word may fall short of the distance to the end (LinuxCNC:
-/// RADIUS_TOLERANCE).
+/// By how much R may be less than half the distance to the end, mm (LinuxCNC: RADIUS_TOLERANCE).
 constexpr double reach_tolerance = 0.00127;
 
 core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const double* centre) {

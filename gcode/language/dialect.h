@@ -63,7 +63,7 @@ struct Dialect {
     bool axis_words_serve_one_code;   // G0 and G28 in one block are an error
     bool unused_words_are_errors;     // a K word that no code uses
     bool machine_move_is_rapid;       // G53 with any active motion code, also G1
-    bool machine_move_needs_g90;      // G53 with G91 is handled differently from G90
+    bool machine_move_needs_g90;      // G53 with G91 is an error
     bool machine_move_needs_motion;   // G53 in a block without a move is an error
     bool length_needs_g43;            // otherwise a tool change activates the tool's length offset
     bool lone_h_is_length_offset;     // H without G43 changes an active length offset
