@@ -61,9 +61,9 @@ Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
         std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
-        // There is a gap between the offset paths of an arc passed on the outside and of whatever
-        // is tangent to it. LinuxCNC tests the leaving arc, and the arriving arc only if a line
-        // follows.
+        // The contour reverses. Between an arc that the tool passes on the outside and whatever is
+        // tangent to it there is a gap, which is an inside corner. LinuxCNC tests the leaving arc,
+        // and the arriving arc only if a line follows.
         const std::optional<FlatArc>& arc = move.arc ? move.arc : compensation.waiting.front().arc;
         const bool between = arc && !is_inside(compensation.side, *arc);
         return between ? Bend::inside : Bend::outside;

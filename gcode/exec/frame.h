@@ -75,7 +75,8 @@ public:
     /// Cost: reads all lines of the program on the first call.
     const FlowIndex& index(uint32_t source);
 
-    /// The first file of the search path with one of these names; empty when there is none.
+    /// The program in the first file of the search path with one of these names; empty when there
+    /// is none.
     ///
     /// Errors: io and syntax as read_program; names that lead out of the search path.
     core::Result<std::optional<uint32_t>> find(const std::vector<std::string>& file_names);

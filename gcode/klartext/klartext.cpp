@@ -16,7 +16,7 @@ namespace {
 using core::ErrorCode;
 using enum CommandKind;
 
-/// Whether a code of a group takes effect at the start of the block.
+/// Whether the block has a code of a group that takes effect at the start of the block.
 bool begins_block(const Execution& execution, ModalGroup group, int last_tenths) {
     const CodeWord* entry = execution.statement.of(group);
     return entry && entry->code->tenths != last_tenths;
