@@ -14,7 +14,7 @@ core::Result<std::vector<Record>> posts_round(const core::ExactBody& body, doubl
 
 /// Upright posts that together contain a body of revolution rotated about its origin. A point of it
 /// over a cell is within half the cell diagonal of the line through the cell centre, so the column
-/// spans that line's segment inside the body grown by as much.
+/// spans that line's segment inside the body grown by that distance.
 core::Result<std::vector<Record>> posts_round(const core::RevolvedProfile& profile, double spacing,
                                               const core::Mat3& orientation);
 

@@ -48,7 +48,7 @@ Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t
     const DecodedSegment decoded = segment_in(words);
     if (decoded.fault != Stop::none) return decoded.fault;
     if (fifo.entries.full()) return Stop::fifo_overrun;
-    // After the last number comes 0, which is none: a permit must never decrease.
+    // The number after the last one is 0, which is invalid: a permit must never decrease.
     if (decoded.segment.sequence != fifo.next_sequence || fifo.next_sequence == 0)
         return Stop::sequence;
     fifo.entries.push({decoded.segment, cycle, lines});

@@ -45,8 +45,8 @@ struct Retirement {
     Stop stopped = Stop::none; // why the device must stop
 };
 
-/// Takes the answer to the first entry. A positive one advances the permit if it is the last of its
-/// segment; any other stops the device.
+/// Processes the answer to the first entry. A positive answer advances the permit if the entry is
+/// the last of its segment; any other stops the device.
 Retirement retire(PermitUnit& unit, const Answer& answer, uint64_t cycle);
 
 /// Stops with a reason unless already stopped. Waiting entries are dropped.
@@ -57,7 +57,7 @@ struct SegmentFifo {
     struct Entry {
         Segment segment;
         uint64_t pushed = 0; // cycle
-        uint64_t lines = 0;  // stored in memory by then
+        uint64_t lines = 0;  // number of lines stored in memory by then
         bool operator==(const Entry&) const = default;
     };
     Ring<Entry> entries;
@@ -90,7 +90,7 @@ struct HostRegisters {
     bool enabled = false;
     uint32_t irq_pending = 0, irq_enable = 0;
     uint32_t watchdog = 10'000'000; // cycles; 0: off
-    uint64_t heartbeat = 0;         // cycle of the last one
+    uint64_t heartbeat = 0;         // cycle of the last heartbeat
     uint32_t high_word = 0;         // of the pair whose low word was read last
     SegmentWords segment{};
 

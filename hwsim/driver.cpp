@@ -27,7 +27,7 @@ struct WatchedDevice {
     void access() const { cycles(device.bus_cycles); }
 };
 
-/// One entry of the FIFO, from its models to its permit.
+/// Processes one entry of the FIFO, from its models to its permit.
 void answer_first(FunctionalDevice& device) {
     CoprocessorState& s = device.state;
     const SegmentFifo::Entry entry = s.fifo.entries.front();
@@ -149,7 +149,7 @@ void reclaim(Driver& driver) {
     }
 }
 
-/// Puts an entry into the FIFO when there is room. A stopped device ignores it.
+/// Puts an entry into the FIFO once it has room. A stopped device ignores the entry.
 void push_entry(Driver& driver, const Segment& entry) {
     uint32_t status = read(driver, Register::status);
     while ((status & status_fifo_full) != 0 && (status & status_stopped) == 0) {
@@ -213,7 +213,7 @@ core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
     };
     if (!holds(pair.tool, Side::tool) || !holds(pair.work, Side::work))
         return core::fail(core::ErrorCode::invalid_value,
-                          "a pair needs one model of the tool side and one of the work side");
+                          "a pair needs one model on the tool side and one on the work side");
     if (!(path.sample_step > 0.0))
         return core::fail(core::ErrorCode::invalid_value,
                           "the distance between samples must be above 0");
@@ -247,8 +247,8 @@ core::Result<std::vector<Segment>> entries_of(const Driver& driver, const PathSe
 double FoundPair::distance() const { return std::sqrt(static_cast<double>(squared)) * lsb; }
 
 double least_clearance(const FoundPair& found) {
-    // At some sample they are within hypot(clearance, half a step), and their records less than the
-    // reserve farther apart than that.
+    // At some sample, the bodies are within hypot(clearance, half a step) of each other, and their
+    // records are farther apart than that by less than the reserve.
     const double at_sample = found.distance() - rounding_reserve * lsb;
     const double half_step = 0.5 * found.sample_step;
     if (at_sample <= half_step) return 0.0;

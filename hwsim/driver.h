@@ -13,7 +13,7 @@ namespace hwsim {
 struct DevicePort {
     std::function<uint32_t(Register)> read;
     std::function<void(uint32_t address, uint32_t value)> write; // address in bytes
-    std::function<bool(uint32_t line, const Line&)> store;       // by DMA; false: no room yet
+    std::function<bool(uint32_t line, const Line&)> store;       // by DMA; false: the queue is full
     std::function<void()> wait;                                  // called to let a little time pass
 };
 
@@ -23,7 +23,7 @@ enum class SlotNumber : uint8_t {};
 /// The host side of a device: the contents of its memory and slots, and the next sequence number.
 /// Accesses the device through its port only.
 struct Driver {
-    /// The contents of a slot, now or when the FIFO gets there.
+    /// The contents of a slot after all queued entries are processed.
     struct Slot {
         Side side = Side::work;
         uint32_t header = 0, epoch = 0;
@@ -31,7 +31,7 @@ struct Driver {
         std::optional<StockModel> stock; // of a model that is cut
         bool is_free = false;
     };
-    /// Lines that are in use until so many entries are retired.
+    /// Lines that are in use until `entries` entries are retired.
     struct Released {
         uint32_t entries = 0;
         std::vector<LineRun> runs;
@@ -50,14 +50,14 @@ struct Driver {
 /// A pair of bodies with its minimum distance over a segment.
 struct PairToKeep {
     SlotNumber tool{}, work{};
-    double distance = 0.0; // mm: the allowance plus what the host adds to it
+    double distance = 0.0; // mm: the allowance plus the error bounds that the host adds
 };
 
 /// A straight segment of the path. Frame: the work's; positions of the tool origin.
 struct PathSegment {
     core::Vec3 from = core::Vec3(0.0), to = core::Vec3(0.0);
     std::vector<PairToKeep> pairs;
-    double sample_step = 0.1; // mm: greatest distance of two samples
+    double sample_step = 0.1; // mm: greatest distance between two samples
     uint32_t budget = 0;      // cycles until the permit is needed; 0: unlimited
 };
 

@@ -31,7 +31,7 @@ uint32_t checked_on(uint32_t check, uint32_t word) {
            ^ check_table[1][(x >> 16) & 0xFFU] ^ check_table[0][x >> 24];
 }
 
-/// Fields of a line, one after the other from its lowest bit on.
+/// Writes the fields of a line one after the other, from its lowest bit.
 class FieldWriter {
 public:
     explicit FieldWriter(Line& line) : line_(line) {}

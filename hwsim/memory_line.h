@@ -90,7 +90,7 @@ inline Volume volume_of(const Record& r, Side side) {
 }
 
 /// A reference of a node: to another node, to a leaf of up to 32 records in consecutive lines, or
-/// to nothing.
+/// empty.
 struct Reference {
     static constexpr uint32_t line_bits = 26;
     static constexpr uint32_t leaf_flag = 0x8000'0000U;
@@ -122,7 +122,7 @@ struct Node {
 constexpr uint32_t records_per_line = 4;
 using Records = std::array<Record, records_per_line>;
 
-/// The number of lines of a leaf with so many records.
+/// The number of lines of a leaf with `count` records.
 constexpr uint32_t leaf_lines(uint32_t count) {
     return (count + records_per_line - 1) / records_per_line;
 }

@@ -10,7 +10,6 @@ namespace hwsim {
 
 struct DeviceConfig;
 
-/// A FIFO of fixed depth, as in the circuit: a memory, a place to read and a level.
 template <typename T>
 /// A FIFO of fixed depth, as in the circuit: a memory, a read position and a level.
 class Ring {
@@ -86,7 +85,7 @@ struct MemoryUnit {
     std::vector<Line> lines;
     Ring<Pending> asked, under_way;
     Ring<Write> writes;
-    uint64_t free_at = 0;        // the port
+    uint64_t free_at = 0;        // cycle in which the port is free
     bool write_was_last = false; // so a read has priority
     uint64_t watched_from = 0;   // cycle; earlier waiting does not count
     bool stalled = false;        // no responses: injected fault

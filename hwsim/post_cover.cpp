@@ -11,7 +11,7 @@ namespace {
 using core::ScanLines;
 
 constexpr int side = ScanLines::tile_side;
-constexpr int32_t most_squares = 4; // in a row, for a rectangle
+constexpr int32_t most_squares = 4; // maximum in a row that covers a rectangle
 
 struct FixedInterval {
     int32_t low, high;

@@ -6,9 +6,9 @@
 
 namespace hwsim {
 
-/// The registers, by byte address on a 32-bit bus (AXI4-Lite). Unless it says otherwise a register
-/// can only be read; writing it, or another address, does nothing. Pairs of words: low, then high;
-/// reading the low word keeps the high one for the next read.
+/// The registers, by byte address on a 32-bit bus (AXI4-Lite). Registers are read-only unless
+/// stated otherwise; writing to them, or to another address, has no effect. Pairs of words: low,
+/// then high; reading the low word stores the high one for the next read.
 enum class Register : uint32_t {
     identification = 0x000, // `identification_word`
     version = 0x004,
@@ -20,12 +20,12 @@ enum class Register : uint32_t {
     status = 0x01C,      // `StatusBit`
     irq_pending = 0x020, // `IrqBit`; write 1 to clear
     irq_enable = 0x024,  // read and write
-    heartbeat = 0x028,   // write anything: the host is alive
+    heartbeat = 0x028,   // write any value: the host is alive
     watchdog = 0x02C,    // read and write: cycles without a heartbeat that stop the device
     fifo_used = 0x030,
     permit_seq = 0x034, // every segment up to this one may be entered
-    retired = 0x038,    // entries finished since reset: models they needed are needed no more
-    next_seq = 0x03C,   // the sequence number expected next; 0: none, for all are used up
+    retired = 0x038,    // entries finished since reset; they no longer need their models
+    next_seq = 0x03C,   // the next expected sequence number; 0: all numbers are used up
 
     stop = 0x040,      // `Stop`: why there are no permits
     stop_seq = 0x044,  // the segment that stopped the device
@@ -35,7 +35,7 @@ enum class Register : uint32_t {
     found_tool = 0x058, // names of the records of the pair
     found_work = 0x05C,
     found_sample = 0x060,
-    found_seq = 0x064,   // the segment it belongs to
+    found_seq = 0x064,   // the segment to which it belongs
     found_valid = 0x068, // whether a pair was below the limit
 
     segment = 0x080,      // write: `SegmentWord`, 0x080 .. 0x0BC
@@ -48,9 +48,9 @@ constexpr uint32_t identification_word = 0x464C'5231; // "FLR1"
 constexpr uint32_t version_word = 1;
 
 enum ControlBit : uint32_t {
-    control_enable = 1U << 0, // without it segments wait, and nothing is permitted
-    control_clear = 1U << 1,  // forgets the reason of a stop; the FIFO is empty from then on
-    control_reset = 1U << 2,  // as after power-up, the memory but for its contents
+    control_enable = 1U << 0, // if 0, segments wait and nothing is permitted
+    control_clear = 1U << 1,  // clears a stop; the FIFO is then empty
+    control_reset = 1U << 2,  // as after power-up, except for the contents of the memory
 };
 
 enum StatusBit : uint32_t {
@@ -85,15 +85,15 @@ using SegmentWords = std::array<uint32_t, segment_words>;
 
 SegmentWords words_of(const Segment& segment);
 
-/// The segment that the words say, and what is wrong with it: none, or out_of_range. Only an entry
-/// that asks for the permit can be the last of its segment.
+/// The segment encoded in the words, and its fault: none or out_of_range. Only an entry that
+/// requests a permit can be the last of its segment.
 struct DecodedSegment {
     Segment segment;
     Stop fault = Stop::none;
 };
 DecodedSegment segment_in(const SegmentWords& words);
 
-/// What the device counts, from reset on.
+/// Counters of the device since reset.
 enum class Counter : uint32_t {
     cycles,
     busy, // element-cycles in which at least one thread had a search
@@ -109,11 +109,11 @@ enum class Counter : uint32_t {
     lines_read,    // from memory
     lines_written, // by DMA
     wait_memory,   // thread-cycles: for a line
-    wait_port,     // for a cache or a unit that another thread had
-    wait_retire,   // done, but an earlier segment is not
+    wait_port,     // for a cache or a unit used by another thread
+    wait_retire,   // done, but waiting for an earlier segment
     missed,        // permits after their budget
     deepest,       // stack of any search
-    least_slack,   // cycles left of the budget, signed; the greatest number if none had one
+    least_slack,   // cycles left of the budget, signed; the greatest number if there was no budget
     longest,       // cycles of a query, push to permit
 };
 constexpr uint32_t counter_count = 20;
@@ -124,12 +124,12 @@ constexpr uint32_t address_of(Counter c) {
     return address_of(Register::counter) + 8 * static_cast<uint32_t>(c);
 }
 
-/// The sizes and times of a device that is built, as it were.
+/// The sizes and times of an emulated device.
 struct DeviceConfig {
     uint32_t clock_mhz = 100;
     uint32_t elements = 8;           // processing elements, at most 64
     uint32_t threads = 4;            // of each, at most 16
-    uint32_t stack_depth = 64;       // waiting pairs of a thread, at most `most_stack`
+    uint32_t stack_depth = 64;       // waiting pairs per thread, at most `most_stack`
     uint32_t node_cache_lines = 256; // of each element; powers of two up to `most_cache_lines`
     uint32_t record_cache_lines = 256;
     uint32_t fifo_depth = 32;          // segments
@@ -148,7 +148,7 @@ struct DeviceConfig {
     bool operator==(const DeviceConfig&) const = default;
 };
 
-/// Errors: a size of zero or beyond what can be built, a cache that is no power of two.
+/// Errors: a size of zero or above its maximum, a cache that is not a power of two.
 core::Result<DeviceConfig> checked(const DeviceConfig& config);
 
 } // namespace hwsim

@@ -19,7 +19,7 @@ struct SearchPair {
     bool operator==(const SearchPair&) const = default;
 };
 
-/// What of a pair is divided.
+/// The part of a pair that is divided.
 enum class Division : uint8_t { tool, work, way, none };
 
 /// The first pair of a search: both headers over the whole path.

@@ -20,7 +20,7 @@ BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment
 }
 
 void tick(BoxUnit& unit, const BoxUnit::Output& in) {
-    // An empty stage keeps its old contents but for `valid`.
+    // An empty stage keeps its old contents except `valid`.
     if (in.valid)
         unit.stage[unit.next] = in;
     else
@@ -29,7 +29,7 @@ void tick(BoxUnit& unit, const BoxUnit::Output& in) {
 }
 
 void tick(PairUnit& unit, const PairUnit::Output& in) {
-    // An empty stage keeps its old contents but for `valid`.
+    // An empty stage keeps its old contents except `valid`.
     if (in.valid)
         unit.stage[unit.next] = in;
     else
@@ -220,7 +220,7 @@ constexpr uint32_t count_of(uint32_t set) {
     return (set + (set >> 8)) & 0x1FU;
 }
 
-/// Puts a thread into the sets that its phase belongs to.
+/// Updates the sets of threads by phase for this thread.
 void sort_in(SearchElement& e, uint32_t number) {
     const Phase phase = e.threads[number].phase;
     const bool is_waiting = phase == Phase::wait, is_done = phase == Phase::done;
@@ -348,7 +348,7 @@ void tick(SearchElement& e, const DeviceConfig& config, const ElementInput& in) 
         if (in.response) take_response(e, in);
         take_results(e, config);
         Ports ports;
-        // From the first one on, then those before it.
+        // The threads from `first` on, then those before it.
         const uint32_t before = bit(e.first) - 1;
         for (uint32_t set : {acting & ~before, acting & before})
             for (; set != 0; set &= set - 1)

@@ -8,7 +8,7 @@
 
 namespace hwsim {
 
-/// A direct mapped cache of lines that were checked.
+/// A direct-mapped cache of lines whose check words were verified.
 struct LineCache {
     struct Entry {
         bool valid = false;
@@ -56,7 +56,7 @@ struct BoxUnit {
         bool operator==(const Output&) const = default;
     };
     /// The halves stay with their thread; only results travel. Stages rotate instead of their
-    /// contents: `next` is where a question enters and the oldest leaves.
+    /// contents: `next` is where an input enters and the oldest result leaves.
     std::array<Output, latency> stage{};
     uint32_t next = 0;
 
@@ -84,8 +84,8 @@ struct PairUnit {
         uint64_t squared = 0;
         bool operator==(const Output&) const = default;
     };
-    /// Stages move round instead of their contents: `next` is where the next pair enters, and
-    /// where the oldest leaves.
+    /// Stages rotate instead of their contents: `next` is where the next pair enters and the oldest
+    /// leaves.
     std::array<Output, latency> stage{};
     uint32_t next = 0;
 
@@ -99,7 +99,7 @@ void tick(PairUnit& unit, const PairUnit::Output& in);
 /// What a thread does next, or waits for.
 enum class Phase : uint8_t {
     idle,
-    divide,    // select what of the pair is divided
+    divide,    // select the part of the pair to divide
     open,      // read the node: needs the node cache
     test,      // needs the box unit
     tested,    // waits for the box unit
@@ -116,7 +116,7 @@ enum class Phase : uint8_t {
 /// One search of a processing element. All of it is registers, except the stack, which is a memory.
 struct SearchThread {
     Phase phase = Phase::idle;
-    Phase after_line = Phase::idle; // open, take_tool or take_work: what a line is read for
+    Phase after_line = Phase::idle; // open, take_tool or take_work: the purpose of reading a line
     uint8_t stack_size = 0;
     uint8_t tool_line = 0, work_line = 0; // of the leaves, from 0
     uint8_t tool_place = 0, work_place = 0;

@@ -10,9 +10,9 @@ namespace hwsim {
 /// The kinds of entries of the segment FIFO.
 enum class SegmentKind : uint8_t {
     permit =
-        0, // is the tool at least this far from the work over the whole path? Counts for the permit
-    measure = 1, // how close does it come? Does not count for the permit
-    model = 2,   // from now on slot `work_slot` holds the model at `model_header`
+        0, // is the tool at least this far from the work over the whole path? Needed for the permit
+    measure = 1, // how close does it come? Not needed for the permit
+    model = 2,   // loads the model at `model_header` into slot `work_slot`
 };
 
 /// An entry of the segment FIFO. The tool model moves straight from `start` to `end` and is

@@ -95,9 +95,10 @@ core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records,
         return core::fail(core::ErrorCode::invalid_value,
                           "a model needs at least one record, and leaves of 1 to 32 records");
     if (!std::all_of(records.begin(), records.end(), fits))
-        return core::fail(core::ErrorCode::invalid_value,
-                          "a model extends beyond the coprocessor's range of 2048 mm, or a part of "
-                          "it is larger than 256 mm");
+        return core::fail(
+            core::ErrorCode::invalid_value,
+            "a model extends beyond the coprocessor's range of 2048 mm, or one of its "
+            "records is larger than 256 mm");
     return subtree(writer, records, leaf_size);
 }
 

@@ -63,12 +63,13 @@ struct StockModel {
     std::vector<double> x, y;       // borders of the cells
     std::vector<Part> tiles;        // by tile
     std::vector<Part> above;        // of the upper tree, in the order of its division
-    std::optional<uint32_t> header; // none before the first update
+    std::optional<uint32_t> header; // empty before the first update
     uint32_t epoch = 0;
     uint32_t leaf_size = 4;
 };
 
-/// The lines that an update writes, and those that are free once everything before it is retired.
+/// The lines that an update writes, and those that become free once all entries before it are
+/// retired.
 struct StockUpdate {
     std::vector<AddressedLine> lines;
     std::vector<LineRun> released;
@@ -85,13 +86,13 @@ StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
 /// Whether these are the columns of the last update.
 bool is_current(const StockModel& model, const core::ScanLines& columns);
 
-/// Updates the model to the current columns: makes the lines of all tiles that the columns do not
+/// Updates the model to the current columns: creates the lines of all tiles that the columns do not
 /// share with those of the last update, of the tree above them, and of a new header. Lines that the
 /// device may be reading are not changed.
 ///
 /// Errors:  out of the device's range or memory; the model and the space are then unchanged. The
-///          columns must be of the same grid.
-/// Cost:    these tiles; a pointer comparison for all others.
+///          columns must have the same grid.
+/// Cost:    proportional to these tiles; a pointer comparison for all others.
 core::Result<StockUpdate> update(StockModel& model, LineSpace& space,
                                  const core::ScanLines& columns);
 

@@ -37,7 +37,7 @@ public:
         const double z_in = std::clamp(z, e_.z0, e_.z1);
         const double r_in = radius_of_core(z_in);
         double apart = std::hypot(std::max(r - r_in, 0.0), z - z_in);
-        // The nearest point may lie on the slope instead of straight beside or below.
+        // The nearest point may be on the slope instead of straight sideways or below.
         const double along_r = e_.r1 - e_.r0, along_z = e_.z1 - e_.z0;
         const double square = along_r * along_r + along_z * along_z;
         if (square > 0.0) {

@@ -27,7 +27,7 @@ private:
     struct Signal {
         std::string id;
         uint32_t bits = 1;
-        uint64_t value = ~uint64_t{0}; // that was written last
+        uint64_t value = ~uint64_t{0}; // the last value written
     };
     void declare(const std::string& name, uint32_t bits);
     void write(size_t signal, uint64_t value, bool& has_time, uint64_t cycle);
