@@ -39,7 +39,8 @@ struct Rings {
         }
         return first;
     }
-    /// `lower` and `upper`: along the outline, from the tip up.
+    /// Adds the triangles between two rings; `lower` and `upper` are in order along the outline,
+    /// from the tip up.
     void join(uint32_t lower, bool lower_is_point, uint32_t upper, bool upper_is_point) {
         for (int i = 0; i < chords; ++i) {
             const auto a = static_cast<uint32_t>(i), b = static_cast<uint32_t>((i + 1) % chords);
@@ -77,7 +78,7 @@ core::Mesh directions(int divisions) {
     return revolved(outline, 0.003);
 }
 
-/// The surface of a shape from its farthest points in directions all around.
+/// The surface of a shape, from its support points in directions all around.
 TriangleMesh supported(const core::ConvexShape& shape, double margin) {
     const core::Mesh ball = directions(24);
     TriangleMesh made;

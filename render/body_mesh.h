@@ -19,7 +19,7 @@ constexpr double round_sag = 0.02;
 /// The surface of a body of revolution: the union of its pieces, without inner faces.
 TriangleMesh mesh_of(const core::RevolvedProfile& profile, double sag = round_sag);
 
-/// The surface of a convex shape at its first place.
+/// The surface of a convex shape at its first position.
 TriangleMesh mesh_of(const core::ConvexShape& shape, double sag = round_sag);
 
 TriangleMesh mesh_of(const core::ExactBody& body, double sag = round_sag);

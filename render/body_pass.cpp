@@ -82,7 +82,7 @@ void GpuMeshes::end_picture() {
 
 namespace {
 
-/// The way up in the view's frame.
+/// The upward direction in the view's frame.
 glm::vec3 sky_of(const ViewFrame& frame) {
     return glm::vec3(frame.view_from_scene * glm::dvec4(0.0, 0.0, 1.0, 0.0));
 }
@@ -100,8 +100,8 @@ double shine_of(const Body* body) {
     }
 }
 
-/// Counts for each pixel how often the ray of sight enters the body beyond the plane minus how
-/// often it leaves it: the remainder marks where the plane is inside the body.
+/// Counts, for each pixel, how often the line of sight enters the body beyond the plane minus how
+/// often it leaves the body. The difference marks where the plane is inside the body.
 void begin_counting() {
     glEnable(GL_STENCIL_TEST);
     glClear(GL_STENCIL_BUFFER_BIT);

@@ -67,7 +67,8 @@ private:
     void draw_edges(const ViewFrame& frame, const Item& item);
     void draw_cap(const ViewFrame& frame, const Item& item);
     template <typename Act>
-    /// `whole`: every triangle of the stock, not the simplified mesh.
+    /// Calls `act` for the meshes of an item. `whole`: every triangle of the stock, not the
+    /// simplified mesh.
     void for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole = false);
 
     ShaderProgram faces_, edges_, caps_;
@@ -81,8 +82,8 @@ class HollowPass {
 public:
     static core::Result<HollowPass> make();
 
-    /// A texture of half the size of the picture, 1 where nothing darkens; 0 if the card has no
-    /// memory for it.
+    /// A texture of half the size of the picture with the brightness, 1 where nothing is occluded;
+    /// 0 if the card has no memory for it.
     unsigned draw(const ViewFrame& frame, BodyPass& bodies);
 
 private:

@@ -91,7 +91,7 @@ Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& plac
     const Vec3 across = at.x * a.right + at.y * a.up;
     if (camera.projection == Projection::perspective)
         return {eye(camera), glm::normalize(half_angle_tangent(camera) * across - a.backward)};
-    // From far behind the eye: without perspective nothing is too close.
+    // Start far behind the eye: without perspective nothing is too close.
     const Vec3 from = eye(camera) + half_height(camera) * across;
     return {from + most_distance * 0.1 * a.backward, -a.backward};
 }

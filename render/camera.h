@@ -79,7 +79,7 @@ Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& pla
 /// Rotates the eye about the target by a drag in pixels; the height of the picture is half a turn.
 Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag);
 
-/// The same about another point, which stays in place in the picture.
+/// Rotates the eye about another point, which keeps its position in the picture.
 Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag, const Vec3& pivot);
 
 /// Moves so that a point at the depth of `level` follows a drag from `from` to `to`.

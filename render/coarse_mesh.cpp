@@ -13,22 +13,21 @@
 
 namespace render {
 
-/// Triangles in one list of corners, each with the tint of its colour.
+/// A mesh with a tint for each triangle.
 struct TintedMesh {
     core::Mesh mesh;
     std::vector<uint8_t> tints; // of triangles
 };
 
-/// The mesh for display: with normals, and twin corners between tints.
+/// The mesh for display: with normals, and with duplicate corners where tints meet.
 TriangleMesh shaded(const TintedMesh& tinted);
 
-/// Roughly the surface of several meshes with about `triangles` triangles at most, or fewer if that
-/// loses nothing.
+/// The approximate surface of several meshes with at most about `triangles` triangles, or fewer if
+/// that loses nothing.
 ///
-/// Shape: all that lies in a cell becomes one corner, where the planes of the triangles there meet
-///        best: faces stay flat and edges sharp. Cells are large where the surface is flat. Parts
-///        thinner than the smallest cell may vanish.
-/// Cost:  linear in the triangles.
+/// Shape: all corners in a cell become one, at the point that fits the planes of their triangles
+/// best, so faces stay flat and edges sharp. Cells are large where the surface is flat. Parts
+/// thinner than the smallest cell may vanish. Cost:  linear in the triangles.
 TintedMesh clustered(std::span<const TriangleMesh* const> parts, size_t triangles);
 
 TriangleMesh coarse(std::span<const TriangleMesh* const> parts, size_t triangles) {
@@ -37,13 +36,13 @@ TriangleMesh coarse(std::span<const TriangleMesh* const> parts, size_t triangles
 
 namespace {
 
-/// Assigns tints to the corners of a mesh; corners with two tints get a twin.
+/// Assigns tints to the corners of a mesh; corners with two tints are duplicated.
 class TintPainter {
 public:
     explicit TintPainter(TriangleMesh& mesh)
         : mesh_(mesh), twins_(mesh.vertices.size(), 0), is_painted_(mesh.vertices.size(), false) {}
 
-    /// The corner that has this tint.
+    /// The corner, or its duplicate, that has this tint.
     uint32_t painted(uint32_t corner, uint8_t tint) {
         if (!is_painted_[corner]) mesh_.vertices[corner].tint = tint;
         is_painted_[corner] = true;
@@ -82,7 +81,7 @@ struct PlaneSum {
     core::Vec3 toward = core::Vec3(0.0);
     double constant = 0.0;
 
-    /// A plane through a place; `normal` has length 1.
+    /// Adds a plane through a point; `normal` has length 1.
     void add(const core::Vec3& normal, const core::Vec3& place, double weight) {
         const double height = glm::dot(normal, place);
         square += weight * glm::outerProduct(normal, normal);
@@ -98,17 +97,17 @@ struct PlaneSum {
     double at(const core::Vec3& p) const {
         return glm::dot(p, square * p) - 2.0 * glm::dot(toward, p) + constant;
     }
-    /// Where it is least; along directions that the planes leave open, near `guess`.
+    /// The point of the minimum; in directions that the planes do not determine, near `guess`.
     core::Vec3 least(const core::Vec3& guess) const {
         const double weight = 1e-5 * (square[0][0] + square[1][1] + square[2][2]) + 1e-300;
         return glm::inverse(square + weight * core::Mat3(1.0)) * (toward + weight * guess);
     }
 };
 
-/// Whole numbers of a cell of a grid, 0 or more.
+/// The indices of a cell of a grid, 0 or more.
 using CellKey = std::array<uint32_t, 3>;
 
-/// A cell with corners of a mesh in it, and the planes of the triangles at these.
+/// A cell with the corners of a mesh in it, and the planes of their triangles.
 struct ClusterCell {
     CellKey key{};
     PlaneSum planes;
@@ -123,24 +122,23 @@ struct ClusterCell {
 /// The final cells of the corners.
 struct Clusters {
     std::vector<core::Vec3> places;
-    std::vector<uint32_t> of_leaf; // the place of each cell that was given
+    std::vector<uint32_t> of_leaf; // number of the position of each given cell
 };
 
 /// Merges cells by eight into larger ones, repeatedly, as long as one position fits all of their
-/// planes. `tolerance`: the most that PlaneSum::at may give there; `width`: of the cells
-/// given.
+/// planes. `tolerance`: the maximum of PlaneSum::at there; `width`: that of the given cells.
 ///
-/// Cost:   linear, but for sorting.
-/// Source: Schaefer and Warren: Adaptive vertex clustering using octrees, 2003.
+/// Cost:   linear, except for sorting. Source: Schaefer and Warren: Adaptive vertex clustering
+/// using octrees, 2003.
 Clusters joined(const std::vector<ClusterCell>& leaves, double width, double tolerance);
 
 namespace {
 
-/// A cell of the tree on its way up.
+/// A cell of the tree during merging.
 struct ClusterNode {
     ClusterCell cell;
     std::vector<uint32_t> leaves;
-    bool is_one = true; // one position represents all of it; else its contents are final
+    bool is_one = true; // one position represents all of it; if not, its contents are final
 };
 
 uint64_t order_of(const CellKey& key) {
@@ -221,8 +219,8 @@ namespace {
 
 using core::Vec3;
 
-constexpr double leaves_to_triangles = 3.0; // as many small cells as that for each triangle wanted
-constexpr double first_tolerance = 0.01;    // mm, that a surface may move before anything must go
+constexpr double leaves_to_triangles = 3.0; // number of small cells for each desired triangle
+constexpr double first_tolerance = 0.01;    // mm; deviation that is always permitted
 
 double area_of(std::span<const TriangleMesh* const> parts) {
     double area = 0.0;
@@ -235,14 +233,15 @@ double area_of(std::span<const TriangleMesh* const> parts) {
     return area;
 }
 
-/// A triangle by the cells of its corners.
+/// A triangle, given by the cells of its corners.
 struct LeafTriangle {
     std::array<uint32_t, 3> leaves;
-    Vec3 across; // of the triangle that was there
+    Vec3 across; // cross product of the sides of the original triangle
     uint8_t tint = 0;
 };
 
-/// The smallest cells in which the meshes have corners. Frame: moved, so that all is above 0.
+/// The smallest cells in which the meshes have corners. Frame: shifted, so that all coordinates are
+/// positive.
 class LeafGrid {
 public:
     LeafGrid(const Vec3& origin, double width) : origin_(origin), width_(width) {}
@@ -317,7 +316,7 @@ TintedMesh clustered(std::span<const TriangleMesh* const> parts, size_t triangle
     const double area = area_of(parts);
     if (box.empty() || area <= 0.0) return {};
     const Vec3 size = box.max - box.min;
-    // Numbers of cells stay below 2 to the 21st.
+    // Cell indices stay below 2^21.
     const double width =
         std::max(std::sqrt(2.0 * area / (leaves_to_triangles * static_cast<double>(triangles))),
                  1e-6 * std::max({size.x, size.y, size.z}));

@@ -7,7 +7,6 @@
 
 namespace render {
 
-/// An OpenGL object that is given back at its end. `Kind` says how it is made and deleted.
 template <typename Kind>
 /// An OpenGL object that is deleted at the end of its life. `Kind` creates and deletes it.
 class GlObject {

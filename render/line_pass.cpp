@@ -60,7 +60,8 @@ void GpuLines::draw(size_t first, size_t last) const {
 
 namespace {
 
-/// The most points that one piece may replace: bounds the search, which examines all of them again.
+/// Maximum number of points that one piece may replace. It bounds the search, which examines all of
+/// them again.
 constexpr size_t most = 48;
 
 bool go_together(const PathPoint& a, const PathPoint& b) {
@@ -149,7 +150,7 @@ bool is_urgent(const PathPoint& p) {
     return p.state == ClearanceState::near || p.state == ClearanceState::violation;
 }
 
-/// The urgent pieces alone.
+/// Only the pieces with near misses or violations.
 std::vector<PathPoint> urgent_pieces(const ToolPath& path) {
     std::vector<PathPoint> pieces;
     bool goes_on = false;

@@ -42,7 +42,7 @@ struct PathRange {
     bool operator==(const PathRange&) const = default;
 };
 
-/// The ranges of a path that may be visible in a picture, in order, adjacent ones merged.
+/// The ranges of a path that may be visible in a picture, in order; adjacent ranges are merged.
 std::vector<PathRange> visible_ranges(const ToolPath& path, const Mat4& clip_from_scene);
 
 /// The size of a pixel where the path is nearest to the eye, mm.

@@ -23,7 +23,7 @@ bool meets(const Aabb& box, const Ray& ray, double limit) {
     return near <= far * (1.0 + 1e-12) + 1e-9;
 }
 
-/// How far along the ray a triangle is met from its front (Moeller, Trumbore 1997).
+/// Distance along the ray at which it hits the front of a triangle (Moeller, Trumbore 1997).
 double distance_along(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a, ac = c - a;
     const Vec3 p = glm::cross(ray.direction, ac);
@@ -167,7 +167,8 @@ void PathSearch::try_piece(size_t end) {
     const double share =
         size > 0.0 ? std::clamp(glm::dot(cursor_ - from->place, by) / size, 0.0, 1.0) : 0.0;
     const double pixels = glm::distance(cursor_, from->place + share * by);
-    // Linear in the picture is not linear in space: farther pieces look shorter.
+    // With perspective, a fraction in the picture differs from the fraction in space: farther
+    // pieces look shorter.
     const double along =
         camera_.projection == Projection::perspective
             ? share * from->depth / (share * from->depth + (1.0 - share) * to->depth)

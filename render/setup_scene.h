@@ -24,8 +24,8 @@ std::vector<SharedMesh> tool_meshes(const core::ToolAssembly& tool);
 core::Transform stock_from_mount(const core::Setup& setup, const core::Mount& mount,
                                  const core::AxisValues& values);
 
-/// The fixtures in place and the bodies of the machine on both sides. `is_there` states which
-/// fixtures are in place; empty: as at the first block.
+/// The mounted fixtures and the machine bodies on both sides. `is_there` states which fixtures are
+/// mounted; empty: as at the start of the program.
 std::vector<Body> setup_bodies(const core::Setup& setup, const SetupMeshes& meshes,
                                const core::AxisValues& values,
                                const std::vector<bool>& is_there = {});

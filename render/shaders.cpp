@@ -2,7 +2,7 @@
 
 namespace render::shaders {
 
-/// One triangle over the whole picture.
+/// One triangle that covers the whole picture.
 const char* const background_vertex = R"(#version 330 core
 out float height;
 void main() {
@@ -12,7 +12,7 @@ void main() {
 }
 )";
 
-/// A gradient from bottom to top, dithered, so that no bands are seen.
+/// A gradient from bottom to top, dithered to avoid visible bands.
 const char* const background_fragment = R"(#version 330 core
 uniform vec3 top;
 uniform vec3 bottom;
@@ -45,7 +45,7 @@ void main() {
 }
 )";
 
-/// Light from the sky and a lamp over the left shoulder; grazing faces get a rim.
+/// Light from the sky and from a lamp over the left shoulder; faces at grazing angles get a rim.
 const char* const mesh_fragment = R"(#version 330 core
 uniform vec3 sky;      // upwards in the view's frame
 uniform vec3 eye_axis; // towards the eye where there is no perspective, else 0
@@ -99,8 +99,8 @@ out vec4 color;
 void main() { color = ink; }
 )";
 
-/// Six corners for each piece between two points: the points come from a texture, so that wide
-/// lines need nothing but their points. w: block << 4 | state << 2 | rapid << 1 | begins.
+/// Six corners for each piece between two points. The points come from a texture, so that wide
+/// lines need no other data. w: block << 4 | state << 2 | rapid << 1 | begins.
 const char* const line_vertex = R"(#version 330 core
 uniform usamplerBuffer points;
 uniform mat4 view_from_scene;
@@ -181,7 +181,7 @@ void main() {
 }
 )";
 
-/// Hatched as sections are in drawings.
+/// Hatched like a section in a drawing.
 const char* const cap_fragment = R"(#version 330 core
 uniform vec3 base;
 uniform vec4 hatch;
@@ -193,8 +193,8 @@ void main() {
 }
 )";
 
-/// How much of the sky over a point is hidden by what stands near it, from depths alone. Source:
-/// McGuire, Mara, Luebke: Scalable Ambient Obscurance, 2012.
+/// The fraction of the sky over a point that is hidden by nearby surfaces, from depths alone.
+/// Source: McGuire, Mara, Luebke: Scalable Ambient Obscurance, 2012.
 const char* const hollow_fragment = R"(#version 330 core
 uniform sampler2D depths;
 uniform mat4 view_from_clip;
@@ -236,7 +236,8 @@ void main() {
 }
 )";
 
-/// The mean over the pattern by which neighbours turn, among places as deep.
+/// The mean over the block of pixels whose sample patterns are rotated differently, using only
+/// pixels of similar depth.
 const char* const smooth_fragment = R"(#version 330 core
 uniform sampler2D depths;
 uniform sampler2D hollows;

@@ -30,7 +30,8 @@ constexpr size_t step_of(size_t axis) {
     return steps[axis];
 }
 
-/// The cells around an edge, counter-clockwise seen from its end, and its number in each cell.
+/// A cell around an edge, and the number of the edge in that cell. Cells are listed
+/// counter-clockwise, seen from the end of the edge.
 struct Around {
     GridNode cell;
     uint8_t edge;
@@ -55,7 +56,7 @@ struct Piece {
     std::array<int32_t, 12> edges{};
     size_t count = 0;
     bool flat = true;               // one normal everywhere
-    int32_t first_vertex = nowhere; // at its position, one for each normal
+    int32_t first_vertex = nowhere; // first of the vertices at its position, one for each normal
 };
 
 class BrickContour {
@@ -290,7 +291,7 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
         std::swap(corners[1], corners[3]);
         std::swap(places[1], places[3]);
     }
-    // All planes are one: the point lies on both halves, whichever they are.
+    // All planes coincide: the point is on both triangles for either diagonal.
     const size_t k = flat ? 0 : core::better_diagonal(places, crossed.plane.place).from;
     result_.mesh.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
     result_.mesh.triangles.push_back({corners[k], corners[k + 2], corners[(k + 3) % 4]});
@@ -302,7 +303,8 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
     for (const Vec3& place : places) result_.mesh.bounds.extend(place);
 }
 
-/// Quads belong to the brick in which their edge begins; its first nodes are the neighbour's.
+/// Quads belong to the brick in which their edge begins; the first nodes of a brick belong to its
+/// neighbour.
 void BrickContour::add_quads() {
     for (const BrickMemory::Known& known : memory_.edges) {
         const size_t axis = known.edge / nodes, node = known.edge % nodes;
@@ -374,7 +376,7 @@ namespace {
 using core::Interval;
 using core::ScanLines;
 
-/// One end of an interval, with what made it.
+/// One end of an interval, with its mark.
 struct MarkedEnd {
     double along;
     uint32_t mark;

@@ -28,7 +28,7 @@ struct BrickWorkspace {
     std::array<std::vector<uint64_t>, 3> votes;
     std::array<std::vector<int32_t>, 3> edges; // number of each node's edge along the axis
     std::vector<int32_t> cells;                // number of a cell's first vertex
-    std::vector<uint8_t> corners;              // which corners of a cell are inside
+    std::vector<uint8_t> corners;              // bit mask of the corners of a cell that are inside
 };
 
 /// The surface in brick (i, j, k): the quads around the edges that begin at its nodes.
@@ -37,7 +37,7 @@ struct BrickWorkspace {
 StockBrick contour_brick(const core::CutModel& model, const std::array<int, 3>& brick,
                          BrickMemory& memory, BrickWorkspace& workspace);
 
-/// The displayed surface of a stock, updated while the stock is cut or goes back in time.
+/// The displayed surface of a stock, updated while the stock is cut or stepped back.
 ///
 /// Shape:   that of core::stock_mesh, in bricks of 32 cells without gaps.
 /// Result:  depends only on the model, not on earlier updates.
@@ -51,7 +51,7 @@ public:
     size_t update(const core::CutModel& model);
 
     /// Clears everything: the next update makes all bricks. Use it for another program or set-up,
-    /// whose moves have the same numbers.
+    /// because its moves have the same numbers.
     void reset();
 
     const StockBricks& bricks() const { return shown_; }

@@ -25,7 +25,7 @@ std::pair<size_t, size_t> place_of_block(const std::vector<PathPoint>& points, u
     return {first - points.begin(), last - points.begin()};
 }
 
-/// Of the piece that ends at a point.
+/// Length of the piece that ends at a point.
 double piece_length(const std::vector<PathPoint>& points, size_t end) {
     if (end == 0 || points[end].begins) return 0.0;
     return glm::distance(core::Vec3(points[end - 1].place), core::Vec3(points[end].place));

@@ -29,7 +29,7 @@ struct ToolPath {
     static constexpr size_t group = 32;   // boxes per box of the second level
 
     std::vector<PathPoint> points;
-    std::vector<core::Aabb> boxes;  // of the pieces that end at points stretch * i ...
+    std::vector<core::Aabb> boxes;  // box i: the pieces that end at points stretch * i ...
     std::vector<core::Aabb> groups; // of `group` boxes each
     core::Aabb bounds;
 };
@@ -43,12 +43,12 @@ ToolPath tool_path(std::vector<PathPoint> points);
 /// not decrease along the path.
 std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block);
 
-/// How much of a path is shown near a block: at least so many blocks before and after it, and more
-/// until the given length is shown.
+/// How much of a path is shown near a block: at least this many blocks before and after it, and
+/// more until this length is shown.
 struct PathReach {
-    uint32_t before = 30, behind = 8; // blocks
-    double way_before = 150.0, way_behind = 40.0;
-    size_t most = 1000; // points on either side
+    uint32_t before = 30, behind = 8;             // blocks
+    double way_before = 150.0, way_behind = 40.0; // mm
+    size_t most = 1000;                           // points on either side
 };
 
 /// The part of a path near a block, even if the block does not move.

@@ -249,7 +249,7 @@ private:
             }
     }
 
-    /// From the quad in its lowest corner to the one in its highest.
+    /// Adds the rectangle from the quad in its lowest corner to the one in its highest.
     void add_rectangle(size_t axis, uint32_t low, uint32_t high) {
         const auto u = static_cast<glm::length_t>((axis + 1) % 3);
         const auto v = static_cast<glm::length_t>((axis + 2) % 3);

@@ -59,9 +59,9 @@ struct LatticeQuad {
 
 constexpr size_t lattice_side = 34;
 
-/// The same surface with fewer triangles, for display only: adjacent quads in one plane across an
-/// axis with one colour become rectangles. These overlap their neighbours by a tenth of a cell, so
-/// that no gap shows where corners do not meet.
+/// The same surface with fewer triangles, for display only: adjacent quads of one colour in one
+/// plane perpendicular to an axis become rectangles. These overlap their neighbours by a tenth of a
+/// cell, so that no gaps are visible where corners do not coincide.
 ///
 /// Cost:    linear in the quads.
 TriangleMesh with_large_faces(const TriangleMesh& mesh, std::span<const LatticeQuad> quads);

@@ -31,7 +31,7 @@ private:
     GlProgram program_;
 };
 
-/// What all drawing of one picture shares.
+/// Common data of all drawing of one picture.
 struct ViewFrame {
     const Scene& scene;
     const Camera& camera;
@@ -41,8 +41,8 @@ struct ViewFrame {
     unsigned hollows = 0; // ambient occlusion texture; 0: none
 };
 
-/// How far lines are drawn in front of the surface on which they lie, as a fraction of the
-/// distance.
+/// Offset of lines towards the eye, in front of the surface on which they are; `share` is a
+/// fraction of the distance.
 glm::vec2 nearer(const Camera& camera, double share);
 
 /// Sets the matrices for a body with this pose.
@@ -53,7 +53,7 @@ void set_view(const ShaderProgram& program, const ViewFrame& frame,
 bool set_section(const ShaderProgram& program, const std::optional<SectionPlane>& section,
                  const core::Transform& scene_from_body = {});
 
-/// On which side of a section plane a box lies.
+/// Whether a section plane meets a box.
 bool is_cut(const SectionPlane& section, const core::Aabb& box);
 
 } // namespace render
