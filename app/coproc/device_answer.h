@@ -11,19 +11,19 @@
 
 namespace app {
 
-/// A pair of bodies that the coprocessor was asked about in a block.
+/// A pair of bodies that the coprocessor checked in a block.
 struct AskedPair {
     core::Pair pair;
     core::Allowance allowance;
     bool refused = false;
     double lower = core::infinity; // lower bound of the clearance, if it was measured
-    bool may_overlap = false;      // their models met
+    bool may_overlap = false;      // their models overlapped
 };
 
 /// The answer of the coprocessor for a block.
 struct BlockPermit {
     bool permitted = true; // also if nothing moves
-    size_t segments = 0;   // questions asked
+    size_t segments = 0;   // number of questions
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // the refused pair
     std::string not_asked;          // why a motion could not be asked; it is not permitted then

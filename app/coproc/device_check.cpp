@@ -21,13 +21,13 @@ bool stands_upright(const core::MovingBody& body, const core::Mat3& orientation)
                         : orientation == core::Mat3(1.0);
 }
 
-/// The mesh size for a body: the set-up's, or coarser for a large one.
+/// Spacing of the model of a body: the mesh size of the set-up, or coarser for a large body.
 double spacing_for(const core::Aabb& box, double mesh_size, double most_cells = 200.0) {
     const core::Vec3 size = box.size();
     return std::max({mesh_size, size.x / most_cells, size.y / most_cells, size.z / most_cells});
 }
 
-/// Of what is held at an angle, which is modelled again for each way it is held.
+/// Spacing for tilted bodies, which are modelled again for each orientation.
 double tilted_spacing(const core::RevolvedProfile& part, double mesh_size) {
     return spacing_for(bounds(part), mesh_size, 64.0);
 }
@@ -39,8 +39,8 @@ double cube_side(const core::ExactBody& body, double mesh_size) {
 
 double DeviceModels::excess(const core::MovingBody& body, const core::Mat3& orientation) const {
     const bool is_upright = stands_upright(body, orientation);
-    // A cell's diagonal; half of it that a part is grown by and what a cylinder adds to a post; a
-    // cube's diagonal.
+    // The diagonal of a cell; half of it by which a part is enlarged, plus the excess of the
+    // cylinder around a post; the diagonal of a cube.
     if (body.profile)
         return is_upright ? cylinder_tolerance
                           : 1.7 * tilted_spacing(*body.profile, setup_->mesh_size);
@@ -116,7 +116,7 @@ void DeviceModels::use_tool(hwsim::Driver& driver, const core::ToolAssembly* too
 
 namespace {
 
-/// Who tells a person why a motion is not asked.
+/// Who reports why a motion is not asked about: the finding of the permit, or the run by itself.
 enum class Teller : uint8_t { permit, run };
 
 void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {
@@ -129,14 +129,14 @@ hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, Slo
     return {.from = way.places.front(), .to = way.places.back(), .pairs = {{tool, work, distance}}};
 }
 
-/// The pair among those of a block, begun here if it was not there.
+/// The entry of a pair in a block's permit; added if it is missing.
 AskedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Setup& setup) {
     for (AskedPair& known : permit.pairs)
         if (known.pair == pair) return known;
     return permit.pairs.emplace_back(AskedPair{pair, allowance_of(setup, pair)});
 }
 
-/// Of several stops the first is told.
+/// Records a stop. Only the first of several stops is reported.
 void note_stop(PushedBlock& block, const hwsim::DeviceReport& report, const core::Setup& setup) {
     BlockPermit& permit = block.permit;
     const bool is_first = permit.stop == hwsim::Stop::none;
@@ -245,14 +245,14 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Pu
     at.position = motion.to;
     at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
     const bool rapid = motion.kind == core::MotionKind::rapid;
-    // A spindle of which nothing is known is taken to be empty until the program feeds.
+    // A spindle of unknown content counts as empty until the program feeds.
     if (!at.tool && !(!at.called && (at.tool_known || rapid))) {
-        deny(block.permit, "nobody knows the tool that moves", Teller::run);
+        deny(block.permit, "the tool is unknown", Teller::run);
         return {};
     }
     if (!at.tool && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
-        deny(block.permit, "nobody knows where the motion begins", Teller::run);
+        deny(block.permit, "the start position of the motion is unknown", Teller::run);
         return {};
     }
     const bool cutting =
@@ -324,7 +324,7 @@ bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
 Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
                                        PushedBlock& block) {
     if (!leg.straight) {
-        deny(block.permit, "nobody knows the way of the motion");
+        deny(block.permit, "the path of the motion is unknown");
         return {};
     }
     static const core::ToolAssembly nothing;
@@ -372,7 +372,7 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
     const core::Pair pair{body.kind, fixture, body.carried};
     const core::Allowance allowance = allowance_of(*setup_, pair);
     const double off = off_way(pair, at.off_motion, at.corners);
-    // Bodies may touch where nothing is known to be farther off than what is contact.
+    // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
     const bool may_touch = allowance.distance <= core::resolution
                            && (off <= contact_depth(allowance) || (!fixture && at.follows));
     return {body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
@@ -393,7 +393,8 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
     const core::MovingBody flutes = moving_bodies(*setup_, *at.tool)[0];
     const core::RelativeLeg way =
         relative_leg(setup_->machine, setup_->stock_mount, flutes.mover, leg);
-    if (!std::isfinite(way.error)) return; // what it takes is left out: the stock is too large then
+    if (!std::isfinite(way.error))
+        return; // omits the cut: the stock is then too large, which is safe
     at.to_cut.push_back({.cutter = std::make_shared<const core::Cutter>(
                              make_cutter(at.tool->parts[0].profile, way.error)),
                          .from = way.places.front(),
@@ -403,7 +404,7 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
 
 Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, PushedBlock& block) {
     if (auto measured = measure_pair(q, work, block); !measured) return measured;
-    // Bodies that may touch are held against each other with the one shrunk by what is contact.
+    // For bodies that may touch, the tool-side body is shrunk by the contact tolerance.
     const double shrink =
         q.may_touch && q.body.profile ? contact_shrink(q.allowance, *q.body.profile) : 0.0;
     FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, shrink, q.way.orientation));

@@ -29,15 +29,16 @@ core::PairClearance clearance_of(const AskedPair& asked, double search_limit) {
 }
 
 std::string nearness(const AskedPair& asked) {
-    if (asked.allowance.distance <= core::resolution) return "run into each other";
+    if (asked.allowance.distance <= core::resolution) return "collide";
     if (asked.may_overlap)
-        return fmt::format("meet; {} mm must be kept", core::at_most(asked.allowance.distance));
-    return fmt::format("may be as near as {} mm; {} mm must be kept",
+        return fmt::format("overlap (minimum clearance {} mm)",
+                           core::at_most(asked.allowance.distance));
+    return fmt::format("may come within {} mm (minimum clearance {} mm)",
                        core::clearance_at_least(asked.lower),
                        core::at_most(asked.allowance.distance));
 }
 
-/// The worst pair that was refused; null if none was.
+/// The worst refused pair; null if none was refused.
 const AskedPair* worst_of(const BlockPermit& permit) {
     const AskedPair* worst = nullptr;
     const auto margin = [](const AskedPair& pair) { return pair.lower - pair.allowance.distance; };
@@ -59,8 +60,8 @@ core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
         finding.shortfall = std::max(0.0, worst->allowance.distance - worst->lower);
     }
     if (!permit.not_asked.empty() && permit.stop == hwsim::Stop::none) {
-        finding.message = fmt::format("The coprocessor cannot be asked about this block, so it "
-                                      "gives no permit: {}.",
+        finding.message = fmt::format("The coprocessor cannot check this block, so it gives no "
+                                      "permit: {}.",
                                       permit.not_asked);
         finding.cure = "Check the block with the exact engine.";
     } else if (permit.stop == hwsim::Stop::violation && worst_of(permit)) {
@@ -68,9 +69,9 @@ core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
         finding.message = fmt::format(
             "The coprocessor refuses this block: its models of the {} and of {} {}.",
             finding.pair[0], is_stock ? "the stock" : finding.pair[1], nearness(*worst_of(permit)));
-        finding.cure = "The exact engine tells how near they really come, when, and where.";
+        finding.cure = "Check the block with the exact engine for the true clearance.";
     } else {
-        finding.message = fmt::format("The coprocessor refuses this block, because of a fault: {}.",
+        finding.message = fmt::format("The coprocessor refuses this block because of a fault: {}.",
                                       hwsim::name_of(permit.stop));
         finding.cure = "Check the block with the exact engine.";
     }
@@ -81,7 +82,7 @@ core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
 
 struct DeviceJudge::State {
     const core::Setup& setup;
-    hwsim::FunctionalDevice device; // the check's driver refers to it
+    hwsim::FunctionalDevice device; // the driver of the check refers to it
     std::optional<CoprocessorCheck> check = {};
 };
 
@@ -124,7 +125,7 @@ bool is_of(const PushedBlock& pushed, uint32_t sequence) {
     return sequence - pushed.first < pushed.asked.size();
 }
 
-/// Its last segment; the one before its first where nothing was asked.
+/// The last segment of a block; the one before its first if nothing was asked.
 uint32_t last_of(const PushedBlock& pushed) {
     return pushed.first + static_cast<uint32_t>(pushed.asked.size()) - 1;
 }
@@ -139,7 +140,7 @@ struct DevicePipeline::State {
         bool is_pushed = false;
         uint64_t begin = 0; // cycle of its first word
         PushedBlock pushed = {};
-        DeviceBlock block = {}; // what is known of it
+        DeviceBlock block = {}; // results so far
         uint64_t end = 0;       // cycle of its last answer
     };
     /// A segment that the device has finished.
@@ -158,17 +159,18 @@ struct DevicePipeline::State {
     DeviceTotals totals();
 
     void note(const hwsim::CoprocessorState& state);
-    /// Goes on until every block is in the device.
+    /// Pushes and collects until every block is in the device.
     core::Result<void> settle();
     core::Result<void> ask(Pending& pending);
-    /// Gives finished segments to their blocks, and blocks that have all of them to the list.
+    /// Assigns finished segments to their blocks, and moves completed blocks to the list.
     void collect();
     bool is_answered(const Pending& pending) const;
-    /// What the device said when it had permitted a block.
+    /// The report of the device at the time when it had permitted a block.
     static hwsim::DeviceReport permitted(const Pending& pending);
-    /// The oldest block has its answer.
+    /// Completes the oldest block with its answer.
     void close(const hwsim::DeviceReport& report);
-    /// The block that made the device stop is refused; those behind it are to be asked again.
+    /// Handles a stop: the block that caused it is refused, and the blocks after it are asked
+    /// again.
     void take_stop();
 
     hwsim::EmulatedDevice device_;
@@ -176,7 +178,7 @@ struct DevicePipeline::State {
     std::optional<CoprocessorCheck> check_ = {};
     std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle_ = {};
     std::deque<Pending> pending_ = {};
-    std::vector<Finished> finished_ = {}; // and not given to their blocks
+    std::vector<Finished> finished_ = {}; // and not yet assigned to their blocks
     std::vector<DeviceBlock> blocks_ = {};
     uint64_t last_end_ = 0;
 };
@@ -227,7 +229,7 @@ Result<void> DevicePipeline::State::finish() {
     while (true) {
         if (auto settled = settle(); !settled) return settled;
         if (pending_.empty()) return {};
-        check_->report(); // takes some cycles, and tells the device that the host is alive
+        check_->report(); // advances the device by some cycles, and resets its watchdog
     }
 }
 
@@ -258,7 +260,7 @@ void DevicePipeline::State::collect() {
         const auto owner = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
             return p.is_pushed && is_of(p.pushed, one.sequence);
         });
-        if (owner == pending_.end()) break; // of a block that is just being pushed
+        if (owner == pending_.end()) break; // its block is still being pushed
         owner->block.nodes += one.counts.nodes;
         owner->block.pairs += one.counts.pair_tests;
         owner->end = one.cycle;
@@ -297,7 +299,7 @@ void DevicePipeline::State::take_stop() {
     const auto refused = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
         return p.is_pushed && is_of(p.pushed, report.stop_sequence);
     });
-    // A fault that is nobody's is that of the block which has waited longest.
+    // A fault without a segment counts for the oldest block.
     const auto in_front = refused == pending_.end() ? 0 : std::distance(pending_.begin(), refused);
     for (auto i = 0 * in_front; i < in_front; ++i) close(permitted(pending_.front()));
     if (!pending_.empty()) {
@@ -317,7 +319,8 @@ void DevicePipeline::State::take_stop() {
 
 DeviceTotals DevicePipeline::State::totals() {
     DeviceTotals totals;
-    const uint32_t high_word = device_.state.host.high_word; // the driver may be between two reads
+    const uint32_t high_word =
+        device_.state.host.high_word; // preserved: the driver may be between two reads
     for (uint32_t i = 0; i < hwsim::counter_count; ++i) {
         const uint32_t address = hwsim::address_of(static_cast<hwsim::Counter>(i));
         const uint64_t low = hwsim::read(device_.state, device_.config, address);

@@ -21,9 +21,9 @@ struct CoprocessorState;
 
 namespace app {
 
-/// A coprocessor that judges the blocks of a check in place of the distance core. Every question
-/// and answer goes through its registers and its memory. Uses the functional model, which gives the
-/// answers of the device without their time. Refers to the set-up.
+/// A coprocessor that judges the blocks of a check in place of the distance core. All questions and
+/// answers pass through its registers and memory. Uses the functional model, which gives the
+/// answers of the device without its timing. Refers to the set-up.
 class DeviceJudge {
 public:
     /// Loads the stock into a device.
@@ -35,8 +35,8 @@ public:
     DeviceJudge& operator=(DeviceJudge&&) noexcept;
     ~DeviceJudge();
 
-    /// The device's answer for a block: each pair that it was asked about, with a lower bound of
-    /// the clearance, and a finding `refused` if it permits less than all.
+    /// The device's answer for a block: each pair asked about, with a lower bound of the clearance,
+    /// and a finding `refused` if the block is not fully permitted.
     ///
     /// Errors: models that do not fit into the device.
     core::Result<core::Judgement> judge(std::span<const core::Event> block,
@@ -49,21 +49,21 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// An emulated device that receives the blocks of a program one after the other, as many ahead of
-/// the answers as its FIFO holds. A refused block stops the device; the blocks after it are asked
-/// again, as if an operator had let the machine continue. Refers to the set-up.
+/// An emulated device that receives the blocks of a program in order, as far ahead of the answers
+/// as its FIFO allows. A refused block stops the device; the blocks after it are asked again, as if
+/// an operator had let the machine continue. Refers to the set-up.
 class DevicePipeline {
 public:
     /// Loads the stock into a device. Calls `on_cycle`, if given, after each cycle.
     ///
-    /// Errors: an impossible device, a stock that does not fit.
+    /// Errors: an invalid device configuration; a stock that does not fit.
     static core::Result<std::unique_ptr<DevicePipeline>>
     with(const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
          std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle = {});
 
     ~DevicePipeline();
 
-    /// Asks about the next block, as soon as there is room for it.
+    /// Asks about the next block as soon as there is room for it.
     ///
     /// Errors: models that do not fit into the device.
     core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before);

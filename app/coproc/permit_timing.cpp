@@ -41,7 +41,7 @@ private:
                && made_.blocks[permitted_].permitted <= machine_.time();
     }
 
-    /// The control reads on, and the device takes what it has read.
+    /// Lets the control read ahead, and the device accept the new blocks.
     void ask_ahead() {
         const size_t here =
             machine_.is_done() ? services_.size() : machine_.motions[machine_.motion].segment;
@@ -52,11 +52,12 @@ private:
             const BlockService& service = services_[asked_];
             block.permitted = permit_time(service, block.asked, last_permit_);
             made_.busy += service.interval;
-            last_permit_ = is_refused(asked_) ? core::infinity : block.permitted; // it has stopped
+            last_permit_ =
+                is_refused(asked_) ? core::infinity : block.permitted; // a refusal stops the device
         }
     }
 
-    /// What moves nothing holds no machine up, but may be refused.
+    /// Blocks without motion do not hold the machine, but may be refused.
     void ask_for_the_rest() {
         ask_ahead();
         while (permitted_ < asked_ && !is_refused(permitted_)) ++permitted_;
@@ -70,7 +71,8 @@ private:
 
     void conclude() {
         if (permitted_ < services_.size()) made_.refused = permitted_;
-        for (size_t i = machine_.motions.size(); i-- > 0;) { // the first motion of a block last
+        for (size_t i = machine_.motions.size();
+             i-- > 0;) { // backwards: the first motion of a block wins
             BlockTiming& block = made_.blocks[machine_.motions[i].segment];
             block.due = machine_.entries[i].due;
             block.entered = machine_.entries[i].entered;

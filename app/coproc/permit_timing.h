@@ -9,76 +9,78 @@
 
 namespace app {
 
-/// The control beside the device.
+/// The control that uses the device.
 struct ControlConfig {
     core::ServoTiming servo;
-    uint32_t look_ahead = 256; // blocks that it reads, and asks permits for, ahead of the machine
+    uint32_t look_ahead = 256; // blocks read, and permits requested, ahead of the machine
 };
 
-/// How long a device takes for each block, and which of them it refuses. Measured while the blocks
-/// follow each other as fast as the device takes them in.
+/// The time that a device needs for each block, and whether it refuses it. Measured while blocks
+/// follow each other as fast as the device accepts them.
 struct BlockService {
-    double seconds = 0.0; // from when it is asked for to its permit
+    double seconds = 0.0; // from request to permit
     bool refused = false;
-    double interval = 0.0; // behind the permit of the block before
+    double interval = 0.0; // from the permit of the previous block
 };
 
-/// When a block is permitted at the latest that was asked for then, the one before having been
-/// permitted then.
+/// Latest permit time of a block requested at `asked`, if the previous block was permitted at
+/// `before`.
 inline double permit_time(const BlockService& service, double asked, double before) {
     return std::max(before + service.interval, asked + service.seconds);
 }
 
-/// When a block was asked for, permitted, needed and begun, seconds after the start of the program.
+/// When a block was requested, permitted, needed and entered, in seconds from the start of the
+/// program.
 struct BlockTiming {
     double asked = core::infinity;
     double permitted = core::infinity; // or refused
-    double due = core::infinity;       // that is when the machine had to know; infinite for a block
-                                       // that does not move, and for the first that does
+    double due = core::infinity;       // when the machine needed the permit; infinite for blocks
+                                       // without motion and for the first with motion
     double entered = core::infinity;
 
     double slack() const { return due - permitted; }
     bool is_late() const { return permitted > due; }
 };
 
-/// A program in time, with a device that permits its blocks.
+/// The timing of a program with a device that permits its blocks.
 struct PermitTiming {
     std::vector<BlockTiming> blocks;
-    double planned = 0.0;           // what the machine takes if it never waits, seconds
-    double taken = 0.0;             // until the end, or until it stands before what is refused
-    std::optional<size_t> refused;  // the block before which it stands
+    double planned = 0.0; // duration without waiting, s
+    double taken = 0.0;   // duration until the end, or until it stops at a refused block, s
+    std::optional<size_t> refused;  // the block at which the machine stops
     std::optional<size_t> tightest; // the block with the least slack
-    size_t missed = 0;              // permits that came late
-    double busy = 0.0;              // seconds that the device worked
+    size_t missed = 0;              // number of late permits
+    double busy = 0.0;              // working time of the device, s
 };
 
-/// Lets the machine run its plan against the device, which works on a block from when the control
-/// has read it: it is permitted its time after that, and its interval after the block before, at
-/// the latest. A device that has less to do than when it was measured answers sooner.
+/// Simulates the machine with its plan and the device. The device starts a block when the control
+/// has read it, and permits it at the latest after its service time, and its interval after the
+/// previous block. A device that is less loaded than in the measurement answers earlier.
 ///
-/// `past_refusals`: what is refused is run all the same, as if a person had let it.
+/// `past_refusals`: refused blocks are executed, as if a person had allowed them.
 PermitTiming timed_with_permits(const std::vector<core::PermitMotion>& plan,
                                 const std::vector<BlockService>& services,
                                 const ControlConfig& control, bool past_refusals = false);
 
-/// What a device takes to work, picojoules: an estimate for a present-day FPGA, to be replaced by
-/// measured values.
+/// Energy per operation of a device, pJ: estimates for a current FPGA, to be replaced by measured
+/// values.
 struct EnergyTable {
     double box_test = 15.0, pair_test = 25.0, cache_line = 40.0;
-    double memory_line = 12'000.0; // 512 bits from outside
+    double memory_line = 12'000.0; // 512 bits from external memory
     double idle_watts = 0.5;       // of the whole device
 };
 
-/// A coprocessor and the control that it works for.
+/// A coprocessor and the control that uses it.
 struct DeviceFile {
     hwsim::DeviceConfig device;
     ControlConfig control;
     EnergyTable energy;
 };
 
-/// Reads [device], [control] and [energy] of a TOML file; what it leaves out is as usual.
+/// Reads [device], [control] and [energy] of a TOML file; missing values have their defaults.
 ///
-/// Errors: with file, line and column: no file, no TOML, an unknown key, a value that cannot be.
+/// Errors: with file, line and column: a missing file, invalid TOML, an unknown key, an impossible
+///         value.
 core::Result<DeviceFile> read_device_file(const std::string& path);
 
 } // namespace app

@@ -56,7 +56,7 @@ constexpr std::array<const char*, hwsim::counter_count> counter_names = {
     "record_misses", "lines_read", "lines_written", "wait_memory", "wait_port",
     "wait_retire",   "missed",     "deepest",       "least_slack", "longest"};
 
-/// Seconds that blocks took, those that asked nothing left out, in order.
+/// Latencies of the blocks with questions, sorted, s.
 std::vector<double> latencies(const CoprocessorResult& result) {
     std::vector<double> seconds;
     for (const DeviceBlock& block : result.run.blocks)
@@ -95,18 +95,18 @@ std::string verdict_text(const CoprocessorResult& result) {
                             - blocks.begin());
     std::string text = fmt::format("refuses {} of {} blocks, first {}: {}", refused, blocks.size(),
                                    place(result, first), refusal(result, first));
-    if (result.timing.refused) text += "; the machine stands before it";
+    if (result.timing.refused) text += "; the machine stops before it";
     return text;
 }
 
 std::string slack_text(const CoprocessorResult& result) {
     const PermitTiming& timing = result.timing;
-    if (!timing.tightest) return "nothing has to be permitted in time";
+    if (!timing.tightest) return "no block needs a permit in time";
     const std::string least =
         fmt::format("least slack {}, {}", time_text(timing.blocks[*timing.tightest].slack()),
                     place(result, *timing.tightest));
     if (timing.missed == 0) return "yes; " + least;
-    return fmt::format("no: {} permits came late; {}", timing.missed, least);
+    return fmt::format("no: {} permits were late; {}", timing.missed, least);
 }
 
 Json config_json(const CoprocessorResult& result) {
@@ -130,7 +130,7 @@ Json config_json(const CoprocessorResult& result) {
               {"look_ahead", c.look_ahead}}}};
 }
 
-/// A time that is known, else null.
+/// A finite time, else null.
 Json known(double seconds) { return std::isfinite(seconds) ? Json(seconds) : Json(nullptr); }
 
 Json block_json(const CoprocessorResult& result, size_t i) {
@@ -175,7 +175,7 @@ std::string time_text(double seconds) {
 }
 
 std::string fit_text(const std::vector<DeviceFit>& fits) {
-    if (fits.empty()) return "not looked for";
+    if (fits.empty()) return "not searched";
     const auto best = smallest(fits);
     if (!best)
         return fmt::format("none of {} elements at up to {} MHz", fits.back().elements,
@@ -225,7 +225,7 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     const DeviceTotals& totals = result.run.totals;
     const DeviceFigures f = figures(result);
     const EngineAgreement both = agreement(result.run);
-    std::string text = fmt::format("{}: beside a coprocessor, {} elements of {} threads, {} MHz\n",
+    std::string text = fmt::format("{}: with a coprocessor, {} elements of {} threads, {} MHz\n",
                                    trimmed(result.run.check.program_file), device.elements,
                                    device.threads, device.clock_mhz);
     const auto add = [&](const std::string& heading, const std::string& words) {
@@ -234,28 +234,29 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     };
     add("permits", verdict_text(result));
     add("kept up", slack_text(result));
-    add("time", fmt::format("{} by plan, {} taken", time_text(result.timing.planned),
+    add("time", fmt::format("{} planned, {} actual", time_text(result.timing.planned),
                             time_text(result.timing.taken)));
     add("work",
         fmt::format("{} blocks, {} queries, {} nodes, {} pairs, {} cycles",
                     result.run.blocks.size(), totals[Counter::queries], totals[Counter::nodes],
                     totals[Counter::pair_tests], totals[Counter::cycles]));
-    add("latency", fmt::format("{} in the middle, {} for 99 of 100 blocks, {} at most",
-                               time_text(f.p50), time_text(f.p99), time_text(f.longest)));
-    add("rate", fmt::format("{:.0f} queries a second while it works; it works {:.3g} % of the time",
+    add("latency", fmt::format("median {}, 99th percentile {}, maximum {}", time_text(f.p50),
+                               time_text(f.p99), time_text(f.longest)));
+    add("rate", fmt::format("{:.0f} queries per second while busy; busy {:.3g} % of the time",
                             f.queries_per_second, 100.0 * f.busy_share));
     add("stalls", fmt::format("memory {:.0f} %, ports {:.0f} %, order {:.0f} % of busy threads",
                               100.0 * f.memory_stall, 100.0 * f.port_stall, 100.0 * f.order_stall));
     add("caches",
-        fmt::format("nodes {:.0f} %, records {:.0f} % hits; {:.1f} MB a second from "
-                    "memory while it works",
+        fmt::format("nodes {:.0f} %, records {:.0f} % hits; {:.1f} MB per second from "
+                    "memory while busy",
                     100.0 * f.node_hits, 100.0 * f.record_hits, f.bytes_per_second / 1e6));
-    add("energy", fmt::format("{:.3g} J while it works (an estimate)", f.joules));
+    add("energy", fmt::format("{:.3g} J while busy (estimate)", f.joules));
     add("smallest", fit_text(result.fits));
-    add("engines", fmt::format("the exact one says {}; {} of its violations are permitted, {} of "
-                               "its clear blocks refused, {} cannot be asked",
-                               core::name_of(result.run.check.verdict), both.missed,
-                               both.false_alarms, both.not_asked));
+    add("engines",
+        fmt::format("exact engine: {}; coprocessor: permits {} of its violations, refuses {} "
+                    "of its clear blocks, cannot check {}",
+                    core::name_of(result.run.check.verdict), both.missed, both.false_alarms,
+                    both.not_asked));
     return printable(text);
 }
 

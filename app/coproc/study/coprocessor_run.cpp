@@ -24,9 +24,9 @@ public:
 
 private:
     core::Result<void> open();
-    /// Asks all devices for the next block.
+    /// Pushes the next block to all devices.
     core::Result<void> ask();
-    /// Waits for their answers, and keeps them.
+    /// Waits for their answers and stores them.
     core::Result<void> finish();
     void plan(const core::BlockTime& time) {
         for (const core::BlockStretch& stretch : time.stretches)
@@ -110,7 +110,7 @@ BlockService service_of(const BlockCycles& cycles, uint32_t clock_mhz) {
     return {.seconds = seconds(cycles.latency), .interval = seconds(cycles.interval)};
 }
 
-/// Whether no permit is late, where the machine never has to wait.
+/// Whether no permit is late, given the times of a machine that never waits.
 bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<BlockCycles>& cycles,
               uint32_t clock_mhz) {
     double permitted = 0.0;
