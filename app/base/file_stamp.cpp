@@ -13,7 +13,7 @@ int64_t nanoseconds(const timespec& time) {
     return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
-/// An older file that was put in the place of another keeps the time of its bytes.
+/// The later of both times: a file that is moved over another keeps its modification time.
 std::chrono::nanoseconds last_change(const FileStamp& stamp) {
     return std::chrono::nanoseconds(std::max(stamp.modified, stamp.changed));
 }
@@ -34,8 +34,8 @@ FileStamp stamp_of(const std::string& path) {
 }
 
 std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
-    // Between reading a file and looking at its time; the clock of files has ticks of some ms.
-    const bool has_whole_seconds = last_change(stamp) % 1s == 0ns; // or two of them, as FAT does
+    // Margin for the time between reading a file and its stamp; file times have ticks of a few ms.
+    const bool has_whole_seconds = last_change(stamp) % 1s == 0ns; // or steps of 2 s, as on FAT
     return has_whole_seconds ? 2500ms : 50ms;
 }
 
@@ -45,7 +45,7 @@ bool may_change_unseen(const FileStamp& stamp) {
 }
 
 std::filesystem::path place_of(const std::filesystem::path& path) {
-    constexpr int most_links = 40; // as the system
+    constexpr int most_links = 40; // limit of the system
     std::error_code ignored;
     std::filesystem::path place = std::filesystem::absolute(path, ignored);
     for (int i = 0; i < most_links && std::filesystem::is_symlink(place, ignored); ++i)

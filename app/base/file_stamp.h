@@ -8,45 +8,45 @@
 
 namespace app {
 
-/// What tells, without reading, whether a file or folder was written since.
+/// Metadata of a file or folder that shows, without reading it, whether it was written since.
 struct FileStamp {
     bool is_there = false;
     bool is_folder = false;
-    bool is_file = false; // that has bytes to be read
+    bool is_file = false; // a regular file
     uint64_t device = 0, number = 0, size = 0;
     int64_t modified = 0, changed = 0; // nanoseconds since 1970
 
     bool operator==(const FileStamp&) const = default;
 };
 
-/// That of what a path leads to.
+/// The stamp of the target of a path; links are followed.
 FileStamp stamp_of(const std::string& path);
 
-/// How long after it was written a file may be written again without another time.
+/// How long after a write another write may leave the time stamp unchanged.
 std::chrono::nanoseconds tick_of(const FileStamp& stamp);
 
-/// Whether it was written so short a time ago that it may have been written again without another
-/// time: what was read just now may be older than the stamp. Always of a time to come, as a clock
-/// that is ahead gives it: when that was nobody knows.
+/// Whether the file was written so recently that another write may have left its time stamp
+/// unchanged, so its content may be newer than what was read. Always true for a time in the future,
+/// as from a clock that is ahead, because the true time of writing is unknown.
 bool may_change_unseen(const FileStamp& stamp);
 
-/// Where a file is, or will be once it is written: whole, behind all links. Empty where nobody can
-/// know, as behind a loop of links.
+/// The absolute path of a file that exists or will be written, with all links resolved. Empty if it
+/// cannot be determined, as for a loop of links.
 std::filesystem::path place_of(const std::filesystem::path& path);
 
-/// Tells whether two paths are the same file by its name, however its folder is spelled.
+/// Identifies files by name, regardless of how their folder is written.
 class FileIdentities {
 public:
-    /// The same for `ok/a.nc`, `ok/../ok/a.nc` and `/lib/ok/a.nc`. Links to folders are followed; a
-    /// link to a file is a file of its own, as another set-up may stand beside it.
+    /// Equal for `ok/a.nc`, `ok/../ok/a.nc` and `/lib/ok/a.nc`. Links to folders are followed; a
+    /// link to a file counts as a separate file, because it may be next to another set-up.
     std::string of(const std::filesystem::path& path);
 
 private:
-    std::map<std::string, std::filesystem::path> folders_; // whole, by how they were spelled
+    std::map<std::string, std::filesystem::path> folders_; // absolute paths, by path as given
 };
 
-/// A path without the parts that lead nowhere: `./a//b` is `a/b`. Unlike lexically_normal it leaves
-/// `..`, as `link/..` is not the folder of the link.
+/// A path without redundant parts: `./a//b` becomes `a/b`. Unlike lexically_normal it keeps `..`,
+/// because `link/..` is not the folder of the link.
 std::string plain_path(const std::filesystem::path& path);
 
 } // namespace app

@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-/// A SHA-256 that is fed piece by piece.
+/// An incremental SHA-256.
 class TextDigest {
 public:
     TextDigest() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
@@ -24,7 +24,7 @@ public:
         is_good_ = is_good_ && EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1;
     }
 
-    /// Empty when the library refuses.
+    /// The digest; empty if the library fails.
     std::string finish() && {
         std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
         unsigned int length = 0;

@@ -4,7 +4,7 @@
 
 namespace app {
 
-/// Seconds of wall time since it was made.
+/// Measures wall time from its construction, in seconds.
 class Stopwatch {
 public:
     double seconds() const {

@@ -16,9 +16,9 @@ namespace app {
 namespace {
 
 struct Lead {
-    size_t length = 0; // of the whole character; 0: nothing begins so
+    size_t length = 0; // bytes of the character; 0: not a lead byte
     uint32_t bits = 0;
-    uint32_t least = 0; // what needs so many bytes
+    uint32_t least = 0; // smallest code point of this length
 };
 
 Lead lead_of(unsigned char byte) {
@@ -29,7 +29,7 @@ Lead lead_of(unsigned char byte) {
     return {};
 }
 
-/// How many bytes the character takes that a text begins with; 0: it begins with none.
+/// Length in bytes of the first character of a text; 0 if it is invalid.
 size_t character_length(std::string_view text) {
     const Lead lead = lead_of(static_cast<unsigned char>(text[0]));
     if (lead.length == 0 || lead.length > text.size()) return 0;
@@ -83,7 +83,7 @@ core::Result<std::vector<std::string>> lines_of_file(const std::string& path) {
     std::optional<std::string> bytes = core::file_bytes(path, largest_file);
     if (!bytes) return tl::unexpected(io_error(path, "cannot be read"));
     if (bytes->size() > largest_file)
-        return tl::unexpected(io_error(path, "is larger than 16 MiB: it is no such table"));
+        return tl::unexpected(io_error(path, "is larger than 16 MiB, too large for a table"));
     std::istringstream stream(*std::move(bytes));
     std::vector<std::string> lines;
     for (std::string line; std::getline(stream, line);) {
@@ -116,8 +116,8 @@ core::Error line_error(const std::string& path, size_t line, std::string message
 
 namespace {
 
-/// Bytes of the control character that stands at a place: of the first 32, of DEL, and of those
-/// beyond it, which are two bytes in UTF-8. 0: there is none.
+/// Length in bytes of the control character at a position: one of the first 32, DEL, or one of
+/// those after DEL, which take two bytes in UTF-8. 0 if there is none.
 size_t control_at(std::string_view text, size_t at) {
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
     if (byte(at) < ' ' || byte(at) == 0x7F) return 1;
@@ -125,7 +125,7 @@ size_t control_at(std::string_view text, size_t at) {
     return is_pair && byte(at + 1) >= 0x80 && byte(at + 1) < 0xA0 ? 2 : 0;
 }
 
-/// The same with a blank in place of each control character but those that are to stay.
+/// The text with blanks in place of control characters, except those in `stay`.
 std::string without_controls(std::string_view text, std::string_view stay) {
     std::string result;
     for (size_t i = 0; i < text.size();) {
@@ -150,7 +150,7 @@ std::string trimmed(std::string_view text) {
 
 std::string clipped(const std::string& text, size_t width) {
     if (text.size() <= width) return text;
-    // Never within a character of UTF-8, which has at most 3 bytes behind its first.
+    // Not within a UTF-8 character, which has at most 3 bytes after its first.
     const auto goes_on = [&](size_t at) {
         return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
     };
@@ -180,7 +180,7 @@ std::string wrapped(const std::string& text, size_t indent, size_t hang) {
 std::string line_ranges(std::vector<uint32_t> lines) {
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-    constexpr size_t most = 12; // ranges: more of them tell nothing
+    constexpr size_t most = 12; // ranges: more would not help
     std::string text;
     size_t ranges = 0;
     for (size_t i = 0; i < lines.size();) {
@@ -197,8 +197,8 @@ std::string line_ranges(std::vector<uint32_t> lines) {
 
 namespace {
 
-/// Whether a spreadsheet takes a cell for a formula, or looks for one behind its first character.
-/// The last four are = + - @ at full width, which some count as the same.
+/// Whether a spreadsheet reads a cell as a formula, or looks for one after its first character. The
+/// last four are full-width = + - @, which some programs treat alike.
 bool is_formula(std::string_view cell) {
     constexpr std::array<std::string_view, 12> beginnings = {"=",
                                                              "+",

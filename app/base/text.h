@@ -12,45 +12,44 @@
 
 namespace app {
 
-/// A text in UTF-8. Programs and names of files hold bytes of any code page: what is no UTF-8 is
-/// taken for Latin-1. What is UTF-8 stays as it is.
+/// A text converted to UTF-8. Programs and file names contain bytes of any code page: invalid UTF-8
+/// is read as Latin-1, valid UTF-8 stays unchanged.
 std::string utf8_text(std::string_view text);
 
-/// How many characters it has then.
+/// The number of characters of utf8_text(text).
 size_t characters_in(std::string_view text);
 
-/// The lines of a small text file, without their ends.
+/// The lines of a small text file, without line ends.
 ///
-/// Errors: io, with the file, when it cannot be read or is larger than a table would be.
+/// Errors: io, with the file, if it cannot be read or is too large for a table.
 core::Result<std::vector<std::string>> lines_of_file(const std::string& path);
 
-/// The words of a line between blanks.
+/// The words of a line, separated by blanks.
 std::vector<std::string> words_of_line(const std::string& line);
 
-/// The number that a text is; empty when it is none, or not finite. A leading + is allowed.
+/// The number in a text; empty if it is not a finite number. A leading + is allowed.
 std::optional<double> number_in(std::string_view text);
 
-/// What is wrong in a line of a file, line counted from 1.
+/// An error in a line of a file; lines are numbered from 1.
 core::Error line_error(const std::string& path, size_t line, std::string message);
 
-/// Without white space at both ends and with no control characters, and so in one line.
+/// Without white space at both ends and without control characters, so on one line.
 std::string trimmed(std::string_view text);
 
-/// A report as it may reach a terminal: in UTF-8, and with no control characters but line ends.
+/// A text that is safe for a terminal: UTF-8, without control characters except line ends.
 std::string printable(std::string_view text);
 
-/// At most `width` bytes, `...` where something is missing; characters of UTF-8 stay whole.
+/// At most `width` bytes, with `...` if shortened; UTF-8 characters stay whole.
 std::string clipped(const std::string& text, size_t width);
 
 /// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.
 std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
 
-/// "4, 7-9, 12"; after a dozen ranges, only where they end.
+/// "4, 7-9, 12"; after twelve ranges only the last number.
 std::string line_ranges(std::vector<uint32_t> lines);
 
-/// A text, such as a name or a block, as a cell of comma-separated values: quoted where it has to
-/// be, and with an apostrophe before what a spreadsheet would take for a formula and carry out.
-/// Numbers need none of that.
+/// A text as a cell of comma-separated values: quoted if necessary, and with an apostrophe before
+/// anything that a spreadsheet would execute as a formula. Not needed for numbers.
 std::string csv_cell(const std::string& text);
 
 /// "1 error", "2 errors".
@@ -66,7 +65,7 @@ std::string clearance_text(double lower, std::optional<double> upper, double all
 /// "4 min 05 s".
 std::string duration_text(double seconds);
 
-/// The verdict on a program in capitals, with what it means.
+/// The verdict on a program in capitals, with its meaning.
 std::string verdict_text(core::Verdict verdict);
 
 } // namespace app
