@@ -46,17 +46,18 @@ BenchScene turned_spheres() {
     return scene;
 }
 
-/// Two rings at right angles, one through the other.
+/// Two rings at right angles, linked.
 ///
-/// The middle circle of B crosses the plane of A's at s = offset - ring from A's centre. While
-/// 0 <= s < ring that is its nearest point to A's circle, ring - s away. At s = 0, every point of B
-/// is as near.
+/// The centre circle of B crosses the plane of A's at s = offset - ring from A's centre. While 0 <=
+/// s < ring, that is its nearest point to A's circle, ring - s away. At s = 0, every point of B is
+/// equally near.
 BenchScene linked_tori() {
     const Torus torus{25.0, 5.0};
     BenchScene scene{.name = "linked-tori",
                      .direction = "turned",
-                     .title = "Two linked tori of 60 mm, tubes of 10 mm, at right angles, turned "
-                              "each about its own axis; at 15 mm they are as near all round",
+                     .title =
+                         "Two linked tori of 60 mm, tubes of 10 mm, at right angles, turned "
+                         "each about its own axis; at 15 mm their distance is the same all around",
                      .a = torus,
                      .b = torus,
                      .mesh_sizes = fine_and_coarse};
@@ -69,7 +70,7 @@ BenchScene linked_tori() {
     return scene;
 }
 
-/// A pin stands off the middle of a bore, farther from its floor than from its wall.
+/// A pin off the centre of a bore, farther from its floor than from its wall.
 BenchScene pin_in_cup() {
     const Cup cup{25.0, 40.0, 20.0, 35.0};
     const core::Cylinder pin{8.0, 30.0};
@@ -148,12 +149,12 @@ core::IntervalList symmetric(double half) {
     return core::IntervalList(core::Interval{-half, half});
 }
 
-/// Half the chord that a circle cuts off a line at this distance from its centre; 0 beside it.
+/// Half the chord of a circle on a line at this distance from its centre; 0 if they do not meet.
 double half_chord(double radius, double distance) {
     return std::sqrt(std::max(0.0, radius * radius - distance * distance));
 }
 
-/// A line across Z, `aside` from the axis, between two circles round it.
+/// A line perpendicular to Z, at distance `aside` from the axis, between two circles around it.
 core::IntervalList across_ring(double outer, double inner, double aside) {
     core::IntervalList matter = symmetric(half_chord(outer, aside));
     const double hole = half_chord(inner, aside);
@@ -195,7 +196,7 @@ core::Aabb bounds(const Cup& cup) {
 
 namespace {
 
-/// What double precision may be off by, mm: below 1e-9 within 2 m, growing with the coordinates.
+/// Bound of the error of double precision, mm: below 1e-9 within 2 m, growing with the coordinates.
 double rounding(const core::Aabb& box) {
     const core::Vec3 farthest = glm::max(glm::abs(box.min), glm::abs(box.max));
     return 1e-9 * std::max(1.0, std::max({farthest.x, farthest.y, farthest.z}) / 2000.0);

@@ -17,7 +17,7 @@ double cpu_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// An engine that holds both bodies of a scene.
+/// An engine with both bodies of a scene loaded.
 struct Contestant {
     std::unique_ptr<core::DistanceEngine> engine;
     core::PointBody a{}, b{};

@@ -114,7 +114,7 @@ TEST(Part, IsToldInTheText) {
     const ScopedFolder folder;
     const auto ran = feeler({"check", folder.write("part.nc", slot), "--setup",
                              folder.write("setup.toml", part_up_to("0").text())});
-    EXPECT_NE(ran.out.find("part       missing up to 5.000 mm"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("part       gouges up to 5.000 mm"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("may deviate from the part by 0.1 mm"), std::string::npos) << ran.out;
 }
 
