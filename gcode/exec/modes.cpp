@@ -178,7 +178,8 @@ core::Result<void> select_plane(Execution& execution) {
 
 namespace {
 
-/// Converts the stored words of a cycle after a change of units: LinuxCNC keeps the numbers.
+/// Reinterprets the stored words of a cycle after a change of units: LinuxCNC keeps the numbers, so
+/// the lengths change.
 void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
     const auto again = [&](double& length) { length = to_mm(from_mm(length, from), to); };
     for (std::optional<double>* word : {&cycle.bottom, &cycle.r, &cycle.peck, &cycle.initial_level})

@@ -28,8 +28,7 @@ struct Meeting {
     ModalState before, after; // of the run from the start, around that block
     ModalState alone;         // of the run from the line
     bool alone_failed = false;
-    std::optional<MotionCode>
-        motion; // modal motion code of an earlier block that the other run lacked
+    std::optional<MotionCode> motion; // modal code of an earlier block that the other run lacked
 };
 
 bool is_motion(const CanonicalCommand& command) {

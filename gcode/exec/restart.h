@@ -10,10 +10,10 @@ namespace gcode {
 
 /// A program started in the middle.
 struct Restart {
-    InterpreterState state; // of a control just switched on, at that line
-    uint32_t line = 0;      // where the program starts
-    std::vector<std::string>
-        missing; // words set by earlier lines that the cut needs and that later lines do not repeat
+    InterpreterState state;           // of a control just switched on, at that line
+    uint32_t line = 0;                // where the program starts
+    std::vector<std::string> missing; // words set by earlier lines that the cut needs and that
+                                      // later lines do not repeat
 };
 
 /// The line that a user means: its number in the file, as "120", or its block number, as "N210" (in

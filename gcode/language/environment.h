@@ -36,9 +36,8 @@ struct Environment {
     Position start{};                                    // gauge line; X, Y, Z empty if unknown
     std::optional<AxisValues> home{};                    // G28; machine zero if not stated
     std::optional<AxisValues> second_home{};             // G30; likewise
-    bool counts_smallest_steps =
-        false; // X5 is 5 um and X5. is 5 mm, on controls where the point matters
-    std::map<int, double> parameters{};         // numbered ones, as in a variables file
+    bool counts_smallest_steps = false; // X5 is 5 um and X5. is 5 mm, where the point matters
+    std::map<int, double> parameters{}; // numbered ones, as in a variables file
     std::map<std::string, double> ini_values{}; // LinuxCNC's ini file, by names such as _ini[traj]x
     std::vector<std::string> search_path{}; // folders of subprograms; empty: the program's folder
     std::set<int> known_m_codes{};          // of the machine builder; ignored without a warning

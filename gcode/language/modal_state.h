@@ -142,8 +142,7 @@ struct ProgramTransforms {
     std::optional<TiltedPlane> tilt;
     bool follows_vectors = false; // G43.5: moves specify the tool direction
     std::optional<PolarPositions> polar;
-    std::optional<Position>
-        before_rotation; // program coordinates of the position at G68, before it took effect
+    std::optional<Position> before_rotation; // program coordinates just before G68
 
     bool operator==(const ProgramTransforms&) const = default;
 };
@@ -215,13 +214,12 @@ constexpr PlaneAxes axes_of(Plane plane) {
 
 /// The modal words of a canned cycle; lengths in mm.
 struct CannedCycle {
-    int code = 0;                    // tenths: 810 for G81
-    std::optional<double> bottom, r; // Z and R in the XY plane
-    std::optional<double> dwell;     // s
-    std::optional<double> peck;      // Q
-    std::array<double, 3> shift{};   // I, J, K of G76 and G87
-    std::optional<double>
-        initial_level;          // position along the axis before the first of a series of cycles
+    int code = 0;                        // tenths: 810 for G81
+    std::optional<double> bottom, r;     // Z and R in the XY plane
+    std::optional<double> dwell;         // s
+    std::optional<double> peck;          // Q
+    std::array<double, 3> shift{};       // I, J, K of G76 and G87
+    std::optional<double> initial_level; // level before the first of a series of cycles
     bool r_is_way = false;      // R was programmed with G91: it is relative to the initial level
     bool bottom_is_way = false; // Z was programmed with G91: it is relative to R
 

@@ -202,8 +202,7 @@ TEST(MemoryBudget, GivesItAllToOneThatIsLarger) {
     MemoryBudget budget(10.0);
     ASSERT_TRUE(budget.take(1.0, [] { return false; }));
     std::atomic<bool> large = false, small = false;
-    std::atomic<int> large_asked = 0,
-                     small_asked = 0; // calls that ask whether to give up; they show that it waits
+    std::atomic<int> large_asked = 0, small_asked = 0; // whether to give up: shows that it waits
     std::thread first([&] {
         EXPECT_TRUE(budget.take(100.0, [&] { return ++large_asked < 0; }));
         large = true;

@@ -147,8 +147,7 @@ TEST_F(Batch, SaysThatAProjectAboveIsNotAskedAboutAProgramThatIsNamed) {
         EXPECT_THAT(check({folder / name, "--setup", folder / "near.toml"}).err,
                     Not(HasSubstr("feeler.toml")));
     }
-    EXPECT_THAT(check({folder / "near.nc"}).err,
-                Not(HasSubstr("does not apply"))); // the set-up next to it
+    EXPECT_THAT(check({folder / "near.nc"}).err, Not(HasSubstr("does not apply"))); // own set-up
     EXPECT_THAT(check({all()}).err, Not(HasSubstr("does not apply")));
 }
 

@@ -242,8 +242,7 @@ struct Written {
     std::string text;
     double number = 0.0;
     bool truth = false;
-    int strength =
-        9; // of its outermost operator: 1 or, 2 and, 3 not, 4 comparison, 5 sum, 6 product
+    int strength = 9; // of its outermost operator: 1 or, 2 and, 3 not, 4 comparison, 5 +, 6 *
 };
 
 class Writer {

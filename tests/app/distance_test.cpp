@@ -128,8 +128,7 @@ TEST(Distance, OfScanPointsIsTheSameByEitherEngineToTheLastBit) {
         for (const char* key : {"distance", "lower", "upper", "witness", "at", "points"})
             EXPECT_EQ(fast[key], paper[key]) << key << " of " << words[1];
         EXPECT_GT(fast["distance"], 0.0);
-        EXPECT_NE(fast["sphere_tests"],
-                  paper["sphere_tests"]); // otherwise both are the same engine
+        EXPECT_NE(fast["sphere_tests"], paper["sphere_tests"]); // so the engines differ
     }
     EXPECT_EQ(measure({"sphere:5", "sphere:5"})["engine"], "fast");
 }

@@ -129,8 +129,7 @@ TEST(ConvexSeparation, HoldsForBodiesThatTouch) {
         const ConvexShape a = random_body(rng, 20.0), b = random_body(rng, 20.0);
         const Separation apart = separation(a, b);
         if (apart.upper == 0.0) continue;
-        ConvexShape touching =
-            b; // moved to touch, or to leave a gap or an overlap of a small amount
+        ConvexShape touching = b; // moved to contact, or to a small gap or overlap
         const double by[] = {0.0, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4};
         const Vec3 towards = (apart.point_a - apart.point_b) / apart.upper;
         for (size_t k = 0; k < touching.place_count; ++k)

@@ -13,8 +13,7 @@ using namespace core;
 /// The results for a chunk of lines compared with line_interval.
 struct Compared {
     int met = 0, both_missed = 0;
-    double longest = -infinity,
-           shortest = infinity; // by which an interval of the lanes is longer, at one end
+    double longest = -infinity, shortest = infinity; // excess of the lanes' interval at an end
 };
 
 /// Random moves up or down, some of them nearly level or nearly vertical.

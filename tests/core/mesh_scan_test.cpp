@@ -141,8 +141,7 @@ TEST(MeshScan, LeavesNoSeamWhereShellsTouch) {
     EXPECT_EQ(scan_line(touching, 0, 1.0, 1.0).value(), IntervalList(Interval{0.0, 8.0}));
     EXPECT_FALSE(scan_mesh(touching, 0.7)->shells_overlap);
     std::mt19937 rng(8);
-    for (int i = 0; i < 10;
-         ++i) // after a rotation, the common face is computed with different rounding
+    for (int i = 0; i < 10; ++i) // rotated, so that the common face is rounded differently
         for (const Vec3& p :
              boundary_points(scan(moved(touching, random_pose(rng, 50.0)), 1.0).value()))
             EXPECT_TRUE(is_finite(p));

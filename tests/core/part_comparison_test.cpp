@@ -162,8 +162,7 @@ TEST(PartComparison, SeesWhatWasNeverCut) {
     EXPECT_EQ(result.largest_gouge, 0.0);
     ASSERT_EQ(result.regions.size(), 1u);
     EXPECT_EQ(result.regions[0].kind, Deviation::excess);
-    EXPECT_NEAR(result.regions[0].amount, 3.15,
-                0.25); // from the middle of the opening to the walls
+    EXPECT_NEAR(result.regions[0].amount, 3.15, 0.25); // from the opening's middle to the walls
     EXPECT_FALSE(result.regions[0].block);
 }
 

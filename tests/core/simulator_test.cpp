@@ -178,8 +178,7 @@ TEST(Simulator, CoversAWholeCircle) {
     const BlockResult round = run.circle({100, 50, 0}, {100, 30, 20});
     const PairClearance* flutes = pair_of(round, PartKind::flutes, 0);
     ASSERT_TRUE(flutes);
-    const double expected =
-        50.0 - 20.0 - 5.0 - 5.0; // distance of centres, radius of the path, both radii
+    const double expected = 50.0 - 20.0 - 5.0 - 5.0; // centres, radius of the path, both radii
     EXPECT_LE(flutes->lower, expected);
     EXPECT_GE(flutes->upper, expected - 1e-9);
     EXPECT_NEAR(flutes->upper, expected, 0.01);

@@ -87,8 +87,7 @@ TEST(StockMesh, KeepsTheEdgesOfASlot) {
         const double out =
             std::max({std::abs(p.x - 30) - 30, std::abs(p.y - 20) - 20, -20 - p.z, p.z});
         const double in_slot = std::min(3.15 - std::abs(p.y - 20.1), p.z + 5.3);
-        EXPECT_NEAR(std::max(out, in_slot), 0.0,
-                    1e-5); // on the outside or on the walls of the slot
+        EXPECT_NEAR(std::max(out, in_slot), 0.0, 1e-5); // on the outside or the slot
     }
 }
 
