@@ -101,7 +101,7 @@ void expect_sound(const Triangle& a, const Triangle& b, std::mt19937& rng) {
         test_support::wide_distance(test_support::wide(a), test_support::wide(b)));
     EXPECT_LE(found.lower, truth + rounding);
     EXPECT_GE(found.upper, truth - rounding);
-    EXPECT_LE(found.upper - found.lower, 3e-7 + rounding); // 1e-7 except for touching slivers
+    EXPECT_LE(found.upper - found.lower, 3e-7 + rounding); // 1e-7 but for slivers that nearly touch
     EXPECT_LE(found.lower, sampled_distance(a, b, rng) + rounding);
     EXPECT_NEAR(glm::distance(found.point_a, found.point_b), found.upper, rounding);
     EXPECT_LE(glm::distance(nearest_point(a, found.point_a), found.point_a), rounding);
