@@ -202,7 +202,7 @@ core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
 
 std::string share_text(const CheckOptions& options, const SharedWork& work) {
     if (!options.share) return {};
-    return fmt::format("share {}: {} of {} programs", text_of(*options.share), work.places.size(),
+    return fmt::format("shard {}: {} of {} programs", text_of(*options.share), work.places.size(),
                        work.programs.size());
 }
 

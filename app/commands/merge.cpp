@@ -75,7 +75,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
     talk.say("\n" + batch_summary(batch, seconds, talk.style));
     for (const Shard& shard : shards)
         if (!shard.unchecked.empty())
-            print_note(fmt::format("feeler: {}: share {} was interrupted: run it again\n",
+            print_note(fmt::format("feeler: {}: shard {} was interrupted: run it again\n",
                                    shard.file, text_of(shard.share)));
 }
 

@@ -183,8 +183,7 @@ size_t bytes_apart(const core::ScanLines& lines, const core::ScanLines& other) {
     return bytes;
 }
 
-/// Bytes of the logs, which are chunked: the pointers, and the last chunk, which copies may not
-/// share.
+/// The number of bytes of the logs: pointers to chunks, and last chunks, which may not be shared.
 size_t bytes_of_logs(const core::CutModel& stock) {
     constexpr size_t pointer = sizeof(std::shared_ptr<void>);
     constexpr size_t per_tile = 64; // a list of chunks and the pointer of its one chunk

@@ -87,7 +87,7 @@ TEST_F(BadInput, OfAMissingProgram) {
 TEST_F(BadInput, OfAFolderWithoutPrograms) {
     std::filesystem::create_directory(folder / "empty");
     files = folder.names().size();
-    expect_refused(check("empty", "good.toml"), {"empty", "holds no NC program"});
+    expect_refused(check("empty", "good.toml"), {"empty", "contains no NC program"});
 }
 
 TEST_F(BadInput, OfAnEmptyProgram) { expect_program_refused("", {"bad.nc", "no blocks"}); }

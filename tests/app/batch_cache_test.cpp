@@ -100,8 +100,8 @@ TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
         if (!share.empty()) words.insert(words.end(), {"--shard", share});
         return feeler(words);
     };
-    EXPECT_TRUE(says(check("1/2"), "share 1/2: 2 of 3 programs"));
-    EXPECT_TRUE(says(check("2/2"), "share 2/2: 1 of 3 programs"));
+    EXPECT_TRUE(says(check("1/2"), "shard 1/2: 2 of 3 programs"));
+    EXPECT_TRUE(says(check("2/2"), "shard 2/2: 1 of 3 programs"));
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-1of2.db"));
     EXPECT_TRUE(std::filesystem::exists(folder / ".feeler/results-2of2.db"));
     EXPECT_FALSE(std::filesystem::exists(folder / ".feeler/results.db"));

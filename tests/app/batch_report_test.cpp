@@ -63,7 +63,7 @@ BatchResult batch_of_all_kinds() {
                                .seconds = 0.25};
     return {.programs = {good, bad, broken},
             .unchecked = {"late.nc"},
-            .skipped = {{"notes.txt", "most of its lines are no blocks of an NC program"}}};
+            .skipped = {{"notes.txt", "most of its lines are not NC blocks"}}};
 }
 
 json sarif() { return json::parse(sarif_report(batch_of_all_kinds(), "/home/me/my shop")); }
@@ -335,12 +335,12 @@ TEST(BatchText, HasTheMessageOfTheWorstOfARuleAndEachLineOnce) {
 
 TEST(BatchReport, OfAShareSaysThatItIsOne) {
     BatchResult batch = batch_of_all_kinds();
-    batch.share = "share 2/8: 4 of 31 programs";
+    batch.share = "shard 2/8: 4 of 31 programs";
     EXPECT_EQ(json::parse(batch_json_report(batch))["share"], batch.share);
     EXPECT_FALSE(json::parse(batch_json_report(batch_of_all_kinds())).contains("share"));
     const json run = json::parse(sarif_report(batch, "/"))["runs"][0];
     EXPECT_EQ(run["automationDetails"]["description"]["text"], batch.share);
-    EXPECT_THAT(junit_report(batch), HasSubstr("feeler check, share 2/8"));
+    EXPECT_THAT(junit_report(batch), HasSubstr("feeler check, shard 2/8"));
     EXPECT_THAT(batch_text(batch, {}), HasSubstr(batch.share + "\n4 programs"));
     EXPECT_THAT(batch_html_report(batch), HasSubstr("<b>" + batch.share));
 }
@@ -365,23 +365,23 @@ TEST(BatchText, TellsOfErrorsAndWithVerboseOfAll) {
 TEST(BatchText, CountsFilesThatWereSkippedForOneReason) {
     BatchResult batch = batch_of_all_kinds();
     for (const char* name : {"a.png", "b.png", "c.png", "d.png"})
-        batch.skipped.push_back({name, "is a picture or a film"});
+        batch.skipped.push_back({name, "is a picture or a video"});
     const std::string brief = batch_text(batch, {}), whole = batch_text(batch, {.verbose = true});
-    EXPECT_THAT(brief, HasSubstr("skipped: 4 files, such as a.png: is a picture or a film"));
+    EXPECT_THAT(brief, HasSubstr("skipped: 4 files, such as a.png: is a picture or a video"));
     EXPECT_THAT(brief, HasSubstr("skipped: notes.txt: most of its lines"));
     EXPECT_THAT(brief, Not(HasSubstr("b.png")));
-    EXPECT_THAT(whole, HasSubstr("skipped: d.png: is a picture or a film"));
+    EXPECT_THAT(whole, HasSubstr("skipped: d.png: is a picture or a video"));
 }
 
 TEST(Sarif, CountsSkippedFilesWhereTheyAreMany) {
     BatchResult batch;
     for (int i = 0; i < 1000; ++i)
-        batch.skipped.push_back({std::to_string(i) + ".png", "is a picture or a film"});
+        batch.skipped.push_back({std::to_string(i) + ".png", "is a picture or a video"});
     const json notes = json::parse(
         sarif_report(batch, "/"))["runs"][0]["invocations"][0]["toolExecutionNotifications"];
     ASSERT_EQ(notes.size(), 1U);
     EXPECT_EQ(notes[0]["message"]["text"],
-              "this and 999 more were skipped: is a picture or a film");
+              "this and 999 more were skipped: is a picture or a video");
 }
 
 TEST(BatchText, IsColouredOnlyWhenAsked) {

@@ -81,17 +81,17 @@ TEST_F(Batch, EndsWithTwoAndGoesOnAfterABadProgram) {
     EXPECT_THAT(ran.out, HasSubstr("6 programs in "));
     EXPECT_THAT(ran.out, HasSubstr("a bad one.nc:6"));
     EXPECT_THAT(ran.out, HasSubstr("none.nc"));
-    EXPECT_THAT(ran.out, HasSubstr("*.tap: names no file"));
+    EXPECT_THAT(ran.out, HasSubstr("*.tap: matches no file"));
 }
 
 TEST_F(Batch, TellsOfAFolderWithoutPrograms) {
     fs::create_directory(folder / "empty");
     const Ran alone = check({folder / "empty"});
     EXPECT_EQ(alone.status, 2);
-    EXPECT_THAT(alone.err, HasSubstr("empty: holds no NC program"));
+    EXPECT_THAT(alone.err, HasSubstr("empty: contains no NC program"));
     const Ran beside = check({folder / "empty", folder / "fine.nc"});
     EXPECT_EQ(beside.status, 2);
-    EXPECT_THAT(beside.out, HasSubstr("empty: holds no NC program"));
+    EXPECT_THAT(beside.out, HasSubstr("empty: contains no NC program"));
     EXPECT_THAT(beside.out, HasSubstr("clear      " + folder / "fine.nc"));
 }
 

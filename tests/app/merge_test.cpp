@@ -190,10 +190,10 @@ TEST_F(Merge, HasTheStatusOfAll) {
 
 TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
     const Ran ran = check({"--shard", "2/3", "--format", "jsonl", "--no-cache"});
-    EXPECT_THAT(ran.err, HasSubstr("share 2/3: 4 of 13 programs"));
+    EXPECT_THAT(ran.err, HasSubstr("shard 2/3: 4 of 13 programs"));
     EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 5) << "and the word for nothing";
     const Ran empty = check({"--shard", "20/20", "--no-cache"});
-    EXPECT_THAT(empty.out, HasSubstr("share 20/20: 0 of 13 programs"));
+    EXPECT_THAT(empty.out, HasSubstr("shard 20/20: 0 of 13 programs"));
 }
 
 TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
@@ -207,7 +207,7 @@ TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
         merge(2, {"--format", "json", "-o", folder / "merged.json", "--format", "text"});
     EXPECT_EQ(merged.status, 2);
     EXPECT_THAT(merged.out, HasSubstr("not checked: " + folder / "lib/long.nc"));
-    EXPECT_THAT(merged.err, HasSubstr("1.share: share 1/2 was interrupted: run it again"));
+    EXPECT_THAT(merged.err, HasSubstr("1.share: shard 1/2 was interrupted: run it again"));
     const json report = json::parse(bytes_of(folder / "merged.json"));
     EXPECT_THAT(report["unchecked"], testing::Contains(folder / "lib/long.nc"));
     EXPECT_EQ(report["programs"].size() + report["unchecked"].size(), 15U);
@@ -224,7 +224,7 @@ TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
     const Ran merged = merge(2);
     EXPECT_EQ(merged.status, 2);
     EXPECT_THAT(merged.err, HasSubstr("1.share: cannot be read: No such file"));
-    EXPECT_THAT(feeler({"merge", share(2)}).err, HasSubstr("a share is missing: 1/2"));
+    EXPECT_THAT(feeler({"merge", share(2)}).err, HasSubstr("a shard is missing: 1/2"));
 }
 
 TEST_F(Merge, FindsNoOldShareOfAMachineThatSawNoPrograms) {
@@ -306,7 +306,7 @@ TEST_F(Merge, RefusesSharesThatWereAskedForOtherwise) {
         const Ran merged = merge(2);
         EXPECT_EQ(merged.status, 2) << more[0];
         EXPECT_EQ(merged.out, "") << more[0];
-        EXPECT_THAT(merged.err, HasSubstr("with other options or another set-up")) << more[0];
+        EXPECT_THAT(merged.err, HasSubstr("different options or a different set-up")) << more[0];
     }
     check_share(2, 2);
     EXPECT_THAT(merge(2).err, "");
@@ -323,23 +323,24 @@ TEST_F(Merge, RefusesSharesOfOtherStatesOfTheLibrary) {
         return merged.err;
     };
     EXPECT_THAT(why([&] { write("0.nc", fine() + "( changed )\n"); }),
-                HasSubstr("lib/0.nc has another size there"));
+                HasSubstr("lib/0.nc has a different size there"));
     EXPECT_THAT(why([&] { write("new.nc", fine()); }),
-                HasSubstr("it has " + folder / "lib/new.nc"));
+                HasSubstr("it contains " + folder / "lib/new.nc"));
     EXPECT_THAT(why([&] { fs::remove(folder / "lib/1.nc"); }),
-                HasSubstr("it does not know " + folder / "lib/1.nc"));
+                HasSubstr("it does not contain " + folder / "lib/1.nc"));
     EXPECT_THAT(why([&] { std::ofstream(folder / "setup.toml", std::ios::app) << "# moved\n"; }),
-                HasSubstr("another set-up"));
+                HasSubstr("a different set-up"));
     words.insert(words.end(), {"--tool-table", folder.write("tool.tbl", "T1 P1 D10\n")});
-    EXPECT_THAT(why([&] { folder.write("tool.tbl", "T1 P1 D11\n"); }), HasSubstr("another set-up"));
+    EXPECT_THAT(why([&] { folder.write("tool.tbl", "T1 P1 D11\n"); }),
+                HasSubstr("a different set-up"));
     words.insert(words.end(), {"--parameters", folder.write("variables", "5220\t1\n")});
     EXPECT_THAT(why([&] { folder.write("variables", "5220\t1\n5221\t0\n"); }),
-                HasSubstr("another set-up"));
+                HasSubstr("a different set-up"));
     words.insert(words.end(), {"--ini", folder.write("mill.ini", "[TRAJ]\nCOORDINATES = XYZ\n")});
     EXPECT_THAT(why([&] { folder.write("mill.ini", "[TRAJ]\nCOORDINATES = X Y Z\n"); }),
-                HasSubstr("another set-up"));
+                HasSubstr("a different set-up"));
     EXPECT_THAT(why([&] { words.push_back(folder / "nothing*.nc"); }),
-                HasSubstr("what its words do not find"));
+                HasSubstr("different files were missing"));
 }
 
 TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
@@ -352,17 +353,17 @@ TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
         return ran.err;
     };
     const std::string whole = bytes_of(share(2));
-    EXPECT_THAT(why({share(1), share(1), share(2)}), HasSubstr("is share 1/2, and so is"));
+    EXPECT_THAT(why({share(1), share(1), share(2)}), HasSubstr("is shard 1/2, and so is"));
     EXPECT_THAT(why({share(1), folder.write("cut", whole.substr(0, whole.size() / 2))}),
-                HasSubstr("cut: is a share of a batch that was cut off"));
-    EXPECT_THAT(why({share(1), folder / "lib/fine.nc"}), HasSubstr("fine.nc: is no share"));
+                HasSubstr("cut: is a shard of a batch that was truncated"));
+    EXPECT_THAT(why({share(1), folder / "lib/fine.nc"}), HasSubstr("fine.nc: is not a shard"));
     EXPECT_THAT(why({share(1), folder / "lib"}), HasSubstr("lib: cannot be read"));
     EXPECT_THAT(why({share(1), folder.write("new", "{\"feeler_shard\": 2}")}),
                 HasSubstr("new: was written by a newer version"));
     std::string foreign = whole;
     foreign.replace(foreign.find("\"version\": \"") + 12, 1, "9");
     EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
-                HasSubstr("foreign: is a share of a batch that was cut off or changed"));
+                HasSubstr("foreign: is a shard of a batch that was truncated or changed"));
     foreign = app::sealed(foreign.substr(0, foreign.rfind(",\n\"seal\"")));
     EXPECT_THAT(why({share(1), folder.write("foreign", foreign)}),
                 HasSubstr("was written by feeler 9"));
@@ -407,7 +408,7 @@ TEST_F(Merge, TakesNoShareThatIsNone) {
     for (const char* name : {"3/2", "0/2", "2", "1/0", "1/99999999999", "x"}) {
         const Ran ran = check({"--shard", name, "--no-cache"});
         EXPECT_EQ(ran.status, 2) << name;
-        EXPECT_THAT(ran.err, HasSubstr("is no share")) << name;
+        EXPECT_THAT(ran.err, HasSubstr("is not a shard")) << name;
     }
     const Ran ran = check({"--format", "shard", "-o", share(1)});
     EXPECT_EQ(ran.status, 2);

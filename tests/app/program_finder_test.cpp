@@ -98,10 +98,10 @@ TEST_F(ProgramFinder, FailsWhereNothingIsFound) {
     EXPECT_THAT(found.programs, IsEmpty());
     ASSERT_EQ(found.failures.size(), 3U);
     EXPECT_EQ(found.failures[0].file + " " + found.failures[0].message,
-              "empty holds no NC program");
+              "empty contains no NC program");
     EXPECT_EQ(found.failures[1].file + " " + found.failures[1].message,
-              "texts holds no NC program");
-    EXPECT_EQ(found.failures[2].file + " " + found.failures[2].message, "*.tap names no file");
+              "texts contains no NC program");
+    EXPECT_EQ(found.failures[2].file + " " + found.failures[2].message, "*.tap matches no file");
 }
 
 TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
@@ -195,7 +195,7 @@ TEST_F(ProgramFinder, TellsOfAFolderThatCannotBeRead) {
             texts.push_back(error.file + " " + error.message);
         EXPECT_THAT(texts, testing::UnorderedElementsAre(
                                HasSubstr("locked this folder cannot be read: Permission"),
-                               HasSubstr("listed/c.nc cannot be looked at: Permission")));
+                               HasSubstr("listed/c.nc cannot be accessed: Permission")));
     }
     fs::permissions(folder / "locked", fs::perms::owner_all);
     fs::permissions(folder / "listed", fs::perms::owner_all);

@@ -100,7 +100,7 @@ TEST_F(ProjectFile, NamesTheLineOfAPatternThatNamesNothing) {
     ASSERT_EQ(plan->failures.size(), 1U);
     EXPECT_EQ(plan->failures[0].file, folder / "feeler.toml");
     EXPECT_EQ(plan->failures[0].where.line, 3U);
-    EXPECT_THAT(plan->failures[0].message, HasSubstr("*.tap names no file"));
+    EXPECT_THAT(plan->failures[0].message, HasSubstr("*.tap matches no file"));
 }
 
 /// Projects in nested folders; names are relative to the outermost.
@@ -143,7 +143,7 @@ protected:
     std::vector<std::string> skips(const BatchPlan& plan) const {
         std::vector<std::string> all;
         for (const SkippedFile& file : plan.skipped)
-            if (file.why.starts_with("is named by no")) all.push_back(short_name(file.path));
+            if (file.why.starts_with("is not named in any")) all.push_back(short_name(file.path));
         return all;
     }
 
@@ -289,11 +289,11 @@ TEST_F(ProjectFile, RefusesWrongValues) {
     EXPECT_THAT(refusal("[[program]]\nfiles = []\n").message, HasSubstr("files"));
     for (const char* blank : {"files = \"\"", "files = [\"a.nc\", \"\"]"}) {
         const core::Error error = refusal("[[program]]\n" + std::string(blank) + "\n");
-        EXPECT_THAT(error.message, HasSubstr("files names no file"));
+        EXPECT_THAT(error.message, HasSubstr("files must name a file"));
         EXPECT_EQ(error.where.line, 2U);
         EXPECT_EQ(error.where.column, 9U);
     }
-    EXPECT_THAT(refusal(program + "setup = \"\"\n").message, HasSubstr("setup names no file"));
+    EXPECT_THAT(refusal(program + "setup = \"\"\n").message, HasSubstr("setup must name a file"));
     EXPECT_EQ(refusal(program + "setup = \"\"\n").where.line, 3U);
     EXPECT_THAT(refusal("[[program]]\nfiles = [1]\n").message, HasSubstr("files"));
     EXPECT_THAT(refusal(program + "dialect = \"basic\"\n").message, HasSubstr("fanuc"));

@@ -53,7 +53,7 @@ TEST(ErrorText, NamesTheFileUnlessTheMessageDoes) {
     };
     EXPECT_EQ(text("a.nc", "cannot read a.nc: no such file"), "cannot read a.nc: no such file");
     EXPECT_EQ(text("'a b'", "there is no 'a b'"), "there is no 'a b'");
-    EXPECT_EQ(text("e", "holds no NC program"), "e: holds no NC program");
+    EXPECT_EQ(text("e", "contains no NC program"), "e: contains no NC program");
     EXPECT_EQ(text("", "is wrong"), "is wrong");
 }
 

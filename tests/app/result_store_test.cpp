@@ -214,7 +214,7 @@ TEST(ResultStore, RefusesFilesThatAreNotItsOwn) {
     auto newer = app::Database::open(folder / "newer", app::Database::Access::read_write);
     ASSERT_TRUE(newer && newer->run("PRAGMA user_version = 3"));
     EXPECT_EQ(why_not(folder / "newer"), "was written by a newer version of Feeler (its format is "
-                                         "3, this version knows 2)");
+                                         "3, this version supports 2)");
 }
 
 TEST(ResultStore, LiesInAFolderOfItsOwnUnlessAnotherIsNamed) {

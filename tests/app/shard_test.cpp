@@ -134,21 +134,21 @@ TEST(Merged, LeavesUncheckedWhatAShareWasStoppedBefore) {
 
 TEST(Merged, NamesSharesThatAreMissingOrThereTwice) {
     const std::vector<Shard> all = three_shards();
-    EXPECT_EQ(why_not({}), "there are no shares");
-    EXPECT_EQ(why_not({all[0], all[2]}), "a share is missing: 2/3");
-    EXPECT_EQ(why_not({all[1]}), "these shares are missing: 1/3, 3/3");
+    EXPECT_EQ(why_not({}), "there are no shards");
+    EXPECT_EQ(why_not({all[0], all[2]}), "a shard is missing: 2/3");
+    EXPECT_EQ(why_not({all[1]}), "these shards are missing: 1/3, 3/3");
     Shard again = all[1];
     again.file = "again.json";
     EXPECT_EQ(why_not({all[0], all[1], all[2], again}),
-              "again.json is share 2/3, and so is 2.json");
+              "again.json is shard 2/3, and so is 2.json");
 }
 
 TEST(Merged, RefusesSharesOfDifferentBatches) {
     std::vector<Shard> shards = three_shards();
     shards[1].version = "2";
-    EXPECT_EQ(why_not(shards),
-              "2.json belongs to another batch than 1.json: another version of Feeler made it");
-    const std::string other = "3.json belongs to another batch than 1.json: ";
+    EXPECT_EQ(why_not(shards), "2.json belongs to a different batch than 1.json: it was made by a "
+                               "different version of Feeler");
+    const std::string other = "3.json belongs to a different batch than 1.json: ";
     const auto after = [&](auto change) {
         shards = three_shards();
         change(shards[2]);
@@ -157,39 +157,39 @@ TEST(Merged, RefusesSharesOfDifferentBatches) {
     EXPECT_EQ(after([](Shard& shard) {
                   shard.programs.push_back({"new.nc", 1, "terms"});
               }),
-              other + "it has new.nc, too");
+              other + "it contains new.nc, the other one does not");
     EXPECT_EQ(after([](Shard& shard) { shard.programs[3].name = "new.nc"; }),
-              other + "it does not know teil \"3\" ä.nc");
+              other + "it does not contain teil \"3\" ä.nc");
     EXPECT_EQ(after([](Shard& shard) { std::swap(shard.programs[3], shard.programs[4]); }),
-              other + "its programs are named in another order");
+              other + "its programs are in a different order");
     EXPECT_EQ(after([](Shard& shard) { shard.programs[4].size = 99; }),
-              other + "teil \"4\" ä.nc has another size there");
+              other + "teil \"4\" ä.nc has a different size there");
     EXPECT_EQ(after([](Shard& shard) { shard.programs[4].terms = "other"; }),
-              other + "teil \"4\" ä.nc was to be checked with other options or another set-up");
+              other + "teil \"4\" ä.nc has different options or a different set-up there");
     EXPECT_EQ(after([](Shard& shard) { shard.failures.clear(); }),
-              other + "what its words do not find, or cannot be read, is other");
+              other + "different files were missing or unreadable there");
     shards = three_shards();
     shards[1].share.n = 4;
     EXPECT_EQ(why_not(shards),
-              "2.json belongs to another batch than 1.json: it is share 2/4, not one of 3");
+              "2.json belongs to a different batch than 1.json: it is shard 2/4, not one of 3");
 }
 
 TEST(Merged, RefusesResultsThatDoNotFitTheirShare) {
     std::vector<Shard> shards = three_shards();
     const std::string missing = shards[1].results.back().program;
     shards[1].results.pop_back();
-    EXPECT_EQ(why_not(shards), "2.json has a result that is not one of its programs'");
+    EXPECT_EQ(why_not(shards), "2.json has a result that belongs to none of its programs");
     shards[1].places.pop_back();
-    EXPECT_EQ(why_not(shards), "no share has a result of " + missing);
+    EXPECT_EQ(why_not(shards), "no shard has a result for " + missing);
     shards = three_shards();
     shards[2].places[0] = 99;
-    EXPECT_EQ(why_not(shards), "3.json has a result that is not one of its programs'");
+    EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
 TEST(Merged, RefusesAProgramThatTwoSharesHave) {
     std::vector<Shard> shards = three_shards();
     shards[2].unchecked = {shards[0].places[0]};
-    EXPECT_EQ(why_not(shards), "3.json has a result that is not one of its programs'");
+    EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
 TEST(Merged, NamesSomeOfManyMissingShares) {
@@ -215,20 +215,20 @@ TEST(Shard, SaysWhatATextIsThatIsNone) {
     const auto why = [](const std::string& text) {
         return app::shard_from_json(text).error().message;
     };
-    EXPECT_EQ(why("{}"), "is no share of a batch: --format shard writes one");
+    EXPECT_EQ(why("{}"), "is not a shard of a batch: --format shard writes one");
     EXPECT_EQ(why(""), why("{}"));
     EXPECT_EQ(why("[1"), why("{}"));
     EXPECT_EQ(why("G1 X1\n"), why("{}"));
     EXPECT_EQ(why("{\"feeler_shard\": 2}"), "was written by a newer version of Feeler");
     EXPECT_EQ(why("{\"feeler_shard\": 1, \"versi"),
-              "is a share of a batch that was cut off or changed");
+              "is a shard of a batch that was truncated or changed");
     EXPECT_EQ(why("{\"feeler_shard\": 2, \"versi"), why("{\"feeler_shard\": 2}"));
     EXPECT_EQ(why("{\"feeler_shard\": \"x\"}"),
-              "is a share of a batch that was cut off or changed");
+              "is a shard of a batch that was truncated or changed");
     EXPECT_THAT(why(app::sealed("{\"feeler_shard\": 1, \"version\": 3")),
-                testing::StartsWith("is no share of a batch: "));
+                testing::StartsWith("is not a shard of a batch: "));
     EXPECT_EQ(why(app::json_of(three_shards()[0]) + " "),
-              "is a share of a batch that was cut off or changed");
+              "is a shard of a batch that was truncated or changed");
 }
 
 /// A shard of one program with a near miss, as text without the seal.
@@ -279,7 +279,7 @@ TEST(Shard, IsRefusedWhenAnyByteOfItIsAnother) {
     std::string edited = whole;
     edited.replace(edited.find("violation"), 9, "clear");
     EXPECT_EQ(app::shard_from_json(edited).error().message,
-              "is a share of a batch that was cut off or changed");
+              "is a shard of a batch that was truncated or changed");
 }
 
 TEST(Shard, TakesNoOtherTypeForAList) {
@@ -292,7 +292,7 @@ TEST(Shard, TakesNoOtherTypeForAList) {
           std::string("[\"holder\",\"clamp\"]"), std::string("[\"a.nc\",9,\"terms\"]"),
           std::string("[\"part.stl\",\"is a mesh\"]")})
         for (const char* other : {"{}", "null", "0", "\"x\"", "[[]]", "{\"0\":0}"})
-            EXPECT_THAT(why_not_with(text, other), testing::HasSubstr("is no ")) << text << other;
+            EXPECT_THAT(why_not_with(text, other), testing::HasSubstr("is not ")) << text << other;
     for (const char* other : {"[\"holder\"]", "[\"holder\",\"clamp\",\"vise\"]"})
         EXPECT_NE(why_not_with("[\"holder\",\"clamp\"]", other), "") << other;
     EXPECT_NE(why_not_with("[1, 1]", "[1, 1, 1]"), "");
@@ -327,7 +327,7 @@ TEST(Shard, TakesNoTimeThatNothingTakes) {
 
 TEST(Shard, IsRefusedWhereItIsNestedTooDeep) {
     const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
-    const std::string why = "is no share of a batch: nested too deep";
+    const std::string why = "is not a shard of a batch: nested too deeply";
     EXPECT_EQ(why_not_with("[1, 1]", deep), why);
     EXPECT_EQ(why_not_with("\"results\": [", "\"results\": [" + deep + ","), why);
     EXPECT_EQ(
@@ -342,7 +342,7 @@ TEST(Shard, IsRefusedWhereItsNameIsNone) {
     std::string other = unsealed_share();
     other.replace(other.find("[1, 1]"), 6, "[5, 3]");
     EXPECT_THAT(app::shard_from_json(app::sealed(other)).error().message,
-                testing::StartsWith("'5/3' is no share"));
+                testing::StartsWith("'5/3' is not a shard"));
 }
 
 } // namespace

@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That what has no other look is what it is: it may become a file or another folder, by a link.
+/// Reports access to a path that is not read or listed now, but may become a file or folder.
 void note_presence(const fs::path& path) {
     core::notify_file_access({core::FileQuestion::presence, path.string(), {}, {}});
 }
 
-/// Enters folders one after the other, links last.
+/// Walks through folders one after the other, links last.
 class Walk {
 public:
     explicit Walk(const fs::path& folder) {
@@ -30,7 +30,7 @@ public:
             std::deque<fs::path>& next = real_.empty() ? linked_ : real_;
             const fs::path entered = next.front();
             next.pop_front();
-            // A link was not looked at before: what it leads to may have been entered since.
+            // The target of a link may have been entered since the link was found.
             if (&next == &linked_ && !is_new(entered)) continue;
             enter(entered);
         }
@@ -55,7 +55,7 @@ private:
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
              at.increment(failure))
             if (at->path().filename().string().front() != '.') entries.push_back(*at);
-        // By which of two links a folder is entered must not depend on the disk's own order.
+        // The choice among several links to a folder must not depend on the order on disk.
         std::sort(entries.begin(), entries.end());
         for (const fs::directory_entry& entry : entries) sort_in(entry);
         if (failure) found.unreadable.push_back(unreadable_folder(folder, failure));
@@ -84,7 +84,7 @@ void FolderWalk::sort_in(const fs::path& path) {
     if (!fs::is_regular_file(status)) note_presence(path);
     const auto cannot = [&] {
         unreadable.push_back(
-            {core::ErrorCode::io, {}, "cannot be looked at: " + failure.message(), path.string()});
+            {core::ErrorCode::io, {}, "cannot be accessed: " + failure.message(), path.string()});
     };
     const bool leads_nowhere = status.type() == fs::file_type::not_found
                                || failure == std::errc::too_many_symbolic_link_levels;
@@ -96,7 +96,7 @@ void FolderWalk::sort_in(const fs::path& path) {
         skipped.push_back({path.string(), "is neither a file nor a folder"});
     else if (fs::is_symlink(fs::symlink_status(path, ignored)))
         skipped.push_back({path.string(), "is a link that leads nowhere"});
-    else if (failure != std::errc::no_such_file_or_directory) // that went while it was listed
+    else if (failure != std::errc::no_such_file_or_directory) // deleted while the folder was listed
         cannot();
 }
 
@@ -134,7 +134,7 @@ public:
     }
 
 private:
-    /// Each once: two parts of a pattern may come by the same folder.
+    /// Sorts and removes duplicates: several parts of a pattern may reach the same folder.
     template <typename T, typename Less>
     static void order(std::vector<T>& all, Less less) {
         std::sort(all.begin(), all.end(), less);
@@ -159,7 +159,7 @@ private:
         return names;
     }
 
-    /// `**` and what comes behind it, here and in every folder below.
+    /// Expands `**` and the parts after it, here and in every folder below.
     void expand_below(const fs::path& folder, size_t i) {
         if (i + 1 == parts_.size()) parts_.push_back("*");
         FolderWalk below = walk_folder(folder.empty() ? "." : folder.string());
@@ -175,7 +175,8 @@ private:
         if (what == "folder") {
             if (!is_last) expand(path, i + 1);
         } else if (is_last || what != "file") {
-            // What a pattern spells out and is not there is no news: nobody has seen its name.
+            // A missing file that the pattern names without wildcards is not reported: its name was
+            // not found on disk.
             if (is_glob(parts_[i]) || what) found_.sort_in(path);
         }
     }

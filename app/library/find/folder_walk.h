@@ -23,7 +23,7 @@ struct FolderWalk {
     std::vector<std::filesystem::path> folders; // searched, sorted
 
     /// Adds a path as a file or as skipped; ignores folders. Reports the access to a path that is
-    /// not a file, since it may become one.
+    /// not a file, because it may become one.
     void sort_in(const std::filesystem::path& path);
 };
 

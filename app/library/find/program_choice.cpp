@@ -63,7 +63,7 @@ core::Result<void> Chooser::take_project(const std::string& path) {
     return {};
 }
 
-/// Empty while that project is being read: its own search has led to it.
+/// The choice of a project; null while it is being read, because its own search found it again.
 Chooser::Chosen Chooser::chosen_by(const std::string& project) {
     const auto [known, is_new] = projects_.try_emplace(identities_.of(project));
     if (is_new) {
@@ -117,7 +117,8 @@ bool Chooser::is_nearest(const std::string& project, const std::string& program)
     return !nearest.empty() && identities_.of(nearest) == identities_.of(project);
 }
 
-/// A program that a search led to is what its own project says.
+/// Adds a found program with the settings of its own project, or skips it if the project does not
+/// name it.
 void Chooser::take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named) {
     const Chosen chosen = found.project.empty() ? nullptr : chosen_by(found.project);
     if (!chosen || found.is_named) choice.add(as_named);
@@ -125,7 +126,8 @@ void Chooser::take_found(ProgramChoice& choice, const FoundProgram& found, Chose
     if (const ChosenProgram* program = (*chosen)->find(found.path)) {
         choice.add({found.path, program->general, program->special, program->is_at_home});
     } else if (!found.is_named) {
-        choice.skip({found.path, fmt::format("is named by no [[program]] of {}", found.project)});
+        choice.skip(
+            {found.path, fmt::format("is not named in any [[program]] of {}", found.project)});
     }
 }
 

@@ -16,12 +16,12 @@ namespace app {
 /// A program and the settings that project files give it.
 struct ChosenProgram {
     std::string path;
-    ProgramTerms general, special; // for all programs; from the tables that name it
-    bool is_at_home = false;       // chosen by the nearest project file above it
+    ProgramTerms general, special; // `general`: for all programs; `special`: from tables naming it
+    bool is_at_home = false;       // named by the nearest project file above it
 };
 
-/// Programs in the order of their first addition, each once however its path is spelled. If several
-/// projects name a program, the nearest project above it decides; otherwise the last one.
+/// Programs in the order of their first addition, each once however its path is written. If several
+/// projects name a program, the nearest project above it decides, otherwise the last one.
 class ProgramChoice {
 public:
     void add(const ChosenProgram& program);
@@ -31,7 +31,7 @@ public:
     const std::vector<ChosenProgram>& programs() const { return programs_; }
     const ChosenProgram* find(const std::string& path) const;
 
-    /// Except files that were also added as programs.
+    /// The skipped files, except those that were also added as programs.
     std::vector<SkippedFile> skipped() const;
     const std::vector<core::Error>& failures() const { return failures_; }
 
@@ -39,13 +39,13 @@ private:
     std::vector<ChosenProgram> programs_;
     std::vector<SkippedFile> skipped_;
     std::vector<core::Error> failures_;
-    std::map<std::string, size_t> places_; // of programs
-    std::set<std::string> told_;           // of skipped files and failures
+    std::map<std::string, size_t> places_; // index in programs_, by file identity
+    std::set<std::string> told_;           // skipped files and failures already recorded
     mutable FileIdentities identities_;
 };
 
-/// Chooses programs from words of a command line and from project files, including project files
-/// found in the folders that words name.
+/// Chooses programs from arguments of a command line and from project files, including project
+/// files found in the folders that arguments name.
 class Chooser {
 public:
     void take_words(const std::vector<std::string>& words);
@@ -71,7 +71,7 @@ private:
     void take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named);
 
     ProgramChoice choice_;
-    std::map<std::string, Chosen> projects_; // empty while one is being read
+    std::map<std::string, Chosen> projects_; // null while the project is being read
     FileIdentities identities_;
     ProjectOwners owners_;
 };

@@ -34,7 +34,7 @@ public:
         if (what == "folder") return search(plain_path(path));
         if ((!what || *what == "unknown") && is_glob(word)) return expand(word);
         if (what == "other") return fail(path, "is a pipe or a device; name it alone to check it");
-        add(path); // that it is there and can be read, its check says
+        add(path); // its check reports if it is missing or unreadable
     }
 
 private:
@@ -48,7 +48,7 @@ private:
                 projects.insert(plain_path(owners_.of(each, each)));
         found.projects.insert(found.projects.end(), projects.begin(), projects.end());
         if (!has_programs && projects.empty() && walk.unreadable.empty())
-            fail(folder, "holds no NC program");
+            fail(folder, "contains no NC program");
     }
 
     void expand(const std::string& pattern) {
@@ -56,10 +56,10 @@ private:
         const bool has_programs = take_all(matched, folder_of_glob(folder_, pattern));
         if (has_programs || !matched.unreadable.empty()) return;
         const bool is_any = !matched.files.empty() || !matched.skipped.empty();
-        fail(plain_path(folder_ / pattern), is_any ? "names no NC program" : "names no file");
+        fail(plain_path(folder_ / pattern), is_any ? "matches no NC program" : "matches no file");
     }
 
-    /// Whether there are programs among them, or what may be some.
+    /// Adds the programs among files. True if there are programs, or files that may be programs.
     bool take_all(const FolderWalk& walk, const fs::path& top) {
         for (const SkippedFile& file : walk.skipped) skip(plain_path(file.path), file.why);
         for (core::Error error : walk.unreadable) {
@@ -75,13 +75,13 @@ private:
         return has_programs;
     }
 
-    /// Whether it is a program, or may be one; it is looked into once.
+    /// Adds a file if it is a program. True if it is one, or may be one. Reads each file only once.
     bool take_file(const std::string& file, const std::string& project) {
         const auto [known, is_new] = looked_into_.try_emplace(identities_.of(file));
         Look& look = known->second;
         if (look.place) {
             FoundProgram& program = found.programs[*look.place];
-            // What a search finds that began below its project is to be checked in any case.
+            // A program found by a search that began below its project is always checked.
             if (program.project.empty() != project.empty()) program.is_named = true;
             if (!project.empty()) program.project = project;
         }
@@ -117,10 +117,10 @@ private:
         found.failures.push_back({core::ErrorCode::io, {}, why, word});
     }
 
-    /// What came of a file.
+    /// The result of examining a file.
     struct Look {
         bool may_be_program = false;
-        std::optional<size_t> place = {}; // among the programs
+        std::optional<size_t> place = {}; // index in found.programs
     };
 
     fs::path folder_;
@@ -140,9 +140,9 @@ FoundPrograms find_programs(const std::vector<std::string>& words, const fs::pat
 
 namespace {
 
-constexpr size_t looked_at = 65536; // bytes
+constexpr size_t looked_at = 65536; // bytes at the beginning of a file that are read
 
-/// Endings of names, without the dot, that no NC program has.
+/// File extensions, without the dot, that NC programs never have.
 struct Kind {
     const char* what;
     std::initializer_list<std::string_view> endings;
@@ -152,7 +152,7 @@ const Kind foreign_kinds[] = {
     {"is a mesh or a drawing",
      {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs", "dxf", "dwg", "3mf", "f3d", "fcstd",
       "sldprt", "sldasm", "ipt", "prt", "svg"}},
-    {"is a picture or a film", {"png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "mp4"}},
+    {"is a picture or a video", {"png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "mp4"}},
     {"is an archive", {"zip", "gz", "bz2", "xz", "7z", "tar", "rar", "zst"}},
     {"is a document", {"pdf", "doc", "docx", "xls", "xlsx", "odt", "ods", "md", "html", "htm"}},
     {"is a set-up, a table or a report",
@@ -161,7 +161,7 @@ const Kind foreign_kinds[] = {
     {"is a program of another kind", {"py", "sh", "bat", "exe", "dll", "so", "cpp", "c", "js"}},
 };
 
-/// Endings that NC programs have and hardly anything else.
+/// File extensions that are hardly used for anything but NC programs.
 constexpr std::string_view program_endings[] = {"nc",  "ngc", "tap", "cnc", "gcode", "mpf",
                                                 "spf", "eia", "nct", "hnc", "gc"};
 
@@ -171,7 +171,7 @@ std::string ending_of(const std::string& path) {
     return ending.empty() ? ending : ending.substr(1);
 }
 
-/// Whether code without blanks begins as a block does: N10, a letter and a value, a tape mark.
+/// Whether code without blanks begins like a block: N10, a letter and a value, or a tape mark.
 bool is_like_a_block(std::string_view code) {
     if (code.empty()) return false;
     if (code[0] == '/') code.remove_prefix(1);
@@ -205,7 +205,7 @@ bool has_mostly_blocks(std::string_view text) {
     return has_code && 2 * blocks >= lines;
 }
 
-/// What keeps any text from being a program.
+/// Why a text cannot be a program of any kind; empty if it can.
 std::optional<std::string> why_unreadable(std::string_view text) {
     if (text.find('\0') != std::string_view::npos) return std::string(gcode::what_has_nuls(text));
     if (gcode::looks_binary(gcode::count_stray_controls(text), text.size()))
@@ -218,7 +218,7 @@ std::optional<std::string> why_unreadable(std::string_view text) {
 std::optional<std::string> why_no_program_text(std::string_view text) {
     if (auto why = why_unreadable(text)) return why;
     if (is_klartext(text) || has_mostly_blocks(text)) return std::nullopt;
-    return "most of its lines are no blocks of an NC program";
+    return "most of its lines are not NC blocks";
 }
 
 core::Result<std::optional<std::string>> why_no_program(const std::string& path) {

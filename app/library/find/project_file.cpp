@@ -13,11 +13,11 @@
 namespace app {
 namespace {
 
-/// The keys that stand both under `[[program]]` and before all of them.
+/// Reads the keys that are allowed both in `[[program]]` and at the top level.
 ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder) {
     ProgramTerms terms;
     if (const auto setup = table.string("setup")) {
-        if (setup->empty()) table.refuse("setup", "names no file");
+        if (setup->empty()) table.refuse("setup", "must name a file");
         terms.setup = plain_path(folder / *setup);
     }
     if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
@@ -26,7 +26,7 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
     terms.allowance = table.number("allowance");
     if (terms.allowance
         && !(*terms.allowance >= 0.0 && *terms.allowance <= core::largest_allowance))
-        table.refuse("allowance", "must lie between 0 and 1000 mm");
+        table.refuse("allowance", "must be between 0 and 1000 mm");
     terms.mesh_size = table.number("mesh_size");
     if (terms.mesh_size && !(*terms.mesh_size > 0.0)) table.refuse("mesh_size", "must be above 0");
     if (auto rules = table.table("rules", table.name() + " rules"))
@@ -42,7 +42,7 @@ std::vector<std::string> read_files(TableReader& table) {
         names = {*name};
     const bool has_blank = std::find(names.begin(), names.end(), "") != names.end();
     if (has_blank || (names.empty() && table.has("files")))
-        table.refuse("files", "names no file; \".\" is the project's folder");
+        table.refuse("files", "must name a file; \".\" is the folder of the project");
     return names;
 }
 
@@ -50,7 +50,7 @@ void read_root(TableReader& root, const std::filesystem::path& folder, Project& 
     project.terms = read_terms(root, folder);
     for (TableReader& table : root.tables("program", "[[program]]")) {
         ProjectEntry entry{read_files(table), read_terms(table, folder), table.line()};
-        table.finish(); // first: `file` for `files` is better called unknown than missing
+        table.finish(); // before need(): calls a misspelt `file` unknown, not `files` missing
         if (entry.files.empty()) table.need("files");
         project.entries.push_back(std::move(entry));
     }

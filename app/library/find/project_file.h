@@ -12,9 +12,9 @@
 
 namespace app {
 
-/// Settings of a project file for programs; empty where it states nothing.
+/// Settings for programs in a project file; empty if not stated.
 struct ProgramTerms {
-    std::string setup; // its path
+    std::string setup; // path of the set-up
     std::optional<gcode::DialectId> dialect;
     std::optional<double> allowance, mesh_size; // mm
     core::RuleSeverities rules;
@@ -22,7 +22,7 @@ struct ProgramTerms {
     bool operator==(const ProgramTerms&) const = default;
 };
 
-/// Both combined; `over` takes precedence.
+/// Combines settings; `over` takes precedence.
 ProgramTerms overlaid(ProgramTerms terms, const ProgramTerms& over);
 
 /// One `[[program]]` table: files, folders and patterns, and their settings.
@@ -32,29 +32,29 @@ struct ProjectEntry {
     uint32_t line = 0;
 };
 
-/// A project file: programs and what each is checked against.
+/// A project file: programs, and what each is checked against.
 struct Project {
     std::string path;
     ProgramTerms terms; // for all programs
     std::vector<ProjectEntry> entries;
 };
 
-/// Reads a project file (TOML). The paths of set-ups come out relative to the working folder.
+/// Reads a project file (TOML). Paths of set-ups become relative to the working folder.
 ///
-/// Errors: with file, line and column: no file, no TOML, an unknown key, a wrong value.
+/// Errors: with file, line and column: no such file, invalid TOML, an unknown key, a wrong value.
 core::Result<Project> read_project(const std::string& path);
 
 /// Finds the project file that applies to a folder.
 class ProjectOwners {
 public:
     /// The project file in this folder, else in the nearest folder above it, up to `top`; empty
-    /// if there is none. A broken link with that name counts.
+    /// if there is none. A broken link with its name counts.
     std::string of(const std::filesystem::path& folder, const std::filesystem::path& top);
 
 private:
     bool holds_project(const std::filesystem::path& folder);
 
-    std::map<std::string, bool> known_; // folders
+    std::map<std::string, bool> known_; // whether a folder has a project file
 };
 
 } // namespace app

@@ -10,29 +10,29 @@ namespace app {
 
 /// The result of a batch. A plain value from which all reports are made.
 struct BatchResult {
-    std::vector<ProgramResult> programs; // in the order in which they were named
+    std::vector<ProgramResult> programs; // in the order of the arguments
     std::vector<std::string> unchecked;  // programs not finished because the batch was stopped
-    std::vector<SkippedFile> skipped;    // files that are no NC programs
-    std::string share = {};    // such as "share 2/8: 13 of 104 programs"; empty: the whole batch
+    std::vector<SkippedFile> skipped;    // files that are not NC programs
+    std::string share = {};    // such as "shard 2/8: 13 of 104 programs"; empty: the whole batch
     FileBytes file_bytes = {}; // of unchecked and skipped files; see ProgramResult
 };
 
-/// The exit status of all: 2 if any program could not be run to its end or was not checked, else 1
-/// if any has an error, else 0.
+/// The exit status of a batch: 2 if any program could not be run to its end or was not checked,
+/// else 1 if any has an error, else 0.
 int status_of(const BatchResult& batch);
 
-/// How many findings of a severity a program has.
+/// The number of findings of a severity.
 size_t count_of(const ProgramResult& result, core::Severity severity);
 
-/// The outcome of a program in a batch, from harmless to worst.
+/// The outcome of a program in a batch, from best to worst.
 enum class Outcome : uint8_t {
     clear,
     undecided,
-    errors, // clearances are sufficient, but another error was found
+    errors, // clearances are sufficient, but there is another error
     violation,
     collision,
     stopped,
-    not_run, // not a single block
+    not_run, // stopped before the first block
     unchecked
 };
 
@@ -40,10 +40,10 @@ constexpr std::array<Outcome, 8> all_outcomes = {
     Outcome::clear,     Outcome::undecided, Outcome::errors,  Outcome::violation,
     Outcome::collision, Outcome::stopped,   Outcome::not_run, Outcome::unchecked};
 
-/// In small letters, as "not run".
+/// The name of an outcome in lower case, such as "not run".
 const char* name_of(Outcome outcome);
 
-/// The outcome of a program that was checked, completely or in part.
+/// The outcome of a program that was checked completely or in part.
 Outcome outcome_of(const ProgramResult& result);
 
 } // namespace app

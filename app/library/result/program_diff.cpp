@@ -17,7 +17,7 @@ constexpr double same_margin = 0.001; // mm
 
 using Symbols = std::unordered_map<std::string, uint32_t>;
 
-/// For each block a number that those have in common that say the same.
+/// A number for each block; blocks with equal text have equal numbers.
 std::vector<uint32_t> numbers_of(const CheckRun& run, Symbols& symbols) {
     std::vector<uint32_t> numbers;
     for (const CheckedBlock& block : run.blocks) {
@@ -29,12 +29,12 @@ std::vector<uint32_t> numbers_of(const CheckRun& run, Symbols& symbols) {
     return numbers;
 }
 
-/// The pairs of places that go together, also in stretches that were rewritten block by block.
+/// The matching blocks, including those of stretches that were rewritten block by block.
 std::vector<std::pair<size_t, size_t>> matched(const CheckRun& before, const CheckRun& after) {
     Symbols symbols;
     const std::vector<uint32_t> a = numbers_of(before, symbols), b = numbers_of(after, symbols);
     std::vector<std::pair<size_t, size_t>> pairs;
-    size_t x = 0, y = 0; // behind the last pair
+    size_t x = 0, y = 0; // after the last pair
     const auto go_to = [&](size_t next_x, size_t next_y) {
         if (next_x - x == next_y - y)
             for (; x < next_x; ++x, ++y) pairs.emplace_back(x, y);
@@ -71,7 +71,7 @@ BlockMeasure measure_of(const CheckRun& run, const CheckedBlock& block) {
 
 bool moves(const CheckedBlock& block) { return block.result.motion != core::BlockMotion::none; }
 
-/// How far one of two went beyond the search limit nobody knows.
+/// The decrease of the margin, mm; 0 if unknown, as beyond the search limit in both.
 double difference(const BlockMeasure& before, const BlockMeasure& after) {
     const bool both_far = before.pair[0].empty() && after.pair[0].empty();
     if (!before.margin || !after.margin || both_far) return 0.0;
@@ -90,13 +90,13 @@ void compare(ProgramDiff& diff, BlockMeasure before, BlockMeasure after) {
         ++diff.same;
 }
 
-/// Those that move between the last pair and the next one.
+/// Adds the moving blocks in from .. to - 1, which have no match.
 void take_alone(const CheckRun& run, size_t from, size_t to, std::vector<BlockMeasure>& alone) {
     for (; from < to; ++from)
         if (moves(run.blocks[from])) alone.push_back(measure_of(run, run.blocks[from]));
 }
 
-/// Findings go together where their blocks do, rewritten or not.
+/// Compares findings. Those of matching blocks are at the same place, even in rewritten blocks.
 ProgramChange change_along(const std::vector<std::pair<size_t, size_t>>& pairs,
                            const ProgramResult& before, const ProgramResult& after) {
     std::unordered_map<size_t, size_t> later;
@@ -167,10 +167,10 @@ ProgramDiff diff_of(const CheckRun& before, const CheckRun& after, const std::st
 
 namespace {
 
-/// Beyond so many differences in one stretch the best split so far will do.
+/// With more differences than this in a stretch, the best split so far is used.
 constexpr ptrdiff_t most_differences = 2048;
 
-/// A stretch of both lists, ends excluded.
+/// A stretch of both lists; the ends are excluded.
 struct Stretch {
     ptrdiff_t a_begin, a_end, b_begin, b_end;
 };
@@ -179,7 +179,7 @@ struct Split {
     ptrdiff_t a, b;
 };
 
-/// Items with their places, less those that the other list has not.
+/// The items of a list that the other list contains, too, with their indices.
 struct Items {
     std::vector<uint32_t> items;
     std::vector<size_t> places;
@@ -197,8 +197,9 @@ Items known_to(std::span<const uint32_t> others, std::span<const uint32_t> list)
     return kept;
 }
 
-/// Looks for the way through two lists with the fewest differences, from both ends until they meet.
-/// A diagonal is a place in a less one in b; a front holds for each how far in a one has come.
+/// Searches for the path through two lists with the fewest differences, from both ends until the
+/// fronts meet. A diagonal is an index in a minus an index in b. A front stores for each diagonal
+/// the index in a that was reached.
 class Fronts {
 public:
     Fronts(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
@@ -208,7 +209,8 @@ public:
           ahead_(a.size() + b.size() + 3),
           back_(a.size() + b.size() + 3) {}
 
-    /// A place on such a way, neither at the beginning nor at the end. The lists differ at both.
+    /// A point on such a path, neither the beginning nor the end. The lists must differ at both
+    /// ends.
     Split split(const Stretch& stretch);
 
 private:
@@ -230,10 +232,10 @@ private:
     std::vector<ptrdiff_t> ahead_, back_;
     Stretch in_{};
     Range ahead_range_{}, back_range_{};
-    bool is_odd_ = false; // they meet in a step ahead
+    bool is_odd_ = false; // the fronts meet in a step ahead
 };
 
-/// One diagonal more on each side, or where the border of the stretch is, one less.
+/// Adds a diagonal on each side, or removes one at the border of the stretch.
 void Fronts::widen(Range& range, std::vector<ptrdiff_t>& front, ptrdiff_t outside) const {
     if (range.low > in_.a_begin - in_.b_end)
         front[origin_ + --range.low - 1] = outside;
@@ -271,7 +273,7 @@ bool Fronts::step_back(Split& met) {
     return false;
 }
 
-/// Where the front is that has come farthest.
+/// The farthest point of the front that has advanced more.
 Split Fronts::best() const {
     Split farthest{in_.a_begin, in_.b_begin}, nearest{in_.a_end, in_.b_end};
     for (ptrdiff_t d = ahead_range_.high; d >= ahead_range_.low; d -= 2) {
@@ -391,7 +393,7 @@ std::string without_number(std::string_view block) {
         if (!std::isspace(static_cast<unsigned char>(letter)))
             text += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
     const size_t skip = text.starts_with('/') ? 1 : 0;
-    // N120, :120, and the bare number in front of a line of Klartext.
+    // N120, :120, or the bare number of a Klartext line.
     size_t end = skip;
     if (end < text.size() && (text[end] == 'N' || text[end] == ':')) ++end;
     while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end]))) ++end;

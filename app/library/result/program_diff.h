@@ -24,69 +24,70 @@ struct ProgramChange {
     std::vector<StoredFinding> new_findings, gone_findings;
 };
 
-/// Findings are the same if rule, severity, bodies and the text of the block are, regardless of the
-/// line.
+/// Compares two results. Findings are equal if rule, severity, bodies and the text of the block
+/// are, regardless of the line.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after);
 
-/// A key for the place of a finding, equal for the same place in two versions.
+/// Returns a key for the place of a finding, equal for the same place in both versions.
 using PlaceOfFinding = std::function<std::string(const StoredFinding&)>;
 
-/// Findings are the same if rule, severity, bodies and place are.
+/// Compares two results. Findings are equal if rule, severity, bodies and place are.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after,
                              const PlaceOfFinding& place_before, const PlaceOfFinding& place_after);
 
 /// A block of a checked program and its clearance, mm.
 struct BlockMeasure {
     uint32_t block = 0, line = 0;
-    std::string file; // of a subprogram's; empty for the main program
+    std::string file; // of a subprogram; empty for the main program
     std::string text;
     core::Verdict verdict = core::Verdict::clear;
-    std::array<std::string, 2> pair{}; // the one that decides; empty if none does
+    std::array<std::string, 2> pair{}; // the deciding pair; empty if there is none
     double lower = 0.0;
-    std::optional<double> upper; // empty: nothing was found nearer than `lower`
+    std::optional<double> upper; // empty: nothing was found closer than `lower`
     double allowance = 0.0;
-    std::optional<double> margin; // empty if nothing is known of its clearance
+    std::optional<double> margin; // empty if the clearance is unknown
 };
 
-/// A block of both versions.
+/// A block that is in both versions.
 struct ChangedBlock {
     BlockMeasure before, after;
-    double nearer = 0.0; // decrease of its margin, mm; negative: increase
+    double nearer = 0.0; // decrease of the margin, mm; negative: increase
 };
 
 /// What changed from one version of a program or its set-up to the next.
 struct ProgramDiff {
     ProgramResult before, after;
     ProgramChange change;
-    size_t same = 0;                   // blocks of both with the same margin and verdict
-    std::vector<ChangedBlock> nearer;  // or of a worse verdict; the worst first
-    std::vector<ChangedBlock> farther; // or of a better one, likewise
-    std::vector<BlockMeasure> added;   // moving blocks of the later version alone
-    std::vector<BlockMeasure> removed; // of the earlier one alone
+    size_t same = 0;                   // blocks in both with the same margin and verdict
+    std::vector<ChangedBlock> nearer;  // margin or verdict got worse; the worst first
+    std::vector<ChangedBlock> farther; // margin or verdict got better; the best first
+    std::vector<BlockMeasure> added;   // moving blocks only in the later version
+    std::vector<BlockMeasure> removed; // moving blocks only in the earlier version
 
-    /// Whether the later version has a warning or an error more, a worse verdict on the whole or on
-    /// a block, a block that has come nearer and now keeps less than twice its allowance, or could
-    /// not be run as far.
+    /// Whether the later version has a new warning or error, a worse verdict as a whole or of a
+    /// block, a block whose clearance has decreased and is now less than twice its allowance, or
+    /// could no longer be run to its end.
     bool is_worse() const;
 };
 
-/// Blocks go together that say the same, whatever their numbers; and where as many have been
-/// rewritten as there were, one with one. Margins count as the same within 0.001 mm.
+/// Compares two versions. Blocks with equal text are matched, regardless of their numbers. Between
+/// matches, if as many blocks were written as were removed, they are matched one by one. Margins
+/// within 0.001 mm count as equal.
 ProgramDiff diff_of(const CheckRun& before, const CheckRun& after, const std::string& setup_before,
                     const std::string& setup_after);
 
-/// Which items of one list go with which of another: pairs of places with equal items, rising in
-/// both. As many as there can be, or nearly, where the lists have little in common.
+/// Matches two lists: pairs of indices with equal items, increasing in both. As many as possible,
+/// or nearly so if the lists have little in common.
 ///
 /// Cost:   the length times the number of differences, up to a bound; memory grows with the length.
 /// Source: Myers, An O(ND) difference algorithm and its variations, 1986: the linear-space form.
 std::vector<std::pair<size_t, size_t>> aligned(std::span<const uint32_t> a,
                                                std::span<const uint32_t> b);
 
-/// The text of a block without its number and blanks, in capitals: they mean nothing.
+/// The text of a block in capitals, without its number and blanks, which have no meaning.
 std::string without_number(std::string_view block);
 
-/// What a block says, whatever its number: the same without a comment behind a semicolon.
+/// As without_number, also without a comment after a semicolon.
 std::string numberless(std::string_view block);
 
 } // namespace app

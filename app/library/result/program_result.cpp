@@ -17,7 +17,7 @@ namespace {
 
 using Json = StoredJson;
 
-/// In characters, as editors count them and SARIF says; bytes where the line cannot be read.
+/// The column in characters, as in editors and SARIF; in bytes if the line cannot be read.
 uint32_t column_of(const core::Error& error) {
     const auto [line, column, length] = error.where;
     if (column <= 1 || line == 0 || !core::is_file(error.file)) return column;
@@ -93,12 +93,12 @@ Json json_of(const StoredError& error) {
             {"message", error.message}};
 }
 
-/// The value of an enumeration with this name; throws, as the reader of JSON does.
+/// The value of an enumeration with this name; throws if there is none, as JSON readers do.
 template <typename Enum, size_t count>
 Enum named_as(const std::string& name) {
     for (size_t i = 0; i < count; ++i)
         if (name == core::name_of(static_cast<Enum>(i))) return static_cast<Enum>(i);
-    throw std::invalid_argument("no value is called " + name);
+    throw std::invalid_argument("unknown value " + name);
 }
 
 StoredError error_from(const Json& json) {
@@ -221,7 +221,7 @@ core::Result<ProgramResult> result_from_json(const std::string& text) {
         return result_from(kept_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
-                          std::string("this is no result of a check: ") + wrong.what());
+                          std::string("this is not the result of a check: ") + wrong.what());
     }
 }
 

@@ -21,16 +21,16 @@ using FileBytes = std::map<std::string, std::string>;
 /// The UTF-8 text of a file name. Records the bytes of the name if they differ.
 std::string shown_name(const std::string& path, FileBytes& bytes);
 
-/// The file name for such a text.
+/// The file name for a text made by shown_name.
 const std::string& name_shown_as(const std::string& text, const FileBytes& bytes);
 
-/// A finding with the line and text of its block, as stored without the run. Texts are UTF-8.
+/// A finding with the line and text of its block, independent of the run. Texts are UTF-8.
 struct StoredFinding {
     std::string rule;
     core::Severity severity = core::Severity::warning;
     std::optional<uint32_t> block; // empty: the program as a whole
     uint32_t line = 0;             // of the block; 0 if there is none
-    std::string file;              // of a subprogram's; empty for the main program
+    std::string file;              // of a subprogram; empty for the main program
     std::string text;              // of the block
     std::string message, cure;
     std::array<std::string, 2> pair{};
@@ -50,10 +50,10 @@ struct Tightest {
     bool operator==(const Tightest&) const = default;
 };
 
-/// Why a program could not be run, or not to its end.
+/// Why a program could not be run to its end.
 struct StoredError {
-    std::string file;              // empty if it is about none
-    uint32_t line = 0, column = 0; // in characters
+    std::string file;              // empty if the error is not about a file
+    uint32_t line = 0, column = 0; // column in characters
     std::string message;
 
     bool operator==(const StoredError&) const = default;
@@ -62,8 +62,8 @@ struct StoredError {
 /// The stored result of one program: everything that summaries, exchange formats and comparisons
 /// with later versions need. Depends only on the inputs, except `seconds`. Texts are UTF-8.
 struct ProgramResult {
-    std::string program; // its path, as it was found
-    std::string setup;   // its set-up's; empty: it was inferred
+    std::string program; // path as found
+    std::string setup;   // path of the set-up; empty: inferred
     std::string sha256;  // of the program; empty if it could not be read
     std::string dialect; // empty if unknown
     std::string engine;  // "exact" or "coprocessor"
@@ -75,24 +75,24 @@ struct ProgramResult {
     double cycle_time = 0.0; // seconds
     double removed = 0.0;    // mm3
     std::optional<Tightest> tightest;
-    double seconds = 0.0;      // of wall time that the check took
-    FileBytes file_bytes = {}; // of the names of files in it that are no UTF-8
+    double seconds = 0.0;      // wall time of the check
+    FileBytes file_bytes = {}; // for file names in the result that are not UTF-8
 
     bool operator==(const ProgramResult&) const = default;
 };
 
-/// The result of a check.
+/// The stored result of a check.
 ProgramResult result_of(const CheckRun& run, const std::string& setup);
 
-/// The result of a check that could not begin.
+/// The stored result of a check that could not start.
 ProgramResult failed_result(const CheckJob& job, const core::Error& error);
 
 /// The exit status of `feeler check`: 0 no error, 1 at least one error, 2 not run to its end.
 int status_of(const ProgramResult& result);
 
-/// As a JSON object on one line, and back. Numbers come back to the last bit.
+/// Converts a result to a JSON object on one line, and back. Numbers are preserved to the last bit.
 ///
-/// Errors: text that is no such object.
+/// Errors: a text that is not such an object.
 std::string json_of(const ProgramResult& result);
 core::Result<ProgramResult> result_from_json(const std::string& text);
 

@@ -5,7 +5,7 @@
 namespace app {
 namespace {
 
-constexpr size_t most_nested = 16; // a share's results need 7
+constexpr size_t most_nested = 16; // the results of a shard need 7
 
 } // namespace
 
@@ -27,12 +27,12 @@ bool is_nested_too_deep(std::string_view text) {
 }
 
 StoredJson kept_json(const std::string& text) {
-    if (is_nested_too_deep(text)) throw std::invalid_argument("nested too deep");
+    if (is_nested_too_deep(text)) throw std::invalid_argument("nested too deeply");
     return StoredJson::parse(text);
 }
 
 double number_from(const StoredJson& json, double least) {
-    // What is no number has a value too: true is 1.
+    // get<double>() also accepts other types: true is 1.
     const double number = json.is_number() ? json.get<double>() : std::nan("");
     if (!std::isfinite(number) || number < least)
         throw std::invalid_argument("not a number, or out of range");
@@ -41,7 +41,7 @@ double number_from(const StoredJson& json, double least) {
 
 const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count) {
     if (!json.is_array() || (count && json.size() != *count))
-        throw std::invalid_argument("not a list, or of another length");
+        throw std::invalid_argument("not a list, or of the wrong length");
     return json;
 }
 

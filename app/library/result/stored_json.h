@@ -13,15 +13,15 @@
 
 namespace app {
 
-/// JSON from a file or a database, which somebody may have edited. The readers below are stricter
-/// than those of the library, which read 0.7 as 0 and an object as a list. Like those they throw
+/// JSON from a file or database, which may have been edited. The readers below are stricter than
+/// those of nlohmann_json, which accept 0.7 as 0 and an object as a list. Like those, they throw
 /// standard exceptions, which callers turn into errors.
 using StoredJson = nlohmann::ordered_json;
 
 /// Whether brackets are nested deeper than in any stored JSON. Parsers recurse once per level.
 bool is_nested_too_deep(std::string_view text);
 
-/// Errors: throws for text that is no JSON, or nested too deep.
+/// Parses JSON. Throws if the text is not JSON or is nested too deeply.
 StoredJson kept_json(const std::string& text);
 
 /// A whole number that fits the type.
@@ -33,10 +33,10 @@ Whole whole_from(const StoredJson& json) {
     return json.get<Whole>();
 }
 
-/// A finite number, and at least as large as `least`.
+/// A finite number that is at least `least`.
 double number_from(const StoredJson& json, double least = std::numeric_limits<double>::lowest());
 
-/// A list, of `count` entries if given.
+/// A list; if `count` is given, of that many entries.
 const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count = {});
 
 /// The two texts of a list.
@@ -45,7 +45,7 @@ std::array<std::string, 2> pair_from(const StoredJson& json);
 /// An object with a list of bytes for each text.
 StoredJson json_of(const FileBytes& bytes);
 
-/// The same read in again; throws, as the reader of JSON does.
+/// Reads such an object back; throws if it is invalid.
 FileBytes file_bytes_from(const StoredJson& json);
 
 } // namespace app

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The project file that a word stands for; empty for any other word.
+/// The project file that an argument refers to; empty for any other argument.
 std::string project_of(const std::string& word) {
     std::error_code ignored;
     if (fs::is_directory(word, ignored)) {
@@ -24,7 +24,7 @@ std::string project_of(const std::string& word) {
 }
 
 CheckJob job_of(const ChosenProgram& chosen, const CheckJob& asked) {
-    // What a project says of all programs must not hide what an earlier table says of some.
+    // General settings of a project must not override an earlier table for some programs.
     const ProgramTerms terms = overlaid(chosen.general, chosen.special);
     CheckJob job = asked;
     job.program = chosen.path;
@@ -48,7 +48,7 @@ bool is_one_program(const std::vector<std::string>& words) {
 
 core::Result<BatchPlan> plan_batch(const std::vector<std::string>& words, const CheckJob& asked) {
     Chooser chooser;
-    std::vector<std::string> plain; // words in a row that name no project
+    std::vector<std::string> plain; // successive arguments without a project
     for (const std::string& word : words) {
         const std::string path = project_of(word);
         if (path.empty()) {

@@ -21,7 +21,7 @@
 namespace app {
 namespace {
 
-constexpr double much = 100e6; // bytes
+constexpr double much = 100e6; // bytes; memory of larger models is returned to the system
 
 core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
     try {
@@ -40,7 +40,7 @@ core::Result<CheckRun> run_whatever_comes(const CheckJob& job) {
     }
 }
 
-/// At least one byte, so that every program counts.
+/// The size of a program, bytes; at least 1, so that every program counts.
 double program_size(const std::string& program) {
     std::error_code failure;
     const auto size = std::filesystem::file_size(program, failure);
@@ -56,7 +56,7 @@ public:
         const size_t most = std::min<size_t>(std::max(1U, limits.jobs), jobs.size());
         order_.resize(jobs.size());
         std::iota(order_.begin(), order_.end(), size_t(0));
-        // The longest first: at the end nobody waits for one that was begun last.
+        // Largest first, so that the batch does not end with a long program running alone.
         if (most > 1)
             std::stable_sort(order_.begin(), order_.end(),
                              [&](size_t a, size_t b) { return sizes_[a] > sizes_[b]; });
@@ -72,15 +72,16 @@ public:
     }
 
 private:
-    /// Where there is no room for all, as many as there are cores: the others are gone before the
-    /// first begins. Without any, the caller's thread does it all.
+    /// Starts the threads. If not all can be created, uses at most as many as there are cores, and
+    /// ends the others before the first check begins. If there are none, the caller's thread does
+    /// all the work.
     void begin(std::vector<std::thread>& threads) {
         size_t most = shares_.size();
         try {
             threads.reserve(most);
             while (threads.size() < shares_.size())
                 threads.emplace_back([this, i = threads.size()] { work_in_turn(i); });
-        } catch (const std::exception&) { // of the system, which is out of threads or memory
+        } catch (const std::exception&) { // the system is out of threads or memory
             const size_t cores = std::max(1U, std::thread::hardware_concurrency());
             most = std::min(threads.size(), cores);
         }
@@ -126,8 +127,8 @@ private:
         try {
             check(i, thread);
         } catch (const std::exception&) {
-            // There was no memory around the check itself, and may be none for words: the program
-            // is among those that were not checked.
+            // Out of memory outside of the check itself, and maybe too little for a message: the
+            // program counts as not checked.
         }
     }
 
@@ -153,7 +154,7 @@ private:
             const auto run = run_whatever_comes(watched);
             if (!is_cut) end(i, thread, result(job, run));
         }
-        // What a large model has taken stays with the thread that took it unless it is asked for.
+        // Return the memory of a large model to the system; otherwise the allocator keeps it.
         if (taken > much) ::malloc_trim(0);
         budget_.give_back(taken);
     }
@@ -174,7 +175,7 @@ private:
         something_ended_.notify_one();
     }
 
-    /// In the caller's thread, until the last of the others has nothing left to do.
+    /// Reports results and progress in the caller's thread until all threads have finished.
     void tell_what_ends() {
         using namespace std::chrono_literals;
         const double all = std::accumulate(sizes_.begin(), sizes_.end(), 0.0);
@@ -210,12 +211,12 @@ private:
     MemoryBudget budget_;
     std::vector<double> sizes_; // of the programs, bytes
     std::vector<size_t> order_;
-    std::atomic<size_t> next_{0};             // of the order
+    std::atomic<size_t> next_{0};             // index in order_
     std::vector<std::atomic<double>> shares_; // of each thread's program, bytes
     std::vector<std::optional<ProgramResult>> results_;
-    std::deque<size_t> ended_;                         // that nobody was told of
-    size_t working_ = 0;                               // threads
-    size_t most_ = std::numeric_limits<size_t>::max(); // threads that are to work
+    std::deque<size_t> ended_;                         // results not reported yet
+    size_t working_ = 0;                               // number of running threads
+    size_t most_ = std::numeric_limits<size_t>::max(); // number of threads to use
     bool is_begun_ = false;
     std::mutex mutex_, keeping_;
     std::condition_variable something_ended_, may_begin_;
@@ -238,7 +239,7 @@ BatchResult run_batch(const BatchPlan& plan, const BatchLimits& limits, const Ba
         CheckJob nothing;
         nothing.program = error.file;
         batch.programs.push_back(failed_result(nothing, error));
-        batch.programs.back().sha256.clear(); // of a folder or a pattern there is none
+        batch.programs.back().sha256.clear(); // a folder or pattern has no digest
         if (hooks.ended) hooks.ended(batch.programs.back());
     }
     return batch;
@@ -253,7 +254,7 @@ bool MemoryBudget::take(double bytes, const std::function<bool()>& is_stopped) {
         gave_up = gave_up || is_stopped();
         return ticket == served_ && (gave_up || taken_ == 0.0 || taken_ + bytes <= bytes_);
     };
-    // Nobody wakes who waits when a signal comes, so each looks for itself.
+    // A signal does not wake waiting threads, so each polls is_stopped.
     while (!room_.wait_for(lock, 100ms, is_my_turn)) {
     }
     ++served_;
@@ -265,7 +266,7 @@ bool MemoryBudget::take(double bytes, const std::function<bool()>& is_stopped) {
 void MemoryBudget::give_back(double bytes) {
     const std::lock_guard lock(mutex_);
     taken_ -= bytes;
-    // Sums of differences leave crumbs; bytes are whole.
+    // Remove the rounding error of sums and differences; bytes are whole numbers.
     if (taken_ < 1.0) taken_ = 0.0;
     room_.notify_all();
 }

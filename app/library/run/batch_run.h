@@ -21,8 +21,8 @@ struct CheckRun;
 
 /// Limits of a batch.
 struct BatchLimits {
-    unsigned jobs = 1;     // programs at the same time
-    double memory = 1e300; // bytes for all of them together, by their estimates
+    unsigned jobs = 1;     // programs checked at the same time
+    double memory = 1e300; // estimated bytes for all of them together
 };
 
 /// Progress of a batch.
@@ -53,8 +53,8 @@ struct BatchHooks {
     std::function<bool()> is_stopped = {};
 };
 
-/// Runs all checks of a plan, several at the same time. Except for the seconds, the result does not
-/// depend on their number. A check that fails does not affect the others.
+/// Runs all checks of a plan, several at the same time. Except for `seconds`, the result does not
+/// depend on how many. A check that fails does not affect the others.
 BatchResult run_batch(const BatchPlan& plan, const BatchLimits& limits, const BatchHooks& hooks);
 
 /// A memory budget shared by threads: each requests what it needs and waits until it is available.
@@ -64,7 +64,8 @@ class MemoryBudget {
 public:
     explicit MemoryBudget(double bytes) : bytes_(bytes) {}
 
-    /// Waits for the memory. False, without taking any, if `is_stopped` returns true first.
+    /// Waits until the memory is available and takes it. False, without taking any, if `is_stopped`
+    /// returns true first.
     bool take(double bytes, const std::function<bool()>& is_stopped);
 
     void give_back(double bytes);

@@ -28,8 +28,8 @@ uintmax_t file_size_or_zero(const std::string& path) {
     return failure ? 0 : size;
 }
 
-/// What a result's key does not hold: whether there is memory enough, and what is in the files that
-/// the results of the database are held against one by one.
+/// A digest of what result_key leaves out: the memory limit, and the content of the files that a
+/// stored result is otherwise compared with one by one.
 std::string terms_of(const CheckJob& job, InputAnswers& answers) {
     std::string terms = options_text(job).value_or("");
     terms += job.memory_limit ? fmt::format(" {}", *job.memory_limit) : std::string();
@@ -66,7 +66,7 @@ BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& place
 Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult& batch) {
     const size_t checked = places.size() - batch.unchecked.size();
     assert(checked <= batch.programs.size());
-    // Both are in the order of the places, and what is not among the results was not checked.
+    // Both are in the order of the places; a program without a result was not checked.
     for (const size_t place : places) {
         const size_t next = shard.results.size();
         if (next < checked && batch.programs[next].program == shard.programs[place].name) {
@@ -108,7 +108,7 @@ SkippedFile skipped_from(const Json& json) {
     return {path, why};
 }
 
-/// An entry to a line.
+/// A list with one entry per line.
 template <typename Entries, typename TextOf>
 std::string list_text(const char* key, const Entries& entries, TextOf text_of_entry) {
     std::string text = fmt::format(",\n\"{}\": [", key);
@@ -134,14 +134,14 @@ core::Result<std::vector<ProgramResult>> results_from(const Json& json) {
 
 core::Result<Shard> shard_from(const Json& json) {
     if (whole_from<int>(json.at("feeler_shard")) != shard_format)
-        throw std::invalid_argument("it has another format");
+        throw std::invalid_argument("its format is unknown");
     Shard shard;
     shard.version = json.at("version");
     const Json& share = list_from(json.at("share"), 2);
     FEELER_TRY(shard.share, share_named(text_of(ShardId{whole_from<size_t>(share[0]),
                                                         whole_from<size_t>(share[1])})));
     shard.seconds = number_from(json.at("seconds"), 0.0);
-    if (shard.seconds > longest) throw std::invalid_argument("it took longer than anything does");
+    if (shard.seconds > longest) throw std::invalid_argument("its time is out of range");
     for (const Json& each : list_from(json.at("programs")))
         shard.programs.push_back(program_from(each));
     for (const Json& each : list_from(json.at("skipped")))
@@ -153,7 +153,7 @@ core::Result<Shard> shard_from(const Json& json) {
     return shard;
 }
 
-/// The last entry: the digest of all that stands before it.
+/// The last entry: the digest of everything before it.
 std::string seal_of(std::string_view text) {
     return fmt::format(",\n\"seal\": \"{}\"}}\n", sha256_of(text));
 }
@@ -165,7 +165,7 @@ bool is_sealed(std::string_view text) {
     return text.substr(before.size()) == seal_of(before);
 }
 
-/// Whether it is a share of another, later format. A newer version may seal otherwise.
+/// Whether it is a shard in a later format. A newer version may compute the seal differently.
 bool is_newer(const std::string& text) {
     const size_t colon = text.find(": ", beginning.size());
     int number = 0;
@@ -196,17 +196,17 @@ std::string json_of(const Shard& shard) {
 core::Result<Shard> shard_from_json(const std::string& text) {
     if (!text.starts_with(beginning))
         return core::fail(core::ErrorCode::syntax,
-                          "is no share of a batch: --format shard writes one");
+                          "is not a shard of a batch: --format shard writes one");
     if (is_newer(text))
         return core::fail(core::ErrorCode::unsupported, "was written by a newer version of Feeler");
     if (!is_sealed(text))
         return core::fail(core::ErrorCode::syntax,
-                          "is a share of a batch that was cut off or changed");
+                          "is a shard of a batch that was truncated or changed");
     try {
         return shard_from(kept_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
-                          fmt::format("is no share of a batch: {}", wrong.what()));
+                          fmt::format("is not a shard of a batch: {}", wrong.what()));
     }
 }
 

@@ -18,26 +18,26 @@ bool has(const std::vector<PlannedProgram>& programs, const std::string& name) {
                        [&](const PlannedProgram& program) { return program.name == name; });
 }
 
-/// How a list of programs differs from the first one; empty if it does not.
+/// How a list of programs differs from the first one; empty if they are equal.
 std::string difference(const std::vector<PlannedProgram>& first,
                        const std::vector<PlannedProgram>& other) {
     const auto [a, b] = std::mismatch(first.begin(), first.end(), other.begin(), other.end());
     if (a == first.end() && b == other.end()) return {};
-    if (a != first.end() && !has(other, a->name)) return "it does not know " + a->name;
-    if (b != other.end() && !has(first, b->name)) return "it has " + b->name + ", too";
+    if (a != first.end() && !has(other, a->name)) return "it does not contain " + a->name;
+    if (b != other.end() && !has(first, b->name))
+        return "it contains " + b->name + ", the other one does not";
     if (a == first.end() || b == other.end() || a->name != b->name)
-        return "its programs are named in another order";
-    if (a->size != b->size) return a->name + " has another size there";
-    return a->name + " was to be checked with other options or another set-up";
+        return "its programs are in a different order";
+    if (a->size != b->size) return a->name + " has a different size there";
+    return a->name + " has different options or a different set-up there";
 }
 
-/// Why a shard belongs to another batch than the first; empty if it does not.
+/// Why a shard belongs to a different batch than the first; empty if it does not.
 std::string difference(const Shard& first, const Shard& other) {
-    if (other.version != first.version) return "another version of Feeler made it";
+    if (other.version != first.version) return "it was made by a different version of Feeler";
     if (other.share.n != first.share.n)
-        return fmt::format("it is share {}, not one of {}", text_of(other.share), first.share.n);
-    if (other.failures != first.failures)
-        return "what its words do not find, or cannot be read, is other";
+        return fmt::format("it is shard {}, not one of {}", text_of(other.share), first.share.n);
+    if (other.failures != first.failures) return "different files were missing or unreadable there";
     return difference(first.programs, other.programs);
 }
 
@@ -45,11 +45,11 @@ core::Result<void> check_shares(const std::vector<Shard>& shards) {
     for (size_t i = 1; i < shards.size(); ++i) {
         if (const std::string why = difference(shards[0], shards[i]); !why.empty())
             return tl::unexpected(
-                merge_error(shards[i].file, fmt::format("belongs to another batch than {}: {}",
+                merge_error(shards[i].file, fmt::format("belongs to a different batch than {}: {}",
                                                         shards[0].file, why)));
         if (shards[i].share == shards[i - 1].share)
             return tl::unexpected(merge_error(
-                shards[i].file, fmt::format("is share {}, and so is {}", text_of(shards[i].share),
+                shards[i].file, fmt::format("is shard {}, and so is {}", text_of(shards[i].share),
                                             shards[i - 1].file)));
     }
     return {};
@@ -69,11 +69,11 @@ core::Result<void> find_missing(const std::vector<Shard>& shards) {
             missing.push_back(text_of(ShardId{i, n}));
     return core::fail(core::ErrorCode::missing_value,
                       fmt::format("{} missing: {}{}",
-                                  count == 1 ? "a share is" : "these shares are",
+                                  count == 1 ? "a shard is" : "these shards are",
                                   fmt::join(missing, ", "), count > shown ? ", ..." : ""));
 }
 
-/// What became of each program: its result, or null where a shard says that it was not checked.
+/// The outcome of each program: its result, or null if its shard did not check it.
 class Outcomes {
 public:
     explicit Outcomes(const std::vector<PlannedProgram>& programs)
@@ -89,7 +89,7 @@ public:
             fits = is_new(shard.unchecked[i]) && put(shard.unchecked[i], nullptr);
         if (fits) return {};
         return tl::unexpected(
-            merge_error(shard.file, "has a result that is not one of its programs'"));
+            merge_error(shard.file, "has a result that belongs to none of its programs"));
     }
 
     core::Result<BatchResult> batch() const {
@@ -97,7 +97,7 @@ public:
         for (size_t i = 0; i < programs_.size(); ++i) {
             if (!is_told_[i])
                 return core::fail(core::ErrorCode::missing_value,
-                                  fmt::format("no share has a result of {}", programs_[i].name));
+                                  fmt::format("no shard has a result for {}", programs_[i].name));
             if (results_[i])
                 batch.programs.push_back(*results_[i]);
             else
@@ -120,8 +120,9 @@ private:
     std::vector<const ProgramResult*> results_;
 };
 
-/// A file that one machine saw and another did not came or went meanwhile, as a share that lies
-/// beside the programs does. It is no program, and no result hangs on it.
+/// The files that all shards skipped. A file that only some machines saw was created or deleted
+/// meanwhile, such as a shard file next to the programs. It is not a program, and no result depends
+/// on it.
 std::vector<SkippedFile> skipped_by_all(const std::vector<Shard>& shards) {
     std::vector<SkippedFile> skipped = shards[0].skipped;
     for (size_t i = 1; i < shards.size(); ++i) {
@@ -138,7 +139,7 @@ std::vector<SkippedFile> skipped_by_all(const std::vector<Shard>& shards) {
 } // namespace
 
 core::Result<BatchResult> merged(std::vector<Shard> shards) {
-    if (shards.empty()) return core::fail(core::ErrorCode::missing_value, "there are no shares");
+    if (shards.empty()) return core::fail(core::ErrorCode::missing_value, "there are no shards");
     std::sort(shards.begin(), shards.end(), [](const Shard& a, const Shard& b) {
         return a.share.i != b.share.i ? a.share.i < b.share.i : a.file < b.file;
     });

@@ -44,7 +44,7 @@ core::Error error_of(sqlite3* database, const std::string& path) {
     return {core::ErrorCode::io, {}, message, path};
 }
 
-/// Asked by SQLite while others write.
+/// Busy handler, called by SQLite while others write.
 int wait_for_others(void* retries, int attempt) {
     return static_cast<RetryBudget*>(retries)->wait(attempt) ? 1 : 0;
 }
@@ -54,7 +54,7 @@ int wait_for_others(void* retries, int attempt) {
 void Statement::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 Statement& Statement::bind(int parameter, std::string_view text) {
-    // A view of nothing may have no place, which SQLite would take for null.
+    // An empty view may have a null pointer, which SQLite would take for NULL.
     sqlite3_bind_text64(statement_.get(), parameter, text.data() ? text.data() : "", text.size(),
                         SQLITE_TRANSIENT, SQLITE_UTF8);
     return *this;
@@ -107,7 +107,7 @@ core::Result<Database> Database::open(const std::string& path, Access access,
     const int flags = access == Access::read_only ? SQLITE_OPEN_READONLY
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* opened = nullptr;
-    // With a "./" no name can be taken for an address or a name of SQLite's own.
+    // With "./", no name can be mistaken for a URI or for a special name of SQLite.
     const std::string name = path == in_memory       ? "file:/feeler?vfs=memdb"
                              : path.starts_with('/') ? path
                                                      : "./" + path;
@@ -155,7 +155,7 @@ Transaction::Transaction(Transaction&& other) noexcept
     : database_(std::exchange(other.database_, nullptr)) {}
 
 Transaction::~Transaction() {
-    // Where this fails SQLite has rolled back already.
+    // If this fails, SQLite has already rolled back.
     if (database_) (void)database_->run("ROLLBACK");
 }
 

@@ -12,15 +12,14 @@
 
 namespace app {
 
-/// How long one run waits for databases that others have, in all: ten seconds, and of what it has
-/// waited it gets back half of the time that it then need not wait. Who is to stop gives others a
-/// second more. Several threads may wait.
+/// The total time that a run waits for databases locked by others: ten seconds. Half of the time in
+/// which it does not wait is added back. After a stop request, at most one second is left.
+/// Thread-safe.
 class RetryBudget {
 public:
     explicit RetryBudget(std::function<bool()> is_stopped = {});
 
-    /// Waits some milliseconds, longer with every attempt; false, at once, when there is no
-    /// patience left.
+    /// Waits some milliseconds, longer with every attempt. False, at once, if the budget is used.
     bool wait(int attempt);
 
 private:
@@ -29,9 +28,9 @@ private:
     bool take(Clock::duration nap);
 
     std::function<bool()> is_stopped_;
-    std::mutex mutex_; // over all below
+    std::mutex mutex_; // guards all members below
     Clock::duration left_;
-    Clock::time_point told_; // when the last wait ends
+    Clock::time_point told_; // end of the last wait
 };
 
 } // namespace app
@@ -41,26 +40,25 @@ struct sqlite3_stmt;
 
 namespace app {
 
-/// A statement of SQL, prepared once and run as often as one likes. Parameters count from 1,
-/// columns from 0, as with SQLite.
+/// An SQL statement that is prepared once and can be run any number of times. Parameters count from
+/// 1, columns from 0, as in SQLite.
 class Statement {
 public:
-    /// A parameter that was not given since the last reset is null.
+    /// Sets a parameter. Parameters not set since the last reset are null.
     Statement& bind(int parameter, std::string_view text);
     Statement& bind(int parameter, int64_t number);
 
-    /// Whether there is a (further) row.
+    /// Fetches the next row. False: there are no more.
     ///
-    /// Errors: io, with the file: whatever keeps the statement from being carried out. It can be
-    ///         run again after a reset.
+    /// Errors: io, with the file, if the statement fails. It can be run again after a reset.
     core::Result<bool> step();
 
-    /// Runs it to its end and makes it ready for the next time.
+    /// Runs the statement to its end and resets it.
     ///
     /// Errors: as step.
     core::Result<void> finish();
 
-    /// Ready for the next time, without parameters.
+    /// Makes the statement ready to be run again, without parameters.
     void reset();
 
     std::string text(int column) const;
@@ -76,29 +74,31 @@ private:
     std::string path_;
 };
 
-/// An SQLite database in a file. Of one thread at a time; several processes may have it open.
+/// An SQLite database in a file, for one thread at a time. Several processes may have it open.
 class Database {
 public:
     enum class Access : uint8_t { read_only, read_write };
     static constexpr const char* in_memory = ":memory:";
 
-    /// Opens the file; with read_write it is made when it is not there. Of `in_memory` there is one
-    /// for the whole process, as long as somebody has it open. Whoever finds it in use
-    /// retries within the budget: that of a run of its own if none is given.
+    /// Opens the file; with read_write, creates it if it does not exist. There is one `in_memory`
+    /// database per process, which exists while it is open. If the database is locked, waits within
+    /// the retry budget; without one, within a new budget of its own.
     ///
     /// Errors: io, with the file.
     static core::Result<Database> open(const std::string& path, Access access,
                                        std::shared_ptr<RetryBudget> retries = nullptr);
 
-    /// Runs statements that give no rows.
+    /// Runs statements that return no rows.
     ///
     /// Errors: io, with the file.
     core::Result<void> run(const std::string& sql);
 
-    /// Errors: io, with the file, also when the database has no such tables.
+    /// Prepares a statement.
+    ///
+    /// Errors: io, with the file, also if the database has no such tables.
     core::Result<Statement> prepare(const std::string& sql);
 
-    /// The one number that a statement gives.
+    /// The single number that a statement returns; 0 without a row.
     ///
     /// Errors: io, with the file.
     core::Result<int64_t> number(const std::string& sql);
@@ -110,15 +110,15 @@ private:
 
     core::Error error() const;
 
-    std::shared_ptr<RetryBudget> retry_budget_; // outlives the database
+    std::shared_ptr<RetryBudget> retry_budget_; // declared first: must outlive the database
     std::unique_ptr<sqlite3, Close> database_;
     std::string path_;
 };
 
-/// Everything done while it lives is done wholly when it is committed, else not at all.
+/// A transaction: all changes during its lifetime take effect if it is committed, otherwise none.
 class Transaction {
 public:
-    /// Waits until nobody else writes.
+    /// Waits until no one else writes.
     ///
     /// Errors: io, with the file.
     static core::Result<Transaction> begin(Database& database);
@@ -132,7 +132,7 @@ public:
 private:
     explicit Transaction(Database& database) : database_(&database) {}
 
-    Database* database_; // null when it is over
+    Database* database_; // null once it is committed
 };
 
 } // namespace app

@@ -26,7 +26,7 @@ bool InputAnswers::is_same(const InputFile& input) {
         return name_in_any_case(input) == input.answer;
     case core::FileQuestion::listing:
     case core::FileQuestion::kind:
-        return false; // no check hangs on these, only what is checked
+        return false; // no result depends on these, only the choice of programs
     }
     return false;
 }

@@ -12,20 +12,20 @@
 
 namespace app {
 
-/// Repeats the file accesses of a check. Reads a file once until it changes. Thread-safe.
+/// Repeats the file accesses of a check. Reads a file only once until it changes. Thread-safe.
 class InputAnswers {
 public:
     /// Whether the access gives the same answer as in the check. A file that could not be read
     /// counts as changed.
     bool is_same(const InputFile& input);
 
-    /// The SHA-256 of a file; empty when it cannot be read.
+    /// The SHA-256 of a file; empty if it cannot be read.
     std::string content_of(const std::string& path);
 
 private:
     using Names = std::shared_ptr<const std::vector<std::string>>;
 
-    /// An answer and the state of the file or folder it belongs to.
+    /// A cached answer, and the state of its file or folder.
     template <typename T>
     struct Known {
         FileStamp stamp;
@@ -42,7 +42,7 @@ private:
 
     std::mutex mutex_;
     std::map<std::string, Known<std::string>> contents_;
-    std::map<std::string, Known<Names>> names_; // of folders
+    std::map<std::string, Known<Names>> names_; // of files in folders
 };
 
 } // namespace app

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What of a path lies below a folder, beginning with a slash; nothing if it does not. Both are
-/// plain; the root is empty.
+/// The rest of a path below a folder, beginning with a slash; empty optional if the path is not in
+/// the folder. Both must be plain paths; the root is an empty text.
 std::optional<std::string_view> below(std::string_view path, std::string_view folder) {
     if (!path.starts_with(folder)) return std::nullopt;
     path.remove_prefix(folder.size());
@@ -31,13 +31,13 @@ std::string_view parent_of(std::string_view folder) {
     return folder.substr(0, std::min(folder.rfind('/'), folder.size()));
 }
 
-/// An absolute path without the parts that lead nowhere; the root is empty.
+/// The absolute path without redundant parts; the root is an empty text.
 std::string absolute_path(const std::string& path, const std::string& working_folder) {
     std::string plain = plain_path(path.starts_with('/') ? path : working_folder + "/" + path);
     return plain == "/" ? std::string() : plain;
 }
 
-/// The root is empty.
+/// The stamps of folders; the root is an empty text.
 std::array<FileStamp, 3> stamps_of(const std::array<std::string, 3>& folders) {
     std::array<FileStamp, 3> stamps;
     for (size_t i = 0; i < folders.size(); ++i) stamps[i] = stamp_of(folders[i] + "/");
@@ -123,7 +123,7 @@ namespace {
 
 bool goes_on(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// Whether what stands there is no part of a longer word, nor the end of a sentence.
+/// Whether text[begin, end) is not part of a longer word, and not just the dots ending a sentence.
 bool is_whole_word(const std::string& text, size_t begin, size_t end) {
     const bool begins = begin == 0 || !goes_on(text[begin - 1]) || !goes_on(text[begin]);
     const bool ends = end == text.size() || !goes_on(text[end]) || !goes_on(text[end - 1]);
@@ -152,7 +152,7 @@ std::vector<std::string> texts_of(const ProgramResult& result) {
     return texts;
 }
 
-/// All paths that a check may have had in hand, and the folders that they are in.
+/// All paths that a check may have used, and their folders.
 std::set<std::string> paths_of(const CheckJob& job, const std::vector<InputFile>& inputs) {
     const ProgramSettings& settings = job.settings;
     std::vector<std::string> paths = {job.program, job.setup, settings.ini, settings.parameters,

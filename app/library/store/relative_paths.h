@@ -12,48 +12,48 @@ namespace app {
 
 struct CheckJob;
 
-/// Where files lie as seen from the folder that a database is for: the same from wherever one
-/// calls, and wherever the folder is moved to with all that is in it. No link is followed and no
-/// `..` taken back, but for those above the folder: from a place one comes to the very file that
-/// whoever gave the path would have come to, also after links have changed. (A `.` counts as
-/// nothing also behind a file.)
+/// Paths relative to the folder of a database ("places"). They do not depend on the working folder,
+/// and stay the same if the folder is moved with its contents. Links are not followed and `..` is
+/// not resolved, except above the folder: a place leads to the same file as the original path, also
+/// after links have changed. (A `.` is dropped even after a file.)
 class RelativePaths {
 public:
-    /// Of a database in a file; `.feeler` is for the folder that it lies in.
+    /// For a database file: relative to its folder, or to the parent folder if that is `.feeler`.
     explicit RelativePaths(const std::string& database);
 
-    /// Relative if the path leads into the folder or shares some of the way; empty if it is.
+    /// The place of a path: relative if the path is in the folder or shares a parent with it,
+    /// otherwise absolute; empty for an empty path.
     std::string place_of(const std::string& path) const;
 
-    /// An absolute path to a place.
+    /// The absolute path of a place.
     std::string path_of(const std::string& place) const;
 
-    /// Whether the folder's name still leads to it, and the working folder is the same. Where a
-    /// link was swapped or a folder renamed since, paths and places are those of different files.
+    /// Whether the name of the folder still leads to it, and the working folder is the same. If a
+    /// link or folder has been replaced since, paths and places refer to different files.
     bool still_hold() const;
 
     /// The folder, with all links followed.
     const std::string& folder() const { return folder_; }
 
 private:
-    std::string working_folder_, named_folder_, folder_; // absolute; the second as it was given
-    std::array<FileStamp, 3> stamps_{};                  // of all three
+    std::string working_folder_, named_folder_, folder_; // absolute; the second one as given
+    std::array<FileStamp, 3> stamps_{};                  // of these three folders
 };
 
-/// A job with places in place of paths.
+/// A job with its paths replaced by places.
 CheckJob placed(const CheckJob& job, const RelativePaths& places);
 
-/// A look with places in place of paths, and back.
+/// An access with paths replaced by places, and back.
 InputFile placed(InputFile input, const RelativePaths& places);
 InputFile asked_again(InputFile input, const RelativePaths& places);
 
-/// Whether any text of a result may name a file or a folder of its check by its path, beside the
-/// program and the set-up: as the job names them, as the check asked for them, or any in `folder`.
-/// Rather yes than no: such a text is right only where the same paths are given.
+/// Whether any text of a result may contain the path of a file or folder of its check (as in the
+/// job, as accessed, or any in `folder`), apart from the members for program and set-up. True if in
+/// doubt: such a text is only correct for a job with the same paths.
 bool quotes_paths(const ProgramResult& result, const CheckJob& job,
                   const std::vector<InputFile>& inputs, const std::string& folder);
 
-/// The same result for the same job under other names of program and set-up.
+/// The result with the paths of program and set-up replaced by those of the job.
 ProgramResult renamed(ProgramResult result, const CheckJob& job);
 
 } // namespace app

@@ -31,7 +31,7 @@ KeyJson enum_json(const std::optional<T>& value) {
     return value ? KeyJson(static_cast<int>(*value)) : KeyJson(nullptr);
 }
 
-/// A path to the byte: JSON holds UTF-8 only, and names of files are any bytes.
+/// A path byte by byte if necessary: JSON allows only UTF-8, but file names can be any bytes.
 KeyJson path_json(const std::string& path) {
     if (utf8_text(path) == path) return path;
     KeyJson bytes = KeyJson::array();
@@ -40,7 +40,7 @@ KeyJson path_json(const std::string& path) {
 }
 
 KeyJson settings_json(const ProgramSettings& settings) {
-    // A member that is added is to be said here, too: else this does not compile.
+    // This does not compile after a member was added: add it to the key below.
     const auto& [dialect, block_delete, start, machine_unit, max_blocks, counts_smallest_steps, ini,
                  parameters, tool_table, search_path, machine_codes, tool_at_start,
                  spindle_at_start, speed_by_hand] = settings;
@@ -66,7 +66,7 @@ KeyJson settings_json(const ProgramSettings& settings) {
 } // namespace
 
 std::optional<std::string> options_text(const CheckJob& job) {
-    // A limit of memory only decides whether there is a result.
+    // memory_limit is left out: it only decides whether there is a result.
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
                  before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
                  setup_was_found] = job;
@@ -94,7 +94,7 @@ std::string result_key(const std::string& build, const CheckJob& job, const std:
 
 namespace {
 
-/// The build-id that the linker puts into a program: a digest of what it linked.
+/// The build-id that the linker stores in a program: a digest of the linked code.
 std::string build_id_in(std::span<const char> notes) {
     while (notes.size() >= sizeof(ElfW(Nhdr))) {
         ElfW(Nhdr) note;
@@ -129,7 +129,7 @@ std::string build_name() {
     std::string id;
     dl_iterate_phdr(&take_build_id, &id);
     if (id.empty()) id = sha256_of_file("/proc/self/exe");
-    // Who does not know its build must not take another's results for its own.
+    // A program with an unknown build must not use the results of other builds.
     return id.empty() ? fmt::format("unknown {:x}", std::random_device()()) : id;
 }
 

@@ -32,7 +32,7 @@ int64_t now() {
     return duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
 }
 
-/// All paths of a job as it has them, each with its length.
+/// All paths of a job as given, each with its length.
 std::string names_in(const CheckJob& job) {
     const ProgramSettings& settings = job.settings;
     std::vector<std::string> paths = settings.search_path;
@@ -43,13 +43,13 @@ std::string names_in(const CheckJob& job) {
     return text;
 }
 
-/// Whether a job is one whose results are kept.
+/// Whether results of a job are stored.
 bool is_kept(const CheckJob& job) { return job.edits.empty() && !job.edits.tool_at_start; }
 
-/// Under what the result of a job is kept.
+/// The keys under which the result of a job may be stored.
 struct JobKeys {
-    std::string options;     // see options_text, with places
-    std::string by_any_name; // whose texts are right whatever the paths of the job are
+    std::string options;     // see options_text; with places instead of paths
+    std::string by_any_name; // for results whose texts contain no paths of the job
     std::string by_this_name;
 };
 
@@ -62,9 +62,9 @@ struct ResultStore::State {
     RelativePaths places;
     std::shared_ptr<InputAnswers> answers;
     std::shared_ptr<RetryBudget> retries;
-    std::shared_ptr<ResultWriter> writer; // of the own store if nothing is kept in this one
+    std::shared_ptr<ResultWriter> writer; // that of the own store if this one is read-only
     bool is_kept_in = true;
-    std::mutex mutex; // over all below
+    std::mutex mutex; // guards all members below
     Database database;
     Statement rows_of_key, looks_of_row, rows_of_program, sighting;
 
@@ -94,7 +94,7 @@ core::Result<void> ResultStore::State::prepare() {
     return {};
 }
 
-/// A program's path as seen from the folder: the same from wherever one calls.
+/// The path of a program relative to the folder, independent of the working folder.
 std::string ResultStore::State::place_of(const std::string& program) const {
     std::error_code failure;
     const auto whole = std::filesystem::weakly_canonical(program, failure);
@@ -230,7 +230,7 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
     if (!places.still_hold()) return {};
     const JobKeys keys = state_->keys_of(job, run.sha256);
     const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
-    std::set<InputFile> inputs; // of which two may have been one, by different names
+    std::set<InputFile> inputs; // a set, because two paths may give the same place
     for (const InputFile& input : run.inputs) inputs.insert(placed(input, places));
     const int64_t at = now();
     StoredRow row{.program = state_->place_of(job.program),

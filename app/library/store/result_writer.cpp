@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto gathering = 150ms;
-constexpr size_t most_bytes = size_t{64} << 20; // that wait to be written
+constexpr size_t most_bytes = size_t{64} << 20; // of rows waiting to be written
 
 size_t row_size(const StoredRow& row) {
     size_t bytes = sizeof row + row.value.size() + row.options.size();
@@ -25,7 +25,7 @@ size_t row_size(const StoredRow& row) {
 
 } // namespace
 
-/// An open database, and what is said to it.
+/// An open database with its prepared statements.
 struct ResultWriter::Connection {
     Database database;
     Statement add_program, add_row, add_look, add_link, add_sighting;
@@ -80,7 +80,7 @@ core::Result<void> ResultWriter::Connection::add(const StoredRow& row) {
     FEELER_TRY(const bool is_new, add_row.step());
     const int64_t id = is_new ? add_row.number(0) : 0;
     if (auto done = add_row.finish(); !done) return done;
-    if (!is_new) return {}; // somebody else has kept the same meanwhile
+    if (!is_new) return {}; // another process has stored the same result meanwhile
     for (const InputFile& input : row.inputs)
         if (auto done = add(input, id); !done) return done;
     return {};
@@ -177,7 +177,7 @@ void ResultWriter::write(std::unique_lock<std::mutex>& lock) {
     if (connection_) done = connection_->write(group);
     lock.lock();
     is_writing_ = false;
-    // Of what nobody may write sightings are no loss that one need be told of.
+    // Lost sightings, as in a read-only database, need not be reported.
     if (!done && !group.rows.empty()) error_ = done.error();
     if (error_) waiting_ = {};
     changed_.notify_all();

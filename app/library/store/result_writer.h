@@ -13,7 +13,7 @@
 
 namespace app {
 
-/// A result as it lies in the database, with what its check read.
+/// A result as in the database, with the file accesses of its check.
 struct StoredRow {
     int64_t id = 0;
     std::string program, setup, options, version;
@@ -22,49 +22,48 @@ struct StoredRow {
     std::vector<InputFile> inputs;
 };
 
-/// The answer of a look as one text: it says whether there was one.
+/// The answer to a file access as one text, which also says whether there was one.
 std::string answer_text(const InputFile& input);
 
-/// A digest of looks: the same for the same, whatever their order.
+/// A digest of file accesses; it does not depend on their order.
 std::string looks_of(std::vector<InputFile> inputs);
 
-/// A digest of key, looks and value: a file that was damaged where SQLite does not see it does not
-/// become another result.
+/// A digest of key, looks and value. It detects damage to the file that SQLite does not notice.
 std::string seal_of(const StoredRow& row);
 
-/// Whether a row is what somebody kept.
+/// Whether a row is undamaged.
 bool is_sound(const StoredRow& row);
 
-/// That the result of a check was seen to hold.
+/// A record that a stored result was found still valid.
 struct Sighting {
     std::string key, looks;
     int64_t at = 0; // microseconds since 1970
 };
 
-/// Puts results into a database, in a thread of its own and in groups: what comes within a seventh
-/// of a second is written at once, wholly or not at all. Several threads may put.
+/// Writes results into a database in a separate thread and in groups: what arrives within 150 ms is
+/// written in one transaction. Thread-safe.
 class ResultWriter {
 public:
     ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries);
 
-    /// Writes what was put.
+    /// Writes everything that is waiting.
     ~ResultWriter();
     ResultWriter(const ResultWriter&) = delete;
     ResultWriter& operator=(const ResultWriter&) = delete;
 
-    /// Waits only while too much is still to be written. A sighting that cannot be written is
-    /// forgotten.
+    /// Adds a row or a sighting to be written. A row waits only if too much is still to be written.
+    /// A sighting that cannot be written is dropped.
     ///
-    /// Errors: why something could not be written; from then on nothing is.
+    /// Errors: why something could not be written; after that nothing is written until try_again.
     core::Result<void> put(StoredRow row, Sighting sighting);
     void put(Sighting sighting);
 
-    /// Waits until all that was put is written.
+    /// Waits until everything is written.
     ///
-    /// Errors: as of put.
+    /// Errors: as put.
     core::Result<void> flush();
 
-    /// From here on tries again, though something could not be written.
+    /// Resumes writing after an error.
     void try_again();
 
 private:
@@ -83,13 +82,13 @@ private:
 
     std::string path_;
     std::shared_ptr<RetryBudget> retry_budget_;
-    std::unique_ptr<Connection> connection_; // of the thread alone
-    std::mutex mutex_;                       // over all below
+    std::unique_ptr<Connection> connection_; // used by the thread only
+    std::mutex mutex_;                       // guards all members below
     std::condition_variable changed_;
     Group waiting_;
     bool is_writing_ = false, is_hurried_ = false, is_ending_ = false;
     std::optional<core::Error> error_;
-    std::thread thread_; // begun when there is something to write
+    std::thread thread_; // started when there is something to write
 };
 
 } // namespace app

@@ -26,7 +26,7 @@ core::Result<ShardId> share_named(const std::string& text) {
             return share;
     }
     return core::fail(core::ErrorCode::invalid_value,
-                      fmt::format("'{}' is no share: write which of how many, as 2/8 (at most {})",
+                      fmt::format("'{}' is not a shard: write I/N, as in 2/8 (N is at most {})",
                                   text, most_shares));
 }
 
@@ -35,8 +35,9 @@ std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShardId& sh
     std::iota(largest_first.begin(), largest_first.end(), size_t(0));
     std::stable_sort(largest_first.begin(), largest_first.end(),
                      [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
-    using Load = std::pair<uintmax_t, size_t>; // and whose, which decides ties
-    std::vector<Load> loads;                   // a heap, the least on top
+    using Load =
+        std::pair<uintmax_t, size_t>; // bytes and number of the shard; the number breaks ties
+    std::vector<Load> loads;          // a heap with the least load on top
     for (size_t each = 1; each <= share.n; ++each) loads.push_back({0, each});
     std::vector<size_t> mine;
     for (const size_t place : largest_first) {

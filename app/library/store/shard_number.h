@@ -10,7 +10,7 @@
 
 namespace app {
 
-/// Share i of n, written 2/8. Shares count from 1.
+/// Shard i of n, written 2/8. Shards count from 1.
 struct ShardId {
     size_t i = 1, n = 1;
 
@@ -19,11 +19,14 @@ struct ShardId {
 
 std::string text_of(const ShardId& share);
 
+/// Parses I/N.
+///
 /// Errors: a text that is not I/N, or I outside 1..N.
 core::Result<ShardId> share_named(const std::string& text);
 
-/// The sorted indices of the programs of a share. Depends only on the sizes and their order, so all
-/// machines agree: the largest program first, each to the share with the least bytes so far.
+/// The sorted indices of the programs of a shard. Depends only on the sizes and their order, so all
+/// machines agree: in order of decreasing size, each program goes to the shard with the fewest
+/// bytes so far.
 std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShardId& share);
 
 } // namespace app

@@ -12,17 +12,17 @@ namespace {
 constexpr int64_t application = 0x4665656C; // "Feel"
 constexpr int64_t store_format = 2;
 
-/// Results are never changed. What a check read is shared by all results that read the same.
+/// Results are never changed. Results with the same file accesses share the rows of these.
 constexpr const char* tables = R"(
 CREATE TABLE program(
     id INTEGER PRIMARY KEY,
-    path TEXT NOT NULL UNIQUE -- as seen from the folder that has .feeler, or the file
+    path TEXT NOT NULL UNIQUE -- relative to the folder that contains .feeler or the file
 ) STRICT;
 CREATE TABLE result(
     id INTEGER PRIMARY KEY,
     program INTEGER NOT NULL REFERENCES program(id),
     key TEXT NOT NULL,        -- of the job: see result_key
-    looks TEXT NOT NULL,      -- a digest of all looks
+    looks TEXT NOT NULL,      -- a digest of all file accesses
     setup TEXT NOT NULL,
     options TEXT NOT NULL,
     version TEXT NOT NULL,
@@ -37,7 +37,7 @@ CREATE TABLE look(
     question INTEGER NOT NULL,
     path TEXT NOT NULL,
     name TEXT NOT NULL,
-    answer TEXT NOT NULL,     -- "=" and the answer; empty when there was none
+    answer TEXT NOT NULL,     -- "=" and the answer; empty if there was none
     UNIQUE(question, path, name, answer)
 ) STRICT;
 CREATE TABLE result_look(
@@ -48,7 +48,7 @@ CREATE TABLE result_look(
 CREATE INDEX look_of_result ON result_look(look);
 )";
 
-/// When a result was last seen to hold, of this database or of one beside it. Since format 2.
+/// When a result of this database or one next to it was last confirmed as valid. Since format 2.
 constexpr const char* seen_table = R"(
 CREATE TABLE seen(
     key TEXT NOT NULL,
@@ -58,9 +58,9 @@ CREATE TABLE seen(
 ) STRICT, WITHOUT ROWID;
 )";
 
-/// A rollback journal, not a log beside the file: that one needs memory shared by all who have the
-/// database open, which there is none of across a network. FULL: a result that was kept outlives a
-/// power cut, and half of one never appears.
+/// A rollback journal, not a write-ahead log: that one needs memory shared by all processes that
+/// have the database open, which a network disk does not offer. FULL: a stored result survives a
+/// power cut, and is never stored in part.
 constexpr const char* manners = "PRAGMA foreign_keys = ON;"
                                 "PRAGMA trusted_schema = OFF;"
                                 "PRAGMA journal_mode = TRUNCATE;"
@@ -70,8 +70,8 @@ core::Error store_error(const std::string& path, std::string why) {
     return {core::ErrorCode::unsupported, {}, std::move(why), path};
 }
 
-/// Two who find the file empty or old at once take turns, and the second finds the tables of the
-/// first.
+/// Creates the tables. If two processes find the file empty or old at the same time, one waits and
+/// then finds the tables of the other.
 core::Result<void> make_tables(Database& database) {
     FEELER_TRY(Transaction making, Transaction::begin(database));
     FEELER_TRY(const int64_t made, database.number("PRAGMA user_version"));
@@ -92,7 +92,7 @@ core::Result<void> settle(Database& database, const std::string& path, Database:
     if (found > store_format)
         return tl::unexpected(store_error(
             path, fmt::format("was written by a newer version of Feeler (its format is {}, "
-                              "this version knows {})",
+                              "this version supports {})",
                               found, store_format)));
     if (access == Database::Access::read_only) {
         if (found == store_format) return {};
@@ -143,7 +143,7 @@ std::vector<std::string> stores_above(const std::string& program) {
 core::Result<Database> open_store_file(const std::string& path, Database::Access access,
                                        std::shared_ptr<RetryBudget> retries) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    std::error_code failure; // which opening the file tells as well
+    std::error_code failure; // opening the file will report it, too
     if (folder.filename() == ".feeler" && access == Database::Access::read_write)
         std::filesystem::create_directory(folder, failure);
     FEELER_TRY(Database database, Database::open(path, access, std::move(retries)));

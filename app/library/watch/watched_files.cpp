@@ -13,27 +13,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file that a path leads to; a link that leads nowhere is itself.
+/// The file to which a path leads; a broken link is its own target.
 std::string whole_path(const std::string& path) {
     std::error_code failure;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path, failure), failure);
     return failure ? path : whole.string();
 }
 
-/// Where a file is, or will be once it is written.
+/// The path of a file as it is, or will be once it is written.
 std::string written_place(const std::string& path) {
     const fs::path place = place_of(path);
     return place.empty() ? path : place.string();
 }
 
-/// Why a file is no program, as the search for programs sees it.
+/// Why a file is not a program, see why_no_program; empty for a program, "?" if unreadable.
 std::string kind_of(const std::string& path) {
     const auto why = why_no_program(path);
     if (!why) return "?";
     return why->value_or("");
 }
 
-/// Those that lead to one file come down to the first.
+/// The paths without duplicates: of several that lead to the same file, the first.
 std::vector<std::string> each_once(const std::vector<std::string>& paths) {
     std::vector<std::string> once;
     std::set<std::string> seen;
@@ -63,7 +63,7 @@ bool WatchedFiles::is_own(const std::string& path) const {
     if (own_.empty()) return false;
     const std::string whole = written_place(path);
     return std::any_of(own_.begin(), own_.end(), [&](const std::string& own) {
-        // A database has these beside it.
+        // SQLite creates these next to a database.
         return whole == own || whole == own + "-journal" || whole == own + "-wal"
                || whole == own + "-shm";
     });
@@ -76,7 +76,8 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
     return names;
 }
 
-/// A time to come is fresh until it comes: here it counts how long it has been seen.
+/// Whether a file may be written again without a new time stamp. A stamp in the future would always
+/// count as fresh, so the time since it was first seen decides.
 bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& stamp) {
     if (!may_change_unseen(stamp)) {
         fresh_.erase(path);
@@ -94,7 +95,7 @@ WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& a
     look.was_fresh = may_be_rewritten(path, look.stamp);
     const bool is_known = before.stamp == look.stamp && !before.was_fresh;
     if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
-    if (asked.kind && look.stamp.is_file) // a pipe would never answer
+    if (asked.kind && look.stamp.is_file) // reading a pipe would block
         look.kind = is_known ? before.kind : kind_of(path);
     return look;
 }
@@ -103,8 +104,8 @@ bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
     if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder
         || a.stamp.is_file != b.stamp.is_file)
         return true;
-    // Of a folder only the names count: also what does not concern anybody changes its times. But
-    // it may be another one, by a link.
+    // For a folder only the names matter: its times also change for irrelevant reasons. But a link
+    // may now lead to another folder.
     if (a.stamp.is_folder && (a.stamp.number != b.stamp.number || a.stamp.device != b.stamp.device))
         return true;
     if (asked.bytes && !a.stamp.is_folder && a.stamp != b.stamp) return true;
@@ -152,7 +153,7 @@ using namespace std::chrono_literals;
 
 bool WatchPace::is_time(const WatchedFiles::Change& change, Clock::time_point begin,
                         Clock::duration took) {
-    constexpr int idle_share = 20; // of the time to that of looking
+    constexpr int idle_share = 20; // ratio of the pause to the duration of polling
     pause_ = std::max(least_pause, idle_share * took);
     if (change.paths.empty()) {
         since_ = begin + took;

@@ -12,54 +12,55 @@
 
 namespace app {
 
-/// The paths that a check accessed, each with its state at the first access. Names that begin with
-/// a dot are ignored in listed folders.
+/// The paths that a check has accessed, each with its state at the first access. In listed folders,
+/// names that begin with a dot are ignored.
 class WatchedFiles {
 public:
-    /// `own`: files that the check writes itself; they do not count as changes.
+    /// `own`: files that the check itself writes; they do not count as changes.
     explicit WatchedFiles(const std::vector<std::string>& own = {});
 
     /// Adds a file to `own`.
     void add_own(const std::string& path);
 
-    /// Records an access when it is made. Thread-safe.
+    /// Records an access; call it when the access is made. Thread-safe.
     void note(const core::FileAccess& look);
 
     size_t size() const { return places_.size(); }
 
-    /// Whether the check read this file of its own, under any name.
+    /// Whether the check has read this one of its own files, by any path.
     bool reads(const std::string& path) const;
 
-    /// Forgets all paths, for another check.
+    /// Drops all paths before another check.
     void begin_again() {
         places_.clear();
         own_reads_.clear();
     }
 
     struct Change {
-        std::vector<std::string> paths; // that changed, sorted; each file once
-        // Nothing changed since the previous call: no file, no name in a folder.
+        std::vector<std::string> paths; // changed paths, sorted; each file once
+        // Whether no file, and no name in a folder, has changed since the previous call.
         bool are_files_settled = true, are_names_settled = true;
     };
 
-    /// Compares all paths with their recorded state. A file written at the moment it was read
-    /// counts as changed, once per time stamp, since either content may have been read. It has
-    /// settled once another write would change its time stamp. Cost: one stat per path, and a new
-    /// read of changed files and folders.
+    /// Compares all paths with their recorded state. A file that was written when it was read
+    /// counts as changed, once per time stamp, because the old or the new content may have been
+    /// read. It has settled once another write would change its time stamp.
+    ///
+    /// Cost: one stat per path, and a new read of changed files and folders.
     Change look_again();
 
 private:
-    /// What was asked for, besides the type of the path, which is always compared.
+    /// What the check accessed, besides the type of the path, which is always compared.
     struct Asked {
         bool bytes = false;
-        bool names = false; // in a folder
-        bool kind = false;  // whether it looks like a program
+        bool names = false; // the names in a folder
+        bool kind = false;  // whether the file looks like a program
 
         bool operator==(const Asked&) const = default;
     };
     struct Look {
         FileStamp stamp;
-        bool was_fresh = false; // written just when it was looked at
+        bool was_fresh = false; // may have been written when it was examined
         std::string names = {}, kind = {};
     };
     struct Place {
@@ -79,11 +80,11 @@ private:
 
     std::set<std::string> own_, own_reads_;
     std::map<std::string, Place> places_; // by path
-    std::map<std::string, Seen> fresh_;   // likewise; of earlier checks, too
+    std::map<std::string, Seen> fresh_;   // by path; also of earlier checks
     std::mutex mutex_;
 };
 
-/// Decides when a watch looks at the disk again and when it checks what changed.
+/// Decides when a watch polls the disk again and when it checks the changes.
 class WatchPace {
 public:
     using Clock = std::chrono::steady_clock;
@@ -91,12 +92,12 @@ public:
     /// `now`: the time up to which nothing has changed.
     explicit WatchPace(Clock::time_point now) : since_(now) {}
 
-    /// Whether to check the changes now, given a look that began at `begin` and took `took`: as
-    /// soon as the files have settled. Does not wait for names that keep changing or for a file
-    /// that is written for a long time.
+    /// Whether to check the changes now: as soon as the files have settled. `begin` and `took` are
+    /// the start and duration of the last poll. Waits at most 2 s for names that keep changing, and
+    /// 30 s for files that are still being written.
     bool is_time(const WatchedFiles::Change& change, Clock::time_point begin, Clock::duration took);
 
-    /// The time until the next look. Looking takes at most a twentieth of the time, however many
+    /// The time until the next poll. Polling takes at most a twentieth of the time, however many
     /// files there are.
     Clock::duration pause() const { return pause_; }
 
@@ -104,7 +105,7 @@ private:
     static constexpr Clock::duration least_pause = std::chrono::milliseconds(200);
 
     Clock::duration pause_ = least_pause;
-    Clock::time_point since_; // nothing had changed
+    Clock::time_point since_; // time up to which nothing had changed
 };
 
 } // namespace app
