@@ -272,7 +272,7 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
     CLI::Option* cache = command.add_option(
         "--cache", options.cache,
         "Many programs: database of results; unchanged programs are not checked again. Default: "
-        ".feeler/results.db in the folder, or beside the project file");
+        ".feeler/results.db in the folder, or next to the project file");
     command
         .add_flag("--no-cache", options.no_cache,
                   "Many programs: check all of them and store no results")

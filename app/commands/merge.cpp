@@ -108,7 +108,7 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand("merge", "Join the results of check --shard");
     command
         .add_option("shares", options->files,
-                    "Files written by check --shard --format shard, one per share")
+                    "Files written by check --shard --format shard, one per shard")
         ->required();
     command
         .add_option("--format", options->formats,

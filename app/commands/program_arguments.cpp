@@ -101,7 +101,7 @@ CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
 void add_check_options(CLI::App& command, CheckArguments& arguments) {
     command.add_option(
         "--setup", arguments.setup,
-        "Set-up file (TOML); default: NAME.toml beside NAME.nc, else inferred from the program");
+        "Set-up file (TOML); default: NAME.toml next to NAME.nc, else inferred from the program");
     command
         .add_option("--allowance", arguments.allowance,
                     "Minimum clearance to fixtures, and of the holder to the stock, mm")

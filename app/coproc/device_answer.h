@@ -26,15 +26,15 @@ struct BlockPermit {
     size_t segments = 0;   // number of questions
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // the refused pair
-    std::string not_asked;          // why a motion could not be asked; it is not permitted then
+    std::string not_asked;          // why a motion could not be checked; it is then not permitted
     bool is_told = false;           // a finding of the run gives the same reason
-    std::vector<AskedPair> pairs;   // each once
+    std::vector<AskedPair> pairs;   // every pair once
     hwsim::DeviceReport report;     // of the device, before a stop is cleared
 };
 
 /// A block whose questions are in the device.
 struct PushedBlock {
-    BlockPermit permit = {};            // what is known before the answers
+    BlockPermit permit = {};            // results before the answers
     uint32_t first = 0;                 // number of its first segment
     std::vector<core::Pair> asked = {}; // by segment, in order
 };

@@ -15,7 +15,8 @@ using hwsim::SlotNumber;
 
 constexpr double cylinder_tolerance = 0.02; // mm
 
-/// A body of revolution looks the same however it is turned about its axis; others do not.
+/// Whether the model of a body fits this orientation: a body of revolution only needs an upright
+/// axis, others must not be rotated.
 bool stands_upright(const core::MovingBody& body, const core::Mat3& orientation) {
     return body.profile ? orientation[2] == core::Vec3(0.0, 0.0, 1.0)
                         : orientation == core::Mat3(1.0);
@@ -116,7 +117,7 @@ void DeviceModels::use_tool(hwsim::Driver& driver, const core::ToolAssembly* too
 
 namespace {
 
-/// Who reports why a motion is not asked about: the finding of the permit, or the run by itself.
+/// Who reports why a motion cannot be asked about: the finding of the permit, or the run itself.
 enum class Teller : uint8_t { permit, run };
 
 void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {

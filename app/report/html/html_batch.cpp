@@ -280,7 +280,7 @@ std::string html_missing(const BatchResult& batch) {
     std::string html;
     if (!batch.share.empty())
         html += "<p><b>" + html_text(batch.share)
-                + ":</b> the reports of the other shares contain the other programs.</p>\n";
+                + ":</b> the reports of the other shards contain the other programs.</p>\n";
     if (!unchecked.empty())
         html += "<p><b>" + share(batch, unchecked.size())
                 + " not checked:</b> the batch was stopped before them.</p>\n"

@@ -310,7 +310,7 @@ std::optional<std::string> turning_reason(const gcode::Program& program) {
     std::optional<std::string> code_reason, turret_reason, plane_reason;
     bool changes = false, moves_x = false;
     const auto say = [](std::optional<std::string>& reason, size_t line, const std::string& what) {
-        if (!reason) reason = fmt::format("it never moves Y, and line {} says {}", line, what);
+        if (!reason) reason = fmt::format("it never moves Y, and line {} has {}", line, what);
     };
     for (size_t line = 1; line <= program.line_count(); ++line) {
         const std::string code = parts_of_line(program.line(line)).code;
