@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Checks a library on a cluster of two nodes, one of which dies meanwhile, and compares the result
-# of feeler merge with a single run. Argument: the program feeler. As root; see README.md.
+# Checks a library on a cluster of two nodes, one of which is killed during the run, and compares
+# the result of feeler merge with a single run. Argument: the program feeler. Needs root; see
+# README.md.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
 feeler=$(realpath "${1:-$root/build/release/app/feeler}")
-shares=4
+shards=4
 formats=(text json jsonl csv junit sarif)
 
 say() { printf 'cluster: %s\n' "$*"; }
@@ -14,19 +15,19 @@ die() {
     exit 1
 }
 
-[[ -x $feeler ]] || die "there is no program $feeler"
-((EUID == 0)) || die 'Slurm and munge are started as root'
+[[ -x $feeler ]] || die "program $feeler does not exist"
+((EUID == 0)) || die 'root is needed to start Slurm and munge'
 for command in munged slurmctld slurmd sbatch squeue scontrol sinfo; do
-    command -v "$command" >/dev/null || die "there is no $command: README.md names the packages"
+    command -v "$command" >/dev/null || die "$command is not installed: README.md lists the packages"
 done
 
 # --- the cluster: all its files are in one folder, and no daemon outlives this script -------------
 
 work=$(mktemp -d /tmp/feeler-cluster-XXXXXX)
 chmod 755 "$work"
-declare -A daemon # process of each, by name
+declare -A daemon # process id, by name
 
-start() { # NAME COMMAND...: in the foreground of a child of this shell
+start() { # NAME COMMAND...: as a child process of this shell
     local name=$1
     shift
     "$@" >"$work/$name.out" 2>&1 &
@@ -51,8 +52,8 @@ end_all() {
 trap end_all EXIT
 trap 'exit 130' INT TERM
 
-# Processes left behind by a node's jobs have the configuration of this cluster in their
-# environment.
+# Kills processes left over from jobs of a node. They are recognised by the configuration of this
+# cluster in their environment.
 end_steps() {
     local pid
     for pid in $(pgrep -x slurmstepd || true) $(pgrep -x "${feeler##*/}" || true); do
@@ -65,7 +66,7 @@ wait_for() { # SECONDS WHAT COMMAND...
     local left=$(($1 * 5)) what=$2
     shift 2
     until "$@"; do
-        ((left-- > 0)) || die "waited in vain: $what"
+        ((left-- > 0)) || die "timed out waiting for: $what"
         sleep 0.2
     done
 }
@@ -130,8 +131,8 @@ start_cluster() {
 
 # The number of programs that a shard has reported so far.
 ended_of() {
-    [[ -e share-$1.log ]] || return 0
-    grep -cE '^(clear|collision|violation|undecided|errors|stopped|not run) ' "share-$1.log" || true
+    [[ -e shard-$1.log ]] || return 0
+    grep -cE '^(clear|collision|violation|undecided|errors|stopped|not run) ' "shard-$1.log" || true
 }
 
 # The task running on a node, once it has reported this many programs.
@@ -142,14 +143,14 @@ busy_task_on() { # NODE PROGRAMS
     ((${ended:-0} >= $2)) && printf '%s' "$task"
 }
 
-# As when a machine loses power: nothing of the node is left, and it sends no message.
+# As after a power failure: no process of the node is left, and it sends no message.
 kill_node() { # NODE
     local job script step
     job=$(squeue --noheader --nodelist="$1" --states=RUNNING --format=%A)
     script=$(scontrol listpids "$job" "$1" 2>/dev/null | awk 'NR > 1 && $1 > 0 { print $1; exit }')
-    [[ -n $script ]] || die "no process of job $job on $1"
+    [[ -n $script ]] || die "job $job has no process on $1"
     step=$(ps -o ppid= -p "$script" | tr -d ' ')
-    [[ $(ps -o comm= -p "$step") == slurmstepd ]] || die "process $script is no job's"
+    [[ $(ps -o comm= -p "$step") == slurmstepd ]] || die "process $script does not belong to a job"
     kill -9 "${daemon[$1]}" "$step" "$script"
     wait "${daemon[$1]}" 2>/dev/null || true
 }
@@ -158,11 +159,11 @@ says() { scontrol show job "$2" | grep -oE "(^| )$1=[^ ]*" | cut -d= -f2 | head 
 is_requeued() { [[ $(says JobState "${job}_$task") == PENDING ]]; }
 is_over() { [[ -z $(squeue --noheader 2>/dev/null) ]]; }
 
-to_files() { # NAME: options that have every format written
+to_files() { # NAME: prints the options for writing every format
     for format in "${formats[@]}"; do printf '%s\n' --format "$format" -o "$1.$format"; done
 }
 
-# Times differ between runs.
+# Replaces times, which differ between runs.
 without_seconds() {
     sed -E -e 's/"seconds":[^,]*/"seconds":0/g' -e 's/ time="[^"]*"/ time="0"/g' \
         -e 's/,[0-9.]+(,("([^"]|"")*"|[^",]*)\r?)$/,0\1/' -e 's/ in ([0-9]+ min )?[0-9.]+ s: / in 0 s: /' -e '/^  slowest /d' "$1"
@@ -175,27 +176,27 @@ mkdir "$work/bin" && ln -s "$feeler" "$work/bin/feeler"
 export PATH=$work/bin:$PATH
 cd "$work"
 
-job=$(sbatch --parsable --array="1-$shares" "$here/check.sbatch" "$shares" library)
+job=$(sbatch --parsable --array="1-$shards" "$here/check.sbatch" "$shards" library)
 mapfile -t options < <(to_files merged)
 merging=$(sbatch --parsable --dependency="afterany:$job" --output=merged.out \
-    --wrap "feeler merge share-*.json ${options[*]}")
-wait_for 120 'a task in the middle of its share' busy_task_on n1 $((RANDOM % 5 + 2)) >task
+    --wrap "feeler merge shard-*.json ${options[*]}")
+wait_for 120 'a task in the middle of its shard' busy_task_on n1 $((RANDOM % 5 + 2)) >task
 task=$(cat task)
 kill_node n1
 before=$(ended_of "$task")
-say "node n1 was killed when share $task had told of $before programs"
-[[ ! -e share-$task.json ]] || die "a share that was not finished was written"
-wait_for 90 'that the controller misses n1' is_requeued
-say "the controller has missed n1, and put share $task into its queue again"
-# Slurm would wait two minutes first, in which n1, if it came back, could finish its work.
+say "node n1 was killed after shard $task had reported $before programs"
+[[ ! -e shard-$task.json ]] || die "an unfinished shard was written"
+wait_for 90 'the controller to notice that n1 is missing' is_requeued
+say "the controller has noticed that n1 is missing, and has queued shard $task again"
+# Slurm would wait two minutes first, in case n1 comes back and finishes its work.
 scontrol update JobId="${job}_$task" StartTime=now
-wait_for 400 'the end of all shares, and of merge' is_over
-[[ $(says Restarts "${job}_$task") == 1 && $(says NodeList "${job}_$task") == n2 ]] || die "share $task did not begin again on n2"
-say "all shares are there; $task was begun again on n2"
+wait_for 400 'the end of all shards and of merge' is_over
+[[ $(says Restarts "${job}_$task") == 1 && $(says NodeList "${job}_$task") == n2 ]] || die "shard $task did not start again on n2"
+say "all shards are complete; $task was started again on n2"
 
-found=$(grep -oE '^[0-9]+ of [0-9]+ results come from earlier checks' "share-$task.log" | cut -d' ' -f1)
-((${found:-0} >= before)) || die "of $before results that share $task had, it found ${found:-none} again"
-say "share $task began again, and found $found results in its database"
+found=$(grep -oE '^[0-9]+ of [0-9]+ results come from earlier checks' "shard-$task.log" | cut -d' ' -f1)
+((${found:-0} >= before)) || die "shard $task found ${found:-none} of its $before earlier results again"
+say "shard $task was started again and found $found results in its database"
 
 # --- merged results are equal to those of one run -------------------------------------------------
 
@@ -205,13 +206,13 @@ one_status=0
 feeler check library --jobs 1 --no-cache "${options[@]}" >one.out || one_status=$?
 ((status == one_status)) || die "merge ends with $status, one run with $one_status"
 for format in out "${formats[@]}"; do
-    cmp <(without_seconds "merged.$format") <(without_seconds "one.$format") || die "the $format is another"
+    cmp <(without_seconds "merged.$format") <(without_seconds "one.$format") || die "the $format differs"
 done
-say "one run that checks all anew gives the same in ${formats[*]}, but for the seconds"
+say "one run that checks everything anew gives the same in ${formats[*]}, except for the seconds"
 
 mapfile -t options < <(to_files again)
 feeler check library --jobs 1 "${options[@]}" >again.out || true
-grep -q '^40 of 40 results come from earlier checks' again.out || die 'one run does not find what the shares kept'
-for format in "${formats[@]}"; do cmp "merged.$format" "again.$format" || die "the $format is another"; done
-say "one run that finds all again gives the same, byte for byte"
-say "passed: all of them end with $status"
+grep -q '^40 of 40 results come from earlier checks' again.out || die 'one run does not find the results of the shards'
+for format in "${formats[@]}"; do cmp "merged.$format" "again.$format" || die "the $format differs"; done
+say "one run that finds all stored results gives the same, byte for byte"
+say "passed: all runs end with status $status"
