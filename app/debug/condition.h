@@ -49,8 +49,8 @@ BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wan
 
 /// A condition on a block, for breakpoints, filters and `until`: `clearance < 1 and rapid`.
 ///
-/// Comparisons (< <= > >= = == != <>, or LT LE GT GE EQ NE as on controls, also in chains: 0 < z <
-/// 5), `and` `or` `not` (&& || !), round or square brackets, + - * /, numbers.
+/// Comparisons (< <= > >= = == != <>, or LT LE GT GE EQ NE as on controls, also chains such as
+/// 0 < z < 5), `and` `or` `not` (&& || !), brackets () or [], + - * /, numbers.
 ///   numbers of the block: clearance (its lower bound) upper allowance margin removed duration time
 ///       block line depth tool
 ///   words of the block, for = and !=: motion verdict file rule (of any of its findings)

@@ -344,7 +344,7 @@ std::vector<Identity> identities(const Findings& findings, const PlaceOfFinding&
     return named;
 }
 
-/// The findings that have none of the others to go with; those that do go one with one.
+/// The findings without an equal one in `others`; equal findings are matched one to one.
 Findings missing_in(const std::vector<Identity>& others, const Findings& findings,
                     const std::vector<Identity>& named) {
     std::map<Identity, size_t> free;

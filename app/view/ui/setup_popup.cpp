@@ -402,7 +402,7 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
     if (auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) draw_cylinder(frame, *round);
     field_refusal(frame, refused, {}, "box");
     field_refusal(frame, refused, {}, "cylinder");
-    why_it_is_so(frame, "Coordinates in " + shown.frame
+    why_it_is_so(frame, "Frame: " + shown.frame
                             + (shown.stock_source == SetupSource::inferred ? "; " + shown.stock_why
                                                                            : std::string()));
     ImGui::PopID();
