@@ -30,7 +30,7 @@ layout(location = 1) in vec3 normal;
 layout(location = 2) in float tint;
 uniform mat4 view_from_body;
 uniform mat4 clip_from_view;
-uniform vec4 section; // in the body's frame: kept where dot(xyz, p) <= w
+uniform vec4 section; // in the body's frame: keeps points with dot(xyz, p) <= w
 uniform vec3 colors[2];
 out vec3 towards;
 out vec3 facing;
@@ -48,13 +48,13 @@ void main() {
 /// Light from the sky and from a lamp over the left shoulder; faces at grazing angles get a rim.
 const char* const mesh_fragment = R"(#version 330 core
 uniform vec3 sky;      // upwards in the view's frame
-uniform vec3 eye_axis; // towards the eye where there is no perspective, else 0
-uniform vec4 rim;      // colour, and how much of it
+uniform vec3 eye_axis; // towards the eye without perspective, else 0
+uniform vec4 rim;      // colour and strength
 uniform float alpha;
-uniform float glass;   // 1: grazing faces cover more
+uniform float glass;   // 1: faces at grazing angles are more opaque
 uniform float shine;
-uniform sampler2D hollows; // how dark it is in corners
-uniform vec2 to_hollows;   // from pixels; 0: no such picture
+uniform sampler2D hollows; // ambient occlusion
+uniform vec2 to_hollows;   // from pixels; 0: there is no such texture
 in vec3 towards;
 in vec3 facing;
 in vec3 base;
@@ -84,7 +84,7 @@ layout(location = 0) in vec3 place;
 uniform mat4 view_from_body;
 uniform mat4 clip_from_view;
 uniform vec4 section;
-uniform vec2 nearer; // factor of the place, and what is added to its z
+uniform vec2 nearer; // factor of the position, and offset of its z
 void main() {
     vec4 p = view_from_body * vec4(place, 1.0);
     p.xyz = p.xyz * nearer.x + vec3(0.0, 0.0, nearer.y);
@@ -108,11 +108,11 @@ uniform mat4 clip_from_view;
 uniform vec2 nearer;
 uniform vec2 half_size; // of the picture, pixels
 uniform vec4 inks[4];   // by state
-uniform float widths[4]; // half of them, pixels
+uniform float widths[4]; // half widths, pixels
 uniform vec4 rapid_ink;
-uniform vec4 ink;       // where a > 0: instead of the state's
+uniform vec4 ink;       // if a > 0: replaces that of the state
 uniform float wider;    // added to the half width
-uniform float later;    // how much pieces after the current block cover
+uniform float later;    // opacity of pieces after the current block
 uniform uint current;
 flat out vec4 color_of_line;
 flat out float half_width;
