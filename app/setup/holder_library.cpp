@@ -107,7 +107,7 @@ cones_of_outline(const std::vector<std::vector<double>>& points) {
         if (z < z_below)
             return core::fail(
                 ErrorCode::invalid_value,
-                fmt::format("z must not decrease: it falls from {:g} to {:g}", z_below, z));
+                fmt::format("must not go down: z falls from {:g} to {:g}", z_below, z));
         if (z == z_below) continue;
         if (r == 0.0 && r_below == 0.0)
             return core::fail(ErrorCode::invalid_value,

@@ -69,7 +69,7 @@ TEST(GuessedStock, StaysUnderAPlungeIntoAHoleThatIsCut) {
               "X0 Y0\nZ-4\nG1 Z-6\nX60\nG0 Z10\nM2\n");
     EXPECT_EQ(run.count("rapid-in-stock"), 0u);
     EXPECT_DOUBLE_EQ(run.stock().min.x, -3.0);
-    EXPECT_EQ(run.assumed.find("beside it"), std::string::npos);
+    EXPECT_EQ(run.assumed.find("next to it"), std::string::npos);
 }
 
 TEST(GuessedStock, EndsBelowThePlaneOfTravelOfAProgramWithoutRapids) {

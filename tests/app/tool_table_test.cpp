@@ -75,7 +75,7 @@ TEST(ToolTable, TakesPartsAsConesOrAsOutlines) {
     EXPECT_EQ(holder(outlines).elements[1].r0, holder(cones).elements[1].r0);
     EXPECT_EQ(outlines.parts[1].profile.elements[0].r1, 4.0);
     expect_refused(flat + "holder = [[15, 1], [20, 20]]\n", "holder must begin at z = 0");
-    expect_refused(flat + "shank = [[5, 0], [4, 25], [4, 20]]\n", "shank must go up");
+    expect_refused(flat + "shank = [[5, 0], [4, 25], [4, 20]]\n", "shank must not go down");
 }
 
 TEST(ToolTable, TakesAShippedHolderByItsName) {
