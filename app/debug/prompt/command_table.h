@@ -38,10 +38,10 @@ std::vector<std::string> words_of(std::string_view text);
 /// Errors: invalid_value.
 core::Result<size_t> count_in(const std::string& text);
 
-// The commands, one source per topic.
+// The commands, one source per topic: first those of walk_commands.cpp.
 using CommandResult = core::Result<std::string>;
 
-CommandResult run_program(PromptState& state, const std::string& arguments); // walk_commands.cpp
+CommandResult run_program(PromptState& state, const std::string& arguments);
 CommandResult start_program(PromptState& state, const std::string& arguments);
 CommandResult step_on(PromptState& state, const std::string& arguments);
 CommandResult step_over(PromptState& state, const std::string& arguments);
@@ -57,7 +57,8 @@ CommandResult go_back_to_finding(PromptState& state, const std::string& argument
 CommandResult go_to_tool(PromptState& state, const std::string& arguments);
 CommandResult go_back_to_tool(PromptState& state, const std::string& arguments);
 
-CommandResult set_breakpoint(PromptState& state, const std::string& arguments); // break_commands
+// break_commands.cpp
+CommandResult set_breakpoint(PromptState& state, const std::string& arguments);
 CommandResult set_temporary(PromptState& state, const std::string& arguments);
 CommandResult watch_value(PromptState& state, const std::string& arguments);
 CommandResult delete_breakpoint(PromptState& state, const std::string& arguments);
@@ -68,21 +69,25 @@ CommandResult change_condition(PromptState& state, const std::string& arguments)
 CommandResult show_breakpoints(PromptState& state, const std::string& arguments);
 CommandResult show_watches(PromptState& state, const std::string& arguments);
 
-CommandResult print_value(PromptState& state, const std::string& arguments); // value_commands.cpp
+// value_commands.cpp
+CommandResult print_value(PromptState& state, const std::string& arguments);
 CommandResult display_value(PromptState& state, const std::string& arguments);
 CommandResult undisplay_value(PromptState& state, const std::string& arguments);
 CommandResult show_displays(PromptState& state, const std::string& arguments);
 
-CommandResult list_lines(PromptState& state, const std::string& arguments); // list_command.cpp
+// info_commands.cpp
+CommandResult list_lines(PromptState& state, const std::string& arguments);
 
-CommandResult show_info(PromptState& state, const std::string& arguments); // info_command.cpp
+CommandResult show_info(PromptState& state, const std::string& arguments);
 CommandResult show_findings(PromptState& state, const std::string& arguments);
 CommandResult show_calls(PromptState& state, const std::string& arguments);
 
-CommandResult change_something(PromptState& state, const std::string& arguments); // set_command
+// value_commands.cpp: what-if
+CommandResult change_something(PromptState& state, const std::string& arguments);
 CommandResult take_back(PromptState& state, const std::string& arguments);
 
-CommandResult show_help(PromptState& state, const std::string& arguments); // command_table.cpp
+// command_table.cpp
+CommandResult show_help(PromptState& state, const std::string& arguments);
 CommandResult quit(PromptState& state, const std::string& arguments);
 
 /// The possible first words after `info` and `set`.
