@@ -46,7 +46,7 @@ Json rules_json() {
         rules.push_back(rule_json(rule.name, rule.meaning, rule.cure, rule.severity));
     rules.push_back(
         rule_json(not_run, "The program, or its set-up, could not be read or run to its end.",
-                  "Correct the error in the message. Everything after it was not checked.",
+                  "Correct the error in the message; everything after it was not checked.",
                   core::Severity::error));
     rules.push_back(rule_json(not_checked, "The run ended before this program was checked.",
                               "Check the program again.", core::Severity::error));
