@@ -61,14 +61,6 @@ struct PathSegment {
     uint32_t budget = 0;      // cycles until the permit is needed; 0: unlimited
 };
 
-/// The current state of the device.
-struct DeviceReport {
-    uint32_t permitted = 0; // all segments up to this one may be entered
-    Stop stop = Stop::none;
-    uint32_t stop_sequence = 0, stop_line = 0;
-    bool idle = false;
-};
-
 /// The nearest pair of a violation or a measurement.
 struct FoundPair {
     uint64_t squared = 0;

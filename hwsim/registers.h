@@ -124,6 +124,14 @@ constexpr uint32_t address_of(Counter c) {
     return address_of(Register::counter) + 8 * static_cast<uint32_t>(c);
 }
 
+/// The current state of a device, as its registers state it.
+struct DeviceReport {
+    uint32_t permitted = 0; // all segments up to this one may be entered
+    Stop stop = Stop::none;
+    uint32_t stop_sequence = 0, stop_line = 0;
+    bool idle = false;
+};
+
 /// The sizes and times of an emulated device.
 struct DeviceConfig {
     uint32_t clock_mhz = 100;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/sim/clearance.h"
-#include "hwsim/driver.h"
+#include "hwsim/registers.h"
 
 namespace app {
 

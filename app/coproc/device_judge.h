@@ -5,21 +5,27 @@
 #include <span>
 #include <vector>
 
-#include "app/coproc/device_answer.h"
 #include "core/base/result.h"
 #include "core/motion/event.h"
 
 namespace core {
-class CutModel;
+struct BlockResult;
+struct CutModel;
 struct Judgement;
 struct Setup;
 struct SimulatorState;
 } // namespace core
 namespace hwsim {
 struct CoprocessorState;
-}
+struct DeviceConfig;
+} // namespace hwsim
 
 namespace app {
+
+struct BlockPermit;
+struct BlocksInDevice;
+struct DeviceBlock;
+struct DeviceTotals;
 
 /// A coprocessor that judges the blocks of a check in place of the distance core. All questions and
 /// answers pass through its registers and memory. Uses the functional model, which gives the
@@ -81,5 +87,21 @@ private:
 
     std::unique_ptr<State> state_;
 };
+
+/// Agreement of a coprocessor with the exact engine, in blocks.
+struct EngineAgreement {
+    size_t blocks = 0;
+    size_t violations = 0;   // violations and collisions by the exact engine
+    size_t refused = 0;      // by the device
+    size_t not_asked = 0;    // of these, blocks that the device cannot check
+    size_t missed = 0;       // violations that the device permitted
+    size_t undecided = 0;    // refused, and undecided by the exact engine
+    size_t false_alarms = 0; // refused, and clear by the exact engine
+
+    bool operator==(const EngineAgreement&) const = default;
+};
+
+/// Adds a block.
+void add(EngineAgreement& agreement, const BlockPermit& permit, const core::BlockResult& exact);
 
 } // namespace app

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "app/coproc/device_judge.h"
 #include "app/coproc/study/coprocessor_report.h"
 #include "hwsim/coprocessor.h"
 #include "hwsim/vcd_trace.h"

@@ -3,7 +3,8 @@
 #include <string>
 
 #include "app/check/check_run.h"
-#include "app/coproc/study/coprocessor_report.h"
+#include "app/coproc/device_answer.h"
+#include "app/coproc/device_judge.h"
 #include "hwsim/driver.h"
 
 namespace test_support {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
+#include "app/coproc/device_judge.h"
 
 namespace app {
 namespace {
@@ -325,21 +326,6 @@ std::string coprocessor_csv(const CoprocessorResult& result) {
         text += row + "\r\n";
     }
     return text;
-}
-
-void add(EngineAgreement& agreement, const BlockPermit& permit, const core::BlockResult& exact) {
-    const bool violates =
-        std::any_of(exact.pairs.begin(), exact.pairs.end(), [](const core::PairClearance& pair) {
-            return pair.verdict >= core::Verdict::violation;
-        });
-    ++agreement.blocks;
-    agreement.violations += violates;
-    agreement.refused += !permit.permitted;
-    agreement.not_asked += !permit.not_asked.empty();
-    agreement.missed += violates && permit.permitted;
-    if (violates || permit.permitted || !permit.not_asked.empty()) return;
-    agreement.undecided += exact.verdict == core::Verdict::undecided;
-    agreement.false_alarms += exact.verdict == core::Verdict::clear;
 }
 
 } // namespace app

@@ -7,6 +7,8 @@
 
 namespace app {
 
+struct EngineAgreement;
+
 /// A program run with a coprocessor, and all results.
 struct CoprocessorResult {
     CoprocessorRun run;
@@ -29,22 +31,6 @@ struct DeviceShares {
 /// The utilisation between one reading of the counters and a later one.
 DeviceShares shares_between(const DeviceTotals& before, const DeviceTotals& after,
                             const hwsim::DeviceConfig& device);
-
-/// Agreement of a coprocessor with the exact engine, in blocks.
-struct EngineAgreement {
-    size_t blocks = 0;
-    size_t violations = 0;   // violations and collisions by the exact engine
-    size_t refused = 0;      // by the device
-    size_t not_asked = 0;    // of these, blocks that the device cannot check
-    size_t missed = 0;       // violations that the device permitted
-    size_t undecided = 0;    // refused, and undecided by the exact engine
-    size_t false_alarms = 0; // refused, and clear by the exact engine
-
-    bool operator==(const EngineAgreement&) const = default;
-};
-
-/// Adds a block.
-void add(EngineAgreement& agreement, const BlockPermit& permit, const core::BlockResult& exact);
 
 /// The agreement over a whole run.
 EngineAgreement agreement(const CoprocessorRun& run);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/check/check_run.h"
+#include "app/coproc/device_judge.h"
 #include "app/coproc/study/coprocessor_report.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/view_model.h"

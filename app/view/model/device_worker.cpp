@@ -10,6 +10,7 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/coproc/device_judge.h"
 #include "app/coproc/study/coprocessor_report.h"
 
 namespace app::viewer {
