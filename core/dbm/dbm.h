@@ -44,6 +44,11 @@ struct Dbm {
     std::array<ScanLines, 3> families; // along X, Y, Z
 };
 
+/// A scan line of a body: its family and its indices.
+struct LineId {
+    int axis = 0, u = 0, v = 0;
+};
+
 /// The point at `along` on line (u, v) of the family along `axis`.
 Vec3 point_on_line(const ScanGrid& grid, int axis, int u, int v, double along);
 

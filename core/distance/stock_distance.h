@@ -3,16 +3,12 @@
 #include <optional>
 #include <span>
 
+#include "core/dbm/dbm.h"
 #include "core/geom/gjk.h"
 
 namespace core {
 
 struct CutModel;
-
-/// A scan line of a stock: its family and its indices.
-struct LineId {
-    int axis = 0, u = 0, v = 0;
-};
 
 /// The bounds of the distance to compute. The other one is valid but not tight.
 enum class StockBound : uint8_t { both, lower, upper };

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/distance/stock_distance.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "tests/support/machines.h"

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "core/distance/stock_distance.h"
 #include "core/sim/clearance.h"
 #include "tests/support/machining_tally.h"
 #include "tests/support/random_machining.h"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/dbm/cut_model.h"
-#include "core/distance/stock_distance.h"
 #include "core/sim/clearance.h"
 
 namespace core {
