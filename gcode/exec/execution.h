@@ -77,7 +77,6 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 
 /// Changes the offsets without moving the machine; the program coordinates change instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
-void change_offsets(ModalState& modal, const Offsets& offsets);
 
 core::Result<void> check_words(Execution& execution); // reports unused words
 core::Result<void> note_assumed_units(Execution& execution);

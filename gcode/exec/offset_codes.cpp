@@ -169,26 +169,6 @@ void change_offsets(Execution& execution, const Offsets& offsets) {
     change_offsets(execution.modal(), offsets);
 }
 
-void change_offsets(ModalState& modal, const Offsets& offsets) {
-    if (mixes_axes(modal.offsets) || mixes_axes(offsets)) {
-        modal.position =
-            program_from_machine(offsets, machine_from_program(modal.offsets, modal.position));
-        modal.offsets = offsets;
-        return;
-    }
-    const Position before = machine_minus_program(modal.offsets);
-    const Position after = machine_minus_program(offsets);
-    modal.offsets = offsets;
-    for (size_t axis = 0; axis < axis_count; ++axis) {
-        if (before[axis] == after[axis]) continue;
-        std::optional<double>& place = modal.position[axis];
-        if (place && before[axis] && after[axis])
-            *place += *before[axis] - *after[axis];
-        else
-            place.reset();
-    }
-}
-
 core::Result<void> select_offset(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
     if (!entry) return {};
