@@ -73,6 +73,16 @@ std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockC
     return events;
 }
 
+std::optional<std::vector<core::Event>>
+first_events(const std::function<void(const BlockVisit&)>& show) {
+    std::optional<std::vector<core::Event>> found;
+    show([&](const gcode::BlockCommands&, std::span<const core::Event> events) {
+        found.emplace(events.begin(), events.end());
+        return false;
+    });
+    return found;
+}
+
 bool has_m_code(std::string_view block, int code) {
     int depth = 0;
     for (size_t i = 0; i < block.size(); ++i) {

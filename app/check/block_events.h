@@ -1,13 +1,19 @@
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.h"
 #include "core/motion/event.h"
 
 namespace core {
+struct Judgement;
 struct Setup;
-}
+struct SimulatorState;
+} // namespace core
 namespace gcode {
 struct BlockCommands;
 struct Lowering;
@@ -24,6 +30,17 @@ std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::Bloc
 /// `speed_by_hand`: a started spindle turns even if the program states no speed.
 std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockCommands& block,
                                    gcode::Lowering& lowering, bool speed_by_hand);
+
+/// Receives a block and its events. Returns false to see no more blocks.
+using BlockVisit = std::function<bool(const gcode::BlockCommands&, std::span<const core::Event>)>;
+
+/// The events of the first block that `show` passes to its visitor; empty if there is none.
+std::optional<std::vector<core::Event>>
+first_events(const std::function<void(const BlockVisit&)>& show);
+
+/// Judges the events of a block in place of the distance core, with the state before them.
+using BlockJudge = std::function<core::Result<core::Judgement>(std::span<const core::Event>,
+                                                               const core::SimulatorState&)>;
 
 /// Whether a block has this M code outside comments.
 bool has_m_code(std::string_view block, int code);

@@ -12,6 +12,7 @@
 
 namespace app {
 
+struct CheckProgress;
 struct CheckRun;
 
 /// The engine that measures clearances: the distance core, or the functional model of the
@@ -20,13 +21,6 @@ enum class Engine : uint8_t { exact, coprocessor };
 
 /// "exact" or "coprocessor".
 const char* name_of(Engine engine);
-
-/// Progress of a check.
-struct CheckProgress {
-    size_t blocks = 0;
-    double share = 0.0; // of the program's lines, 0 to 1; loops make it decrease
-    size_t findings = 0;
-};
 
 /// A check as requested by the user.
 struct CheckJob {

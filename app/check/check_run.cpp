@@ -1,16 +1,16 @@
 #include "app/check/check_run.h"
 
 #include <algorithm>
+#include <set>
 
+#include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
-#include "app/check/conclusion.h"
-#include "app/check/input_file.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/coproc/device_judge.h"
 #include "app/setup/setup_file.h"
-#include "core/dbm/stock_mesh.h"
+#include "core/base/file_reads.h"
 #include "core/sim/run/simulator.h"
 
 namespace app {
@@ -46,6 +46,33 @@ void look_beside(CheckJob& job) {
     job.setup_was_found = !job.setup.empty();
 }
 
+namespace {
+
+/// Records each distinct file access of this thread while the object exists. A file that changes
+/// between two reads is recorded twice.
+class InputRecorder {
+public:
+    InputRecorder() : observer_([this](const core::FileAccess& access) { note(access); }) {}
+
+    std::vector<InputFile> inputs() const { return {inputs_.begin(), inputs_.end()}; }
+
+private:
+    void note(const core::FileAccess& access);
+
+    std::set<InputFile> inputs_;
+    core::FileAccessObserver observer_;
+};
+
+void InputRecorder::note(const core::FileAccess& access) {
+    InputFile input{access.question, access.path, access.name, std::nullopt};
+    if (access.answer)
+        input.answer = access.question == core::FileQuestion::content ? sha256_of(*access.answer)
+                                                                      : std::string(*access.answer);
+    inputs_.insert(std::move(input));
+}
+
+} // namespace
+
 core::Result<CheckRun> run_check(const CheckJob& job) {
     const InputRecorder recorder;
     FEELER_TRY(PreparedCheck check, prepare_check(job));
@@ -54,7 +81,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     runner.after_block = job.after_block;
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
-        FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.state().machine.stock));
+        FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.machine().stock));
         runner.let_judge([&](std::span<const core::Event> block, const auto& before) {
             return device->judge(block, before);
         });
@@ -65,11 +92,10 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     }
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)
-            return tl::unexpected(named(begun.error(), job.program));
+            return tl::unexpected(core::in_file(begun.error(), job.program));
     runner.run_to_end();
     check.run.times.check = checking.seconds();
-    const std::vector<LengthMismatch> mismatches = runner.length_mismatches();
-    conclude(check, std::move(runner.mutable_state().machine), mismatches, job.needs_surface);
+    runner.conclude(job.needs_surface);
     check.run.inputs = recorder.inputs();
     return std::move(check.run);
 }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "app/check/input_file.h"
-#include "app/check/stock_file.h"
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "core/sim/block_result.h"
@@ -26,6 +25,7 @@ enum class DialectId : uint8_t;
 namespace app {
 
 enum class Engine : uint8_t;
+struct SavedStock;
 
 /// One block as executed, with its result.
 struct CheckedBlock {
@@ -71,12 +71,12 @@ struct CheckRecord {
 struct CheckReport {
     std::vector<core::Finding> taken_in; // findings that were combined into another one
     core::Statistics statistics;
-    size_t points = 0;                              // of the stock's model at the end
-    size_t lines = 0;                               // scan lines
-    double cycle_time = 0.0;                        // of the program, seconds
-    std::shared_ptr<const core::CutModel> stock;    // the remaining stock
-    std::shared_ptr<const core::StockMesh> surface; // of the remaining stock, if requested
-    std::optional<SavedStock> saved_stock;
+    size_t points = 0;                                      // of the stock's model at the end
+    size_t lines = 0;                                       // scan lines
+    double cycle_time = 0.0;                                // of the program, seconds
+    std::shared_ptr<const core::CutModel> stock;            // the remaining stock
+    std::shared_ptr<const core::StockMesh> surface;         // of the remaining stock, if requested
+    std::shared_ptr<const SavedStock> saved_stock;          // if the stock was written to a file
     std::shared_ptr<const core::PartComparison> comparison; // if the set-up has a part
 };
 
@@ -84,6 +84,13 @@ struct CheckReport {
 /// ProgramRunner the record, and conclude the report.
 struct CheckRun : CheckInput, CheckRecord, CheckReport {
     bool has_errors() const;
+};
+
+/// Progress of a check.
+struct CheckProgress {
+    size_t blocks = 0;
+    double share = 0.0; // of the program's lines, 0 to 1; loops make it decrease
+    size_t findings = 0;
 };
 
 /// A lower bound of the clearance of all pairs in a block that no pair decides; 0 if unknown.

@@ -10,6 +10,7 @@
 #include "app/check/check_run.h"
 #include "app/check/length_mismatch.h"
 #include "app/check/prepared_check.h"
+#include "app/check/stock_file.h"
 #include "app/setup/inference/program_survey.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"
@@ -69,7 +70,7 @@ void put_in_order(std::vector<core::Finding>& findings) {
 
 } // namespace
 
-void conclude(PreparedCheck& check, core::SimulatorState end,
+void conclude(PreparedCheck& check, const core::SimulatorState& end,
               const std::vector<LengthMismatch>& mismatches, bool needs_surface) {
     CheckRun& run = check.run;
     run.statistics = end.statistics;
@@ -81,7 +82,7 @@ void conclude(PreparedCheck& check, core::SimulatorState end,
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
     say_not_judged(run, check.file.not_judged);
-    run.stock = std::make_shared<const core::CutModel>(std::move(end.stock));
+    run.stock = std::make_shared<const core::CutModel>(end.stock);
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
     check_part(run);

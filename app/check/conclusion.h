@@ -23,7 +23,7 @@ struct PreparedCheck;
 
 /// Completes a run after its last block: sorts the findings, combines those with one cause, applies
 /// comments that allow rules, compares with the part, and stores the remaining stock.
-void conclude(PreparedCheck& check, core::SimulatorState end,
+void conclude(PreparedCheck& check, const core::SimulatorState& end,
               const std::vector<LengthMismatch>& mismatches, bool needs_surface);
 
 /// A rule that a comment allows: its name in lower case and its column, from 1.

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <optional>
-#include <set>
 #include <string>
-#include <vector>
 
-#include "core/base/file_reads.h"
+namespace core {
+enum class FileQuestion : uint8_t;
+}
 
 namespace app {
 
@@ -19,21 +20,6 @@ struct InputFile {
     std::optional<std::string> answer; // for content: its SHA-256
 
     auto operator<=>(const InputFile&) const = default;
-};
-
-/// Records each distinct file access of this thread while the object exists. A file that changes
-/// between two reads is recorded twice.
-class InputRecorder {
-public:
-    InputRecorder();
-
-    std::vector<InputFile> inputs() const { return {inputs_.begin(), inputs_.end()}; }
-
-private:
-    void note(const core::FileAccess& look);
-
-    std::set<InputFile> inputs_;
-    core::FileAccessObserver listening_;
 };
 
 } // namespace app

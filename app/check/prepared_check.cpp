@@ -7,7 +7,6 @@
 #include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
-#include "app/check/program_runner.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
@@ -110,7 +109,7 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     CheckRun& run = check.run;
     run.program_file = job.program;
     auto program = read_once(job.program, run.sha256);
-    if (!program) return tl::unexpected(named(program.error(), job.program));
+    if (!program) return tl::unexpected(core::in_file(program.error(), job.program));
     check.program = std::make_unique<const gcode::Program>(*std::move(program));
     FEELER_TRY(check.file,
                job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
@@ -120,12 +119,13 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
             fmt::format("the set-up is {}, because it is next to the program", job.setup));
     if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
     const auto dialect = choose_dialect(file, *check.program, run);
-    if (!dialect) return tl::unexpected(named(dialect.error(), job.program));
+    if (!dialect) return tl::unexpected(core::in_file(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
     file.environment.limits.is_stopped = job.is_stopped;
     check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock);
     if (const auto whole = complete_setup(file, *check.program); !whole)
-        return tl::unexpected(named(whole.error(), job.setup.empty() ? job.program : job.setup));
+        return tl::unexpected(
+            core::in_file(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
     run.setup = std::move(file.setup);
@@ -154,7 +154,7 @@ core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
                            || job.before_model(run.memory + memory_beside_model(*check.program));
     if (!may_begin) return tl::unexpected(stopped_before(job));
     auto state = core::start_of_run(run.setup, check.file.environment.start);
-    if (!state) return tl::unexpected(named(state.error(), job.setup));
+    if (!state) return tl::unexpected(core::in_file(state.error(), job.setup));
     check.machine = std::make_unique<core::SimulatorState>(*std::move(state));
     core::SpindleChange& spindle = check.machine->spindle;
     spindle.direction = run.setup.spindle_at_start;

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "app/check/block_events.h"
-#include "app/check/check_job.h"
+#include "app/check/block_runner.h"
+#include "app/check/conclusion.h"
 #include "app/check/prepared_check.h"
-#include "app/setup/setup_file.h"
-#include "core/sim/run/finding_text.h"
-#include "gcode/exec/execution.h"
+#include "app/check/run_state.h"
 #include "gcode/exec/restart.h"
 #include "gcode/language/error_rules.h"
+#include "gcode/text/source.h"
 
 namespace app {
 
@@ -35,15 +34,15 @@ public:
     /// program has taken another branch or the set-up was replaced.
     void follow(const gcode::BlockCommands& real, const core::Setup& setup);
 
-    /// Stores the findings in the mismatch.
-    void end(LengthMismatch& mismatch);
+    /// Returns the mismatch with the findings of this run.
+    LengthMismatch end();
 
 private:
     void apply_length();
 
     const core::Setup& setup_;
     bool speed_by_hand_;
-    double length_;
+    LengthMismatch mismatch_;
     gcode::Interpreter interpreter_;
     gcode::InterpreterState control_;
     gcode::Lowering lowering_;
@@ -59,7 +58,7 @@ CorrectedRun::CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environm
                            const LengthMismatch& mismatch)
     : setup_(setup),
       speed_by_hand_(speed_by_hand),
-      length_(mismatch.length),
+      mismatch_(mismatch),
       interpreter_(library, environment),
       control_(before.control),
       lowering_(before.lowering),
@@ -67,15 +66,15 @@ CorrectedRun::CorrectedRun(gcode::ProgramLibrary& library, const gcode::Environm
       offsets_(before.offsets) {
     if (!mismatch.number) return;
     gcode::LengthOffset& entry = control_.tables.write().lengths[*mismatch.number];
-    entry.length = length_;
+    entry.length = mismatch.length;
     entry.wear = 0.0;
 }
 
 void CorrectedRun::apply_length() {
     const gcode::Offsets& offsets = control_.modal.offsets;
-    if (offsets.tool[2] == length_) return;
+    if (offsets.tool[2] == mismatch_.length) return;
     gcode::Offsets corrected = offsets;
-    corrected.tool[2] = lowering_.offsets.tool[2] = length_;
+    corrected.tool[2] = lowering_.offsets.tool[2] = mismatch_.length;
     gcode::change_offsets(control_.modal, corrected);
 }
 
@@ -98,147 +97,16 @@ void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& s
     last_ = block.block;
 }
 
-void CorrectedRun::end(LengthMismatch& mismatch) {
+LengthMismatch CorrectedRun::end() {
     const auto tool = machine_.tool ? setup_.tools.find(*machine_.tool) : setup_.tools.end();
     if (tool != setup_.tools.end())
         if (auto air = core::end_air(machine_.watch.air, tool->second.description.diameter))
             found_.push_back(*std::move(air));
     for (core::Finding& finding : implausible_offsets(offsets_, setup_))
         found_.push_back(std::move(finding));
-    mismatch.corrected_to = last_;
-    mismatch.remaining = std::move(found_);
-}
-
-namespace {
-
-/// Makes a sentence of a text: adds a full stop, and a capital unless the text begins with a name.
-std::string as_sentence(std::string text) {
-    const auto is_small = [&](size_t i) {
-        return i < text.size()
-               && (std::islower(static_cast<unsigned char>(text[i])) || text[i] == ' ');
-    };
-    if (is_small(0) && is_small(1))
-        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (!text.empty() && text.back() != '.') text += '.';
-    return text;
-}
-
-} // namespace
-
-core::Error named(core::Error error, const std::string& file) {
-    if (error.file.empty()) error.file = file;
-    return error;
-}
-
-core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning) {
-    core::Finding finding;
-    finding.rule = warning.rule;
-    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
-    if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
-    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
-        finding.severity = set->second;
-    finding.message = as_sentence(warning.message);
-    finding.cure = warning.cure;
-    return finding;
-}
-
-std::optional<std::vector<core::Event>>
-first_events(const std::function<void(const BlockVisit&)>& show) {
-    std::optional<std::vector<core::Event>> found;
-    show([&](const gcode::BlockCommands&, std::span<const core::Event> events) {
-        found.emplace(events.begin(), events.end());
-        return false;
-    });
-    return found;
-}
-
-BlockRunner::BlockRunner(const PreparedCheck& check)
-    : check_(check),
-      setup_(&check.run.setup),
-      interpreter_(*check.library, check.file.environment),
-      next_(gcode::initial_state(check.file.environment)) {}
-
-std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& block,
-                                                const gcode::Lowering& lowering) const {
-    if (lowering.moved_tilted)
-        return core::Error{core::ErrorCode::unsupported,
-                           {.line = block.line, .column = 1},
-                           "this block moves in a tilted plane or with a tilted tool, but the "
-                           "machine in the set-up has no rotary axes: add them as [[axis]]",
-                           std::string(block.file)};
-    if (!lowering.other_axis) return std::nullopt;
-    return core::Error{core::ErrorCode::unsupported,
-                       {.line = block.line, .column = 1},
-                       fmt::format("this block moves axis {}, which the machine in the set-up does "
-                                   "not have: add an [[axis]] of that name",
-                                   gcode::axis_letters[*lowering.other_axis]),
-                       std::string(block.file)};
-}
-
-void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState& state,
-                               std::vector<core::Finding>& findings) const {
-    for (const gcode::Warning& warning : block.warnings) {
-        // A work offset in the set-up counts as set even if it is all zeros.
-        const auto active = static_cast<int>(state.control.modal.offsets.active);
-        if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
-            continue;
-        core::Finding finding = finding_of(*setup_, warning);
-        finding.block = block.block;
-        if (finding.severity != core::Severity::off) findings.push_back(std::move(finding));
-    }
-}
-
-core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
-    const auto failed = [&](core::Error error) {
-        return tl::unexpected(named(std::move(error), check_.program->file));
-    };
-    next_ = state.control;
-    const auto read = interpreter_.next(next_);
-    if (!read) return failed(read.error());
-    if (!*read) {
-        std::swap(state.control, next_);
-        return std::nullopt;
-    }
-    const gcode::BlockCommands& block = **read;
-    gcode::Lowering lowering = state.lowering;
-    const std::vector<core::Event> events =
-        events_of(*setup_, block, lowering, check_.file.speed_by_hand);
-    if (auto refused = refusal(block, lowering)) return failed(*std::move(refused));
-    auto judged = judge ? judge(events, state.machine) : core::Judgement();
-    if (!judged)
-        return failed({judged.error().code,
-                       {.line = block.line, .column = 1},
-                       std::move(judged).error().message,
-                       std::string(block.file)});
-    for (const size_t move : fixture_moves_of(*setup_, block)) state.moves_made.insert(move);
-    BlockStep step{{block.block,
-                    block.line,
-                    std::string(block.text),
-                    std::string(block.file),
-                    block.calls,
-                    {}}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
-                                     judge ? &*judged : nullptr};
-    watch_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
-    if (before_block) before_block(block, state);
-    std::swap(state.control, next_);
-    state.lowering = lowering;
-    step.checked.result = core::run_block(*setup_, of_block, state.machine);
-    add_warnings(block, state, step.findings);
-    for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
-    watch_offsets(state.offsets, *setup_, state.control, of_block, state.machine);
-    watch_units(state.units, of_block);
-    core::add_block(state.clock, of_block, step.timed);
-    return step;
-}
-
-void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
-                              const BlockVisit& visit) {
-    while (true) {
-        const auto next = interpreter_.next(control);
-        if (!next || !*next) return;
-        if (!visit(**next, events_of(*setup_, **next, lowering, check_.file.speed_by_hand))) return;
-    }
+    mismatch_.corrected_to = last_;
+    mismatch_.remaining = std::move(found_);
+    return std::move(mismatch_);
 }
 
 namespace {
@@ -284,19 +152,30 @@ std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& 
 ProgramRunner::ProgramRunner(PreparedCheck& check)
     : check_(check),
       run_(check.run),
-      runner_(check),
-      state_(start_of_program(check.file.environment, run_.setup, std::move(*check.machine))) {
-    runner_.before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
+      runner_(std::make_unique<BlockRunner>(check)),
+      state_(std::make_unique<RunState>(
+          start_of_program(check.file.environment, run_.setup, std::move(*check.machine)))) {
+    runner_->before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
         follow_correction(block, before);
     };
 }
 
 ProgramRunner::~ProgramRunner() = default;
 
-void ProgramRunner::let_judge(decltype(BlockRunner::judge) judge) {
-    runner_.judge = std::move(judge);
-    runner_.before_block = {};
+void ProgramRunner::let_judge(BlockJudge judge) {
+    runner_->judge = std::move(judge);
+    runner_->before_block = {};
 }
+
+const core::SimulatorState& ProgramRunner::machine() const { return state_->machine; }
+
+std::optional<std::vector<core::Event>> ProgramRunner::next_events() {
+    return first_events([this](const BlockVisit& visit) {
+        runner_->visit_ahead(state_->control, state_->lowering, visit);
+    });
+}
+
+void ProgramRunner::use(const core::Setup& setup) { runner_->use(setup); }
 
 core::Result<void> ProgramRunner::start_at(const std::string& line) {
     const gcode::Dialect& dialect = gcode::dialect(check_.file.environment.dialect);
@@ -304,8 +183,8 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     FEELER_TRY(const gcode::Restart restart,
                gcode::restart_at(*check_.library, check_.file.environment, number,
                                  run_.setup.tool_at_start));
-    state_.control = restart.state;
-    state_.lowering = gcode::initial_lowering(state_.control);
+    state_->control = restart.state;
+    state_->lowering = gcode::initial_lowering(state_->control);
     run_.assumptions.push_back(fmt::format(
         "the program starts at line {}, with the control in its power-on state", number));
     make_moves_before(number);
@@ -331,9 +210,9 @@ void ProgramRunner::make_moves_before(uint32_t line) {
             made = text && *text && has_m_code(**text, *move.code);
         }
         if (!made) continue;
-        state_.moves_made.insert(i);
-        state_.machine.fixtures_there[move.from] = false;
-        if (move.to) state_.machine.fixtures_there[*move.to] = true;
+        state_->moves_made.insert(i);
+        state_->machine.fixtures_there[move.from] = false;
+        if (move.to) state_->machine.fixtures_there[*move.to] = true;
         run_.assumptions.push_back(
             fmt::format("{} has been moved, as stated in lines before the start",
                         run_.setup.fixtures[move.from].name));
@@ -342,7 +221,7 @@ void ProgramRunner::make_moves_before(uint32_t line) {
 
 void ProgramRunner::stop(core::Error error) {
     const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
-    if (auto finding = alarm(runner_.setup(), error)) {
+    if (auto finding = alarm(runner_->setup(), error)) {
         const bool in_main = error.file == check_.program->file;
         const auto text = check_.program->find_line(error.where.line);
         run_.blocks.push_back({block,
@@ -361,24 +240,21 @@ void ProgramRunner::follow_correction(const gcode::BlockCommands& block, const R
     const LengthWatch& lengths = before.lengths;
     const bool is_first = lengths.is_open && lengths.mismatches.back().first == block.block;
     if (!lengths.is_open || is_first) end_correction();
-    if (is_first) {
-        corrected_ = lengths.mismatches.back();
+    if (is_first)
         correction_ = std::make_unique<CorrectedRun>(*check_.library, check_.file.environment,
-                                                     runner_.setup(), check_.file.speed_by_hand,
+                                                     runner_->setup(), check_.file.speed_by_hand,
                                                      before, lengths.mismatches.back());
-    }
-    if (correction_) correction_->follow(block, runner_.setup());
+    if (correction_) correction_->follow(block, runner_->setup());
 }
 
 void ProgramRunner::end_correction() {
     if (!correction_) return;
-    correction_->end(corrected_);
-    corrections_.push_back(std::move(corrected_));
+    corrections_.push_back(correction_->end());
     correction_.reset();
 }
 
 std::vector<LengthMismatch> ProgramRunner::length_mismatches() const {
-    std::vector<LengthMismatch> mismatches = state_.lengths.mismatches;
+    std::vector<LengthMismatch> mismatches = state_->lengths.mismatches;
     for (LengthMismatch& mismatch : mismatches)
         for (const LengthMismatch& correction : corrections_) {
             if (correction.first != mismatch.first) continue;
@@ -397,18 +273,18 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
 }
 
 void ProgramRunner::compare_with_stock() {
-    for (core::Finding& finding : implausible_offsets(state_.offsets, runner_.setup()))
+    for (core::Finding& finding : implausible_offsets(state_->offsets, runner_->setup()))
         run_.findings.push_back(std::move(finding));
     if (auto jump =
-            units_off_the_stock(state_.units, runner_.setup(), state_.machine.stock.outer_box,
-                                state_.control.modal.unit_said))
+            units_off_the_stock(state_->units, runner_->setup(), state_->machine.stock.outer_box,
+                                state_->control.modal.unit_said))
         run_.findings.push_back(*std::move(jump));
 }
 
 void ProgramRunner::report_missing_moves() {
     for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
-        if (state_.moves_made.contains(i)) continue;
+        if (state_->moves_made.contains(i)) continue;
         core::Finding finding;
         finding.rule = "fixture-move";
         finding.severity = core::severity_of(run_.setup, finding.rule);
@@ -426,7 +302,7 @@ void ProgramRunner::report_missing_moves() {
 }
 
 bool ProgramRunner::advance() {
-    auto step = runner_.step(state_);
+    auto step = runner_->step(*state_);
     if (!step || !*step) {
         if (!step) stop(std::move(step).error());
         end();
@@ -436,7 +312,7 @@ bool ProgramRunner::advance() {
     run_.verdict = std::max(run_.verdict, checked.result.verdict);
     run_.removed += checked.result.removed;
     for (core::Finding& finding : (**step).findings) run_.findings.push_back(std::move(finding));
-    if (runner_.setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
+    if (runner_->setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
     if (checked.file.empty()) last_line_ = checked.line;
     run_.blocks.push_back(std::move(checked));
     enter((**step).timed);
@@ -451,7 +327,7 @@ CheckProgress ProgramRunner::progress() const {
 
 void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t findings) {
     assert(!state.lengths.is_open);
-    state_ = state;
+    *state_ = state;
     first_to_time_ = blocks;
     correction_.reset();
     std::erase_if(corrections_,
@@ -472,33 +348,37 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
 void ProgramRunner::end() {
     const gcode::Environment& environment = check_.file.environment;
     if (!run_.stopped)
-        if (const auto warning = gcode::ending_warning(environment, state_.control))
-            run_.findings.push_back(finding_of(runner_.setup(), *warning));
+        if (const auto warning = gcode::ending_warning(environment, state_->control))
+            run_.findings.push_back(finding_of(runner_->setup(), *warning));
     end_correction();
-    for (core::Finding& finding : core::end_of_run(runner_.setup(), state_.machine))
+    for (core::Finding& finding : core::end_of_run(runner_->setup(), state_->machine))
         run_.findings.push_back(std::move(finding));
     if (check_.stock_is_stated) compare_with_stock();
     if (!run_.stopped) report_missing_moves();
     std::vector<core::BlockTime> timed;
-    core::stop_clock(state_.clock, timed);
+    core::stop_clock(state_->clock, timed);
     enter(timed);
-    run_.cycle_time = state_.clock.time;
+    run_.cycle_time = state_->clock.time;
 }
 
 void ProgramRunner::stop_here() {
     const CheckedBlock& last = run_.blocks.back();
-    run_.stopped =
-        named({core::ErrorCode::io,
-               {.line = last.line, .column = 1},
-               "the check was stopped after this block; the rest of the program is not checked",
-               last.file},
-              check_.program->file);
+    run_.stopped = core::in_file(
+        {core::ErrorCode::io,
+         {.line = last.line, .column = 1},
+         "the check was stopped after this block; the rest of the program is not checked",
+         last.file},
+        check_.program->file);
     end();
 }
 
 void ProgramRunner::run_to_end() {
     while (advance())
         if (after_block && !after_block(progress())) return stop_here();
+}
+
+void ProgramRunner::conclude(bool needs_surface) {
+    app::conclude(check_, state_->machine, length_mismatches(), needs_surface);
 }
 
 } // namespace app

@@ -89,7 +89,7 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run, cons
                        ? stock_record_file(*run.stock, options.stock)
                        : stock_file(*run.surface, run.setup.mesh_size, options.stock));
         if (auto written = write_output(options.stock, file.bytes, read); !written) return written;
-        run.saved_stock = file.facts;
+        run.saved_stock = std::make_shared<const SavedStock>(file.facts);
     }
     if (options.comparison.empty()) return {};
     FEELER_TRY(const std::string bytes, comparison_file(run, options.comparison));

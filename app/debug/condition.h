@@ -133,4 +133,22 @@ struct Breakpoint {
 /// The breakpoint in words: "line 23 if clearance < 1".
 std::string text_of(const Breakpoint& breakpoint);
 
+/// Why a walk through a program stopped.
+enum class StopReason : uint8_t {
+    step,        // the requested number of blocks was run
+    breakpoint,  // `id`
+    found,       // reached the block that was searched for
+    watch,       // a watched value changed, `id`
+    end,         // end of the program
+    beginning,   // beginning of the program, when walking back
+    error,       // the control would stop here with an alarm; see the record
+    interrupted, // by is_interrupted
+};
+
+struct Stop {
+    StopReason reason = StopReason::step;
+    int id = 0;               // of the breakpoint or watch
+    std::string message = {}; // for a watch: old and new value
+};
+
 } // namespace app

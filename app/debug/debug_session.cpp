@@ -8,10 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/program_runner.h"
 #include "app/check/run_state.h"
 #include "app/debug/inspected_value.h"
 #include "app/debug/recorded_run.h"
@@ -356,6 +354,10 @@ void DebugSession::visit_ahead(const BlockVisit& visit) { run_->visit_ahead(at_,
 const gcode::InterpreterState& DebugSession::control() const { return state_->control; }
 
 std::optional<core::ToolNumber> DebugSession::tool() const { return state_->machine.tool; }
+
+const core::AxisPosition& DebugSession::position() const { return state_->machine.position; }
+
+const core::CutModel& DebugSession::stock() const { return state_->machine.stock; }
 
 const std::vector<bool>& DebugSession::fixtures_there() const {
     return state_->machine.fixtures_there;

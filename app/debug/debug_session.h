@@ -2,16 +2,17 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "app/check/block_events.h"
 #include "app/debug/condition.h"
 #include "app/debug/what_if.h"
-#include "core/motion/event.h"
 
+namespace core {
+struct CutModel;
+} // namespace core
 namespace gcode {
-struct BlockCommands;
 struct Program;
 } // namespace gcode
 
@@ -22,24 +23,6 @@ struct PreparedCheck;
 class RecordedRun;
 struct RunState;
 struct SetupFile;
-
-/// Why a walk through a program stopped.
-enum class StopReason : uint8_t {
-    step,        // the requested number of blocks was run
-    breakpoint,  // `id`
-    found,       // reached the block that was searched for
-    watch,       // a watched value changed, `id`
-    end,         // end of the program
-    beginning,   // beginning of the program, when walking back
-    error,       // the control would stop here with an alarm; see the record
-    interrupted, // by is_interrupted
-};
-
-struct Stop {
-    StopReason reason = StopReason::step;
-    int id = 0;               // of the breakpoint or watch
-    std::string message = {}; // for a watch: old and new value
-};
 
 /// An expression; a walk stops when its value changes.
 struct Watch {
@@ -99,6 +82,10 @@ public:
     const gcode::InterpreterState& control() const;
     /// The tool in the spindle; empty: none, or unknown.
     std::optional<core::ToolNumber> tool() const;
+    /// The position of the machine; empty for axes where it is unknown.
+    const core::AxisPosition& position() const;
+    /// The current stock.
+    const core::CutModel& stock() const;
     /// For each fixture of the set-up, whether it is mounted now.
     const std::vector<bool>& fixtures_there() const;
     size_t keyframe_count() const;
@@ -106,8 +93,7 @@ public:
 
     /// Passes the next blocks and their events to `visit`, without running them, until it returns
     /// false.
-    void visit_ahead(const std::function<bool(const gcode::BlockCommands&,
-                                              std::span<const core::Event>)>& visit);
+    void visit_ahead(const BlockVisit& visit);
 
     /// Goes to a position; extends the record if needed.
     ///

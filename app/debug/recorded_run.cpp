@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 
 #include "app/base/stopwatch.h"
+#include "app/check/block_runner.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/check/conclusion.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/check/run_state.h"
@@ -294,7 +294,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
     run->after_block_ = job.after_block;
     if (!job.start_line.empty())
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
-            return tl::unexpected(named(begun.error(), job.program));
+            return tl::unexpected(core::in_file(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
     run->keyframes_->note(0, 0.0, run->runner_->state());
     run->told_.assumptions = run->record().assumptions;
@@ -351,7 +351,7 @@ void RecordedRun::finish() {
         check_->run.assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
     check_->run.times.check = marks_.back().seconds;
-    conclude(*check_, runner_->state().machine, runner_->length_mismatches(), needs_surface_);
+    runner_->conclude(needs_surface_);
 }
 
 const core::Setup& RecordedRun::setup_at(size_t block) const {

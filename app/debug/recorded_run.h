@@ -2,16 +2,14 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "app/check/block_events.h"
 #include "app/debug/what_if.h"
-#include "core/motion/event.h"
 #include "core/sim/finding.h"
 
 namespace gcode {
-struct BlockCommands;
 class ProgramLibrary;
 } // namespace gcode
 
@@ -68,9 +66,7 @@ public:
     void take_to(RunState& state, size_t from, size_t place);
 
     /// As BlockRunner::visit_ahead, from a copy of the state at a position.
-    void visit_ahead(size_t place, const RunState& state,
-                     const std::function<bool(const gcode::BlockCommands&,
-                                              std::span<const core::Event>)>& visit);
+    void visit_ahead(size_t place, const RunState& state, const BlockVisit& visit);
 
     /// Keeps keyframes densest near this position.
     void look_at(size_t place);

@@ -13,7 +13,6 @@
 #include "core/sim/leg/check_memory.h"
 #include "core/sim/setup.h"
 #include "core/sim/tool_assembly.h"
-#include "gcode/exec/execution.h"
 
 namespace app {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -11,10 +12,6 @@ namespace core {
 struct Setup;
 struct ToolAssembly;
 } // namespace core
-
-namespace core {
-struct Setup;
-}
 
 namespace app {
 

@@ -33,6 +33,12 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, SourceSpa
     return tl::unexpected<Error>(Error{code, where, std::move(message)});
 }
 
+/// The error, with the path of its file if it has none.
+inline Error in_file(Error error, const std::string& path) {
+    if (error.file.empty()) error.file = path;
+    return error;
+}
+
 } // namespace core
 
 #define FEELER_CONCAT_(a, b) a##b

@@ -285,7 +285,7 @@ struct ModalState {
 // Copied at every block.
 static_assert(std::is_trivially_copyable_v<ModalState>);
 
-/// Changes the offsets without moving the machine: program coordinates change instead.
+/// Changes the offsets without moving the machine; the program coordinates change instead.
 void change_offsets(ModalState& modal, const Offsets& offsets);
 
 } // namespace gcode

@@ -13,6 +13,7 @@
 #include "app/check/input_file.h"
 #include "app/library/store/input_files.h"
 #include "app/setup/program_settings.h"
+#include "core/base/file_reads.h"
 #include "gcode/language/dialect.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"

@@ -10,6 +10,7 @@
 #include "app/library/store/result_key.h"
 #include "app/library/store/result_store.h"
 #include "app/library/store/store_file.h"
+#include "core/base/file_reads.h"
 #include "gcode/language/dialect.h"
 #include "tests/support/scoped_folder.h"
 

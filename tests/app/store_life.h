@@ -13,6 +13,7 @@
 #include "app/check/check_run.h"
 #include "app/library/store/database.h"
 #include "app/library/store/result_store.h"
+#include "core/base/file_reads.h"
 
 /// Processes that store results in a database until they are killed.
 namespace store_life {

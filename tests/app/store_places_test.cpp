@@ -6,6 +6,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/store/relative_paths.h"
+#include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

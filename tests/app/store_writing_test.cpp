@@ -14,6 +14,7 @@
 #include "app/check/input_file.h"
 #include "app/library/store/database.h"
 #include "app/library/store/result_store.h"
+#include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {

@@ -8,6 +8,7 @@
 #include "app/base/sha256.h"
 #include "app/check/check_run.h"
 #include "app/library/store/result_store.h"
+#include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 
 namespace store_life {

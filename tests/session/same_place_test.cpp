@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_job.h"
+#include "app/check/check_run.h"
+#include "app/check/run_state.h"
 #include "app/debug/debug_session.h"
 #include "tests/session/walked_program.h"
 

@@ -4,9 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/check/block_runner.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/program_runner.h"
+#include "app/check/run_state.h"
 #include "app/report/json/json_report.h"
 
 namespace session_test {

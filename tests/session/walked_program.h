@@ -4,10 +4,6 @@
 #include <vector>
 
 #include "app/check/check_job.h"
-#include "app/check/check_run.h"
-#include "app/check/run_state.h"
-#include "app/debug/debug_session.h"
-#include "app/setup/setup_file.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "app/check/check_run.h"
 #include "app/debug/debug_session.h"
 #include "tests/session/walked_program.h"
 

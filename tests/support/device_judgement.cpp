@@ -14,15 +14,11 @@ core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::De
                app::CoprocessorCheck::with(std::move(port), check.run.setup, check.machine->stock));
     JudgedProgram judged;
     app::ProgramRunner runner(check);
-    app::BlockRunner ahead(check);
     while (true) {
-        const app::RunState& place = runner.state();
-        const auto events = app::first_events([&](const app::BlockVisit& look) {
-            ahead.visit_ahead(place.control, place.lowering, look);
-        });
+        const auto events = runner.next_events();
         app::BlockPermit permit;
         if (events) {
-            FEELER_TRY(permit, coprocessor.ask(*events, place.machine));
+            FEELER_TRY(permit, coprocessor.ask(*events, runner.machine()));
         }
         if (!runner.advance()) break;
         judged.permits.push_back(std::move(permit));

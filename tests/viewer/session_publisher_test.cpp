@@ -2,6 +2,7 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/debug/debug_session.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/view_model.h"

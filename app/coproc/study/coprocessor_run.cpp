@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "app/base/stopwatch.h"
-#include "app/check/check_job.h"
-#include "app/check/conclusion.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/coproc/device_judge.h"
+#include "core/sim/run/block_clock.h"
+#include "core/sim/run/simulator.h"
 
 namespace app {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 class BesideCoprocessor {
 public:
     BesideCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
-        : job_(job), check_(check), runner_(check), ahead_(check) {
+        : job_(job), check_(check), runner_(check) {
         runner_.after_block = job.check.after_block;
         runner_.on_timed = [this](const core::BlockTime& time) { plan(time); };
     }
@@ -37,14 +37,13 @@ private:
     const CoprocessorJob& job_;
     PreparedCheck& check_;
     ProgramRunner runner_;
-    BlockRunner ahead_;
     std::unique_ptr<DevicePipeline> device_;
     std::map<uint32_t, std::unique_ptr<DevicePipeline>> others_;
     CoprocessorRun made_;
 };
 
 core::Result<void> BesideCoprocessor::open() {
-    const core::CutModel& stock = runner_.state().machine.stock;
+    const core::CutModel& stock = runner_.machine().stock;
     FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle));
     for (const uint32_t elements : job_.other_elements) {
         hwsim::DeviceConfig config = job_.device;
@@ -56,13 +55,11 @@ core::Result<void> BesideCoprocessor::open() {
 }
 
 core::Result<void> BesideCoprocessor::ask() {
-    const RunState& place = runner_.state();
-    const auto events = first_events(
-        [&](const BlockVisit& look) { ahead_.visit_ahead(place.control, place.lowering, look); });
+    const auto events = runner_.next_events();
     if (!events) return {};
-    if (auto pushed = device_->push(*events, place.machine); !pushed) return pushed;
+    if (auto pushed = device_->push(*events, runner_.machine()); !pushed) return pushed;
     for (auto& [elements, device] : others_)
-        if (auto pushed = device->push(*events, place.machine); !pushed) return pushed;
+        if (auto pushed = device->push(*events, runner_.machine()); !pushed) return pushed;
     return {};
 }
 
@@ -89,7 +86,7 @@ core::Result<CoprocessorRun> BesideCoprocessor::run() {
     while (runner_.advance() && (!runner_.after_block || runner_.after_block(runner_.progress())));
     if (auto finished = finish(); !finished) return tl::unexpected(std::move(finished).error());
     check_.run.times.check = checking.seconds();
-    conclude(check_, runner_.state().machine, runner_.length_mismatches(), false);
+    runner_.conclude(false);
     made_.check = std::move(check_.run);
     return std::move(made_);
 }

@@ -12,6 +12,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/setup/program_settings.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {

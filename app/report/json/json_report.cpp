@@ -7,6 +7,7 @@
 #include "app/base/version.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/check/stock_file.h"
 #include "core/sim/part_comparison.h"
 #include "gcode/language/dialect.h"
 

@@ -8,6 +8,7 @@
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/check/conclusion.h"
+#include "app/check/stock_file.h"
 #include "core/sim/part_comparison.h"
 #include "core/sim/verdict.h"
 #include "gcode/language/dialect.h"

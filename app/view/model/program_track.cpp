@@ -2,12 +2,17 @@
 
 #include <algorithm>
 
+#include "app/check/block_runner.h"
+#include "app/check/prepared_check.h"
 #include "core/motion/path.h"
 #include "gcode/language/canonical.h"
+#include "gcode/lower/lowering.h"
 #include "render/motion_path.h"
 
 namespace app::viewer {
 namespace {
+
+constexpr size_t most_rows = 2'000'000;
 
 core::BlockMotion motion_of(core::MotionKind kind) {
     switch (kind) {
@@ -37,7 +42,7 @@ ProgramTrack::ProgramTrack(const core::Setup& setup, size_t first,
                            std::optional<core::ToolNumber> tool)
     : setup_(setup), first_(first), tool_(tool ? tool : setup.tool_at_start) {}
 
-void ProgramTrack::add(const gcode::BlockCommands& block, std::span<const core::Event> events) {
+bool ProgramTrack::add(const gcode::BlockCommands& block, std::span<const core::Event> events) {
     BlockRow& row = rows.emplace_back();
     row.line = block.line;
     row.text = block.text;
@@ -52,6 +57,7 @@ void ProgramTrack::add(const gcode::BlockCommands& block, std::span<const core::
     if (block.is_cycle && moves(row)) row.motion = core::BlockMotion::cycle;
     row.tool = tool_;
     time_ += row.duration;
+    return rows.size() < most_rows;
 }
 
 void ProgramTrack::add_motion(const core::Motion& motion, BlockRow& row) {
@@ -67,6 +73,18 @@ double ProgramTrack::tool_length() const {
     if (!tool_) return 0.0;
     const auto found = setup_.tools.find(*tool_);
     return found == setup_.tools.end() ? 0.0 : found->second.length;
+}
+
+ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
+                      const std::function<bool()>& is_closing) {
+    const gcode::Environment& environment = check.file.environment;
+    ProgramTrack track(setup);
+    BlockRunner(check).visit_ahead(
+        gcode::initial_state(environment), gcode::initial_lowering(environment),
+        [&](const gcode::BlockCommands& block, std::span<const core::Event> events) {
+            return track.add(block, events) && !is_closing();
+        });
+    return track;
 }
 
 } // namespace app::viewer

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "app/view/model/block_row.h"
 #include "core/motion/event.h"
@@ -13,6 +16,10 @@ struct Machine;
 namespace gcode {
 struct BlockCommands;
 } // namespace gcode
+
+namespace app {
+struct PreparedCheck;
+} // namespace app
 
 namespace app::viewer {
 
@@ -28,8 +35,9 @@ public:
     explicit ProgramTrack(const core::Setup& setup, size_t first = 0,
                           std::optional<core::ToolNumber> tool = {});
 
-    /// Adds the next block.
-    void add(const gcode::BlockCommands& block, std::span<const core::Event> events);
+    /// Adds the next block. Returns false if the track is full: blocks after some millions are only
+    /// known once they are checked.
+    bool add(const gcode::BlockCommands& block, std::span<const core::Event> events);
 
     std::vector<BlockRow> rows;
     std::vector<render::PathPoint> points;
@@ -43,6 +51,11 @@ private:
     std::optional<core::ToolNumber> tool_;
     double time_ = 0.0;
 };
+
+/// The track of a program before its stock is modelled, up to its end or first error, or until
+/// `is_closing` returns true. The set-up must outlive it.
+ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
+                      const std::function<bool()>& is_closing);
 
 /// The values of all axes, 0 for axes that the machine lacks; empty if one is unknown.
 std::optional<core::AxisValues> known_values(const core::Machine& machine,

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "app/check/check_run.h"
+#include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/debug/debug_session.h"
+#include "app/debug/condition.h"
 #include "app/view/model/block_row.h"
 #include "core/motion/event.h"
 #include "render/stock_brick.h"
@@ -19,6 +19,7 @@ struct Machine;
 } // namespace core
 
 namespace app {
+class DebugSession;
 struct SetupSheet;
 } // namespace app
 

@@ -10,14 +10,16 @@
 #include <thread>
 #include <utility>
 
+#include "app/check/block_events.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/program_runner.h"
 #include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
+#include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
 #include "app/view/model/scene_of.h"
+#include "gcode/language/dialect.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -28,9 +30,6 @@ namespace {
 constexpr double slice = 0.01;
 constexpr auto walk_slice = std::chrono::milliseconds(30);
 constexpr auto publish_interval = std::chrono::milliseconds(60);
-
-/// Blocks beyond this number appear only once they are checked.
-constexpr size_t most_early_blocks = 2'000'000;
 
 OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     OpenedProgram opened;
@@ -48,26 +47,25 @@ OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
     return opened;
 }
 
-/// The path of a program before its stock is modelled, up to its end or first error.
-ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
-                      const std::function<bool()>& is_closing) {
-    const gcode::Environment& environment = check.file.environment;
-    ProgramTrack track(setup);
-    BlockRunner(check).visit_ahead(
-        gcode::initial_state(environment), gcode::initial_lowering(environment),
-        [&](const gcode::BlockCommands& block, std::span<const core::Event> events) {
-            track.add(block, events);
-            return track.rows.size() < most_early_blocks && !is_closing();
-        });
-    return track;
-}
-
 /// The tool that a block moves: the new one if the block changes tools.
 std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
                                         std::optional<core::ToolNumber> before) {
     for (const core::Event& event : events)
         if (const auto* change = std::get_if<core::ToolChange>(&event)) before = change->tool;
     return before;
+}
+
+/// The values of the control that a view shows.
+struct ControlValues {
+    std::vector<NamedValue> modal, axes, offsets, parameters;
+};
+
+/// The values at the position of a session.
+ControlValues values_of(const DebugSession& session) {
+    const gcode::InterpreterState& control = session.control();
+    const gcode::Environment& environment = session.environment();
+    return {modal_values(control, environment), axis_values(control), offset_values(control),
+            parameter_values(control, environment)};
 }
 
 } // namespace
@@ -150,11 +148,10 @@ std::shared_ptr<const SceneSetup> WorkerSession::scene_at(size_t block) {
     return scenes_.back().second;
 }
 
-std::vector<ShownValue>
-WorkerSession::watched_values(const gcode::InterpreterState& control) const {
+std::vector<ShownValue> WorkerSession::watched_values() const {
     std::vector<ShownValue> values;
     for (const std::string& expression : watched_) {
-        const auto value = value_of(expression, control, session_->environment());
+        const auto value = value_of(expression, session_->control(), session_->environment());
         values.push_back({expression, value ? value->text : value.error().message, false});
     }
     return values;
@@ -168,26 +165,24 @@ void WorkerSession::show(const ShowRequest& request) {
     view->serial = ++views_;
     if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
     view->scene = scene_at(view->block);
-    const gcode::InterpreterState before = session_->control();
+    const ControlValues before = values_of(*session_);
     const auto ahead = first_events([&](const BlockVisit& look) { session_->visit_ahead(look); });
     const std::vector<core::Event> events = ahead.value_or(std::vector<core::Event>());
     view->poses = poses_of(view->scene->setup.machine, events);
     view->tool = tool_of(events, session_->tool());
-    if (!request.at_end) surface_->update(session_->state().machine.stock);
+    if (!request.at_end) surface_->update(session_->stock());
     // If the control refuses the block there is no state after it: show the one before it.
     if (ahead) static_cast<void>(session_->go_to(view->block + 1));
-    const RunState& after = session_->state();
-    if (request.at_end) surface_->update(after.machine.stock);
+    if (request.at_end) surface_->update(session_->stock());
     view->stock = surface_->bricks();
-    view->standing = known_values(view->scene->setup.machine, after.machine.position);
-    view->fixtures_there = after.machine.fixtures_there;
-    const gcode::Environment& world = session_->environment();
-    view->modal = compared(modal_values(before, world), modal_values(after.control, world));
-    view->axes = compared(axis_values(before), axis_values(after.control));
-    view->offsets = compared(offset_values(before), offset_values(after.control));
-    view->parameters =
-        compared(parameter_values(before, world), parameter_values(after.control, world));
-    view->watched = watched_values(after.control);
+    view->standing = known_values(view->scene->setup.machine, session_->position());
+    view->fixtures_there = session_->fixtures_there();
+    const ControlValues after = values_of(*session_);
+    view->modal = compared(before.modal, after.modal);
+    view->axes = compared(before.axes, after.axes);
+    view->offsets = compared(before.offsets, after.offsets);
+    view->parameters = compared(before.parameters, after.parameters);
+    view->watched = watched_values();
     news_.place = std::move(view);
     news_.has_news = true;
     publish_if_due();
@@ -257,8 +252,7 @@ void WorkerSession::follow_anew() {
     ProgramTrack track(session_->setup_at(block), block, session_->tool());
     session_->visit_ahead(
         [&](const gcode::BlockCommands& ahead, std::span<const core::Event> events) {
-            track.add(ahead, events);
-            return track.rows.size() < most_early_blocks;
+            return track.add(ahead, events);
         });
     const size_t count = block + track.rows.size();
     publisher_.begin_again(block, track.points, count);

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/debug/what_if.h"
 #include "app/view/model/session_update.h"
 
 namespace app {
@@ -65,7 +66,7 @@ private:
     std::shared_ptr<const SceneSetup> scene_at(size_t block);
     /// Reads the path from the current block on again after a change.
     void follow_anew();
-    std::vector<ShownValue> watched_values(const gcode::InterpreterState& control) const;
+    std::vector<ShownValue> watched_values() const;
 
     std::function<bool()> is_interrupted_, is_closing_;
     std::unique_ptr<DebugSession> session_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/debug/what_if.h"
 #include "app/view/model/finding_group.h"
 #include "app/view/model/row_filter.h"
 #include "app/view/model/session_update.h"

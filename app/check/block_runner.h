@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "app/check/block_events.h"
+#include "app/check/check_run.h"
+#include "core/sim/run/block_clock.h"
+#include "gcode/exec/interpreter.h"
+
+namespace gcode {
+struct Lowering;
+}
+
+namespace app {
+
+struct PreparedCheck;
+struct RunState;
+
+/// The finding for a warning of the interpreter, with its severity in the set-up.
+core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning);
+
+/// The result of one block.
+struct BlockStep {
+    CheckedBlock checked;
+    std::vector<core::Finding> findings;
+    std::vector<core::BlockTime> timed; // blocks whose start and duration are now final
+};
+
+/// Runs the blocks of a program one at a time. All state of the run is in the RunState. The check
+/// must outlive the runner.
+class BlockRunner {
+public:
+    explicit BlockRunner(const PreparedCheck& check);
+
+    // Called after the control has read a block and before it moves, with the state before
+    // the block.
+    std::function<void(const gcode::BlockCommands&, const RunState&)> before_block;
+    BlockJudge judge; // empty: the distance core measures clearances
+
+    const core::Setup& setup() const { return *setup_; }
+    /// Uses another set-up from the next block on. It must outlive the runner.
+    void use(const core::Setup& setup) { setup_ = &setup; }
+
+    /// Runs the next block; empty at the end of the program.
+    ///
+    /// Result: bit-identical for the same state.
+    /// Errors: alarms of the control, and blocks that the machine cannot run. The state is then
+    ///         unchanged.
+    core::Result<std::optional<BlockStep>> step(RunState& state);
+
+    /// Reads the following blocks without running them, until `visit` returns false, the program
+    /// ends, or it has an error.
+    void visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
+                     const BlockVisit& visit);
+
+private:
+    std::optional<core::Error> refusal(const gcode::BlockCommands& block,
+                                       const gcode::Lowering& lowering) const;
+    /// Adds the findings for the interpreter's warnings.
+    void add_warnings(const gcode::BlockCommands& block, const RunState& state,
+                      std::vector<core::Finding>& findings) const;
+
+    const PreparedCheck& check_;
+    const core::Setup* setup_;
+    gcode::Interpreter interpreter_;
+    gcode::InterpreterState next_; // after the block; a member to avoid an allocation per block
+};
+
+} // namespace app
