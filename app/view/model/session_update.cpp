@@ -5,13 +5,35 @@
 #include <limits>
 #include <map>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/check/prepared_check.h"
+#include "app/check/saved_setup.h"
+#include "app/check/setup_sheet.h"
 #include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
+#include "app/view/model/scene_of.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
+#include "gcode/language/dialect.h"
 
 namespace app::viewer {
+
+OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
+    OpenedProgram opened;
+    opened.program = job.program;
+    opened.setup = job.setup;
+    const gcode::Dialect& dialect = gcode::dialect(check.run.dialect);
+    opened.dialect = dialect.name;
+    opened.counts_blocks = dialect.language == gcode::Language::klartext;
+    opened.assumptions = check.run.assumptions;
+    opened.is_inferred = job.setup.empty();
+    opened.scene = make_scene_setup(check.run.setup);
+    opened.proposed_path = proposed_setup_path(job);
+    opened.sheet =
+        std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup, job.edits));
+    return opened;
+}
 
 void RowsUpdate::append(RowsUpdate later) {
     if (later.count)

@@ -19,7 +19,9 @@ struct Machine;
 } // namespace core
 
 namespace app {
+struct CheckJob;
 class DebugSession;
+struct PreparedCheck;
 struct SetupSheet;
 } // namespace app
 
@@ -76,6 +78,9 @@ struct OpenedProgram {
     std::shared_ptr<const SetupSheet> sheet; // the editable part of the set-up
     std::string proposed_path;               // default file for saving the set-up
 };
+
+/// A program as it was read and its set-up completed.
+OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check);
 
 /// New or changed rows; they replace those from `first` on.
 struct RowsUpdate {

@@ -15,11 +15,9 @@
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
 #include "app/check/saved_setup.h"
-#include "app/check/setup_sheet.h"
 #include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
 #include "app/view/model/scene_of.h"
-#include "gcode/language/dialect.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -30,22 +28,6 @@ namespace {
 constexpr double slice = 0.01;
 constexpr auto walk_slice = std::chrono::milliseconds(30);
 constexpr auto publish_interval = std::chrono::milliseconds(60);
-
-OpenedProgram described(const CheckJob& job, const PreparedCheck& check) {
-    OpenedProgram opened;
-    opened.program = job.program;
-    opened.setup = job.setup;
-    const gcode::Dialect& dialect = gcode::dialect(check.run.dialect);
-    opened.dialect = dialect.name;
-    opened.counts_blocks = dialect.language == gcode::Language::klartext;
-    opened.assumptions = check.run.assumptions;
-    opened.is_inferred = job.setup.empty();
-    opened.scene = make_scene_setup(check.run.setup);
-    opened.proposed_path = proposed_setup_path(job);
-    opened.sheet =
-        std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup, job.edits));
-    return opened;
-}
 
 /// The tool that a block moves: the new one if the block changes tools.
 std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
@@ -92,7 +74,7 @@ void WorkerSession::open(const CheckJob& job, const std::function<void()>& publi
     publish();
     auto check = read_check(job);
     if (!check) return fail(check.error());
-    OpenedProgram opened = described(job, *check);
+    OpenedProgram opened = opened_program(job, *check);
     scenes_.emplace_back(0, opened.scene);
     show_early(track_of(*check, opened.scene->setup, is_closing_));
     news_.opened = std::make_shared<const OpenedProgram>(opened);
