@@ -7,6 +7,7 @@
 #include "app/coproc/device_judge.h"
 #include "app/coproc/study/coprocessor_report.h"
 #include "hwsim/coprocessor.h"
+#include "hwsim/driver.h"
 #include "hwsim/vcd_trace.h"
 #include "tests/support/scoped_folder.h"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "hwsim/coprocessor.h"
 #include "tests/support/device_judgement.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/check/check_job.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/coproc/device_check.h"

@@ -7,6 +7,10 @@
 #include "app/coproc/device_judge.h"
 #include "hwsim/driver.h"
 
+namespace app {
+struct CheckJob;
+}
+
 namespace test_support {
 
 /// The coprocessor's decisions on the blocks of programs compared with the exact engine.

@@ -8,6 +8,7 @@
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
 #include "app/debug/prompt/state_text.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/geom/gjk.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 #include "core/sim/leg/check_memory.h"
