@@ -360,21 +360,25 @@ InspectedValue code(const Dialect& dialect, std::string text, std::string meanin
     return {std::nullopt, std::move(text), std::move(meaning)};
 }
 
-std::string code_text(int tenths) {
-    return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10)
-                            : fmt::format("G{}.{}", tenths / 10, tenths % 10);
+const char* meaning_of(gcode::MotionCode motion) {
+    switch (motion) {
+    case gcode::MotionCode::rapid:
+        return "rapid";
+    case gcode::MotionCode::straight:
+        return "feed";
+    case gcode::MotionCode::arc_clockwise:
+        return "arc clockwise";
+    case gcode::MotionCode::arc_counterclockwise:
+        return "arc counterclockwise";
+    default:
+        return "special";
+    }
 }
 
 InspectedValue motion(const State& state, const Dialect& dialect) {
-    if (state.modal.cycle) return code(dialect, code_text(state.modal.cycle->code), "cycle");
+    if (state.modal.cycle) return code(dialect, written(state.modal.cycle->code), "cycle");
     if (!state.modal.motion) return {std::nullopt, "none"};
-    const int tenths = tenths_of(*state.modal.motion);
-    const char* meaning = tenths == 0    ? "rapid"
-                          : tenths == 10 ? "feed"
-                          : tenths == 20 ? "arc clockwise"
-                          : tenths == 30 ? "arc counterclockwise"
-                                         : "special";
-    return code(dialect, code_text(tenths), meaning);
+    return code(dialect, written(*state.modal.motion), meaning_of(*state.modal.motion));
 }
 
 InspectedValue plane(const State& state, const Dialect& dialect) {

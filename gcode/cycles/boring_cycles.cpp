@@ -23,8 +23,8 @@ void warn_of_direction(Drilling& hole) {
     hole.execution.warn(
         moving_word(hole.execution).span,
         fmt::format(
-            "G{}: a parameter of the control sets the direction of the shift Q; +{} is assumed",
-            hole.cycle.code / 10, axis_letters[hole.first]),
+            "{}: a parameter of the control sets the direction of the shift Q; +{} is assumed",
+            written(hole.cycle.code), axis_letters[hole.first]),
         Severity::note);
 }
 
@@ -78,14 +78,14 @@ void bore_and_retract_by_hand(Drilling& hole) {
 
 } // namespace
 
-bool works_from_the_back(const Dialect& dialect, int code) {
-    return code == tenths(77) || (code == tenths(87) && dialect.g87_is_back_boring);
+bool works_from_the_back(const Dialect& dialect, CodeNumber code) {
+    return code == g_code(77) || (code == g_code(87) && dialect.g87_is_back_boring);
 }
 
 void bore(Drilling& hole) {
     if (works_from_the_back(hole.execution.dialect, hole.cycle.code))
         bore_from_the_back(hole);
-    else if (hole.cycle.code == tenths(76))
+    else if (hole.cycle.code == g_code(76))
         bore_finely(hole);
     else
         bore_and_retract_by_hand(hole);
@@ -105,7 +105,7 @@ void thread_to(Drilling& hole, double level, SpindleDirection in, SpindleDirecti
 } // namespace
 
 void tap(Drilling& hole) {
-    const bool left = hole.cycle.code == tenths(74);
+    const bool left = hole.cycle.code == g_code(74);
     const SpindleDirection in =
         left ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
     const SpindleDirection out =

@@ -49,7 +49,7 @@ core::Result<CircularPocket> pocket_of(Execution& execution, const CodeWord& ent
     if (auto checked = check_radii(execution, entry, tool_radius); !checked)
         return tl::unexpected(std::move(checked).error());
     const Statement& statement = execution.statement;
-    CircularPocket pocket{.turn = entry.code->tenths == tenths(12) ? -1 : 1};
+    CircularPocket pocket{.turn = entry.code->number == g_code(12) ? -1 : 1};
     pocket.first = pocket.last = length_of(execution, *statement.word('I')) - tool_radius;
     if (const Word* last = statement.word('K')) {
         pocket.last = length_of(execution, *last) - tool_radius;

@@ -117,10 +117,10 @@ core::Result<void> Tracing::follow() {
     return {};
 }
 
-core::Result<TurningMoves> moves_along(const Execution& execution, int code, TurningPoint start,
-                                       const TurningContour& contour) {
+core::Result<TurningMoves> moves_along(const Execution& execution, CodeNumber code,
+                                       TurningPoint start, const TurningContour& contour) {
     const double mm_per_unit = to_mm(1.0, execution.modal().unit);
-    if (code == tenths(70)) {
+    if (code == g_code(70)) {
         FinishingWords words;
         words.first_distance = length_word(execution, 'D').value_or(0.0);
         words.last_distance = length_word(execution, 'E').value_or(0.0);
@@ -128,8 +128,8 @@ core::Result<TurningMoves> moves_along(const Execution& execution, int code, Tur
         return finishing_moves(start, contour, words, mm_per_unit);
     }
     RoughingWords words;
-    words.facing = code >= tenths(72);
-    words.pockets = static_cast<PocketCutting>(code % 10);
+    words.facing = code >= g_code(72);
+    words.pockets = static_cast<PocketCutting>(tenth_of(code));
     words.allowance = length_word(execution, 'D').value_or(0.0);
     words.depth = length_word(execution, 'I');
     words.retract = length_word(execution, 'R');
@@ -185,7 +185,7 @@ core::Result<void> turn_contour(Execution& execution) {
     if (auto followed = tracing.follow(); !followed) return followed;
     FEELER_TRY(
         const TurningMoves moves,
-        placed(moves_along(execution, execution.statement.of(ModalGroup::motion)->code->tenths,
+        placed(moves_along(execution, execution.statement.of(ModalGroup::motion)->code->number,
                            point_of(start), tracing.contour),
                mover.span));
     for (const TurningMove& move : moves)

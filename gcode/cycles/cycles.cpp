@@ -11,14 +11,14 @@ namespace {
 
 using core::ErrorCode;
 
-bool pecks(int code) { return code == tenths(73) || code == tenths(83); }
+bool pecks(CodeNumber code) { return code == g_code(73) || code == g_code(83); }
 
 /// Haas: I is the first peck, each further one is shorter by J but not shorter than K.
 ///
 /// Source: Haas mill operator's manual 96-8000, G73 and G83.
 bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.shift[0] > 0.0; }
 
-bool taps(int code) { return code == tenths(74) || code == tenths(84); }
+bool taps(CodeNumber code) { return code == g_code(74) || code == g_code(84); }
 
 /// The factor by which Fanuc's scaling scales the drilling axis. Q and the retract of G73 and G83
 /// are not scaled.
@@ -32,19 +32,19 @@ double stretch_along(const Execution& execution, size_t normal) {
 tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycle& cycle,
                                     char letter) {
     return core::fail(ErrorCode::missing_value,
-                      fmt::format("G{} needs {} word", cycle.code / 10,
+                      fmt::format("{} needs {} word", written(cycle.code),
                                   letter == 'R' ? "an R" : fmt::format("a {}", letter)),
                       moving_word(execution).span);
 }
 
 /// I, J or K of a cycle that shifts the tool; K may instead be the number of repetitions.
-const Word* shift_word(const Execution& execution, int code, size_t axis) {
+const Word* shift_word(const Execution& execution, CodeNumber code, size_t axis) {
     if (hole_pattern(execution)) return nullptr;
-    const bool bores_back = execution.dialect.cycles_are_rs274 && code == tenths(87);
+    const bool bores_back = execution.dialect.cycles_are_rs274 && code == g_code(87);
     if (pecks(code) && execution.dialect.pecks_may_shrink)
         return execution.statement.word("IJK"[axis]);
     const bool shifts =
-        code == tenths(76) || bores_back || works_from_the_back(execution.dialect, code);
+        code == g_code(76) || bores_back || works_from_the_back(execution.dialect, code);
     if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
     return execution.statement.word("IJK"[axis]);
 }
@@ -113,34 +113,34 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
     if (upwards && r > bottom)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{} works upwards from R to {}, but R at {:.4f} mm is above {:.4f} mm",
-                        cycle.code / 10, axis_letters[axes_of(execution.modal().plane).normal], r,
-                        bottom),
+            fmt::format("{} works upwards from R to {}, but R at {:.4f} mm is above {:.4f} mm",
+                        written(cycle.code), axis_letters[axes_of(execution.modal().plane).normal],
+                        r, bottom),
             where);
     if (upwards && execution.modal().retract == RetractMode::r_level)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("G{} must return to the initial level: G99 would leave the "
+                          fmt::format("{} must return to the initial level: G99 would leave the "
                                       "tool below the work; use G98",
-                                      cycle.code / 10),
+                                      written(cycle.code)),
                           where);
     if (!upwards && r < bottom)
         return core::fail(
             ErrorCode::invalid_value,
-            fmt::format("G{}: R at {:.4f} mm is below the bottom of the hole at {:.4f} mm",
-                        cycle.code / 10, r, bottom),
+            fmt::format("{}: R at {:.4f} mm is below the bottom of the hole at {:.4f} mm",
+                        written(cycle.code), r, bottom),
             where);
     const double least_peck =
         pecks_shrink(cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
     if (least_peck > 0.0 && (r - bottom) / least_peck > most_commands / 4)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("G{}: this Q gives more than {} pecks", cycle.code / 10, most_commands / 4),
-            where);
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: this Q gives more than {} pecks", written(cycle.code),
+                                      most_commands / 4),
+                          where);
     if (execution.modal().feed_mode == FeedMode::inverse_time)
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("G{}: a cycle cannot run in inverse-time feed mode (G93)", cycle.code / 10),
-            where);
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a cycle cannot run in inverse-time feed mode (G93)",
+                                      written(cycle.code)),
+                          where);
     return {};
 }
 
@@ -159,9 +159,9 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
     const core::SourceSpan where = moving_word(execution).span;
     if (cycle.r_is_way && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("G{}: with G91 the cycle is relative to the current "
+                          fmt::format("{}: with G91 the cycle is relative to the current "
                                       "position, which is unknown in {}",
-                                      cycle.code / 10, axis_letters[axes.normal]),
+                                      written(cycle.code), axis_letters[axes.normal]),
                           where);
     const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
     const double bottom = cycle.bottom_is_way ? r + *cycle.bottom : *cycle.bottom;
@@ -202,7 +202,7 @@ void bore_with_stop(Drilling& hole) {
 
 /// G85 and G89 retract at feed; on some controls only up to R.
 void feed_out(Drilling& hole) {
-    const bool only_bores = hole.cycle.code == tenths(85);
+    const bool only_bores = hole.cycle.code == g_code(85);
     const Dialect& rules = hole.execution.dialect;
     if (rules.boring_feeds_to_r || (rules.cycles_are_rs274 && only_bores)) {
         hole.feed(hole.r);
@@ -215,38 +215,38 @@ void feed_out(Drilling& hole) {
 void drill(Drilling& hole) {
     const bool rs274 = hole.execution.dialect.cycles_are_rs274;
     switch (hole.cycle.code) {
-    case tenths(73):
-    case tenths(83):
-        peck(hole, hole.cycle.code == tenths(83));
+    case g_code(73):
+    case g_code(83):
+        peck(hole, hole.cycle.code == g_code(83));
         hole.dwell();
         hole.traverse(hole.clear);
         return;
-    case tenths(82):
+    case g_code(82):
         hole.feed(hole.bottom);
         hole.dwell();
         hole.traverse(hole.clear);
         return;
-    case tenths(85):
-    case tenths(89):
+    case g_code(85):
+    case g_code(89):
         hole.feed(hole.bottom);
-        if (hole.cycle.code == tenths(89)) hole.dwell();
+        if (hole.cycle.code == g_code(89)) hole.dwell();
         feed_out(hole);
         return;
-    case tenths(86):
+    case g_code(86):
         bore_with_stop(hole);
         return;
-    case tenths(74):
-    case tenths(84):
+    case g_code(74):
+    case g_code(84):
         rs274 ? tap_with_reversal(hole) : tap(hole);
         return;
-    case tenths(76):
-    case tenths(77):
+    case g_code(76):
+    case g_code(77):
         bore(hole);
         return;
-    case tenths(87):
+    case g_code(87):
         rs274 ? bore_back_to_middle(hole) : bore(hole);
         return;
-    case tenths(88):
+    case g_code(88):
         rs274 ? bore_and_stop(hole) : bore(hole);
         return;
     default: // G81
@@ -339,8 +339,8 @@ core::Result<void> run_canned_cycle(Execution& execution) {
         }
         if (execution.result.commands.size() > most_commands)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("G{}: this block gives more than {} moves",
-                                          cycle.code / 10, most_commands),
+                              fmt::format("{}: this block gives more than {} moves",
+                                          written(cycle.code), most_commands),
                               moving_word(execution).span);
     }
     if (rs274) end_exact_path(execution);
@@ -374,7 +374,7 @@ Position placed(const Position& from, const PlaneAxes& axes, double distance, do
 const CodeWord* hole_pattern(const Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     const bool is_pattern =
-        entry && entry->code->tenths >= tenths(70) && entry->code->tenths <= tenths(72);
+        entry && entry->code->number >= g_code(70) && entry->code->number <= g_code(72);
     return is_pattern ? entry : nullptr;
 }
 
@@ -388,12 +388,12 @@ core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
     const double first = angle ? angle->value : 0.0;
     const PlaneAxes axes = axes_of(execution.modal().plane);
     double step = 360.0 / count;
-    if (entry.code->tenths == tenths(71)) {
+    if (entry.code->number == g_code(71)) {
         FEELER_TRY(step, needed(execution, entry, 'K', false));
     }
     std::vector<Position> holes;
     for (int i = 0; i < count; ++i)
-        holes.push_back(entry.code->tenths == tenths(72)
+        holes.push_back(entry.code->number == g_code(72)
                             ? placed(start, axes, i * length, first)
                             : placed(start, axes, length, first + i * step));
     return holes;

@@ -69,7 +69,7 @@ core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
 core::Result<void> run_hole_pattern(Execution& execution);
 
 /// Whether a cycle works upwards, with R below Z.
-bool works_from_the_back(const Dialect& dialect, int code);
+bool works_from_the_back(const Dialect& dialect, CodeNumber code);
 
 /// G73, G81 to G89.
 core::Result<void> run_canned_cycle(Execution& execution);

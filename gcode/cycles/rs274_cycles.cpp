@@ -12,12 +12,12 @@ std::string_view name_of_start(SpindleDirection direction) {
     return direction == SpindleDirection::counterclockwise ? "M4" : "M3";
 }
 
-core::Result<void> check_axes(const Execution& execution, int code) {
+core::Result<void> check_axes(const Execution& execution, CodeNumber code) {
     const PlaneAxes plane = axes_of(execution.modal().plane);
     if (!execution.statement.has_axis_word())
         return core::fail(
             ErrorCode::missing_value,
-            fmt::format("G{} has no axis word: add the position of the hole", code / 10),
+            fmt::format("{} has no axis word: add the position of the hole", written(code)),
             moving_word(execution).span);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
@@ -33,20 +33,20 @@ core::Result<void> check_axes(const Execution& execution, int code) {
 }
 
 core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cycle) {
-    const bool waits = cycle.code == tenths(82) || cycle.code == tenths(86)
-                       || cycle.code == tenths(88) || cycle.code == tenths(89);
+    const bool waits = cycle.code == g_code(82) || cycle.code == g_code(86)
+                       || cycle.code == g_code(88) || cycle.code == g_code(89);
     if (waits && !cycle.dwell)
-        return core::fail(
-            ErrorCode::missing_value,
-            fmt::format("G{} needs a P word, the dwell at the bottom in seconds", cycle.code / 10),
-            moving_word(execution).span);
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} needs a P word, the dwell at the bottom in seconds",
+                                      written(cycle.code)),
+                          moving_word(execution).span);
     return {};
 }
 
 /// G87 needs all three words once; they are modal in the following blocks.
 core::Result<void> check_shift(const Execution& execution, const CannedCycle& cycle) {
     const bool is_first = !execution.modal().cycle->bottom;
-    if (cycle.code != tenths(87) || !is_first) return {};
+    if (cycle.code != g_code(87) || !is_first) return {};
     for (const char letter : {'I', 'J', 'K'})
         if (!execution.statement.word(letter))
             return core::fail(ErrorCode::missing_value,
@@ -57,30 +57,31 @@ core::Result<void> check_shift(const Execution& execution, const CannedCycle& cy
     return {};
 }
 
-core::Result<void> check_spindle(const Execution& execution, int code) {
-    const bool taps = code == tenths(74) || code == tenths(84);
-    const bool bores = code == tenths(86) || code == tenths(87) || code == tenths(88);
+core::Result<void> check_spindle(const Execution& execution, CodeNumber code) {
+    const bool taps = code == g_code(74) || code == g_code(84);
+    const bool bores = code == g_code(86) || code == g_code(87) || code == g_code(88);
     const SpindleDirection direction = execution.modal().spindle;
     if (taps && axes_of(execution.modal().plane).normal > 2)
         return core::fail(
             ErrorCode::unsupported,
-            fmt::format("G{}: the control taps along X, Y and Z only, not in this plane: use G17",
-                        code / 10),
+            fmt::format("{}: the control taps along X, Y and Z only, not in this plane: use G17",
+                        written(code)),
             moving_word(execution).span);
     const core::SourceSpan where = moving_word(execution).span;
     if ((taps || bores) && direction == SpindleDirection::stopped)
         return core::fail(ErrorCode::missing_value,
-                          fmt::format("G{}: the spindle is stopped: start it with {} first",
-                                      code / 10, code == tenths(74) ? "M4" : "M3"),
+                          fmt::format("{}: the spindle is stopped: start it with {} first",
+                                      written(code), code == g_code(74) ? "M4" : "M3"),
                           where);
     const SpindleDirection needed =
-        code == tenths(74) ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
+        code == g_code(74) ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
     if (taps && direction != needed)
         return core::fail(
             ErrorCode::invalid_value,
             fmt::format(
-                "G{} cuts a {} thread, but the spindle turns the other way: start it with {} first",
-                code / 10, code == tenths(74) ? "left-hand" : "right-hand", name_of_start(needed)),
+                "{} cuts a {} thread, but the spindle turns the other way: start it with {} first",
+                written(code), code == g_code(74) ? "left-hand" : "right-hand",
+                name_of_start(needed)),
             where);
     return {};
 }
@@ -110,9 +111,9 @@ void feed_tapping(Drilling& hole, std::optional<double> level) {
 void warn_of_plane(Drilling& hole) {
     if (hole.execution.modal().plane == Plane::xy) return;
     hole.execution.warn(moving_word(hole.execution).span,
-                        fmt::format("G{} outside G17 moves the tool off the hole: LinuxCNC 2.9 "
+                        fmt::format("{} outside G17 moves the tool off the hole: LinuxCNC 2.9 "
                                     "swaps the axes of the feed moves; tap in G17, or with G33.1",
-                                    hole.cycle.code / 10));
+                                    written(hole.cycle.code)));
 }
 
 void enable_overrides(Execution& execution, bool enabled) {
@@ -128,9 +129,9 @@ void enable_overrides(Execution& execution, bool enabled) {
 core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle) {
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::syntax,
-                          fmt::format("G{}: no cycle is allowed while cutter radius compensation "
+                          fmt::format("{}: no cycle is allowed while cutter radius compensation "
                                       "is on: cancel it with G40 first",
-                                      cycle.code / 10),
+                                      written(cycle.code)),
                           moving_word(execution).span);
     if (auto checked = check_axes(execution, cycle.code); !checked) return checked;
     if (auto checked = check_dwell(execution, cycle); !checked) return checked;

@@ -111,7 +111,7 @@ core::Result<void> quadratic(Execution& execution) {
 
 core::Result<void> follow_spline(Execution& execution) {
     if (auto checked = check_plane_spline(execution); !checked) return checked;
-    const bool is_cubic = execution.statement.of(ModalGroup::motion)->code->tenths == tenths(5);
+    const bool is_cubic = execution.statement.of(ModalGroup::motion)->code->number == g_code(5);
     return is_cubic ? cubic(execution) : quadratic(execution);
 }
 

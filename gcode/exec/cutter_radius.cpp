@@ -13,49 +13,66 @@ namespace {
 
 using core::ErrorCode;
 
-// Codes that LinuxCNC refuses between G41 and G40, in tenths; probed with its interpreter.
-constexpr int rs274_g[] = {50,  51,  52,  53,  280, 281, 300, 301, 330, 331, 382, 383,
-                           384, 385, 430, 431, 432, 490, 520, 530, 540, 550, 560, 570,
-                           580, 590, 591, 592, 593, 610, 640, 710, 720, 730, 740, 760,
-                           810, 820, 830, 840, 850, 860, 870, 880, 890, 920, 980};
-constexpr int rs274_m[] = {60, 480, 490, 500, 510, 520, 530, 620, 630, 640, 650, 660, 670, 680};
+/// G codes by their values, such as 59.3.
+template <size_t count>
+constexpr std::array<CodeNumber, count> g_codes(const double (&values)[count]) {
+    std::array<CodeNumber, count> codes{};
+    for (size_t i = 0; i < count; ++i)
+        codes[i] = code_of('G', static_cast<int>(10.0 * values[i] + 0.5));
+    return codes;
+}
+
+// Codes that LinuxCNC refuses between G41 and G40; probed with its interpreter.
+constexpr auto rs274_g =
+    g_codes({5,    5.1, 5.2, 5.3, 28, 28.1, 30, 30.1, 33, 33.1, 38.2, 38.3, 38.4, 38.5, 43, 43.1,
+             43.2, 49,  52,  53,  54, 55,   56, 57,   58, 59,   59.1, 59.2, 59.3, 61,   64, 71,
+             72,   73,  74,  76,  81, 82,   83, 84,   85, 86,   87,   88,   89,   92,   98});
+constexpr CodeNumber rs274_m[] = {m_code(6),  m_code(48), m_code(49), m_code(50), m_code(51),
+                                  m_code(52), m_code(53), m_code(62), m_code(63), m_code(64),
+                                  m_code(65), m_code(66), m_code(67), m_code(68)};
 
 // Codes by which the tool leaves the contour on Fanuc controls: reference points, machine
 // coordinates, offsets, canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
-constexpr int fanuc_g[] = {270, 280, 290,  300, 520, 530,  540, 541, 550, 560, 570, 580,
-                           590, 730, 740,  760, 810, 820,  830, 840, 850, 860, 870, 880,
-                           890, 920, 1540, 120, 130, 1500, 700, 710, 720, 770};
-constexpr int fanuc_m[] = {60};
+constexpr auto fanuc_g =
+    g_codes({27, 28, 29, 30, 52, 53, 54, 54.1, 55, 56,  57, 58, 59,  73, 74, 76, 81,
+             82, 83, 84, 85, 86, 87, 88, 89,   92, 154, 12, 13, 150, 70, 71, 72, 77});
+constexpr CodeNumber fanuc_m[] = {m_code(6)};
 
-bool is_among(std::span<const int> codes, int code) {
+bool is_among(std::span<const CodeNumber> codes, CodeNumber code) {
     return std::find(codes.begin(), codes.end(), code) != codes.end();
 }
 
 bool changes_plane(const Execution& execution, const CodeWord& entry) {
-    constexpr int planes[] = {170, 180, 190, 171, 181, 191};
+    constexpr CodeNumber planes[] = {g_code(17),    g_code(18),    g_code(19),
+                                     g_code(17, 1), g_code(18, 1), g_code(19, 1)};
     const Contour& contour = *execution.state.contour; // the modal state already has the new plane
     const Plane plane = contour.path ? contour.plane : execution.modal().plane;
     return entry.code->group == ModalGroup::plane
-           && planes[static_cast<size_t>(plane)] != entry.code->tenths;
+           && planes[static_cast<size_t>(plane)] != entry.code->number;
 }
 
 bool breaks_contour(const Execution& execution, const CodeWord& entry) {
-    const int code = entry.code->tenths;
-    const bool rs274 = execution.dialect.contour_codes == ContourCodes::rs274;
-    if (entry.code->letter == 'M') return rs274 ? is_among(rs274_m, code) : is_among(fanuc_m, code);
-    if (code == tenths(10)) {
+    const CodeNumber code = entry.code->number;
+    if (code == g_code(10)) {
         const Word* kind = execution.statement.word('L');
         return kind && (kind->value == 2.0 || kind->value == 20.0);
     }
-    return changes_plane(execution, entry)
-           || (rs274 ? is_among(rs274_g, code) : is_among(fanuc_g, code));
+    if (changes_plane(execution, entry)) return true;
+    return execution.dialect.contour_codes == ContourCodes::rs274
+               ? is_among(rs274_g, code) || is_among(rs274_m, code)
+               : is_among(fanuc_g, code) || is_among(fanuc_m, code);
+}
+
+/// G41.1 and G42.1, which state the diameter in D.
+bool states_diameter(const CodeWord& entry) {
+    return entry.code->number == g_code(41, 1) || entry.code->number == g_code(42, 1);
 }
 
 /// Reports codes that would move the tool off the contour.
 core::Result<void> check_contour(Execution& execution) {
     const char* const on = execution.modal().compensation == Side::left ? "G41" : "G42";
     for (const CodeWord& entry : execution.statement.codes()) {
-        const bool skips = entry.code->letter == 'G' && entry.code->tenths == tenths(31);
+        const bool skips = entry.code->number == g_code(31);
         if (!skips && !breaks_contour(execution, entry)) continue;
         if (skips || execution.dialect.contour_breaks_are_errors || changes_plane(execution, entry))
             return core::fail(
@@ -95,7 +112,7 @@ core::Result<int> radius_number(Execution& execution) {
 core::Result<int> turning_orientation(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('L');
     int orientation = 0;
-    if (entry.code->tenths % 10 == 1) {
+    if (states_diameter(entry)) {
         if (word) {
             FEELER_TRY(orientation, whole_number(*word, 0, 9));
         }
@@ -132,7 +149,7 @@ core::Result<double> stretch_of_plane(const Execution& execution, const CodeWord
 
 core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('D');
-    if (entry.code->tenths % 10 == 1) {
+    if (states_diameter(entry)) {
         if (!word)
             return core::fail(
                 ErrorCode::missing_value,
@@ -177,7 +194,7 @@ core::Result<void> set_cutter_radius(Execution& execution) {
         contour.style = style;
     }
     const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
-    const bool ends = entry && entry->code->tenths == tenths(40);
+    const bool ends = entry && entry->code->number == g_code(40);
     if (modal.compensation != Side::none && !ends) {
         if (entry && execution.dialect.contour_breaks_are_errors)
             return core::fail(
@@ -206,7 +223,7 @@ core::Result<void> set_cutter_radius(Execution& execution) {
             entry->word->span);
     FEELER_TRY(const int orientation, turning_orientation(execution, *entry));
     FEELER_TRY(const double diameter, offset_diameter(execution, *entry));
-    const bool left = entry->code->tenths / 10 == 41;
+    const bool left = whole_of(entry->code->number) == 41;
     modal.compensation = left ? Side::left : Side::right;
     FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
     modal.compensation_radius = diameter / 2.0 / stretch;

@@ -141,9 +141,9 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
 /// Reports changes of the frame while cutter radius compensation is on as an error.
 core::Result<void> check_contour_is_off(const Execution& execution, const CodeWord& entry) {
     const ModalState& modal = execution.modal();
-    const int code = entry.code->tenths;
+    const CodeNumber code = entry.code->number;
     const bool is_on = modal.offsets.has_frame;
-    const bool cancels = code == tenths(50) || code == tenths(50, 1) || code == tenths(69);
+    const bool cancels = code == g_code(50) || code == g_code(50, 1) || code == g_code(69);
     if (modal.compensation == Side::none || entry.code->group == ModalGroup::polar
         || (cancels && !is_on))
         return {};
@@ -156,30 +156,30 @@ core::Result<void> check_contour_is_off(const Execution& execution, const CodeWo
 
 core::Result<void> change_transforms(Execution& execution, const CodeWord& entry) {
     ProgramTransforms& transforms = execution.modal().transforms;
-    switch (entry.code->tenths) {
-    case tenths(50):
+    switch (entry.code->number) {
+    case g_code(50):
         transforms.scaling.reset();
         return {};
-    case tenths(51):
+    case g_code(51):
         return set_scaling(execution, entry);
-    case tenths(50, 1):
-    case tenths(100):
+    case g_code(50, 1):
+    case g_code(100):
         cancel_mirror(execution);
         return {};
-    case tenths(51, 1):
-    case tenths(101):
+    case g_code(51, 1):
+    case g_code(101):
         set_mirror(execution);
         return {};
-    case tenths(68):
+    case g_code(68):
         return set_rotation(execution, entry);
-    case tenths(68, 2):
+    case g_code(68, 2):
         return set_tilted_plane(execution);
-    case tenths(69):
+    case g_code(69):
         transforms.rotation.reset();
         transforms.tilt.reset();
         transforms.before_rotation.reset();
         return {};
-    case tenths(15):
+    case g_code(15):
         transforms.polar.reset();
         return {};
     default: // G16
@@ -341,7 +341,7 @@ core::Result<void> set_tilted_plane(Execution& execution) {
 
 core::Result<void> turn_tool_to_plane(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->letter != 'G' || entry.code->tenths != tenths(53, 1)) continue;
+        if (entry.code->number != g_code(53, 1)) continue;
         if (!execution.modal().transforms.tilt)
             return core::fail(ErrorCode::invalid_value,
                               "G53.1 needs a tilted plane, but none is set: program G68.2 first",

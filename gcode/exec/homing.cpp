@@ -10,7 +10,7 @@ namespace {
 /// Home in machine coordinates; if not given, machine zero with a warning on first use.
 Position home_of(Execution& execution, const CodeWord& entry) {
     Position home =
-        entry.code->tenths == tenths(28) ? execution.modal().home : execution.modal().second_home;
+        entry.code->number == g_code(28) ? execution.modal().home : execution.modal().second_home;
     const bool known = home[0] && home[1] && home[2];
     if (!known && !execution.state.said_home) {
         execution.state.said_home = true;
@@ -122,7 +122,7 @@ core::Result<void> skip_move(Execution& execution) {
 core::Result<void> store_home(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
-    Position& home = entry.code->tenths == tenths(28, 1) ? modal.home : modal.second_home;
+    Position& home = entry.code->number == g_code(28, 1) ? modal.home : modal.second_home;
     const Position machine = machine_from_program(modal.offsets, modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (machine[axis])

@@ -70,8 +70,9 @@ Value of_tool(const InterpreterState& state, const Environment& environment, int
 
 /// The motion code in tenths, as in #<_motion_mode>.
 double motion_mode(const ModalState& modal) {
-    if (modal.cycle) return modal.cycle->code;
-    return modal.motion ? tenths_of(*modal.motion) : tenths(80);
+    if (modal.cycle) return tenths_of(modal.cycle->code);
+    const std::optional<CodeNumber> motion = modal.motion ? number_of(*modal.motion) : std::nullopt;
+    return tenths_of(motion.value_or(g_code(80)));
 }
 
 double coordinate_system(const ModalState& modal) {

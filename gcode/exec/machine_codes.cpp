@@ -19,15 +19,16 @@ core::Result<int> number_under(const Execution& execution, const CodeWord& entry
 
 /// M62 to M65: a digital output on or off. M67, M68: an analogue one.
 core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
-    const int code = entry.code->tenths / 10;
-    const bool analog = code == 67 || code == 68;
+    const CodeNumber code = entry.code->number;
+    const bool analog = code == m_code(67) || code == m_code(68);
     FEELER_TRY(const int number, number_under(execution, entry, analog ? 'E' : 'P'));
-    double value = code == 62 || code == 64 ? 1.0 : 0.0;
+    double value = code == m_code(62) || code == m_code(64) ? 1.0 : 0.0;
     if (analog) {
         const Word* word = execution.statement.word('Q');
         value = word ? word->value : -1.0;
     }
-    execution.emit(SetOutput{number, value, analog, code == 62 || code == 63 || code == 67});
+    const bool with_motion = code == m_code(62) || code == m_code(63) || code == m_code(67);
+    execution.emit(SetOutput{number, value, analog, with_motion});
     return {};
 }
 
@@ -79,11 +80,10 @@ void enable(Execution& execution, OverrideKind kind, bool enabled) {
 
 core::Result<void> switch_machine(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->letter != 'M') continue;
-        const int code = entry.code->tenths / 10;
-        if (code == 66) {
+        const CodeNumber code = entry.code->number;
+        if (code == m_code(66)) {
             if (auto done = wait_for_input(execution, entry); !done) return done;
-        } else if (code >= 62 && code <= 68) {
+        } else if (code >= m_code(62) && code <= m_code(68)) {
             if (auto done = set_output(execution, entry); !done) return done;
         }
     }
@@ -93,14 +93,12 @@ core::Result<void> switch_machine(Execution& execution) {
 core::Result<void> save_or_restore_modes(Execution& execution) {
     InterpreterState& state = execution.state;
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->letter != 'M' || entry.code->tenths < tenths(70)
-            || entry.code->tenths > tenths(73))
-            continue;
+        const CodeNumber code = entry.code->number;
+        if (code < m_code(70) || code > m_code(73)) continue;
         Frame& frame = state.frames.back();
-        const int code = entry.code->tenths / 10;
-        if (code == 71) {
+        if (code == m_code(71)) {
             frame.saved.write().reset();
-        } else if (code == 72) {
+        } else if (code == m_code(72)) {
             if (!*frame.saved)
                 return core::fail(
                     ErrorCode::missing_value,
@@ -113,7 +111,7 @@ core::Result<void> save_or_restore_modes(Execution& execution) {
             announce_modes(execution.result, entry.word->span.column, before, state.modal);
         } else {
             frame.saved.write() = state.modal;
-            frame.restores = code == 73;
+            frame.restores = code == m_code(73);
         }
     }
     return {};
@@ -122,17 +120,17 @@ core::Result<void> save_or_restore_modes(Execution& execution) {
 core::Result<void> set_overrides(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::overrides);
     if (!entry) return {};
-    const int code = entry->code->tenths / 10;
-    if (code == 48 || code == 49) {
-        enable(execution, OverrideKind::feed, code == 48);
-        enable(execution, OverrideKind::speed, code == 48);
+    const CodeNumber code = entry->code->number;
+    if (code == m_code(48) || code == m_code(49)) {
+        enable(execution, OverrideKind::feed, code == m_code(48));
+        enable(execution, OverrideKind::speed, code == m_code(48));
         return {};
     }
     const Word* word = execution.statement.word('P');
     const bool on = !word || word->value != 0.0;
     constexpr OverrideKind kinds[] = {OverrideKind::feed, OverrideKind::speed,
                                       OverrideKind::adaptive_feed, OverrideKind::feed_hold};
-    enable(execution, kinds[code - 50], on);
+    enable(execution, kinds[whole_of(code) - 50], on);
     return {};
 }
 
@@ -172,12 +170,14 @@ core::Result<void> probe(Execution& execution) {
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: the probe move is too short", written(mover)),
                           mover.span);
-    const int kind = tenths_of(*modal.motion) % 10;
+    const MotionCode kind = *modal.motion;
+    const bool towards = kind == MotionCode::probe_toward || kind == MotionCode::try_probe_toward;
+    const bool must_succeed = kind == MotionCode::probe_toward || kind == MotionCode::probe_away;
     execution.warn(mover.span,
                    fmt::format("{}: where the probe makes contact is unknown; the whole move is "
                                "checked, and the program continues from its end point",
                                written(mover)));
-    execution.emit(StraightProbe{end, rate, kind == 2 || kind == 3, kind == 2 || kind == 4});
+    execution.emit(StraightProbe{end, rate, towards, must_succeed});
     modal.position = end;
     Parameters& parameters = execution.state.parameters.write();
     for (size_t axis = 0; axis < axis_count; ++axis) {
@@ -192,12 +192,12 @@ core::Result<void> probe(Execution& execution) {
 core::Result<void> stop(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
     if (!entry) return {};
-    switch (entry->code->tenths) {
-    case tenths(1):
+    switch (entry->code->number) {
+    case m_code(1):
         execution.emit(OptionalStop{});
         break;
-    case tenths(2):
-    case tenths(30):
+    case m_code(2):
+    case m_code(30):
         execution.state.ending = Ending::program_end;
         execution.emit(ProgramEnd{});
         break;

@@ -15,11 +15,11 @@ core::Result<void> set_feed_mode(Execution& execution) {
     if (!entry) return {};
     const FeedMode before = execution.modal().feed_mode;
     FeedMode& mode = execution.modal().feed_mode;
-    switch (entry->code->tenths) {
-    case tenths(93):
+    switch (entry->code->number) {
+    case g_code(93):
         mode = FeedMode::inverse_time;
         break;
-    case tenths(95):
+    case g_code(95):
         mode = FeedMode::per_turn;
         break;
     default:
@@ -43,7 +43,7 @@ core::Result<void> set_feed(Execution& execution) {
     const CodeWord* units = execution.statement.of(ModalGroup::units);
     LengthUnit unit = modal.unit;
     if (units && !execution.dialect.feed_before_units)
-        unit = units->code->tenths == tenths(20) ? LengthUnit::inch : LengthUnit::mm;
+        unit = units->code->number == g_code(20) ? LengthUnit::inch : LengthUnit::mm;
     modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
     return {};
 }
@@ -67,7 +67,7 @@ namespace {
 
 /// Checks M19 R P Q: angle, direction, and maximum time.
 core::Result<void> check_orientation(const Execution& execution, const CodeWord& entry) {
-    if (entry.code->tenths != tenths(19)) return {};
+    if (entry.code->number != m_code(19)) return {};
     const Word* angle = execution.statement.word('R');
     if (angle && (angle->value < 0.0 || angle->value > 360.0))
         return core::fail(
@@ -92,11 +92,11 @@ core::Result<void> turn_spindle(Execution& execution) {
     if (!entry) return {};
     ModalState& modal = execution.modal();
     if (auto checked = check_orientation(execution, *entry); !checked) return checked;
-    switch (entry->code->tenths) {
-    case tenths(3):
+    switch (entry->code->number) {
+    case m_code(3):
         modal.spindle = core::SpindleDirection::clockwise;
         break;
-    case tenths(4):
+    case m_code(4):
         modal.spindle = core::SpindleDirection::counterclockwise;
         break;
     default:
@@ -112,11 +112,11 @@ core::Result<void> set_coolant(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::coolant);
     if (!entry) return {};
     ModalState& modal = execution.modal();
-    switch (entry->code->tenths) {
-    case tenths(7):
+    switch (entry->code->number) {
+    case m_code(7):
         modal.mist = true;
         break;
-    case tenths(8):
+    case m_code(8):
         modal.flood = true;
         break;
     default:
@@ -129,7 +129,7 @@ core::Result<void> set_coolant(Execution& execution) {
 
 core::Result<void> dwell(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
-    if (!entry || entry->code->tenths != tenths(4)) return {};
+    if (!entry || entry->code->number != g_code(4)) return {};
     const Word* word = execution.statement.word('P');
     if (!word && execution.dialect.dwell_takes_x_and_u) {
         word = execution.statement.word('X');
@@ -152,20 +152,20 @@ core::Result<void> select_plane(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::plane);
     if (!entry) return {};
     Plane& plane = execution.modal().plane;
-    switch (entry->code->tenths) {
-    case tenths(17):
+    switch (entry->code->number) {
+    case g_code(17):
         plane = Plane::xy;
         break;
-    case tenths(18):
+    case g_code(18):
         plane = Plane::zx;
         break;
-    case tenths(19):
+    case g_code(19):
         plane = Plane::yz;
         break;
-    case tenths(17, 1):
+    case g_code(17, 1):
         plane = Plane::uv;
         break;
-    case tenths(18, 1):
+    case g_code(18, 1):
         plane = Plane::wu;
         break;
     default:
@@ -192,7 +192,7 @@ void keep_numbers(CannedCycle& cycle, LengthUnit from, LengthUnit to) {
 core::Result<void> set_units(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry) return {};
-    const bool inch = entry->code->tenths == tenths(20);
+    const bool inch = entry->code->number == g_code(20);
     const LengthUnit unit = inch ? LengthUnit::inch : LengthUnit::mm;
     if (execution.modal().cycle && execution.dialect.cycles_are_rs274)
         keep_numbers(*execution.modal().cycle, execution.modal().unit, unit);
@@ -211,20 +211,20 @@ core::Result<void> set_units(Execution& execution) {
 }
 
 core::Result<void> set_distance_mode(Execution& execution) {
-    const auto mode_of = [](const CodeWord& entry, int absolute) {
-        return entry.code->tenths == absolute ? DistanceMode::absolute : DistanceMode::incremental;
+    const auto mode_of = [](const CodeWord& entry, CodeNumber absolute) {
+        return entry.code->number == absolute ? DistanceMode::absolute : DistanceMode::incremental;
     };
     if (const CodeWord* entry = execution.statement.of(ModalGroup::distance))
-        execution.modal().distance = mode_of(*entry, tenths(90));
+        execution.modal().distance = mode_of(*entry, g_code(90));
     if (const CodeWord* entry = execution.statement.of(ModalGroup::arc_distance))
-        execution.modal().arc_distance = mode_of(*entry, tenths(90, 1));
+        execution.modal().arc_distance = mode_of(*entry, g_code(90, 1));
     return {};
 }
 
 core::Result<void> set_retract_mode(Execution& execution) {
     if (const CodeWord* entry = execution.statement.of(ModalGroup::retract))
         execution.modal().retract =
-            entry->code->tenths == tenths(98) ? RetractMode::initial_level : RetractMode::r_level;
+            entry->code->number == g_code(98) ? RetractMode::initial_level : RetractMode::r_level;
     return {};
 }
 
@@ -234,9 +234,9 @@ core::Result<void> set_path_mode(Execution& execution) {
     ModalState& modal = execution.modal();
     modal.path_tolerance = modal.naive_tolerance = 0.0;
     modal.path = PathMode::continuous;
-    if (entry->code->tenths == tenths(61)) modal.path = PathMode::exact_path;
-    if (entry->code->tenths == tenths(61, 1)) modal.path = PathMode::exact_stop;
-    if (entry->code->tenths == tenths(64)) {
+    if (entry->code->number == g_code(61)) modal.path = PathMode::exact_path;
+    if (entry->code->number == g_code(61, 1)) modal.path = PathMode::exact_stop;
+    if (entry->code->number == g_code(64)) {
         if (const Word* word = execution.statement.word('P'))
             modal.path_tolerance = modal.naive_tolerance = length_of(execution, *word);
         if (const Word* word = execution.statement.word('Q'))
@@ -251,7 +251,7 @@ core::Result<void> set_spindle_mode(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
     if (!entry) return {};
     ModalState& modal = execution.modal();
-    modal.surface_speed = entry->code->tenths == tenths(96);
+    modal.surface_speed = entry->code->number == g_code(96);
     if (modal.surface_speed && execution.dialect.surface_speed_needs_s
         && !execution.statement.word('S'))
         return core::fail(ErrorCode::missing_value,
@@ -267,7 +267,7 @@ core::Result<void> set_spindle_mode(Execution& execution) {
 
 core::Result<void> set_diameter_mode(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::diameter);
-    if (entry) execution.modal().diameter_mode = entry->code->tenths == tenths(7);
+    if (entry) execution.modal().diameter_mode = entry->code->number == g_code(7);
     return {};
 }
 
@@ -463,7 +463,7 @@ Value fanuc_mode(const InterpreterState& state, int group) {
     const ModalState& modal = state.modal;
     switch (group) {
     case 1:
-        return modal.motion ? Value(tenths_of(*modal.motion) / 10.0) : Value(0.0);
+        return modal.motion ? value_of(number_of(*modal.motion).value_or(g_code(0))) : 0.0;
     case 2:
         return plane_code(modal.plane);
     case 3:
@@ -477,7 +477,7 @@ Value fanuc_mode(const InterpreterState& state, int group) {
     case 8:
         return length_code(modal.length_sign);
     case 9:
-        return modal.cycle ? modal.cycle->code / 10.0 : 80.0;
+        return modal.cycle ? value_of(modal.cycle->code) : 80.0;
     case 10:
         return modal.retract == RetractMode::initial_level ? 98.0 : 99.0;
     case 12:

@@ -39,7 +39,7 @@ void Execution::feed(const Position& end, double rate) {
 
 bool in_machine_coordinates(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
-    return action && action->code->tenths == tenths(53);
+    return action && action->code->number == g_code(53);
 }
 
 const Word& moving_word(const Execution& execution) {
@@ -206,7 +206,7 @@ namespace {
 
 bool moves_in_machine(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
-    return action && action->code->tenths == tenths(53);
+    return action && action->code->number == g_code(53);
 }
 
 } // namespace

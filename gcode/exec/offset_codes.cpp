@@ -93,11 +93,11 @@ WorkOffset in_effect(const Tables& tables, size_t index) {
 /// Source: Fanuc 30i user's manual B-63944EN, 7.2.6 "Adding workpiece coordinate systems"; Haas
 ///         mill operator's manual 96-8000, G110 to G129 and G154.
 core::Result<size_t> selected_offset(const Execution& execution, const CodeWord& entry) {
-    const int code = entry.code->tenths;
+    const CodeNumber code = entry.code->number;
     const Word* word = execution.statement.word('P');
-    if (code >= tenths(110) && code <= tenths(129))
-        return plain_offset_count + static_cast<size_t>(code / 10 - 110);
-    const bool is_numbered = code == tenths(54, 1) || code == tenths(154);
+    if (code >= g_code(110) && code <= g_code(129))
+        return plain_offset_count + static_cast<size_t>(whole_of(code) - 110);
+    const bool is_numbered = code == g_code(54, 1) || code == g_code(154);
     if (is_numbered && !word)
         return core::fail(
             ErrorCode::missing_value,
@@ -107,14 +107,13 @@ core::Result<size_t> selected_offset(const Execution& execution, const CodeWord&
     const std::span<const CodeWord> codes = execution.statement.codes();
     const bool is_free = std::none_of(codes.begin(), codes.end(), wants_p);
     const bool is_g54_p =
-        execution.dialect.has_extended_offsets && code == tenths(54) && word && is_free;
+        execution.dialect.has_extended_offsets && code == g_code(54) && word && is_free;
     if (is_numbered || is_g54_p) {
-        const int most = code == tenths(154) ? 99 : static_cast<int>(extended_offset_count);
+        const int most = code == g_code(154) ? 99 : static_cast<int>(extended_offset_count);
         FEELER_TRY(const int number, whole_number(*word, 1, most));
         return plain_offset_count + static_cast<size_t>(number - 1);
     }
-    return static_cast<size_t>(code <= tenths(59) ? (code - tenths(54)) / 10
-                                                  : 5 + code - tenths(59));
+    return static_cast<size_t>(whole_of(code) - 54 + tenth_of(code));
 }
 
 core::Result<void> write_work_offset(Execution& execution, const CodeWord& entry,
@@ -260,16 +259,16 @@ core::Result<void> set_axis_offset(Execution& execution) {
                           "G92 cannot be used while scaling, mirroring or rotation is on: cancel "
                           "it with G50, G50.1 or G69 first",
                           execution.statement.of(ModalGroup::action)->word->span);
-    const int code = execution.statement.of(ModalGroup::action)->code->tenths;
-    modal.axis_offset_on = code == tenths(92) || code == tenths(92, 3);
+    const CodeNumber code = execution.statement.of(ModalGroup::action)->code->number;
+    modal.axis_offset_on = code == g_code(92) || code == g_code(92, 3);
     switch (code) {
-    case tenths(92, 1):
+    case g_code(92, 1):
         offsets.axis = modal.suspended_axis = zero_position;
         break;
-    case tenths(92, 2):
+    case g_code(92, 2):
         offsets.axis = zero_position; // the offset of G92 stays stored for G92.3
         break;
-    case tenths(92, 3):
+    case g_code(92, 3):
         offsets.axis = modal.suspended_axis;
         break;
     default:

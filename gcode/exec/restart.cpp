@@ -110,7 +110,7 @@ private:
 
     void add_feed() {
         const ModalState& modal = at_.after;
-        if (at_.motion) need(fmt::format("G{}", tenths_of(*at_.motion) / 10));
+        if (at_.motion) need(written(*at_.motion));
         if (lacks(&ModalState::feed_mode))
             need(fmt::format("G{}", modal.feed_mode == FeedMode::inverse_time ? 93
                                     : modal.feed_mode == FeedMode::per_turn   ? 95
@@ -120,7 +120,7 @@ private:
                                           ? *modal.feed
                                           : from_mm(*modal.feed, modal.unit)));
         if (modal.cycle && lacks(&ModalState::cycle) && !at_.alone.cycle)
-            need(fmt::format("the cycle G{}", modal.cycle->code / 10));
+            need("the cycle " + written(modal.cycle->code));
     }
 
     void add_place() {

@@ -20,14 +20,13 @@ bool moves(const Execution& execution) {
 
 bool has_g53_1(const Execution& execution) {
     const auto codes = execution.statement.codes();
-    return std::any_of(codes.begin(), codes.end(), [](const CodeWord& entry) {
-        return entry.code->letter == 'G' && entry.code->tenths == tenths(53, 1);
-    });
+    return std::any_of(codes.begin(), codes.end(),
+                       [](const CodeWord& entry) { return entry.code->number == g_code(53, 1); });
 }
 
-bool has_code(const Execution& execution, ModalGroup group, int tenths_of_code) {
+bool has_code(const Execution& execution, ModalGroup group, CodeNumber number) {
     const CodeWord* entry = execution.statement.of(group);
-    return entry && entry->code->tenths == tenths_of_code;
+    return entry && entry->code->number == number;
 }
 
 /// G28, G30, G53: targets in machine coordinates. G53.1 moves only rotary axes.
@@ -35,8 +34,8 @@ bool goes_to_machine_place(const Execution& execution) {
     if (has_g53_1(execution)) return true;
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action) return false;
-    return action->code->tenths == tenths(28) || action->code->tenths == tenths(30)
-           || action->code->tenths == tenths(53);
+    return action->code->number == g_code(28) || action->code->number == g_code(30)
+           || action->code->number == g_code(53);
 }
 
 void advise(Execution& execution, SourceSpan where, std::string_view rule, std::string message,
@@ -64,7 +63,7 @@ std::string left_over(const ModalState& modal, bool at_end) {
 
 void look_at_tool_change(Execution& execution, const ModalState& before) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
-    if (!entry || entry->code->tenths != tenths(6)) return;
+    if (!entry || entry->code->number != m_code(6)) return;
     RuleWatch& watch = execution.state.rules;
     const ModalState& modal = execution.modal();
     const bool has_tool = modal.tool && core::value_of(*modal.tool) != 0;
@@ -82,7 +81,7 @@ void look_at_length_codes(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
     if (!entry) return;
     RuleWatch& watch = execution.state.rules;
-    const bool cancels = entry->code->tenths == tenths(49);
+    const bool cancels = entry->code->number == g_code(49);
     watch.length_cancelled = cancels && !watch.lacks_length && execution.dialect.length_needs_g43
                              && execution.modal().tool.has_value();
     if (!cancels) watch.lacks_length = false;
@@ -156,7 +155,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action || !moves(execution)) return;
     const ModalState& modal = execution.modal();
-    if (action->code->tenths == tenths(53)) {
+    if (action->code->number == g_code(53)) {
         std::string on = left_over(modal, false);
         if (modal.distance == DistanceMode::incremental)
             on += fmt::format("{}G91", on.empty() ? "" : ", ");
@@ -167,7 +166,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
                    "Cancel it before G53.");
         return;
     }
-    const bool homes = action->code->tenths == tenths(28) || action->code->tenths == tenths(30);
+    const bool homes = action->code->number == g_code(28) || action->code->number == g_code(30);
     const Word* word = execution.statement.word('Z');
     if (!homes || !word || modal.distance == DistanceMode::incremental) return;
     const auto* between = std::get_if<StraightTraverse>(&execution.result.commands.front());
@@ -193,8 +192,8 @@ void look_at_units(Execution& execution, const ModalState& before) {
 }
 
 void look_at_end(Execution& execution) {
-    if (!has_code(execution, ModalGroup::stopping, tenths(2))
-        && !has_code(execution, ModalGroup::stopping, tenths(30)))
+    if (!has_code(execution, ModalGroup::stopping, m_code(2))
+        && !has_code(execution, ModalGroup::stopping, m_code(30)))
         return;
     const std::string on = left_over(execution.modal(), true);
     if (on.empty()) return;

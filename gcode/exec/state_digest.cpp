@@ -66,7 +66,7 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
 }
 
 void add(Digest& digest, const CannedCycle& cycle) {
-    digest.add(number_of(cycle.code));
+    digest.add(number_of(int(cycle.code)));
     for (const auto& value : {cycle.bottom, cycle.r, cycle.dwell, cycle.peck, cycle.initial_level})
         digest.add(value);
     add_all(digest, cycle.shift);
@@ -85,7 +85,7 @@ void add(Digest& digest, const SplineState& spline) {
 void add_modes(Digest& digest, const ModalState& modal) {
     for (const int mode : {int(modal.unit),
                            int(modal.unit_said),
-                           modal.motion ? tenths_of(*modal.motion) : -1,
+                           modal.motion ? int(*modal.motion) : -1,
                            int(modal.plane),
                            int(modal.distance),
                            int(modal.arc_distance),

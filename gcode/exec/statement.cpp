@@ -13,7 +13,7 @@ namespace {
 using core::ErrorCode;
 
 bool is_cycle(const Code& code) {
-    return code.group == ModalGroup::cycle && code.tenths != tenths(80);
+    return code.group == ModalGroup::cycle && code.number != g_code(80);
 }
 
 /// A code of the block that cannot be combined with this one. G80 can be combined with any motion.
@@ -98,7 +98,7 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
 /// Whether all following words are arguments: after G65, G66 and G66.1.
 bool calls_macro(const Statement& statement) {
     const CodeWord* macro = statement.of(ModalGroup::macro);
-    return macro && macro->code->tenths != tenths(67);
+    return macro && macro->code->number != g_code(67);
 }
 
 } // namespace
@@ -113,8 +113,8 @@ const CodeWord* Statement::taker_of_axis_words() const {
     for (const CodeWord& entry : codes()) {
         const Code& code = *entry.code;
         const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle
-                           || (code.letter == 'G' && code.tenths == tenths(53));
-        const bool dwells = code.letter == 'G' && code.tenths == tenths(4) && !word('P');
+                           || code.number == g_code(53);
+        const bool dwells = code.number == g_code(4) && !word('P');
         if ((!moves && code.uses_axes()) || dwells) return &entry;
     }
     return nullptr;

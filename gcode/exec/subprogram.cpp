@@ -95,7 +95,7 @@ std::string missing_program(ProgramLibrary& library, uint32_t source, int number
     if (!others.empty()) message += fmt::format("; this file has {}", fmt::join(others, ", "));
     if (index.line_of_number(number, 1, UINT32_MAX))
         message += fmt::format("; it has a block N{}, which {} calls", number,
-                               find_code('M', 97.0, library.dialect().id)
+                               find_code(m_code(97), library.dialect().id)
                                    ? fmt::format("M97 P{}", number)
                                    : fmt::format("M98 Q{}", number));
     return message;
@@ -186,7 +186,7 @@ core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
                           fmt::format("{} needs a P word, the number of the program to call",
                                       written(*entry.word)),
                           entry.word->span);
-    const bool external = entry.code->tenths == tenths(198);
+    const bool external = entry.code->number == m_code(198);
     FEELER_TRY(Called called, called_by(execution, *program, external));
     if (block) {
         FEELER_TRY(called.begin.line,
@@ -275,16 +275,16 @@ core::Result<void> call_subprogram(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::subprogram);
     if (!entry) return {};
     if (auto checked = check_company(execution, *entry); !checked) return checked;
-    switch (entry->code->tenths) {
-    case tenths(96):
+    switch (entry->code->number) {
+    case m_code(96):
         return jump_on_input(execution, *entry);
-    case tenths(97): {
+    case m_code(97): {
         const Word* word = execution.statement.word('P');
         if (word) return call_block(execution, *word);
         return core::fail(ErrorCode::missing_value, "M97 needs a P word, the block to call",
                           entry->word->span);
     }
-    case tenths(99):
+    case m_code(99):
         return come_back(execution, *entry);
     default:
         return call_program(execution, *entry); // M98, M198
@@ -338,7 +338,7 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
         if (macro.rounds == 0) execution.warn(rounds->span, "L0: the macro is not run");
     }
     FEELER_TRY(macro.arguments, arguments_of(words_of_call(execution)));
-    macro.each_block = entry.code->tenths == tenths(66, 1);
+    macro.each_block = entry.code->number == g_code(66, 1);
     return macro;
 }
 
@@ -425,12 +425,12 @@ core::Result<void> call_macro(Execution& execution) {
     if (!entry)
         return execution.statement.of(ModalGroup::subprogram) ? core::Result<void>{}
                                                               : call_modal_macro(execution);
-    if (entry->code->tenths == tenths(67)) {
+    if (entry->code->number == g_code(67)) {
         if (!state.modal_macros.empty()) state.modal_macros.pop_back();
         return {};
     }
     FEELER_TRY(ModalMacro macro, named_macro(execution, *entry));
-    if (entry->code->tenths == tenths(65))
+    if (entry->code->number == g_code(65))
         return enter_macro(execution, macro, 0, entry->word->span);
     if (state.modal_macros.size() == execution.dialect.deepest_calls)
         return core::fail(

@@ -113,7 +113,7 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
 /// G43.4 and G43.5: the control keeps the tip on the programmed path relative to the work.
 core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
     ProgramTransforms transforms = execution.modal().transforms;
-    transforms.follows_vectors = entry.code->tenths == tenths(43, 5);
+    transforms.follows_vectors = entry.code->number == g_code(43, 5);
     use_transforms(execution, transforms);
     if (!execution.modal().offsets.machine)
         execution.warn(entry.word->span,
@@ -162,7 +162,7 @@ core::Result<void> change_tool(Execution& execution) {
     if (!entry) return {};
     ModalState& modal = execution.modal();
     execution.column = entry->word->span.column;
-    if (entry->code->tenths == tenths(61)) return name_tool(execution);
+    if (entry->code->number == m_code(61)) return name_tool(execution);
     if (!modal.selected_tool)
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word has been programmed yet",
@@ -186,17 +186,17 @@ core::Result<void> set_tool_length(Execution& execution) {
                                 modal.offsets.follows_tip);
     if (!entry) return {};
     leave_vectors(execution);
-    switch (entry->code->tenths) {
-    case tenths(43):
+    switch (entry->code->number) {
+    case g_code(43):
         return use_table_length(execution, *entry->word, +1.0);
-    case tenths(44):
+    case g_code(44):
         return use_table_length(execution, *entry->word, -1.0);
-    case tenths(43, 2):
+    case g_code(43, 2):
         return add_table_offset(execution, *entry->word);
-    case tenths(43, 4):
-    case tenths(43, 5):
+    case g_code(43, 4):
+    case g_code(43, 5):
         return use_tool_centre_control(execution, *entry);
-    case tenths(43, 1):
+    case g_code(43, 1):
         modal.length_sign = 0.0;
         return use_given_offset(execution);
     default:

@@ -19,16 +19,17 @@ constexpr std::string_view letters_of_lengths = "XYZIJKF"; // Q and R often have
 /// The code of the active motion or cycle.
 const Code* going_on(const Execution& execution) {
     const ModalState& modal = execution.modal();
-    if (modal.cycle) return find_code('G', modal.cycle->code / 10.0, execution.dialect.id);
-    if (modal.motion) return find_code('G', tenths_of(*modal.motion) / 10.0, execution.dialect.id);
-    return nullptr;
+    if (modal.cycle) return find_code(modal.cycle->code, execution.dialect.id);
+    if (!modal.motion) return nullptr;
+    const std::optional<CodeNumber> number = number_of(*modal.motion);
+    return number ? find_code(*number, execution.dialect.id) : nullptr;
 }
 
 /// Whether the block has G30 P2, which is the same as G30.
 bool names_second_home(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* place = execution.statement.word('P');
-    return execution.dialect.p_names_more_places && action && action->code->tenths == tenths(30)
+    return execution.dialect.p_names_more_places && action && action->code->number == g_code(30)
            && place && place->value == 2.0;
 }
 
@@ -38,7 +39,7 @@ core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Word* place = statement.word('P');
     if (!place || !execution.dialect.p_names_more_places) return {};
     const CodeWord* action = statement.of(ModalGroup::action);
-    if (action && action->code->tenths == tenths(30) && !names_second_home(execution))
+    if (action && action->code->number == g_code(30) && !names_second_home(execution))
         return core::fail(
             ErrorCode::unsupported,
             fmt::format(
@@ -52,7 +53,7 @@ core::Result<void> refuse_unknown_home(const Execution& execution) {
 /// block instead.
 bool names_extended_offset(const Execution& execution) {
     const CodeWord* offset = execution.statement.of(ModalGroup::work_offset);
-    return execution.dialect.has_extended_offsets && offset && offset->code->tenths == tenths(54);
+    return execution.dialect.has_extended_offsets && offset && offset->code->number == g_code(54);
 }
 
 bool is_used(const Execution& execution, char letter) {

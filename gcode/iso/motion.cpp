@@ -48,14 +48,15 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
 bool stands_alone(const Execution& execution) {
     const CodeWord* motion = execution.statement.of(ModalGroup::motion);
     return execution.dialect.motion_codes_move && motion
-           && (is_straight(motion->code->motion()) || is_arc(motion->code->motion()));
+           && (is_straight(motion_of(motion->code->number))
+               || is_arc(motion_of(motion->code->number)));
 }
 
 /// Reports G2 or G3 without any arc words as an error.
 core::Result<void> refuse_lone_arc(const Execution& execution) {
     const Statement& statement = execution.statement;
     const CodeWord* motion = statement.of(ModalGroup::motion);
-    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion->code->motion()))
+    if (!execution.dialect.motion_codes_move || !motion || !is_arc(motion_of(motion->code->number)))
         return {};
     for (const char letter : {'I', 'J', 'K', 'R'})
         if (statement.word(letter)) return {};
@@ -79,9 +80,9 @@ bool has_motion_words(const Execution& execution) {
 }
 
 /// Whether a motion code applies to its block only: G5, G5.1, G5.3, G70 to G72.
-bool acts_once(int code) {
-    return code == tenths(5) || code == tenths(5, 1) || code == tenths(5, 3)
-           || (code >= tenths(70) && code < tenths(73));
+bool acts_once(CodeNumber code) {
+    return code == g_code(5) || code == g_code(5, 1) || code == g_code(5, 3)
+           || (code >= g_code(70) && code < g_code(73));
 }
 
 /// Sets the active motion code, or clears it.
@@ -101,8 +102,8 @@ void forget_words(CannedCycle& cycle) {
 
 /// Whether a code cannot share its block with motion codes even without axis words.
 bool wants_axes_alone(const CodeWord& taker) {
-    constexpr int codes[] = {tenths(10), tenths(28), tenths(30), tenths(52), tenths(92)};
-    return std::find(std::begin(codes), std::end(codes), taker.code->tenths) != std::end(codes);
+    constexpr CodeNumber codes[] = {g_code(10), g_code(28), g_code(30), g_code(52), g_code(92)};
+    return std::find(std::begin(codes), std::end(codes), taker.code->number) != std::end(codes);
 }
 
 /// Makes G0 to G3 and the cycles modal, even when another code takes the axis words.
@@ -113,7 +114,7 @@ core::Result<void> set_motion_mode(Execution& execution) {
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
     const CodeWord* motion = statement.of(ModalGroup::motion);
     const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
-    const bool homes = taker && taker->code->tenths != tenths(4)
+    const bool homes = taker && taker->code->number != g_code(4)
                        && (statement.has_axis_word() || wants_axes_alone(*taker));
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
         return core::fail(
@@ -121,24 +122,24 @@ core::Result<void> set_motion_mode(Execution& execution) {
             fmt::format("{} and {} both use the axis words of this block: split it into two blocks",
                         written(*taker->word), written(*mover->word)),
             mover->word->span);
-    if (motion && !acts_once(motion->code->tenths)) {
-        set_motion(execution.state, motion->code->motion());
+    if (motion && !acts_once(motion->code->number)) {
+        set_motion(execution.state, motion_of(motion->code->number));
         modal.cycle.reset();
     }
     if (!cycle) return {};
     if (execution.dialect.cycles_are_motions && !motion) set_motion(execution.state, {});
-    if (cycle->code->tenths == tenths(80)) {
+    if (cycle->code->number == g_code(80)) {
         modal.cycle.reset();
         return {};
     }
-    const int code = cycle->code->tenths;
+    const CodeNumber code = cycle->code->number;
     if (!modal.cycle)
         modal.cycle = CannedCycle{};
     else if (execution.dialect.cycles_are_rs274 && modal.cycle->code != code)
         forget_words(*modal.cycle);
     else if (modal.cycle->code != code)
         modal.cycle->shift = {};
-    modal.cycle->code = cycle->code->tenths;
+    modal.cycle->code = code;
     return {};
 }
 
@@ -188,16 +189,16 @@ core::Result<void> refuse_lone_machine_place(const Execution& execution) {
                       execution.statement.of(ModalGroup::action)->word->span);
 }
 
-core::Result<void> act_once(Execution& execution, int code) {
-    if (code >= tenths(70)) return turn_contour(execution);
-    return code == tenths(5, 3) ? finish_spline(execution) : follow_spline(execution);
+core::Result<void> act_once(Execution& execution, CodeNumber code) {
+    if (code >= g_code(70)) return turn_contour(execution);
+    return code == g_code(5, 3) ? finish_spline(execution) : follow_spline(execution);
 }
 
 core::Result<void> move_as_modes_say(Execution& execution) {
     const ModalState& modal = execution.modal();
     const CodeWord* motion = execution.statement.of(ModalGroup::motion);
-    if (motion && acts_once(motion->code->tenths)) return act_once(execution, motion->code->tenths);
-    const bool threads = modal.cycle && modal.cycle->code == tenths(76);
+    if (motion && acts_once(motion->code->number)) return act_once(execution, motion->code->number);
+    const bool threads = modal.cycle && modal.cycle->code == g_code(76);
     if (threads && execution.dialect.cycles_are_rs274) return cut_thread(execution);
     if (modal.cycle) return run_canned_cycle(execution);
     if (!modal.motion) return move_without_mode(execution);
@@ -208,7 +209,9 @@ core::Result<void> move_as_modes_say(Execution& execution) {
         return move_along_arc(execution);
     }
     if (modal.motion == MotionCode::spline_control_point) return gather_control_point(execution);
-    return tenths_of(*modal.motion) < tenths(38) ? feed_with_spindle(execution) : probe(execution);
+    const bool threads_along =
+        modal.motion == MotionCode::spindle_feed || modal.motion == MotionCode::rigid_tap;
+    return threads_along ? feed_with_spindle(execution) : probe(execution);
 }
 
 } // namespace

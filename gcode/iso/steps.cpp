@@ -128,8 +128,7 @@ namespace {
 core::Result<void> leave_iso(Execution& execution) {
     if (!execution.statement.of(ModalGroup::other)) return {};
     for (const CodeWord& entry : execution.statement.codes())
-        if (entry.code->letter == 'G' && entry.code->tenths == tenths(290))
-            execution.state.speaks_iso = false;
+        if (entry.code->number == g_code(290)) execution.state.speaks_iso = false;
     return {};
 }
 
@@ -156,34 +155,34 @@ core::Result<void> execute_iso(Execution& execution, const ModalState& before) {
 core::Result<void> act(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     if (!entry) return {};
-    switch (entry->code->tenths) {
-    case tenths(10):
+    switch (entry->code->number) {
+    case g_code(10):
         return write_offset(execution);
-    case tenths(12):
-    case tenths(13):
+    case g_code(12):
+    case g_code(13):
         return mill_circular_pocket(execution);
-    case tenths(27):
+    case g_code(27):
         return check_home(execution);
-    case tenths(29):
+    case g_code(29):
         return return_from_home(execution);
-    case tenths(31):
+    case g_code(31):
         return skip_move(execution);
-    case tenths(70):
-    case tenths(71):
-    case tenths(72):
+    case g_code(70):
+    case g_code(71):
+    case g_code(72):
         return run_hole_pattern(execution);
-    case tenths(28):
-    case tenths(30):
+    case g_code(28):
+    case g_code(30):
         return go_home(execution);
-    case tenths(28, 1):
-    case tenths(30, 1):
+    case g_code(28, 1):
+    case g_code(30, 1):
         return store_home(execution);
-    case tenths(52):
+    case g_code(52):
         return set_local_offset(execution);
-    case tenths(92):
-    case tenths(92, 1):
-    case tenths(92, 2):
-    case tenths(92, 3):
+    case g_code(92):
+    case g_code(92, 1):
+    case g_code(92, 2):
+    case g_code(92, 3):
         return set_axis_offset(execution);
     default:
         return {}; // G4 and G53 have steps of their own

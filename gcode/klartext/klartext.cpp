@@ -17,14 +17,14 @@ using core::ErrorCode;
 using enum CommandKind;
 
 /// Whether the block has a code of a group that takes effect at the start of the block.
-bool begins_block(const Execution& execution, ModalGroup group, int last_tenths) {
+bool begins_block(const Execution& execution, ModalGroup group, CodeNumber last) {
     const CodeWord* entry = execution.statement.of(group);
-    return entry && entry->code->tenths != last_tenths;
+    return entry && entry->code->number != last;
 }
 
-bool ends_block(const Execution& execution, ModalGroup group, int last_tenths) {
+bool ends_block(const Execution& execution, ModalGroup group, CodeNumber last) {
     const CodeWord* entry = execution.statement.of(group);
-    return entry && entry->code->tenths == last_tenths;
+    return entry && entry->code->number == last;
 }
 
 void warn_of_m_codes(Execution& execution) {
@@ -34,7 +34,7 @@ void warn_of_m_codes(Execution& execution) {
             fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
                         written(*word)));
     for (const CodeWord& entry : execution.statement.codes())
-        if (entry.code->letter == 'M' && entry.code->tenths == tenths(128))
+        if (entry.code->number == m_code(128))
             execution.warn(entry.word->span, "M128 is not modelled: the linear axes do not follow "
                                              "the rotary axes; end points are used as programmed");
 }
@@ -106,13 +106,13 @@ core::Result<void> call_cycle(Execution& execution) {
 core::Result<void> run_klartext(Execution& execution, const ModalState&) {
     const Command& command = execution.block.command;
     warn_of_m_codes(execution);
-    const bool late_spindle = ends_block(execution, ModalGroup::spindle, tenths(5));
-    const bool late_coolant = ends_block(execution, ModalGroup::coolant, tenths(9));
+    const bool late_spindle = ends_block(execution, ModalGroup::spindle, m_code(5));
+    const bool late_coolant = ends_block(execution, ModalGroup::coolant, m_code(9));
     for (const auto step : {set_units, select_plane, take_feed})
         if (auto done = step(execution); !done) return done;
-    if (begins_block(execution, ModalGroup::spindle, tenths(5)))
+    if (begins_block(execution, ModalGroup::spindle, m_code(5)))
         if (auto done = turn_spindle(execution); !done) return done;
-    if (begins_block(execution, ModalGroup::coolant, tenths(9)))
+    if (begins_block(execution, ModalGroup::coolant, m_code(9)))
         if (auto done = set_coolant(execution); !done) return done;
     if (auto done = run_statement(execution); !done) return done;
     const bool calls = command.calls_cycle || command.calls_from_here

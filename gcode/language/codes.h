@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "gcode/language/code_number.h"
 #include "gcode/language/dialect.h"
 
 namespace gcode {
@@ -45,22 +46,20 @@ using DialectSet = uint8_t;
 
 /// One G or M code.
 struct Code {
-    char letter;
-    int tenths; // 593 for G59.3
+    CodeNumber number;
     ModalGroup group;
-    std::string_view words;   // used besides F, S and T; "XYZ" means all axes
-    DialectSet dialects;      // that have this code
-    std::string_view refusal; // why it is not supported; empty if it is supported
-    int last = 0;             // for a range of codes with one row, the last code, in tenths
+    std::string_view words;           // used besides F, S and T; "XYZ" means all axes
+    DialectSet dialects;              // that have this code
+    std::string_view refusal;         // why it is not supported; empty if it is supported
+    std::optional<CodeNumber> last{}; // for a range of codes with one row, the last code
 
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }
-    MotionCode motion() const { return static_cast<MotionCode>(tenths); }
-    constexpr int last_tenths() const { return last ? last : tenths; }
+    constexpr CodeNumber last_number() const { return last.value_or(number); }
     bool uses_axes() const { return words.starts_with("XYZ"); }
 };
 
-/// The number of a code in tenths; tenths(59, 3) is G59.3.
-constexpr int tenths(int whole, int tenth = 0) { return whole * 10 + tenth; }
+/// The code of a number in a dialect, or null when the dialect has none.
+const Code* find_code(CodeNumber number, DialectId dialect);
 
 /// The code of a word such as G59.3 or M6 in a dialect; null when the dialect has no such code.
 const Code* find_code(char letter, double value, DialectId dialect);

@@ -8,6 +8,7 @@
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "core/motion/event.h"
+#include "gcode/language/code_number.h"
 
 namespace core {
 struct Machine;
@@ -169,31 +170,6 @@ enum class Plane : uint8_t { xy, zx, yz, uv, wu, vw };                // G17 G18
 enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G61.1, G64
 enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
 
-/// The modal motion code. The value is the code in tenths, as tenths_of returns it; codes without
-/// an enumerator, such as those of probing, are represented by their value too.
-enum class MotionCode : int {
-    rapid = 0,                 // G0
-    straight = 10,             // G1
-    arc_clockwise = 20,        // G2
-    arc_counterclockwise = 30, // G3
-    spline_control_point = 52, // G5.2
-    spindle_feed = 330,        // G33
-    rigid_tap = 331,           // G33.1
-    compensated_tap = 630,     // G63 of Siemens
-    tap_in = 3310,             // G331 of Siemens
-    tap_out = 3320,            // G332 of Siemens
-    arc_through_point = 9010,  // CIP of Siemens, a keyword
-    tangent_arc = 9020,        // CT of Siemens, a keyword
-};
-
-constexpr int tenths_of(MotionCode motion) { return static_cast<int>(motion); }
-constexpr bool is_straight(std::optional<MotionCode> motion) {
-    return motion == MotionCode::rapid || motion == MotionCode::straight;
-}
-constexpr bool is_arc(std::optional<MotionCode> motion) {
-    return motion == MotionCode::arc_clockwise || motion == MotionCode::arc_counterclockwise;
-}
-
 /// All conversions from program units to mm happen here.
 constexpr double to_mm(double programmed, LengthUnit unit) {
     return unit == LengthUnit::inch ? programmed * 25.4 : programmed;
@@ -214,7 +190,7 @@ constexpr PlaneAxes axes_of(Plane plane) {
 
 /// The modal words of a canned cycle; lengths in mm.
 struct CannedCycle {
-    int code = 0;                        // tenths: 810 for G81
+    CodeNumber code{};
     std::optional<double> bottom, r;     // Z and R in the XY plane
     std::optional<double> dwell;         // s
     std::optional<double> peck;          // Q

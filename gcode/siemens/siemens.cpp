@@ -38,7 +38,7 @@ core::Result<void> say(Execution& execution) {
 
 core::Result<void> dwell_in_siemens(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
-    if (!entry || entry->code->tenths != tenths(4)) return {};
+    if (!entry || entry->code->number != g_code(4)) return {};
     const Word* seconds = execution.statement.word('F');
     const Word* turns = execution.statement.word('S');
     const Word* word = seconds ? seconds : turns;
@@ -102,7 +102,7 @@ core::Result<void> note_keywords(Execution& execution) {
 /// G25 and G26 with axes set working-area limits, with S spindle limits.
 core::Result<void> note_limits(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
-    if (!entry || (entry->code->tenths != tenths(25) && entry->code->tenths != tenths(26)))
+    if (!entry || (entry->code->number != g_code(25) && entry->code->number != g_code(26)))
         return {};
     execution.warn(entry->word->span,
                    fmt::format("{}: working-area limits set by the program are not checked",
@@ -114,13 +114,13 @@ core::Result<void> note_limits(Execution& execution) {
 core::Result<void> act_in_siemens(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     if (!entry) return {};
-    switch (entry->code->tenths / 10) {
-    case 74:
-    case 75:
+    switch (entry->code->number) {
+    case g_code(74):
+    case g_code(75):
         return go_to_fixed_place(execution);
-    case 110:
-    case 111:
-    case 112:
+    case g_code(110):
+    case g_code(111):
+    case g_code(112):
         return set_pole(execution);
     default:
         return note_limits(execution);
@@ -178,7 +178,7 @@ core::Result<void> call_modal(Execution& execution) {
 core::Result<void> end_block(Execution& execution) {
     const CodeWord* stopping = execution.statement.of(ModalGroup::stopping);
     const bool ends =
-        stopping && stopping->code->tenths != tenths(0) && stopping->code->tenths != tenths(1);
+        stopping && stopping->code->number != m_code(0) && stopping->code->number != m_code(1);
     const bool returns = execution.statement.of(ModalGroup::subprogram) != nullptr;
     const bool inside = execution.state.frames.size() > 1;
     if (inside && (ends || returns)) {
@@ -195,7 +195,7 @@ core::Result<void> end_block(Execution& execution) {
 /// G290 and G291.
 core::Result<void> switch_language(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->letter != 'G' || entry.code->tenths != tenths(291)) continue;
+        if (entry.code->number != g_code(291)) continue;
         if (execution.modal().offsets.has_frame)
             return core::fail(ErrorCode::unsupported,
                               "G291 while TRANS, ROT, SCALE or MIRROR is active is not supported "

@@ -346,7 +346,7 @@ core::Result<void> move_in_siemens(Execution& execution) {
     const Statement& statement = execution.statement;
     ModalState& modal = execution.modal();
     const CodeWord* code = statement.of(ModalGroup::motion);
-    if (code) modal.motion = code->code->motion();
+    if (code) modal.motion = motion_of(code->code->number);
     if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
     if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
     if (has_frame_words(execution) || statement.taker_of_axis_words()) return {};
@@ -369,20 +369,20 @@ core::Result<void> set_pole(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     SiemensState& siemens = writable_siemens(execution.state);
-    const int code = entry.code->tenths / 10;
+    const CodeNumber code = entry.code->number;
     std::array<double, 2> pole{};
     const size_t plane_axes[] = {axes.first, axes.second};
     for (size_t i = 0; i < 2; ++i) {
         // G110 is relative to the current position, G111 to the program zero, G112 to the last
         // pole.
-        if (code == 110 && !modal.position[plane_axes[i]])
+        if (code == g_code(110) && !modal.position[plane_axes[i]])
             return core::fail(ErrorCode::missing_value,
                               fmt::format("G110: the {} position is unknown: use G111",
                                           axis_letters[plane_axes[i]]),
                               entry.word->span);
-        pole[i] = code == 110   ? *modal.position[plane_axes[i]]
-                  : code == 112 ? siemens.pole[i]
-                                : 0.0;
+        pole[i] = code == g_code(110)   ? *modal.position[plane_axes[i]]
+                  : code == g_code(112) ? siemens.pole[i]
+                                        : 0.0;
         if (const Word* word = execution.statement.word(axis_letters[plane_axes[i]]))
             pole[i] += length_of(execution, *word);
     }

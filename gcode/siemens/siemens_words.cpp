@@ -15,8 +15,8 @@ constexpr std::string_view siemens_length_letters = "XYZIJKF";
 /// Whether a word other than those of axes, modes and tools is used in its block.
 bool is_used(const Execution& execution, const Word& word) {
     const auto* motion = execution.statement.of(ModalGroup::motion);
-    const MotionCode code =
-        motion ? motion->code->motion() : execution.modal().motion.value_or(MotionCode::straight);
+    const MotionCode code = (motion ? motion_of(motion->code->number) : execution.modal().motion)
+                                .value_or(MotionCode::straight);
     const bool by_point = use_of(execution, SiemensAction::arc_by_point)
                           || code == MotionCode::arc_through_point
                           || code == MotionCode::tangent_arc;
@@ -70,16 +70,16 @@ core::Result<void> set_siemens_feed(Execution& execution) {
     const CodeWord* units = execution.statement.of(ModalGroup::units);
     ModalState& modal = execution.modal();
     if (units) {
-        const int code = units->code->tenths;
-        const bool inch = code == tenths(70) || code == tenths(700);
+        const CodeNumber code = units->code->number;
+        const bool inch = code == g_code(70) || code == g_code(700);
         modal.unit = inch ? LengthUnit::inch : LengthUnit::mm;
         modal.unit_said = true;
-        if (code == tenths(700) || code == tenths(710))
-            writable_siemens(execution.state).feeds_in_inches = code == tenths(700);
+        if (code == g_code(700) || code == g_code(710))
+            writable_siemens(execution.state).feeds_in_inches = code == g_code(700);
     }
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* word = execution.statement.word('F');
-    if (!word || (action && action->code->tenths == tenths(4))) return {};
+    if (!word || (action && action->code->number == g_code(4))) return {};
     if (word->value < 0.0)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: a feed rate must not be negative", written(*word)),
@@ -95,13 +95,13 @@ core::Result<void> set_siemens_feed(Execution& execution) {
 void set_mode_of_surface_speed(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::spindle_mode);
     if (!entry) return;
-    const int code = entry->code->tenths;
+    const CodeNumber code = entry->code->number;
     ModalState& modal = execution.modal();
     const FeedMode before = modal.feed_mode;
-    if (code == tenths(96) || code == tenths(97)) modal.feed_mode = FeedMode::per_turn;
-    if (code == tenths(961) || code == tenths(971)) modal.feed_mode = FeedMode::per_minute;
+    if (code == g_code(96) || code == g_code(97)) modal.feed_mode = FeedMode::per_turn;
+    if (code == g_code(961) || code == g_code(971)) modal.feed_mode = FeedMode::per_minute;
     if (modal.feed_mode != before) modal.feed.reset();
-    modal.surface_speed = code == tenths(96) || code == tenths(961) || code == tenths(962);
+    modal.surface_speed = code == g_code(96) || code == g_code(961) || code == g_code(962);
     execution.column = entry->word->span.column;
     execution.emit(UseSpindleMode{modal.surface_speed, modal.speed, 0.0});
 }
@@ -109,8 +109,8 @@ void set_mode_of_surface_speed(Execution& execution) {
 core::Result<void> set_siemens_speed(Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const bool others = action
-                        && (action->code->tenths == tenths(4) || action->code->tenths == tenths(25)
-                            || action->code->tenths == tenths(26));
+                        && (action->code->number == g_code(4) || action->code->number == g_code(25)
+                            || action->code->number == g_code(26));
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
@@ -179,7 +179,7 @@ core::Result<void> select_siemens_offset(Execution& execution) {
 core::Result<void> go_to_fixed_place(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
-    const bool reference = entry.code->tenths == tenths(74);
+    const bool reference = entry.code->number == g_code(74);
     const Position& place = reference ? modal.home : modal.second_home;
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,

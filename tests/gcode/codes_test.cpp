@@ -9,15 +9,38 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Codes, AreFoundByTheirTenths) {
+TEST(Codes, AreFoundByTheirNumber) {
     const Code* code = find_code('G', 59.3, DialectId::linuxcnc);
     ASSERT_NE(code, nullptr);
-    EXPECT_EQ(code->tenths, 593);
+    EXPECT_EQ(code->number, g_code(59, 3));
     EXPECT_EQ(code->group, ModalGroup::work_offset);
     EXPECT_EQ(find_code('M', 593, DialectId::linuxcnc), nullptr);
     EXPECT_EQ(find_code('G', 59.35, DialectId::linuxcnc), nullptr);
     EXPECT_EQ(find_code('G', -1, DialectId::linuxcnc), nullptr);
     EXPECT_EQ(find_code('G', 1e300, DialectId::linuxcnc), nullptr);
+}
+
+TEST(Codes, OfGAndMAreDifferentNumbers) {
+    EXPECT_NE(g_code(6), m_code(6));
+    EXPECT_LT(g_code(973), m_code(0));
+    EXPECT_EQ(find_code(m_code(6), DialectId::fanuc)->group, ModalGroup::tool_change);
+    EXPECT_EQ(find_code(g_code(6), DialectId::fanuc), nullptr);
+}
+
+TEST(Codes, AreWrittenAsInAProgram) {
+    EXPECT_EQ(written(g_code(59, 3)), "G59.3");
+    EXPECT_EQ(written(g_code(83)), "G83");
+    EXPECT_EQ(written(m_code(6)), "M6");
+    EXPECT_EQ(written(MotionCode::probe_away), "G38.4");
+    EXPECT_EQ(written(MotionCode::arc_through_point), "CIP");
+    EXPECT_EQ(written(MotionCode::tangent_arc), "CT");
+}
+
+TEST(Codes, OfMotionsAreFoundBothWays) {
+    for (const CodeNumber code : {g_code(0), g_code(3), g_code(5, 2), g_code(38, 5), g_code(332)})
+        EXPECT_EQ(number_of(motion_of(code).value()), code);
+    EXPECT_FALSE(motion_of(g_code(5, 3))) << "which acts in its block only";
+    EXPECT_FALSE(number_of(MotionCode::tangent_arc));
 }
 
 TEST(Codes, BelongToDialects) {
