@@ -37,6 +37,35 @@ void shift(Drilling& hole, double sign) {
     hole.execution.traverse(end);
 }
 
+/// Retracts at feed.
+void feed_out(Drilling& hole, bool only_to_r) {
+    hole.feed(only_to_r ? hole.r : hole.clear);
+    if (hole.clear != hole.r && only_to_r) hole.traverse(hole.clear);
+}
+
+} // namespace
+
+void bore_and_feed_out(Drilling& hole) {
+    const Dialect& rules = hole.execution.dialect;
+    hole.feed(hole.bottom);
+    feed_out(hole, rules.boring_feeds_to_r || rules.cycles_are_rs274);
+}
+
+void bore_dwell_and_feed_out(Drilling& hole) {
+    hole.feed(hole.bottom);
+    hole.dwell();
+    feed_out(hole, hole.execution.dialect.boring_feeds_to_r);
+}
+
+void bore_with_stop(Drilling& hole) {
+    const ModalState& modal = hole.execution.modal();
+    hole.feed(hole.bottom);
+    hole.dwell();
+    hole.execution.emit(Spindle{SpindleDirection::stopped, 0.0});
+    hole.traverse(hole.clear);
+    hole.execution.emit(Spindle{modal.spindle, modal.speed});
+}
+
 void bore_finely(Drilling& hole) {
     const SpindleDirection direction = hole.execution.modal().spindle;
     warn_of_direction(hole);
@@ -76,21 +105,6 @@ void bore_and_retract_by_hand(Drilling& hole) {
     hole.turn(direction);
 }
 
-} // namespace
-
-bool works_from_the_back(const Dialect& dialect, CodeNumber code) {
-    return code == g_code(77) || (code == g_code(87) && dialect.g87_is_back_boring);
-}
-
-void bore(Drilling& hole) {
-    if (works_from_the_back(hole.execution.dialect, hole.cycle.code))
-        bore_from_the_back(hole);
-    else if (hole.cycle.code == g_code(76))
-        bore_finely(hole);
-    else
-        bore_and_retract_by_hand(hole);
-}
-
 namespace {
 
 /// Feeds down to a level and out to R, with the spindle reversed at the level.
@@ -105,7 +119,7 @@ void thread_to(Drilling& hole, double level, SpindleDirection in, SpindleDirecti
 } // namespace
 
 void tap(Drilling& hole) {
-    const bool left = hole.cycle.code == g_code(74);
+    const bool left = hole.kind.traits.is_left_hand;
     const SpindleDirection in =
         left ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
     const SpindleDirection out =

@@ -11,22 +11,11 @@ namespace {
 
 using core::ErrorCode;
 
-bool pecks(CodeNumber code) { return code == g_code(73) || code == g_code(83); }
-
 /// Haas: I is the first peck, each further one is shorter by J but not shorter than K.
 ///
 /// Source: Haas mill operator's manual 96-8000, G73 and G83.
-bool pecks_shrink(const CannedCycle& cycle) { return pecks(cycle.code) && cycle.shift[0] > 0.0; }
-
-bool taps(CodeNumber code) { return code == g_code(74) || code == g_code(84); }
-
-/// The factor by which Fanuc's scaling scales the drilling axis. Q and the retract of G73 and G83
-/// are not scaled.
-///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Scaling", invalid scaling.
-double stretch_along(const Execution& execution, size_t normal) {
-    const auto& scaling = execution.modal().transforms.scaling;
-    return scaling ? std::abs(scaling->factors[static_cast<int>(normal)]) : 1.0;
+bool pecks_shrink(const DrillingCycle& kind, const CannedCycle& cycle) {
+    return kind.traits.pecks && cycle.shift[0] > 0.0;
 }
 
 tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycle& cycle,
@@ -38,14 +27,11 @@ tl::unexpected<core::Error> missing(const Execution& execution, const CannedCycl
 }
 
 /// I, J or K of a cycle that shifts the tool; K may instead be the number of repetitions.
-const Word* shift_word(const Execution& execution, CodeNumber code, size_t axis) {
+const Word* shift_word(const Execution& execution, const CycleTraits& traits, size_t axis) {
     if (hole_pattern(execution)) return nullptr;
-    const bool bores_back = execution.dialect.cycles_are_rs274 && code == g_code(87);
-    if (pecks(code) && execution.dialect.pecks_may_shrink)
-        return execution.statement.word("IJK"[axis]);
-    const bool shifts =
-        code == g_code(76) || bores_back || works_from_the_back(execution.dialect, code);
-    if (!shifts || (axis == 2 && execution.dialect.repeats_with_k)) return nullptr;
+    const bool shrinks = traits.pecks && execution.dialect.pecks_may_shrink;
+    const bool repeats = axis == 2 && execution.dialect.repeats_with_k && !shrinks;
+    if ((!shrinks && !traits.shifts) || repeats) return nullptr;
     return execution.statement.word("IJK"[axis]);
 }
 
@@ -66,14 +52,15 @@ void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) 
 }
 
 /// The modal cycle updated with the words of this block.
-core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t normal) {
+core::Result<CannedCycle> cycle_with_words(const Execution& execution, const DrillingCycle& kind,
+                                           size_t normal) {
     CannedCycle cycle = *execution.modal().cycle;
     const Statement& statement = execution.statement;
     take_levels(execution, normal, cycle);
     if (const Word* word = statement.word('Q')) {
         const double depth = length_of(execution, *word);
         cycle.peck = execution.dialect.peck_sign_is_ignored ? std::abs(depth) : depth;
-        if (taps(cycle.code) && depth == 0.0)
+        if (kind.traits.taps && depth == 0.0)
             cycle.peck.reset();
         else if (*cycle.peck <= 0.0)
             return core::fail(
@@ -91,25 +78,25 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, size_t no
         cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
     }
     for (size_t i = 0; i < 3; ++i)
-        if (const Word* word = shift_word(execution, cycle.code, i))
+        if (const Word* word = shift_word(execution, kind.traits, i))
             cycle.shift[i] = length_of(execution, *word);
     if (!cycle.bottom) return missing(execution, cycle, axis_letters[normal]);
     if (!cycle.r) return missing(execution, cycle, 'R');
-    if (pecks(cycle.code) && !pecks_shrink(cycle) && !cycle.peck)
-        return missing(execution, cycle, 'Q');
-    if (pecks_shrink(cycle) && cycle.shift[2] <= 0.0) return missing(execution, cycle, 'K');
+    const bool shrinks = pecks_shrink(kind, cycle);
+    if (kind.traits.pecks && !shrinks && !cycle.peck) return missing(execution, cycle, 'Q');
+    if (shrinks && cycle.shift[2] <= 0.0) return missing(execution, cycle, 'K');
     if (!cycle.initial_level) cycle.initial_level = execution.modal().position[normal];
     if (execution.dialect.cycles_are_rs274)
-        if (auto checked = check_rs274_cycle(execution, cycle); !checked)
+        if (auto checked = check_rs274_cycle(execution, kind, cycle); !checked)
             return tl::unexpected(std::move(checked).error());
     return cycle;
 }
 
 /// Checks that the levels of the cycle fit together and that the cycle ends.
-core::Result<void> check_levels(const Execution& execution, const CannedCycle& cycle, double r,
-                                double bottom) {
+core::Result<void> check_levels(const Execution& execution, const DrillingCycle& kind,
+                                const CannedCycle& cycle, double r, double bottom) {
     const core::SourceSpan where = moving_word(execution).span;
-    const bool upwards = works_from_the_back(execution.dialect, cycle.code);
+    const bool upwards = kind.traits.works_upwards;
     if (upwards && r > bottom)
         return core::fail(
             ErrorCode::invalid_value,
@@ -130,7 +117,7 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
                         written(cycle.code), r, bottom),
             where);
     const double least_peck =
-        pecks_shrink(cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
+        pecks_shrink(kind, cycle) ? cycle.shift[2] : cycle.peck.value_or(r - bottom);
     if (least_peck > 0.0 && (r - bottom) / least_peck > most_commands / 4)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: this Q gives more than {} pecks", written(cycle.code),
@@ -145,15 +132,16 @@ core::Result<void> check_levels(const Execution& execution, const CannedCycle& c
 }
 
 /// A tap synchronised with the spindle may start with the spindle stopped.
-core::Result<double> cycle_rate(const Execution& execution, const CannedCycle& cycle) {
+core::Result<double> cycle_rate(const Execution& execution, const DrillingCycle& kind) {
     const ModalState& modal = execution.modal();
     const bool with_spindle =
         modal.feed_mode == FeedMode::per_turn && modal.feed && modal.speed > 0;
-    if (taps(cycle.code) && with_spindle && *modal.feed > 0.0) return *modal.feed * modal.speed;
+    if (kind.traits.taps && with_spindle && *modal.feed > 0.0) return *modal.feed * modal.speed;
     return feed_rate(execution, std::nullopt);
 }
 
-core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycle) {
+core::Result<Drilling> drilling_of(Execution& execution, const DrillingCycle& kind,
+                                   const CannedCycle& cycle) {
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const core::SourceSpan where = moving_word(execution).span;
@@ -165,95 +153,15 @@ core::Result<Drilling> drilling_of(Execution& execution, const CannedCycle& cycl
                           where);
     const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
     const double bottom = cycle.bottom_is_way ? r + *cycle.bottom : *cycle.bottom;
-    if (auto checked = check_levels(execution, cycle, r, bottom); !checked)
+    if (auto checked = check_levels(execution, kind, cycle, r, bottom); !checked)
         return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;
     const bool too_low = execution.dialect.cycle_stays_above_r && clear && *clear < r;
     if (modal.retract == RetractMode::r_level || too_low) clear = r;
-    FEELER_TRY(const double rate, cycle_rate(execution, cycle));
-    return Drilling{execution, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate};
-}
-
-/// G83 retracts out of the hole after each peck, G73 only a short distance.
-void peck(Drilling& hole, bool out_of_the_hole) {
-    const double stretch = stretch_along(hole.execution, hole.normal);
-    const double back = hole.execution.dialect.peck_clearance / stretch;
-    const std::array<double, 3>& shrinking = hole.cycle.shift;
-    double step = (shrinking[0] > 0.0 ? shrinking[0] : *hole.cycle.peck) / stretch;
-    const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
-    for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
-        hole.feed(depth);
-        if (out_of_the_hole) hole.traverse(hole.r);
-        hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
-        if (shrinking[0] > 0.0)
-            step = std::max(step - shrinking[1] / stretch, shrinking[2] / stretch);
-    }
-    hole.feed(hole.bottom);
-}
-
-void bore_with_stop(Drilling& hole) {
-    const ModalState& modal = hole.execution.modal();
-    hole.feed(hole.bottom);
-    hole.dwell();
-    hole.execution.emit(Spindle{core::SpindleDirection::stopped, 0.0});
-    hole.traverse(hole.clear);
-    hole.execution.emit(Spindle{modal.spindle, modal.speed});
-}
-
-/// G85 and G89 retract at feed; on some controls only up to R.
-void feed_out(Drilling& hole) {
-    const bool only_bores = hole.cycle.code == g_code(85);
-    const Dialect& rules = hole.execution.dialect;
-    if (rules.boring_feeds_to_r || (rules.cycles_are_rs274 && only_bores)) {
-        hole.feed(hole.r);
-        if (hole.clear != hole.r) hole.traverse(hole.clear);
-    } else {
-        hole.feed(hole.clear);
-    }
-}
-
-void drill(Drilling& hole) {
-    const bool rs274 = hole.execution.dialect.cycles_are_rs274;
-    switch (hole.cycle.code) {
-    case g_code(73):
-    case g_code(83):
-        peck(hole, hole.cycle.code == g_code(83));
-        hole.dwell();
-        hole.traverse(hole.clear);
-        return;
-    case g_code(82):
-        hole.feed(hole.bottom);
-        hole.dwell();
-        hole.traverse(hole.clear);
-        return;
-    case g_code(85):
-    case g_code(89):
-        hole.feed(hole.bottom);
-        if (hole.cycle.code == g_code(89)) hole.dwell();
-        feed_out(hole);
-        return;
-    case g_code(86):
-        bore_with_stop(hole);
-        return;
-    case g_code(74):
-    case g_code(84):
-        rs274 ? tap_with_reversal(hole) : tap(hole);
-        return;
-    case g_code(76):
-    case g_code(77):
-        bore(hole);
-        return;
-    case g_code(87):
-        rs274 ? bore_back_to_middle(hole) : bore(hole);
-        return;
-    case g_code(88):
-        rs274 ? bore_and_stop(hole) : bore(hole);
-        return;
-    default: // G81
-        hole.feed(hole.bottom);
-        hole.traverse(hole.clear);
-        return;
-    }
+    FEELER_TRY(const double rate, cycle_rate(execution, kind));
+    return Drilling{
+        execution, kind, cycle, axes.first, axes.second, axes.normal, r, bottom, clear, rate,
+    };
 }
 
 core::Result<int> repeats_of(const Execution& execution) {
@@ -277,8 +185,7 @@ void approach(Drilling& hole, const Position& target) {
     if (climbs && hole.clear) over[hole.normal] = hole.clear;
     if (only_climbs) over[hole.normal] = std::max(*over[hole.normal], lowest);
     execution.traverse(over);
-    const bool upwards = works_from_the_back(execution.dialect, hole.cycle.code);
-    if (!upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
+    if (!hole.kind.traits.works_upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
 }
 
 /// The next of L holes with G91: the same step again, or the same polar words about the origin.
@@ -304,13 +211,14 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     ModalState& modal = execution.modal();
     const size_t normal = axes_of(modal.plane).normal;
     FEELER_TRY(Position target, target_of(execution));
-    FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, normal));
+    const DrillingCycle& kind = drilling_cycle(modal.cycle->code, execution.dialect);
+    FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, kind, normal));
     FEELER_TRY(const int repeats, repeats_of(execution));
     modal.cycle = cycle;
     modal.cycle_dwell = cycle.dwell.value_or(modal.cycle_dwell);
     execution.result.is_cycle = true;
     if (repeats == 0) return {};
-    FEELER_TRY(Drilling hole, drilling_of(execution, cycle));
+    FEELER_TRY(Drilling hole, drilling_of(execution, kind, cycle));
 
     // RS274/NGC 3.5.16: from below R the axis first moves up to R. On other controls the move to
     // the hole is made at the current level.
@@ -324,7 +232,7 @@ core::Result<void> run_canned_cycle(Execution& execution) {
                    holes_of_pattern(execution, *pattern, target));
         for (const Position& place : holes) {
             approach(hole, place);
-            drill(hole);
+            hole.kind.machine(hole);
         }
         return {};
     }
@@ -333,7 +241,7 @@ core::Result<void> run_canned_cycle(Execution& execution) {
                               : zero_position;
     for (int repeat = 0; repeat < repeats; ++repeat) {
         approach(hole, target);
-        drill(hole);
+        hole.kind.machine(hole);
         if (repeat + 1 < repeats) {
             FEELER_TRY(target, next_hole(execution, target, step));
         }

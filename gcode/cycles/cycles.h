@@ -13,9 +13,34 @@ core::Result<T> placed(core::Result<T> result, core::SourceSpan where) {
     return result;
 }
 
+struct Drilling;
+
+/// What the words of a drilling cycle mean, and what it does.
+struct CycleTraits {
+    bool pecks = false; // needs Q, on Haas I, J and K instead
+    bool taps = false;  // needs no Q, but pecks with one
+    bool is_left_hand = false;
+    bool shifts = false;        // off centre, by I, J and K
+    bool works_upwards = false; // from R, which is below Z
+    bool needs_dwell = false;   // P, where cycles are those of RS274/NGC
+    bool stops_spindle = false; // which must turn before, where cycles are those of RS274/NGC
+};
+
+/// A row of the table of drilling cycles.
+struct DrillingCycle {
+    CodeNumber code;
+    CycleTraits traits;
+    void (*machine)(Drilling& hole);     // the motions at a hole; the tool is over it, or at R
+    bool Dialect::*only_where = nullptr; // a later row is for the other dialects
+};
+
+/// The row of a canned cycle of a dialect other than G80 and the threading cycle G76 of LinuxCNC.
+const DrillingCycle& drilling_cycle(CodeNumber code, const Dialect& dialect);
+
 /// A drilling cycle with its levels along the drilling axis, in program coordinates.
 struct Drilling {
     Execution& execution;
+    const DrillingCycle& kind;
     CannedCycle cycle;
     size_t first, second, normal;
     double r, bottom;
@@ -47,14 +72,30 @@ struct Drilling {
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Rigid tapping" and "Peck rigid tapping cycle".
 void tap(Drilling& hole);
 
-/// Boring cycles that shift the tool or leave the retract to the operator. G76 moves off the wall
-/// at the bottom before it retracts. G87 (on Haas G77) goes off centre through the hole, feeds up
-/// from R to Z and retracts off centre. G88 (on Haas also G87) stops the spindle and the operator
-/// retracts.
+/// G85 and G89 retract at feed, on some controls only up to R. G89 dwells before.
+void bore_and_feed_out(Drilling& hole);
+void bore_dwell_and_feed_out(Drilling& hole);
+
+/// G86: retracts with the spindle stopped.
+void bore_with_stop(Drilling& hole);
+
+/// G76: moves off the wall at the bottom before it retracts.
 ///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Fine boring cycle (G76)", "Back boring cycle
-///         (G87)", "Boring cycle (G88)"; Haas mill operator's manual 96-8000, G77, G87, G88.
-void bore(Drilling& hole);
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Fine boring cycle (G76)".
+void bore_finely(Drilling& hole);
+
+/// G87, on Haas G77: goes off centre through the hole, feeds up from R to Z and retracts off
+/// centre.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Back boring cycle (G87)"; Haas mill operator's
+///         manual 96-8000, G77.
+void bore_from_the_back(Drilling& hole);
+
+/// G88, on Haas also G87: the spindle stops at the bottom and the operator retracts.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Boring cycle (G88)"; Haas mill operator's manual
+///         96-8000, G87, G88.
+void bore_and_retract_by_hand(Drilling& hole);
 
 /// The G70, G71 or G72 of a block, a hole pattern of Haas; null if it has none.
 const CodeWord* hole_pattern(const Execution& execution);
@@ -68,10 +109,7 @@ core::Result<std::vector<Position>> holes_of_pattern(const Execution& execution,
 /// Drills a pattern with the active cycle. A cycle in the same block drills the pattern itself.
 core::Result<void> run_hole_pattern(Execution& execution);
 
-/// Whether a cycle works upwards, with R below Z.
-bool works_from_the_back(const Dialect& dialect, CodeNumber code);
-
-/// G73, G81 to G89.
+/// A cycle of the table of drilling cycles, at the holes of a block.
 core::Result<void> run_canned_cycle(Execution& execution);
 
 /// G12, G13: the tool plunges at the centre, moves out by a half circle, cuts a full circle, and

@@ -32,10 +32,9 @@ core::Result<void> check_axes(const Execution& execution, CodeNumber code) {
     return {};
 }
 
-core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cycle) {
-    const bool waits = cycle.code == g_code(82) || cycle.code == g_code(86)
-                       || cycle.code == g_code(88) || cycle.code == g_code(89);
-    if (waits && !cycle.dwell)
+core::Result<void> check_dwell(const Execution& execution, const DrillingCycle& kind,
+                               const CannedCycle& cycle) {
+    if (kind.traits.needs_dwell && !cycle.dwell)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} needs a P word, the dwell at the bottom in seconds",
                                       written(cycle.code)),
@@ -44,44 +43,42 @@ core::Result<void> check_dwell(const Execution& execution, const CannedCycle& cy
 }
 
 /// G87 needs all three words once; they are modal in the following blocks.
-core::Result<void> check_shift(const Execution& execution, const CannedCycle& cycle) {
+core::Result<void> check_shift(const Execution& execution, const DrillingCycle& kind) {
     const bool is_first = !execution.modal().cycle->bottom;
-    if (cycle.code != g_code(87) || !is_first) return {};
+    if (!kind.traits.shifts || !is_first) return {};
     for (const char letter : {'I', 'J', 'K'})
         if (!execution.statement.word(letter))
             return core::fail(ErrorCode::missing_value,
-                              fmt::format("G87 has no {}: it needs I and J, the shift off centre, "
+                              fmt::format("{} has no {}: it needs I and J, the shift off centre, "
                                           "and K, where the boring ends",
-                                          letter),
+                                          written(kind.code), letter),
                               moving_word(execution).span);
     return {};
 }
 
-core::Result<void> check_spindle(const Execution& execution, CodeNumber code) {
-    const bool taps = code == g_code(74) || code == g_code(84);
-    const bool bores = code == g_code(86) || code == g_code(87) || code == g_code(88);
+core::Result<void> check_spindle(const Execution& execution, const DrillingCycle& kind) {
+    const bool taps = kind.traits.taps, left = kind.traits.is_left_hand;
     const SpindleDirection direction = execution.modal().spindle;
     if (taps && axes_of(execution.modal().plane).normal > 2)
         return core::fail(
             ErrorCode::unsupported,
             fmt::format("{}: the control taps along X, Y and Z only, not in this plane: use G17",
-                        written(code)),
+                        written(kind.code)),
             moving_word(execution).span);
     const core::SourceSpan where = moving_word(execution).span;
-    if ((taps || bores) && direction == SpindleDirection::stopped)
+    if ((taps || kind.traits.stops_spindle) && direction == SpindleDirection::stopped)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{}: the spindle is stopped: start it with {} first",
-                                      written(code), code == g_code(74) ? "M4" : "M3"),
+                                      written(kind.code), left ? "M4" : "M3"),
                           where);
     const SpindleDirection needed =
-        code == g_code(74) ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
+        left ? SpindleDirection::counterclockwise : SpindleDirection::clockwise;
     if (taps && direction != needed)
         return core::fail(
             ErrorCode::invalid_value,
             fmt::format(
                 "{} cuts a {} thread, but the spindle turns the other way: start it with {} first",
-                written(code), code == g_code(74) ? "left-hand" : "right-hand",
-                name_of_start(needed)),
+                written(kind.code), left ? "left-hand" : "right-hand", name_of_start(needed)),
             where);
     return {};
 }
@@ -126,7 +123,8 @@ void enable_overrides(Execution& execution, bool enabled) {
 
 } // namespace
 
-core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle) {
+core::Result<void> check_rs274_cycle(const Execution& execution, const DrillingCycle& kind,
+                                     const CannedCycle& cycle) {
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::syntax,
                           fmt::format("{}: no cycle is allowed while cutter radius compensation "
@@ -134,9 +132,9 @@ core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCyc
                                       written(cycle.code)),
                           moving_word(execution).span);
     if (auto checked = check_axes(execution, cycle.code); !checked) return checked;
-    if (auto checked = check_dwell(execution, cycle); !checked) return checked;
-    if (auto checked = check_shift(execution, cycle); !checked) return checked;
-    return check_spindle(execution, cycle.code);
+    if (auto checked = check_dwell(execution, kind, cycle); !checked) return checked;
+    if (auto checked = check_shift(execution, kind); !checked) return checked;
+    return check_spindle(execution, kind);
 }
 
 void begin_exact_path(Execution& execution) {

@@ -10,7 +10,8 @@ namespace gcode {
 ///         words; missing_value for P of cycles that dwell, for I, J and K of G87, and for a
 ///         spindle that does not run as the cycle needs; invalid_value for a negative time.
 /// Source: NISTIR 6556 (RS274/NGC v3), 3.5.16; behaves as LinuxCNC 2.9.
-core::Result<void> check_rs274_cycle(const Execution& execution, const CannedCycle& cycle);
+core::Result<void> check_rs274_cycle(const Execution& execution, const DrillingCycle& kind,
+                                     const CannedCycle& cycle);
 
 /// Sets exact path mode for a cycle, and restores the previous mode.
 void begin_exact_path(Execution& execution);

@@ -22,20 +22,19 @@ constexpr std::array<CodeNumber, count> g_codes(const double (&values)[count]) {
     return codes;
 }
 
-// Codes that LinuxCNC refuses between G41 and G40; probed with its interpreter.
-constexpr auto rs274_g =
-    g_codes({5,    5.1, 5.2, 5.3, 28, 28.1, 30, 30.1, 33, 33.1, 38.2, 38.3, 38.4, 38.5, 43, 43.1,
-             43.2, 49,  52,  53,  54, 55,   56, 57,   58, 59,   59.1, 59.2, 59.3, 61,   64, 71,
-             72,   73,  74,  76,  81, 82,   83, 84,   85, 86,   87,   88,   89,   92,   98});
+// Codes that LinuxCNC refuses between G41 and G40, besides cycles; probed with its interpreter.
+constexpr auto rs274_g = g_codes(
+    {5,  5.1, 5.2, 5.3, 28, 28.1, 30, 30.1, 33,   33.1, 38.2, 38.3, 38.4, 38.5, 43, 43.1, 43.2, 49,
+     52, 53,  54,  55,  56, 57,   58, 59,   59.1, 59.2, 59.3, 61,   64,   71,   72, 92,   98});
 constexpr CodeNumber rs274_m[] = {m_code(6),  m_code(48), m_code(49), m_code(50), m_code(51),
                                   m_code(52), m_code(53), m_code(62), m_code(63), m_code(64),
                                   m_code(65), m_code(66), m_code(67), m_code(68)};
 
-// Codes by which the tool leaves the contour on Fanuc controls: reference points, machine
-// coordinates, offsets, canned cycles (B-63944EN-2, 6.6, "Notes on cutter compensation").
-constexpr auto fanuc_g =
-    g_codes({27, 28, 29, 30, 52, 53, 54, 54.1, 55, 56,  57, 58, 59,  73, 74, 76, 81,
-             82, 83, 84, 85, 86, 87, 88, 89,   92, 154, 12, 13, 150, 70, 71, 72, 77});
+// Codes by which the tool leaves the contour on Fanuc controls, besides cycles: reference points,
+// machine coordinates, offsets (B-63944EN-2, 6.6, "Notes on cutter compensation"), and cycles of
+// Haas that act in their block only.
+constexpr auto fanuc_g = g_codes(
+    {27, 28, 29, 30, 52, 53, 54, 54.1, 55, 56, 57, 58, 59, 92, 154, 12, 13, 150, 70, 71, 72});
 constexpr CodeNumber fanuc_m[] = {m_code(6)};
 
 bool is_among(std::span<const CodeNumber> codes, CodeNumber code) {
@@ -57,7 +56,7 @@ bool breaks_contour(const Execution& execution, const CodeWord& entry) {
         const Word* kind = execution.statement.word('L');
         return kind && (kind->value == 2.0 || kind->value == 20.0);
     }
-    if (changes_plane(execution, entry)) return true;
+    if (entry.code->is_cycle() || changes_plane(execution, entry)) return true;
     return execution.dialect.contour_codes == ContourCodes::rs274
                ? is_among(rs274_g, code) || is_among(rs274_m, code)
                : is_among(fanuc_g, code) || is_among(fanuc_m, code);

@@ -12,18 +12,14 @@ namespace {
 
 using core::ErrorCode;
 
-bool is_cycle(const Code& code) {
-    return code.group == ModalGroup::cycle && code.number != g_code(80);
-}
-
 /// A code of the block that cannot be combined with this one. G80 can be combined with any motion.
 const CodeWord* rival_of(const Statement& statement, const Code& code, const Dialect& dialect) {
     if (code.group == ModalGroup::other) return nullptr;
     if (const CodeWord* same = statement.of(code.group)) return same;
     if (!dialect.cycles_are_motions) return nullptr;
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
-    if (code.group == ModalGroup::motion && cycle && is_cycle(*cycle->code)) return cycle;
-    return is_cycle(code) ? statement.of(ModalGroup::motion) : nullptr;
+    if (code.group == ModalGroup::motion && cycle && cycle->code->is_cycle()) return cycle;
+    return code.is_cycle() ? statement.of(ModalGroup::motion) : nullptr;
 }
 
 /// Whether this word calls a subprogram, jumps or returns on some control.

@@ -56,6 +56,7 @@ struct Code {
     bool uses(char word) const { return words.find(word) != std::string_view::npos; }
     constexpr CodeNumber last_number() const { return last.value_or(number); }
     bool uses_axes() const { return words.starts_with("XYZ"); }
+    bool is_cycle() const { return group == ModalGroup::cycle && number != g_code(80); }
 };
 
 /// The code of a number in a dialect, or null when the dialect has none.

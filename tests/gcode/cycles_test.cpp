@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gcode/cycles/cycles.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {
@@ -28,6 +29,18 @@ std::string levels(const std::string& text, DialectId dialect = DialectId::fanuc
         }
     }
     return found;
+}
+
+TEST(Cycle, OfEveryDialectHasItsMotions) {
+    int count = 0;
+    for (const DialectId id : {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas,
+                               DialectId::grbl, DialectId::siemens_iso})
+        for (int number = 0; number < 1000; ++number)
+            if (const Code* code = find_code(g_code(number), id); code && code->is_cycle()) {
+                EXPECT_EQ(drilling_cycle(code->number, dialect(id)).code, code->number);
+                ++count;
+            }
+    EXPECT_GT(count, 40);
 }
 
 TEST(Cycle, G81DrillsAndRetractsToTheInitialLevelOrToR) {
