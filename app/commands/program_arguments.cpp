@@ -32,11 +32,11 @@ std::string why_no_count(const std::string& text) {
 } // namespace
 
 void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
+    const auto dialects = gcode::dialect_names();
     command
         .add_option("--dialect", arguments.dialect,
                     "Dialect of the control; default: recognised from the program")
-        ->check(CLI::IsMember(
-            {"linuxcnc", "fanuc", "haas", "grbl", "siemens", "siemens-iso", "heidenhain"}));
+        ->check(CLI::IsMember(std::vector<std::string>(dialects.begin(), dialects.end())));
     command
         .add_option("--start-position", arguments.start_position,
                     "Machine coordinates before the first block, mm: X=-100,Y=-50,Z=0")

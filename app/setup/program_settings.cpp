@@ -175,11 +175,13 @@ void read_machine_codes(TableReader& table, std::set<int>& codes) {
 
 } // namespace
 
+std::optional<gcode::DialectId> read_dialect(TableReader& table) {
+    return gcode::dialect_named(table.word("dialect", gcode::dialect_names()).value_or(""));
+}
+
 ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder) {
     ProgramSettings settings;
-    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
-                                                 "siemens-iso", "heidenhain"}))
-        settings.dialect = gcode::dialect_named(*name);
+    settings.dialect = read_dialect(table);
     settings.block_delete = table.boolean("block_delete");
     if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);
     if (const auto unit = table.word("unit", {"mm", "inch"}))

@@ -54,6 +54,9 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
 /// stay unknown. Empty if the text has another form.
 std::optional<core::AxisPosition> position_in(const std::string& text);
 
+/// Reads the key `dialect` of a table.
+std::optional<gcode::DialectId> read_dialect(TableReader& table);
+
 /// Reads `[program]` of a set-up; relative paths refer to `folder`.
 ProgramSettings read_program_table(TableReader& table, const std::filesystem::path& folder);
 

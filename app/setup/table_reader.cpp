@@ -115,10 +115,10 @@ std::optional<bool> TableReader::boolean(const char* key) {
     return at->value<bool>();
 }
 
-std::optional<std::string> TableReader::word(const char* key, std::span<const char* const> words) {
+std::optional<std::string> TableReader::word(const char* key, std::span<const std::string_view> words) {
     const auto value = string(key);
     if (!value) return std::nullopt;
-    for (const char* word : words)
+    for (const std::string_view word : words)
         if (*value == word) return value;
     refuse(key, fmt::format("is \"{}\", but must be one of: {}", *value, fmt::join(words, " ")));
     return std::nullopt;

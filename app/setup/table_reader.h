@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <toml++/toml.h>
@@ -39,8 +40,9 @@ public:
     std::optional<bool> boolean(const char* key);
 
     /// A string that must be one of the given words.
-    std::optional<std::string> word(const char* key, std::span<const char* const> words);
-    std::optional<std::string> word(const char* key, std::initializer_list<const char*> words) {
+    std::optional<std::string> word(const char* key, std::span<const std::string_view> words);
+    std::optional<std::string> word(const char* key,
+                                    std::initializer_list<std::string_view> words) {
         return word(key, std::span(words.begin(), words.size()));
     }
 

@@ -14,8 +14,8 @@ namespace app {
 namespace {
 
 void read_shape(TableReader& table, core::ToolDescription& tool) {
-    std::vector<const char*> names;
-    for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.push_back(entry.name);
+    std::vector<std::string_view> names;
+    for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.emplace_back(entry.name);
     const auto shape = table.word("shape", names);
     if (!shape) return table.need("shape");
     tool.shape = *core::tool_shape_named(*shape);

@@ -318,9 +318,17 @@ constexpr Dialect siemens_iso = [] {
 constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect, haas_dialect, grbl_dialect,
                                  siemens_dialect,  heidenhain,    siemens_iso};
 
+constexpr auto names_of_dialects = [] {
+    std::array<std::string_view, dialects.size()> found;
+    for (size_t i = 0; i < found.size(); ++i) found[i] = dialects[i].name;
+    return found;
+}();
+
 } // namespace
 
 const Dialect& dialect(DialectId id) { return dialects[static_cast<size_t>(id)]; }
+
+std::span<const std::string_view> dialect_names() { return names_of_dialects; }
 
 std::optional<DialectId> dialect_named(std::string_view name) {
     for (const Dialect& entry : dialects)

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -128,6 +129,9 @@ struct Dialect {
 };
 
 const Dialect& dialect(DialectId id);
+
+/// The names of all dialects, in the order of their enumerators.
+std::span<const std::string_view> dialect_names();
 
 /// The dialect with a name such as "fanuc"; empty if there is none.
 std::optional<DialectId> dialect_named(std::string_view name);

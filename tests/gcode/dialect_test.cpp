@@ -15,12 +15,15 @@ Recognition recognised(std::string_view text) {
 }
 
 TEST(Dialect, IsFoundByItsName) {
-    for (const DialectId id :
-         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl,
-          DialectId::siemens, DialectId::heidenhain, DialectId::siemens_iso}) {
+    const auto names = dialect_names();
+    ASSERT_EQ(names.size(), 7u);
+    for (size_t i = 0; i < names.size(); ++i) {
+        const auto id = static_cast<DialectId>(i);
         EXPECT_EQ(dialect(id).id, id);
-        EXPECT_EQ(dialect_named(dialect(id).name), id);
+        EXPECT_EQ(dialect(id).name, names[i]);
+        EXPECT_EQ(dialect_named(names[i]), id);
     }
+    EXPECT_THAT(names, testing::Contains("siemens-iso"));
     EXPECT_EQ(dialect_named("mazak"), std::nullopt);
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/base/file_stamp.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
@@ -20,9 +21,7 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
         if (setup->empty()) table.refuse("setup", "must name a file");
         terms.setup = plain_path(folder / *setup);
     }
-    if (const auto name = table.word("dialect", {"linuxcnc", "fanuc", "haas", "grbl", "siemens",
-                                                 "siemens-iso", "heidenhain"}))
-        terms.dialect = gcode::dialect_named(*name);
+    terms.dialect = read_dialect(table);
     terms.allowance = table.number("allowance");
     if (terms.allowance
         && !(*terms.allowance >= 0.0 && *terms.allowance <= core::largest_allowance))
