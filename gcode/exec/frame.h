@@ -16,7 +16,9 @@ namespace gcode {
 struct Dialect;
 struct FlowIndex;
 struct Program;
-enum class SiemensType : uint8_t;
+
+/// The type of a variable that a program declares.
+enum class VariableType : uint8_t { real, whole, truth, text };
 
 /// A line of one of the programs that were read; source 0 is the main program.
 struct Place {
@@ -45,7 +47,7 @@ struct Frame {
     LocalParameters locals{};
     bool shares_locals = false; // M98: uses #1 to #33 of the caller
     NamedValues named{};
-    std::map<std::string, SiemensType, std::less<>> types{}; // of declared names that are not REAL
+    std::map<std::string, VariableType, std::less<>> types{}; // of declared names that are not REAL
     std::map<uint32_t, int64_t> repeats{};     // remaining repetitions, by the line of `repeat`
     int64_t rounds_left = 0;                   // remaining repetitions of M98 L
     std::optional<LocalParameters> again{};    // locals at the start of each repetition

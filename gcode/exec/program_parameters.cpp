@@ -200,9 +200,9 @@ core::Result<bool> set_system_parameter(InterpreterState& state, const Environme
     return set_linuxcnc_parameter(state, environment, number, value, where);
 }
 
-double held_as(SiemensType type, double value) {
-    if (type == SiemensType::whole) return std::round(value);
-    if (type == SiemensType::truth) return value != 0.0 ? 1.0 : 0.0;
+double held_as(VariableType type, double value) {
+    if (type == VariableType::whole) return std::round(value);
+    if (type == VariableType::truth) return value != 0.0 ? 1.0 : 0.0;
     return value;
 }
 

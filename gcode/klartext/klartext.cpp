@@ -40,7 +40,7 @@ void warn_of_m_codes(Execution& execution) {
 }
 
 core::Result<void> take_feed(Execution& execution) {
-    const CommandKind kind = execution.block.command.kind;
+    const CommandKind kind = klartext_of(execution.block).kind;
     if (kind == rounding || kind == chamfer) return {}; // it applies to the corner only
     if (const Word* word = execution.statement.word('E')) {
         if (!klartext_of(execution.state).call_feed)
@@ -56,11 +56,11 @@ core::Result<void> program_error_of(const Execution& execution) {
     return core::fail(ErrorCode::invalid_value,
                       fmt::format("FN 14: the program stops here with its own error {:.12g}",
                                   word ? word->value : 0.0),
-                      execution.block.command.span);
+                      klartext_of(execution.block).span);
 }
 
 core::Result<void> run_statement(Execution& execution) {
-    switch (execution.block.command.kind) {
+    switch (klartext_of(execution.block).kind) {
     case none:
     case note:
     case modes:
@@ -90,7 +90,7 @@ bool is_motion(CommandKind kind) {
 /// M99 calls the cycle once; M89 calls it after each motion from its block on, until M99 or another
 /// cycle.
 core::Result<void> call_cycle(Execution& execution) {
-    const Command& command = execution.block.command;
+    const KlartextLine& command = klartext_of(execution.block);
     KlartextState& klartext = writable_klartext(execution.state);
     if (command.calls_from_here) klartext.calls_after_motions = true;
     const bool moves = is_motion(command.kind)
@@ -104,7 +104,7 @@ core::Result<void> call_cycle(Execution& execution) {
 } // namespace
 
 core::Result<void> run_klartext(Execution& execution, const ModalState&) {
-    const Command& command = execution.block.command;
+    const KlartextLine& command = klartext_of(execution.block);
     warn_of_m_codes(execution);
     const bool late_spindle = ends_block(execution, ModalGroup::spindle, m_code(5));
     const bool late_coolant = ends_block(execution, ModalGroup::coolant, m_code(9));
@@ -127,7 +127,7 @@ core::Result<void> run_klartext(Execution& execution, const ModalState&) {
 }
 
 tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why) {
-    const core::SourceSpan where = execution.block.command.span;
+    const core::SourceSpan where = klartext_of(execution.block).span;
     const std::string_view text = execution.block.text;
     const size_t begin = std::min<size_t>(where.column - 1, text.size());
     const std::string_view words = text.substr(begin, where.length);
@@ -264,13 +264,13 @@ core::Result<void> read_system_datum(Execution& execution) {
                           fmt::format("FN 18: ID{} NR{} IDX{} is not supported: only the positions "
                                       "can be read, ID240 NR1 and ID270 NR1",
                                       group, item, index),
-                          execution.block.command.span);
+                          klartext_of(execution.block).span);
     const ModalState& modal = execution.modal();
     const Position place =
         machine ? machine_from_program(modal.offsets, modal.position) : modal.position;
     const auto axis = static_cast<size_t>(index - 1);
     if (!place[axis])
-        execution.warn(execution.block.command.span,
+        execution.warn(klartext_of(execution.block).span,
                        fmt::format("FN 18: the {} position is unknown and assumed to be 0; set "
                                    "[program] start in the set-up",
                                    axis_letters[axis]));

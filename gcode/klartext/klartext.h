@@ -2,6 +2,7 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/flow.h"
+#include "gcode/klartext/klartext_line.h"
 #include "gcode/klartext/klartext_state.h"
 
 namespace gcode {

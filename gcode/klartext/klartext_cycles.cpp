@@ -246,7 +246,7 @@ void read_old_cycle(Execution& execution, DefinedCycle& cycle) {
     const Word* word = execution.statement.word('P');
     if (!word) return;
     const double length = std::abs(length_of(execution, *word));
-    switch (execution.block.command.part) {
+    switch (klartext_of(execution.block).part) {
     case 1:
         cycle.clearance = length;
         break;
@@ -297,7 +297,7 @@ DefinedCycle new_cycle(const Execution& execution, int number) {
 } // namespace
 
 core::Result<void> define_cycle(Execution& execution) {
-    const Command& command = execution.block.command;
+    const KlartextLine& command = klartext_of(execution.block);
     const int number = command.number;
     switch (number) {
     case 7:
@@ -372,7 +372,7 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };
     std::vector<PlanePoint> places;
-    if (execution.block.command.number == 220) {
+    if (klartext_of(execution.block).number == 220) {
         const double count = plain(241);
         if (!(count >= 1.0 && count <= most_places))
             return refuse_statement(execution, "Q241, the number of holes, must be at least 1");

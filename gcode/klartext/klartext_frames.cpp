@@ -117,7 +117,7 @@ core::Result<void> tilt(Execution& execution) {
 
 /// The first line of such a cycle names it; for mirror images it also cancels the previous one.
 core::Result<void> change_coordinates(Execution& execution) {
-    const Command& command = execution.block.command;
+    const KlartextLine& command = klartext_of(execution.block);
     if (command.number == 19) return tilt(execution);
     if (command.part == 0) return {};
     Transforms transforms = klartext_of(execution.state).transforms;

@@ -86,7 +86,7 @@ core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
 }
 
 core::Result<int> turn_of(const Execution& execution) {
-    const int turn = execution.block.command.turn;
+    const int turn = klartext_of(execution.block).turn;
     if (turn == 0) return refuse_statement(execution, "DR+ or DR- is missing");
     return turn;
 }
@@ -112,7 +112,7 @@ core::Result<void> check_radii(Execution& execution, const PlanePoint& start, co
         fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at its end",
                     to_start, to_end);
     if (difference > allowed.warned_mm) return refuse_arc(execution, message);
-    execution.warn(execution.block.command.span, message);
+    execution.warn(klartext_of(execution.block).span, message);
     return {};
 }
 
@@ -120,7 +120,7 @@ core::Result<PathElement> around_pole(Execution& execution) {
     PathElement contour;
     double turned_deg = 0.0;
     FEELER_TRY(contour.turn, turn_of(execution));
-    if (execution.block.command.kind == arc_polar) {
+    if (klartext_of(execution.block).kind == arc_polar) {
         FEELER_TRY(contour.end, polar_target(execution, &turned_deg));
     } else {
         FEELER_TRY(contour.end, klartext_target(execution));
@@ -169,7 +169,7 @@ core::Result<PathElement> of_radius(Execution& execution) {
 /// The arc that continues the previous motion tangentially.
 core::Result<PathElement> tangent(Execution& execution) {
     PathElement contour;
-    if (execution.block.command.kind == tangent_polar) {
+    if (klartext_of(execution.block).kind == tangent_polar) {
         FEELER_TRY(contour.end, polar_target(execution, nullptr));
     } else {
         FEELER_TRY(contour.end, klartext_target(execution));
@@ -198,7 +198,7 @@ core::Result<PathElement> tangent(Execution& execution) {
 
 core::Result<PathElement> contour_of(Execution& execution) {
     PathElement contour;
-    switch (execution.block.command.kind) {
+    switch (klartext_of(execution.block).kind) {
     case straight_polar: {
         FEELER_TRY(contour.end, polar_target(execution, nullptr));
         return contour;
@@ -242,13 +242,13 @@ void remember_direction(Execution& execution, const Position& start, const PathE
 
 core::Result<void> go_along(Execution& execution, const PathElement& contour) {
     ModalState& modal = execution.modal();
-    const bool rapid = execution.block.command.rapid;
+    const bool rapid = klartext_of(execution.block).rapid;
     if (contour.turn == 0 && rapid) {
         execution.traverse(contour.end);
         return {};
     }
     if (rapid)
-        execution.warn(execution.block.command.span,
+        execution.warn(klartext_of(execution.block).span,
                        "FMAX on an arc is checked as a move at feed rate F");
     FEELER_TRY(const double feed, klartext_feed(execution));
     if (contour.turn == 0) {
@@ -296,7 +296,7 @@ core::Result<void> set_pole(Execution& execution) {
 } // namespace
 
 core::Result<void> move_in_klartext(Execution& execution) {
-    const Command& command = execution.block.command;
+    const KlartextLine& command = klartext_of(execution.block);
     const Statement& statement = execution.statement;
     if (command.kind == pole) return set_pole(execution);
     const bool still =
@@ -363,7 +363,7 @@ core::Result<double> size_of_corner(Execution& execution, const Block& block) {
         return to_mm(value, execution.modal().unit);
     }
     return core::fail(ErrorCode::missing_value, "RND needs R with a radius, CHF a length",
-                      block.command.span);
+                      klartext_of(block).span);
 }
 
 PlanePoint plane_point(FlatPoint point) { return {point.u, point.v}; }
@@ -406,8 +406,8 @@ core::Result<std::optional<CornerSide>> motion_ahead(Execution& execution, const
 }
 
 core::Error refusal(const Block& corner, std::string_view why) {
-    const bool rounds = corner.command.kind == CommandKind::rounding;
-    return {ErrorCode::invalid_value, corner.command.span,
+    const bool rounds = klartext_of(corner).kind == CommandKind::rounding;
+    return {ErrorCode::invalid_value, klartext_of(corner).span,
             fmt::format("{}: {}", rounds ? "RND" : "CHF", why)};
 }
 
@@ -434,8 +434,8 @@ core::Result<Position> lay_corner(Execution& execution, const Block& block, cons
     if (!second)
         return tl::unexpected(
             refusal(block, "it must be followed by a feed move in the plane at the same height"));
-    const CornerKind kind =
-        block.command.kind == CommandKind::rounding ? CornerKind::rounding : CornerKind::chamfer;
+    const CornerKind kind = klartext_of(block).kind == CommandKind::rounding ? CornerKind::rounding
+                                                                             : CornerKind::chamfer;
     CornerCut cut = cut_corner(first, *second, kind, corner_size);
     const bool curved = first.arc || second->arc;
     if (kind == CornerKind::chamfer && curved && cut.fit != CornerFit::no_length)

@@ -34,7 +34,7 @@ constexpr std::string_view refused[] = {"APPR",  "DEP",      "LN",   "SPL",    "
                                         "TRANS", "FUNCTION", "SQL",  "PRESET", "CONTOUR"};
 
 core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
-    Command& command = reader.block.command;
+    KlartextLine& command = reader.command;
     command.kind = kind;
     const bool takes_length = kind == CommandKind::chamfer;
     while (const char c = reader.next()) {
@@ -62,7 +62,7 @@ core::Result<void> read_begin(KlartextReader& reader) {
         return reader.refuse("'BEGIN PGM' must be followed by the program name and MM or INCH",
                              reader.begin);
     reader.add_word('G', unit == "MM" || unit == "mm" ? 21.0 : 20.0, reader.begin);
-    reader.block.command.kind = CommandKind::modes;
+    reader.command.kind = CommandKind::modes;
     return {};
 }
 
@@ -72,12 +72,12 @@ core::Result<void> read_plane(KlartextReader& reader) {
         return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
                              ErrorCode::unsupported);
     reader.lexer.at = reader.lexer.line.size();
-    reader.block.command.kind = CommandKind::note;
+    reader.command.kind = CommandKind::note;
     return {};
 }
 
 core::Result<void> read_modes(KlartextReader& reader, CommandKind kind) {
-    reader.block.command.kind = kind;
+    reader.command.kind = kind;
     while (const char c = reader.next()) {
         if (!is_letter(c)) return reader.stray();
         if (auto done = read_contour_word(reader); !done) return done;
@@ -87,7 +87,7 @@ core::Result<void> read_modes(KlartextReader& reader, CommandKind kind) {
 
 core::Result<void> read_keyword(KlartextReader& reader, const std::string& first) {
     reader.accept(first);
-    reader.block.command.span = reader.span_from(reader.begin);
+    reader.command.span = reader.span_from(reader.begin);
     if (first == "BEGIN" && reader.accept("PGM")) return read_begin(reader);
     if (first == "END" && reader.accept("PGM")) {
         reader.lexer.at = reader.lexer.line.size();
@@ -170,13 +170,18 @@ bool goes_on(std::string_view line) {
 
 core::Result<void> parse_klartext(std::string_view text, uint32_t line, const Dialect& dialect,
                                   Block& block) {
+    KlartextLine& command = block.language_line.write<KlartextLine>();
+    command = {};
     KlartextReader reader{.lexer = {.line = text,
                                     .line_number = line,
                                     .blanks_end_numbers = true,
                                     .comma_is_point = true},
                           .dialect = dialect,
-                          .block = block};
-    return read_block(reader);
+                          .block = block,
+                          .command = command};
+    auto read = read_block(reader);
+    block.has_command = command.kind != CommandKind::none;
+    return read;
 }
 
 std::string_view klartext_block(const Program& program, uint32_t line) {
@@ -369,7 +374,7 @@ core::Result<void> read_tool_number(KlartextReader& reader) {
 } // namespace
 
 core::Result<void> read_tool(KlartextReader& reader) {
-    Command& command = reader.block.command;
+    KlartextLine& command = reader.command;
     const bool calls = reader.accept("CALL");
     if (!calls && !reader.accept("DEF"))
         return reader.refuse("'TOOL' must be followed by CALL or DEF", reader.begin);
@@ -460,7 +465,7 @@ core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
 }
 
 core::Result<void> read_cycle_call(KlartextReader& reader) {
-    Command& command = reader.block.command;
+    KlartextLine& command = reader.command;
     command.kind = CommandKind::cycle_call;
     command.calls_cycle = true;
     if (reader.accept("PAT"))
@@ -477,7 +482,7 @@ core::Result<void> read_cycle_call(KlartextReader& reader) {
 } // namespace
 
 core::Result<void> read_cycle(KlartextReader& reader) {
-    Command& command = reader.block.command;
+    KlartextLine& command = reader.command;
     if (reader.accept("CALL")) return read_cycle_call(reader);
     if (!reader.accept("DEF"))
         return reader.refuse("'CYCL' must be followed by DEF or CALL", reader.begin);

@@ -26,7 +26,7 @@ core::Result<void> read_feed(KlartextReader& reader) {
                              from, ErrorCode::unsupported);
     lexer.at = from + 1;
     if (reader.accept("MAX")) {
-        reader.block.command.rapid = true;
+        reader.command.rapid = true;
         return {};
     }
     if (reader.accept("AUTO")) {
@@ -47,7 +47,7 @@ core::Result<void> read_radius(KlartextReader& reader) {
         return reader.refuse(
             fmt::format("'{}': cutter radius compensation is not supported yet", letters), from,
             ErrorCode::unsupported);
-    const CommandKind kind = reader.block.command.kind;
+    const CommandKind kind = reader.command.kind;
     const auto has_radius = std::any_of(reader.block.words.begin(), reader.block.words.end(),
                                         [](const Word& word) { return word.letter == 'R'; });
     ++lexer.at;
@@ -64,9 +64,9 @@ core::Result<void> read_turn(KlartextReader& reader) {
     const size_t from = reader.lexer.at;
     reader.lexer.at += 2;
     if (reader.lexer.accept('+'))
-        reader.block.command.turn = 1;
+        reader.command.turn = 1;
     else if (reader.lexer.accept('-'))
-        reader.block.command.turn = -1;
+        reader.command.turn = -1;
     else
         return reader.refuse("'DR' needs a sign: DR+ is counterclockwise, DR- clockwise", from);
     return {};
@@ -192,7 +192,7 @@ core::Result<void> read_m_word(KlartextReader& reader) {
     if (!lexer.is_at_number()) return {}; // an M without a number has no effect
     FEELER_TRY(const Number number, lexer.number());
     const auto code = static_cast<int>(std::clamp(number.value, -1.0, 1e6));
-    Command& command = reader.block.command;
+    KlartextLine& command = reader.command;
     switch (code) {
     case 13: // M3 and M8
     case 14: // M4 and M8
@@ -349,14 +349,14 @@ core::Result<void> read_system_datum(KlartextReader& reader) {
         if (!reader.accept_prefix(name)) continue;
         if (auto done = reader.word(letter, from); !done) return done;
     }
-    reader.block.command.kind = CommandKind::read_system;
+    reader.command.kind = CommandKind::read_system;
     return {};
 }
 
 core::Result<void> read_error(KlartextReader& reader) {
     reader.accept("ERROR");
     reader.lexer.accept('=');
-    reader.block.command.kind = CommandKind::program_error;
+    reader.command.kind = CommandKind::program_error;
     return reader.word('P', reader.begin);
 }
 
@@ -366,7 +366,7 @@ core::Result<void> read_function(KlartextReader& reader) {
     reader.accept("FN");
     FEELER_TRY(const int number, read_whole(reader, "FN"));
     if (reader.next() == ':') ++reader.lexer.at;
-    reader.block.command.span = reader.span_from(reader.begin);
+    reader.command.span = reader.span_from(reader.begin);
     if (number == 0) {
         FEELER_TRY(const int target, read_target(reader));
         FEELER_TRY(const Expression value, reader.operand());
@@ -380,7 +380,7 @@ core::Result<void> read_function(KlartextReader& reader) {
     if (number == 18) return read_system_datum(reader);
     if (number == 15 || number == 16 || number == 20) { // prints or waits for the machine
         reader.lexer.at = reader.lexer.line.size();
-        reader.block.command.kind = CommandKind::note;
+        reader.command.kind = CommandKind::note;
         return {};
     }
     return reader.refuse(fmt::format("'FN {}' is not supported yet", number), reader.begin,

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "gcode/language/block.h"
+#include "gcode/klartext/klartext_line.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
 
@@ -13,7 +13,8 @@ struct KlartextReader {
     Lexer lexer;
     const Dialect& dialect;
     Block& block;
-    size_t begin = 0; // of the statement
+    KlartextLine& command; // of the block
+    size_t begin = 0;      // of the statement
 
     /// The next significant character, not consumed; comments before it are stored. NUL at the end.
     char next();

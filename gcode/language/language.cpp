@@ -13,12 +13,11 @@ void Block::clear() {
     pool.clear();
     flow.arguments.clear();
     flow = Flow{.arguments = std::move(flow.arguments)};
-    command = {};
     block_delete.reset();
     tape_mark = false;
     is_program_name = false;
     kept_words.reset();
-    has_message = false;
+    has_message = has_command = false;
 }
 
 core::Result<void> parse_line(std::string_view text, uint32_t line, const Dialect& dialect,

@@ -24,7 +24,7 @@ core::Result<void> say(Execution& execution) {
     const SiemensKeywordUse* use = use_of(execution, message);
     if (!use) return {};
     std::string text;
-    for (const SiemensArgument& part : execution.block.siemens.arguments) {
+    for (const SiemensArgument& part : siemens_of(execution.block).arguments) {
         if (part.kind == SiemensArgument::Kind::text) text += part.text;
         if (part.kind != SiemensArgument::Kind::value) continue;
         FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), part));
@@ -69,7 +69,7 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
 }
 
 core::Result<void> note_keywords(Execution& execution) {
-    for (const SiemensKeywordUse& use : execution.block.siemens.keywords) {
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
         const auto say_so = [&](std::string_view why) {
             execution.warn(use.span, fmt::format("{}: {}", use.keyword->name, why));
         };
@@ -129,11 +129,11 @@ core::Result<void> act_in_siemens(Execution& execution) {
 
 /// MCALL alone, with a cycle, or with a program.
 core::Result<void> set_modal_call(Execution& execution) {
-    if (!execution.block.siemens.is_modal_call) return {};
+    if (!siemens_of(execution.block).is_modal_call) return {};
     SiemensState& siemens = writable_siemens(execution.state);
     siemens.modal_cycle.reset();
     siemens.modal_call.reset();
-    if (execution.block.siemens.name.empty()) return {};
+    if (siemens_of(execution.block).name.empty()) return {};
     FEELER_TRY(Frame frame, called_frame(flow_step_of(execution)));
     frame.modal_macro = 1;
     writable_siemens(execution.state).modal_call = std::move(frame);
@@ -141,7 +141,7 @@ core::Result<void> set_modal_call(Execution& execution) {
 }
 
 core::Result<void> run_cycles(Execution& execution) {
-    for (const SiemensKeywordUse& use : execution.block.siemens.keywords) {
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
         if (use.keyword->action < swivel) continue;
         if (auto done = run_siemens_cycle(execution, use); !done) return done;
     }
@@ -161,7 +161,8 @@ bool has_moved(const Execution& execution) {
 core::Result<void> call_modal(Execution& execution) {
     const SiemensState& siemens = siemens_of(execution.state);
     if (!siemens.modal_cycle && !siemens.modal_call) return {};
-    if (execution.block.siemens.is_modal_call || execution.result.is_cycle || !has_moved(execution))
+    if (siemens_of(execution.block).is_modal_call || execution.result.is_cycle
+        || !has_moved(execution))
         return {};
     if (siemens.modal_cycle) return drill_here(execution, SiemensDrilling(*siemens.modal_cycle));
     const auto& frames = execution.state.frames;
@@ -219,7 +220,7 @@ constexpr SiemensStep siemens_steps[] = {
 } // namespace
 
 const SiemensKeywordUse* use_of(const Execution& execution, SiemensAction action) {
-    for (const SiemensKeywordUse& use : execution.block.siemens.keywords)
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords)
         if (use.keyword->action == action) return &use;
     return nullptr;
 }
@@ -351,7 +352,7 @@ core::Result<void> select(Execution& execution, int number, core::SourceSpan whe
 } // namespace
 
 core::Result<void> use_siemens_tool(Execution& execution) {
-    const SiemensArgument& name = execution.block.siemens.tool_name;
+    const SiemensArgument& name = siemens_of(execution.block).tool_name;
     if (const Word* word = execution.statement.word('T')) {
         FEELER_TRY(const int number, whole_number(*word, 0, 99999999));
         if (auto done = select(execution, number, word->span); !done) return done;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "gcode/exec/execution.h"
-#include "gcode/language/block.h"
 #include "gcode/siemens/siemens_flow.h"
 #include "gcode/siemens/siemens_state.h"
 

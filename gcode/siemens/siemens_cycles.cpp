@@ -228,7 +228,7 @@ core::Result<std::vector<std::optional<double>>> cycle_values(Execution& executi
                                                               const SiemensKeywordUse& use) {
     (void)use;
     std::vector<std::optional<double>> values;
-    for (const SiemensArgument& argument : execution.block.siemens.arguments) {
+    for (const SiemensArgument& argument : siemens_of(execution.block).arguments) {
         values.emplace_back();
         if (argument.kind != SiemensArgument::Kind::value) continue;
         FEELER_TRY(values.back(), value_of_argument(flow_step_of(execution), argument));
@@ -240,7 +240,7 @@ core::Result<void> run_hole_cycle(Execution& execution, const SiemensKeywordUse&
     execution.column = use.span.column;
     if (use.keyword->action != SiemensAction::drill) return run_siemens_holes(execution, use);
     FEELER_TRY(const SiemensDrilling cycle, drilling_of(execution, use));
-    if (execution.block.siemens.is_modal_call) {
+    if (siemens_of(execution.block).is_modal_call) {
         writable_siemens(execution.state).modal_cycle = cycle;
         return {};
     }

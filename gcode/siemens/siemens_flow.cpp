@@ -113,7 +113,7 @@ std::optional<uint32_t> SiemensFlowing::line_of(const SiemensJump& jump) const {
 }
 
 core::Result<void> SiemensFlowing::jump() {
-    for (const SiemensJump& jump : step_.block.siemens.jumps) {
+    for (const SiemensJump& jump : siemens_of(step_.block).jumps) {
         bool goes = true;
         if (jump.condition.kind != SiemensArgument::Kind::nothing) {
             FEELER_TRY(goes, holds(jump.condition));
@@ -141,7 +141,7 @@ core::Result<void> SiemensFlowing::jump() {
 }
 
 core::Result<void> SiemensFlowing::begin_loop(std::string_view end) {
-    FEELER_TRY(const bool goes_on, holds(step_.block.siemens.arguments[0]));
+    FEELER_TRY(const bool goes_on, holds(siemens_of(step_.block).arguments[0]));
     if (goes_on) return {};
     FEELER_TRY(const uint32_t line, partner(end));
     return go_behind(line);
@@ -161,7 +161,7 @@ core::Result<void> SiemensFlowing::count_on() {
     const Assignment& entry = block.assignments[0];
     const FlowStep at_head{step_.library, step_.environment, step_.dialect,
                            block,         step_.state,       step_.result};
-    FEELER_TRY(const double last, value_of_argument(at_head, block.siemens.arguments[0]));
+    FEELER_TRY(const double last, value_of_argument(at_head, siemens_of(block).arguments[0]));
     double number = 0.0;
     Value value;
     if (entry.is_named) {
@@ -187,12 +187,12 @@ core::Result<void> SiemensFlowing::count_on() {
 /// `REPEAT BEGIN END P=5`: repeats the lines from one label to the other, or to this block, five
 /// more times. Only blocks before this one are searched, as on the control.
 core::Result<void> SiemensFlowing::repeat_part() {
-    const auto& jumps = step_.block.siemens.jumps;
+    const auto& jumps = siemens_of(step_.block).jumps;
     auto& repeats = step_.state.frames.back().repeats;
     const ProgramLines lines = lines_around(index_, line_);
     double count = 1.0;
-    if (step_.block.siemens.repeats.kind != SiemensArgument::Kind::nothing) {
-        FEELER_TRY(count, value_of_argument(step_, step_.block.siemens.repeats));
+    if (siemens_of(step_.block).repeats.kind != SiemensArgument::Kind::nothing) {
+        FEELER_TRY(count, value_of_argument(step_, siemens_of(step_.block).repeats));
     }
     const auto begin = last_in(jumps[0].target, lines.begin, line_);
     if (!begin)
@@ -239,7 +239,7 @@ core::Result<void> SiemensFlowing::run() {
         return count_on();
     case until: {
         FEELER_TRY(const uint32_t line, partner("REPEAT"));
-        FEELER_TRY(const bool is_done, holds(step_.block.siemens.arguments[0]));
+        FEELER_TRY(const bool is_done, holds(siemens_of(step_.block).arguments[0]));
         return is_done ? core::Result<void>{} : go_behind(line);
     }
     case FlowKind::repeat_part:
@@ -339,10 +339,10 @@ core::Result<Place> place_of_program(const FlowStep& step, const std::string& na
         ErrorCode::syntax,
         fmt::format(
             "'{}' is not a word of this control, and there is no program {}.SPF or {}.MPF in {}",
-            step.block.siemens.name, name, name,
+            siemens_of(step.block).name, name, name,
             path.empty() ? "a search path (none is set)"
                          : fmt::format("{}", fmt::join(path, ", "))),
-        step.block.siemens.name_span);
+        siemens_of(step.block).name_span);
 }
 
 /// The PROC of a program: its first block that is not empty.
@@ -363,14 +363,14 @@ core::Result<Block> head_of(const FlowStep& step, Place begin) {
 }
 
 core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame& frame) {
-    const auto& arguments = step.block.siemens.arguments;
-    const auto& parameters = head.siemens.declarations;
+    const auto& arguments = siemens_of(step.block).arguments;
+    const auto& parameters = siemens_of(head).declarations;
     const bool is_procedure = head.flow.kind == FlowKind::procedure;
     if (arguments.size() > (is_procedure ? parameters.size() : 0))
         return core::fail(ErrorCode::syntax,
                           fmt::format("{} takes {} parameters, but {} are given", frame.name,
                                       is_procedure ? parameters.size() : 0, arguments.size()),
-                          step.block.siemens.name_span);
+                          siemens_of(step.block).name_span);
     if (!is_procedure) return {};
     const FlowStep at_head{step.library, step.environment, step.dialect,
                            head,         step.state,       step.result};
@@ -381,7 +381,7 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
                               fmt::format("{} has the parameter VAR {}, which returns a value: "
                                           "this is not supported yet; use an R parameter",
                                           frame.name, parameter.name),
-                              step.block.siemens.name_span);
+                              siemens_of(step.block).name_span);
         const bool given =
             i < arguments.size() && arguments[i].kind != SiemensArgument::Kind::nothing;
         double value = 0.0;
@@ -391,13 +391,13 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
             FEELER_TRY(value, value_of_argument(at_head, parameter.initial));
         }
         frame.named[parameter.name] = held_as(parameter.type, value);
-        if (parameter.type != SiemensType::real) frame.types[parameter.name] = parameter.type;
+        if (parameter.type != VariableType::real) frame.types[parameter.name] = parameter.type;
     }
     return {};
 }
 
 core::Result<int64_t> rounds_of(const FlowStep& step) {
-    const SiemensArgument& repeats = step.block.siemens.repeats;
+    const SiemensArgument& repeats = siemens_of(step.block).repeats;
     if (repeats.kind == SiemensArgument::Kind::nothing) return 1;
     FEELER_TRY(const double rounds, value_of_argument(step, repeats));
     if (rounds >= 0.0 && rounds <= 9999.0 && rounds == std::floor(rounds))
@@ -410,14 +410,14 @@ core::Result<int64_t> rounds_of(const FlowStep& step) {
 } // namespace
 
 core::Result<Frame> called_frame(const FlowStep& step) {
-    const std::string name = plain_name(step.block.siemens.name);
+    const std::string name = plain_name(siemens_of(step.block).name);
     FEELER_TRY(const Place begin, place_of_program(step, name));
     Frame frame{
         .called_from = {step.state.next.source, step.block.line}, .begin = begin, .name = name};
     FEELER_TRY(const Block head, head_of(step, begin));
     if (auto set = set_parameters(step, head, frame); !set)
         return tl::unexpected(std::move(set).error());
-    if (head.siemens.saves_modes) {
+    if (siemens_of(head).saves_modes) {
         frame.restores = true;
         frame.saved.write() = step.state.modal;
     }
@@ -429,12 +429,12 @@ core::Result<Frame> called_frame(const FlowStep& step) {
 core::Result<void> call_siemens_program(const FlowStep& step) {
     FEELER_TRY(Frame frame, called_frame(step));
     if (frame.rounds_left < 0) return {};
-    return enter(step.state, step.environment, std::move(frame), step.block.siemens.name_span);
+    return enter(step.state, step.environment, std::move(frame), siemens_of(step.block).name_span);
 }
 
 core::Result<void> declare_variables(const FlowStep& step) {
     std::vector<double> values;
-    for (const SiemensDeclaration& entry : step.block.siemens.declarations) {
+    for (const SiemensDeclaration& entry : siemens_of(step.block).declarations) {
         double value = 0.0;
         if (entry.initial.kind != SiemensArgument::Kind::nothing) {
             FEELER_TRY(value, value_of_argument(step, entry.initial));
@@ -443,11 +443,11 @@ core::Result<void> declare_variables(const FlowStep& step) {
     }
     Frame& frame = step.state.frames.back();
     for (size_t i = 0; i < values.size(); ++i) {
-        const SiemensDeclaration& entry = step.block.siemens.declarations[i];
+        const SiemensDeclaration& entry = siemens_of(step.block).declarations[i];
         if (frame.named.size() >= most_named_parameters)
             return core::fail(ErrorCode::invalid_value, "too many variables", entry.span);
         frame.named[entry.name] = values[i];
-        if (entry.type != SiemensType::real) frame.types[entry.name] = entry.type;
+        if (entry.type != VariableType::real) frame.types[entry.name] = entry.type;
     }
     return {};
 }

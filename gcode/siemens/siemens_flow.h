@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcode/exec/flow.h"
+#include "gcode/siemens/siemens_line.h"
 
 namespace gcode {
 

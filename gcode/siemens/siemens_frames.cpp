@@ -82,7 +82,7 @@ void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues
 } // namespace
 
 core::Result<void> change_siemens_frame(Execution& execution) {
-    for (const SiemensKeywordUse& use : execution.block.siemens.keywords) {
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
         const SiemensAction action = use.keyword->action;
         if (!is_frame(action)) continue;
         if (execution.modal().compensation != Side::none)

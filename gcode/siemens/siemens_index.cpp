@@ -118,8 +118,8 @@ FlowIndex siemens_index(const Program& program, const Dialect& dialect) {
         if (!may_hold_mark(lexer.line.substr(lexer.at))) continue;
         block.clear();
         const auto parsed = parse_siemens(lexer.line, line, dialect, block);
-        if (!block.siemens.label.empty())
-            index.marks.push_back({.kind = label, .name = block.siemens.label, .line = line});
+        if (!siemens_of(block).label.empty())
+            index.marks.push_back({.kind = label, .name = siemens_of(block).label, .line = line});
         if (parsed && is_structure(block.flow.kind)) matching.add(block.flow.kind, line);
     }
     return index;

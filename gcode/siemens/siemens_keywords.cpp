@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "gcode/language/block.h"
+#include "gcode/siemens/siemens_line.h"
 
 namespace gcode {
 namespace {
@@ -381,7 +381,7 @@ const SiemensKeyword* siemens_keyword(std::string_view name) {
     return found != std::end(keywords) && found->name == name ? &*found : nullptr;
 }
 
-void SiemensBlock::clear() {
+void SiemensLine::clear() {
     label.clear();
     keywords.clear();
     jumps.clear();

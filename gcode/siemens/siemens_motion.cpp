@@ -333,7 +333,7 @@ core::Result<void> move_by_mode(Execution& execution) {
 }
 
 bool has_frame_words(const Execution& execution) {
-    for (const SiemensKeywordUse& use : execution.block.siemens.keywords)
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords)
         if (use.keyword->action >= SiemensAction::shift
             && use.keyword->action <= SiemensAction::add_mirror)
             return true;

@@ -16,10 +16,10 @@ using core::ErrorCode;
 bool begins_name(char c) { return is_letter(c) || c == '_'; }
 
 /// Reads the words of a line.
-class SiemensLine {
+class SiemensParser {
 public:
-    explicit SiemensLine(SiemensReader& reader)
-        : reader_(reader), lexer_(reader.lexer), block_(reader.block) {}
+    explicit SiemensParser(SiemensReader& reader)
+        : reader_(reader), lexer_(reader.lexer), block_(reader.block), siemens_(reader.siemens) {}
 
     core::Result<void> parse() {
         while (const char c = reader_.next()) {
@@ -37,8 +37,8 @@ private:
         const auto numbers = [](const Word& some) { return some.letter == 'N'; };
         const size_t own = block_.flow.kind == FlowKind::for_loop ? 1 : 0;
         if (std::all_of(block_.words.begin(), block_.words.end(), numbers)
-            && block_.assignments.size() == own && block_.siemens.keywords.empty()
-            && block_.siemens.tool_name.kind == SiemensArgument::Kind::nothing)
+            && block_.assignments.size() == own && siemens_.keywords.empty()
+            && siemens_.tool_name.kind == SiemensArgument::Kind::nothing)
             return {};
         const core::SourceSpan span = block_.flow.span;
         return core::fail(ErrorCode::syntax,
@@ -140,8 +140,8 @@ private:
             static constexpr SiemensKeyword other_spindle{
                 "a word with the number of a spindle", SiemensAction::warning,
                 "it is not for spindle 1, which holds the tool, and is ignored"};
-            block_.siemens.keywords.push_back({&other_spindle, lexer_.span_from(begin)});
-            block_.command.kind = CommandKind::siemens;
+            siemens_.keywords.push_back({&other_spindle, lexer_.span_from(begin)});
+            block_.has_command = true;
             if (auto skipped = reader_.argument(); !skipped)
                 return tl::unexpected(std::move(skipped).error());
             return {};
@@ -186,8 +186,8 @@ private:
     core::Result<void> value(char letter, size_t begin, bool may_be_text) {
         Word entry{.letter = letter, .has_point = true};
         if (may_be_text && letter == 'T' && lexer_.peek() == '"') {
-            FEELER_TRY(block_.siemens.tool_name, reader_.argument());
-            block_.command.kind = CommandKind::siemens;
+            FEELER_TRY(siemens_.tool_name, reader_.argument());
+            block_.has_command = true;
             return {};
         }
         const bool addresses = axis_letters.find(letter) != std::string_view::npos
@@ -271,7 +271,7 @@ private:
         lexer_.at += name.size();
         if (reader_.next() == ':' && is_at_start()) {
             ++lexer_.at;
-            block_.siemens.label = std::move(name);
+            siemens_.label = std::move(name);
             return {};
         }
         if (const SiemensKeyword* keyword = siemens_keyword(name)) return use(*keyword, begin);
@@ -295,7 +295,7 @@ private:
     bool is_at_start() const {
         const bool numbered = block_.words.size() == 1 && block_.words[0].letter == 'N';
         return (block_.words.empty() || numbered) && block_.assignments.empty()
-               && block_.siemens.label.empty() && block_.siemens.keywords.empty();
+               && siemens_.label.empty() && siemens_.keywords.empty();
     }
 
     core::Result<void> address(char letter, size_t begin) {
@@ -326,10 +326,11 @@ private:
     SiemensReader& reader_;
     Lexer& lexer_;
     Block& block_;
+    SiemensLine& siemens_;
 };
 
 /// Skips the value of an address that has no effect on positions: `OVR=50`, `ACC[X]=80`.
-core::Result<void> SiemensLine::skip_value(size_t begin) {
+core::Result<void> SiemensParser::skip_value(size_t begin) {
     if (lexer_.accept('[')) {
         const size_t end = lexer_.line.find(']', lexer_.at);
         if (end == std::string_view::npos) return reader_.expect(']', lexer_.written_from(begin));
@@ -344,7 +345,7 @@ core::Result<void> SiemensLine::skip_value(size_t begin) {
     return {};
 }
 
-core::Result<void> SiemensLine::use(const SiemensKeyword& keyword, size_t begin) {
+core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begin) {
     using enum SiemensAction;
     const core::SourceSpan span = lexer_.span_from(begin);
     switch (keyword.action) {
@@ -353,7 +354,7 @@ core::Result<void> SiemensLine::use(const SiemensKeyword& keyword, size_t begin)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("'{}': {}", keyword.name, keyword.text), span);
     case address:
-        return SiemensLine::address(keyword.text.front(), begin);
+        return SiemensParser::address(keyword.text.front(), begin);
     case noted_address:
         if (auto skipped = skip_value(begin); !skipped) return skipped;
         break;
@@ -364,17 +365,17 @@ core::Result<void> SiemensLine::use(const SiemensKeyword& keyword, size_t begin)
         break;
     }
     const bool calls = keyword.action >= message;
-    if (calls && !block_.siemens.arguments.empty())
+    if (calls && !siemens_.arguments.empty())
         return reader_.refuse(fmt::format("'{}' must be in a block by itself", keyword.name),
                               begin);
     std::vector<SiemensArgument> passed_over;
     if (reader_.next() == '(') {
         const bool keeps = calls || keyword.action == transformation;
-        auto read = reader_.arguments(keeps ? block_.siemens.arguments : passed_over);
+        auto read = reader_.arguments(keeps ? siemens_.arguments : passed_over);
         if (!read) return read;
     }
-    block_.siemens.keywords.push_back({&keyword, lexer_.span_from(begin)});
-    block_.command.kind = CommandKind::siemens;
+    siemens_.keywords.push_back({&keyword, lexer_.span_from(begin)});
+    block_.has_command = true;
     return {};
 }
 
@@ -382,14 +383,16 @@ core::Result<void> SiemensLine::use(const SiemensKeyword& keyword, size_t begin)
 
 core::Result<void> parse_siemens(std::string_view text, uint32_t line, const Dialect& dialect,
                                  Block& block) {
-    block.siemens.clear();
+    SiemensLine& siemens = block.language_line.write<SiemensLine>();
+    siemens.clear();
     SiemensReader reader{.lexer = {.line = text,
                                    .line_number = line,
                                    .blanks_end_numbers = true,
                                    .has_exponents = true},
                          .dialect = dialect,
-                         .block = block};
-    return SiemensLine(reader).parse();
+                         .block = block,
+                         .siemens = siemens};
+    return SiemensParser(reader).parse();
 }
 
 } // namespace gcode

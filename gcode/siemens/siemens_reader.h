@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "gcode/language/block.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
+#include "gcode/siemens/siemens_line.h"
 
 namespace gcode {
 
@@ -20,6 +20,7 @@ struct SiemensReader {
     Lexer lexer;
     const Dialect& dialect;
     Block& block;
+    SiemensLine& siemens; // of the block
 
     /// The next significant character, not consumed; NUL at the end and before a comment.
     char next() {

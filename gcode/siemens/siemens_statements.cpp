@@ -35,13 +35,13 @@ constexpr Mark marks[] = {{"ELSE", otherwise},         {"ENDIF", end_if},
 
 struct TypeName {
     std::string_view name;
-    SiemensType type;
+    VariableType type;
 };
 
-constexpr TypeName types[] = {{"BOOL", SiemensType::truth},  {"CHAR", SiemensType::whole},
-                              {"INT", SiemensType::whole},   {"REAL", SiemensType::real},
-                              {"STRING", SiemensType::text}, {"AXIS", SiemensType::text},
-                              {"FRAME", SiemensType::text}};
+constexpr TypeName types[] = {{"BOOL", VariableType::truth},  {"CHAR", VariableType::whole},
+                              {"INT", VariableType::whole},   {"REAL", VariableType::real},
+                              {"STRING", VariableType::text}, {"AXIS", VariableType::text},
+                              {"FRAME", VariableType::text}};
 
 const Jump* jump_of(std::string_view name) {
     const auto found = std::find_if(std::begin(jump_ways), std::end(jump_ways),
@@ -83,7 +83,7 @@ private:
         const auto numbers = [](const Word& word) { return word.letter == 'N'; };
         const bool clean =
             std::all_of(block_.words.begin(), block_.words.end(), numbers)
-            && block_.assignments.empty() && block_.siemens.keywords.empty()
+            && block_.assignments.empty() && reader_.siemens.keywords.empty()
             && (block_.flow.kind == none || (block_.flow.kind == jumps && kind == jumps));
         block_.flow.kind = kind;
         block_.flow.span = reader_.lexer.span_from(begin_);
@@ -124,7 +124,7 @@ private:
         }
         entry.span = reader_.lexer.span_from(begin_);
         if (auto begun = flow(jumps); !begun) return begun;
-        block_.siemens.jumps.push_back(std::move(entry));
+        reader_.siemens.jumps.push_back(std::move(entry));
         return {};
     }
 
@@ -143,7 +143,7 @@ private:
             reader_.lexer.at += name.size();
             return jump(*way, holds);
         }
-        block_.siemens.arguments.push_back(holds);
+        reader_.siemens.arguments.push_back(holds);
         return alone(if_branch);
     }
 
@@ -157,7 +157,7 @@ private:
 
     core::Result<void> condition(FlowKind kind) {
         FEELER_TRY(const SiemensArgument holds, truth(kind == while_loop ? "WHILE" : "UNTIL"));
-        block_.siemens.arguments.push_back(holds);
+        reader_.siemens.arguments.push_back(holds);
         return alone(kind);
     }
 
@@ -192,7 +192,7 @@ private:
             return reader_.refuse("'FOR' needs TO and its last value, as in FOR I=1 TO 10", begin_);
         FEELER_TRY(const SiemensArgument last, reader_.argument());
         block_.assignments.push_back(entry);
-        block_.siemens.arguments.push_back(last);
+        reader_.siemens.arguments.push_back(last);
         block_.flow.span = reader_.lexer.span_from(begin_);
         return {};
     }
@@ -203,10 +203,10 @@ private:
         if (auto begun = flow(repeat_part); !begun) return begun;
         for (int i = 0; i < 2 && reader_.next() != '\0' && !is_at_count(); ++i) {
             FEELER_TRY(std::string name, target("REPEAT"));
-            block_.siemens.jumps.push_back(
+            reader_.siemens.jumps.push_back(
                 {.target = std::move(name), .span = reader_.lexer.span_from(begin_)});
         }
-        if (block_.siemens.jumps.empty())
+        if (reader_.siemens.jumps.empty())
             return reader_.refuse("'REPEAT' needs a label before P", begin_);
         return read_count();
     }
@@ -220,18 +220,18 @@ private:
         if (!is_at_count()) return {};
         reader_.accept_name("P");
         reader_.lexer.accept('=');
-        FEELER_TRY(block_.siemens.repeats, reader_.argument());
+        FEELER_TRY(reader_.siemens.repeats, reader_.argument());
         return {};
     }
 
-    core::Result<SiemensType> type() {
+    core::Result<VariableType> type() {
         reader_.next();
         const size_t begin = reader_.lexer.at;
         const std::string name = siemens_name_at(reader_.lexer);
         reader_.lexer.at += name.size();
         for (const TypeName& some : types) {
             if (name != some.name) continue;
-            if (some.type == SiemensType::text)
+            if (some.type == VariableType::text)
                 return reader_.refuse(fmt::format("'{}': variables of this type are not supported "
                                                   "yet",
                                                   name),
@@ -243,7 +243,7 @@ private:
     }
 
     /// A name, optionally with `= value`.
-    core::Result<void> declare(SiemensType type, bool by_reference) {
+    core::Result<void> declare(VariableType type, bool by_reference) {
         reader_.next();
         const size_t begin = reader_.lexer.at;
         SiemensDeclaration entry{.type = type, .by_reference = by_reference};
@@ -270,7 +270,7 @@ private:
             FEELER_TRY(entry.initial, reader_.argument());
         }
         entry.span = reader_.lexer.span_from(begin);
-        block_.siemens.declarations.push_back(std::move(entry));
+        reader_.siemens.declarations.push_back(std::move(entry));
         return {};
     }
 
@@ -280,7 +280,7 @@ private:
                || reader_.accept_name("SYNR") || reader_.accept_name("SYNW")
                || reader_.accept_name("SYNRW")) {
         }
-        FEELER_TRY(const SiemensType declared, type());
+        FEELER_TRY(const VariableType declared, type());
         do {
             if (auto read = declare(declared, false); !read) return read;
         } while (reader_.lexer.accept(','));
@@ -292,7 +292,7 @@ private:
         if (reader_.lexer.accept(')')) return {};
         do {
             const bool by_reference = reader_.accept_name("VAR");
-            FEELER_TRY(const SiemensType declared, type());
+            FEELER_TRY(const VariableType declared, type());
             if (auto read = declare(declared, by_reference); !read) return read;
         } while (reader_.lexer.accept(','));
         return reader_.expect(')', reader_.lexer.written_from(begin_));
@@ -301,10 +301,10 @@ private:
     core::Result<void> procedure() {
         if (auto begun = flow(FlowKind::procedure); !begun) return begun;
         reader_.next();
-        block_.siemens.name = siemens_name_at(reader_.lexer);
-        if (block_.siemens.name.empty())
+        reader_.siemens.name = siemens_name_at(reader_.lexer);
+        if (reader_.siemens.name.empty())
             return reader_.refuse("'PROC' must be followed by the name of the program", begin_);
-        reader_.lexer.at += block_.siemens.name.size();
+        reader_.lexer.at += reader_.siemens.name.size();
         if (reader_.lexer.accept('('))
             if (auto read = parameters_of_procedure(); !read) return read;
         while (reader_.next() != '\0') {
@@ -317,7 +317,7 @@ private:
                 return reader_.refuse(fmt::format("'{}' is not allowed after PROC",
                                                   reader_.lexer.written_from(begin)),
                                       begin);
-            block_.siemens.saves_modes |= name == "SAVE";
+            reader_.siemens.saves_modes |= name == "SAVE";
         }
         return {};
     }
@@ -334,9 +334,8 @@ private:
 
     /// `MCALL CYCLE81(...)`, `MCALL L100`, or MCALL alone, which cancels it.
     core::Result<void> modal_call() {
-        block_.siemens.is_modal_call = true;
-        block_.command.kind = CommandKind::siemens;
-        block_.command.span = reader_.lexer.span_from(begin_);
+        reader_.siemens.is_modal_call = true;
+        block_.has_command = true;
         reader_.next();
         const std::string name = siemens_name_at(reader_.lexer);
         const SiemensKeyword* keyword = siemens_keyword(name);
@@ -366,31 +365,31 @@ core::Result<void> read_siemens_call(SiemensReader& reader, std::string name, si
     Block& block = reader.block;
     const auto numbers = [](const Word& word) { return word.letter == 'N'; };
     if (!std::all_of(block.words.begin(), block.words.end(), numbers) || !block.assignments.empty()
-        || !block.siemens.name.empty() || block.flow.kind != none)
+        || !reader.siemens.name.empty() || block.flow.kind != none)
         return reader.refuse(
             fmt::format(
                 "'{}' is not a word of this control; a program call must be in a block by itself",
                 name),
             begin);
-    block.siemens.name = std::move(name);
-    block.siemens.name_span = reader.lexer.span_from(begin);
+    reader.siemens.name = std::move(name);
+    reader.siemens.name_span = reader.lexer.span_from(begin);
     if (reader.next() == '(')
-        if (auto read = reader.arguments(block.siemens.arguments); !read) return read;
+        if (auto read = reader.arguments(reader.siemens.arguments); !read) return read;
     // P or P=: number of repetitions
     if (reader.next() != '\0' && upper(reader.next()) == 'P') {
         ++reader.lexer.at;
         if (reader.is_at_equals()) ++reader.lexer.at;
-        FEELER_TRY(block.siemens.repeats, reader.argument());
+        FEELER_TRY(reader.siemens.repeats, reader.argument());
     }
     if (reader.next() != '\0')
         return reader.refuse(
             fmt::format(
                 "'{}' is called here; only P with the number of repetitions may follow a call",
-                block.siemens.name),
+                reader.siemens.name),
             begin);
-    if (block.siemens.is_modal_call) return {};
+    if (reader.siemens.is_modal_call) return {};
     block.flow.kind = call_program;
-    block.flow.span = block.siemens.name_span;
+    block.flow.span = reader.siemens.name_span;
     return {};
 }
 

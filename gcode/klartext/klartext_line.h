@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "gcode/language/block.h"
+
+namespace gcode {
+
+/// The action of a line that is given by a keyword rather than a G code.
+enum class CommandKind : uint8_t {
+    none,
+    straight,         // L
+    straight_polar,   // LP
+    pole,             // CC
+    arc,              // C, around the pole
+    arc_polar,        // CP
+    arc_of_radius,    // CR
+    tangent_arc,      // CT
+    tangent_polar,    // CTP
+    rounding,         // RND
+    chamfer,          // CHF
+    tool_call,        // TOOL CALL
+    tool_definition,  // TOOL DEF
+    cycle_definition, // CYCL DEF
+    cycle_call,       // CYCL CALL, CYCL CALL POS
+    read_system,      // FN 18
+    program_error,    // FN 14
+    note,             // read, but has no effect here
+    modes,            // a line with M words only
+};
+
+/// A statement that begins with a keyword. Its values are stored as words of the block: a radius as
+/// R, polar coordinates as P and H, others depending on the kind.
+struct KlartextLine {
+    CommandKind kind = CommandKind::none;
+    core::SourceSpan span{};
+    int number = 0, part = 0;     // CYCL DEF 7.1: 7 and 1
+    int turn = 0;                 // DR+: 1, DR-: -1
+    bool rapid = false;           // FMAX
+    bool calls_cycle = false;     // M99, or CYCL CALL
+    bool calls_from_here = false; // M89: after every motion
+};
+
+inline const KlartextLine& klartext_of(const Block& block) {
+    return block.language_line.as<KlartextLine>();
+}
+
+} // namespace gcode
