@@ -28,7 +28,7 @@ struct SetupEdits {
     std::optional<double> allowance;
     std::optional<core::ToolNumber> tool_at_start; // if the program cuts before its first tool call
 
-    bool empty() const { return !stock && tools.empty() && !allowance; }
+    bool empty() const { return !stock && tools.empty() && !allowance && !tool_at_start; }
 };
 
 /// An invalid field of an edit.

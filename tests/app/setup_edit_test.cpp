@@ -175,6 +175,13 @@ TEST(SetupEdits, StatedIsNotInferred) {
         << "a wider tool reaches further";
 }
 
+TEST(SetupEdits, WithNothingButAToolAtStartAreNotEmpty) {
+    SetupEdits edits;
+    EXPECT_TRUE(edits.empty());
+    edits.tool_at_start = core::ToolNumber{3};
+    EXPECT_FALSE(edits.empty());
+}
+
 TEST(SetupEdits, AStatedStockStaysWhereItWasStated) {
     OwnProgram own;
     const app::SetupSheet shown = sheet_of(own.job);

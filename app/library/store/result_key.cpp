@@ -70,7 +70,7 @@ std::optional<std::string> options_text(const CheckJob& job) {
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
                  before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
                  setup_was_found] = job;
-    if (!edits.empty() || edits.tool_at_start) return std::nullopt;
+    if (!edits.empty()) return std::nullopt;
     KeyJson severities = KeyJson::object();
     for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);
     const KeyJson json = {{"rules", severities},

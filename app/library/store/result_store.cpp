@@ -44,7 +44,7 @@ std::string names_in(const CheckJob& job) {
 }
 
 /// Whether results of a job are stored.
-bool is_kept(const CheckJob& job) { return job.edits.empty() && !job.edits.tool_at_start; }
+bool is_kept(const CheckJob& job) { return job.edits.empty(); }
 
 /// The keys under which the result of a job may be stored.
 struct JobKeys {
