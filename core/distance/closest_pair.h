@@ -21,7 +21,6 @@ struct PairGoal {
     bool any = false;               // any pair below the limit will do: "closer than m?"
     double tolerance = 0.0;         // mm: how much closer than the result another pair may be
     Vec3 sweep = Vec3(0.0);         // B moves by this; the least distance on the way counts
-    std::optional<Transform> end;   // instead of `sweep`: B's points move straight to this pose
     std::optional<PointPair> first; // compared first: the last answer is a good guess
 };
 
@@ -52,31 +51,14 @@ inline double swept_distance(const Vec3& apart, const Vec3& sweep) {
     return glm::length(apart - nearest_time(apart, sweep) * sweep);
 }
 
-/// The start of a point of B and its displacement.
-struct MovingPoint {
-    Vec3 at, sweep;
-};
-
-/// The motion of B relative to A during one search: every point moves straight at constant speed.
-/// Frame: A's.
+/// The motion of B relative to A during one search: every point moves by the sweep at constant
+/// speed. Frame: A's.
 struct StraightMotion {
     Transform start;
     Vec3 sweep = Vec3(0.0);
-    std::optional<Transform> end; // final pose, instead of `sweep`
 
-    StraightMotion(const Transform& a_from_b, const PairGoal& goal)
-        : start(a_from_b), sweep(goal.sweep), end(goal.end) {}
-
-    bool moves() const { return end || sweep != Vec3(0.0); }
-
-    MovingPoint of(const Vec3& p) const {
-        const Vec3 at = start * p;
-        return {at, end ? *end * p - at : sweep};
-    }
-
-    Transform last() const {
-        return end ? *end : Transform{start.rotation, start.translation + sweep};
-    }
+    bool moves() const { return sweep != Vec3(0.0); }
+    Transform last() const { return {start.rotation, start.translation + sweep}; }
 };
 
 } // namespace core

@@ -73,15 +73,11 @@ Result<PointBody> DistanceEngine::add(std::span<const Vec3> points, double memor
 
 Result<void> DistanceEngine::check(PointBody a, PointBody b, const Transform& a_from_b,
                                    const PairGoal& goal) const {
-    if (!is_rigid(a_from_b) || (goal.end && !is_rigid(*goal.end)))
+    if (!is_rigid(a_from_b))
         return fail(ErrorCode::invalid_value,
                     "the transform between the bodies is not rigid: its columns must be "
                     "orthogonal, of length 1, and right-handed");
-    if (goal.end && goal.sweep != Vec3(0.0))
-        return fail(ErrorCode::invalid_value,
-                    "give either a sweep or an end pose of the body, not both");
-    if (!is_near(a_from_b.translation) || !is_near(goal.sweep)
-        || (goal.end && !is_near(goal.end->translation)))
+    if (!is_near(a_from_b.translation) || !is_near(goal.sweep))
         return fail(ErrorCode::invalid_value,
                     "a translation or sweep is not a number or beyond 1e12 mm");
     if (!(goal.limit >= 0.0) || !(goal.tolerance >= 0.0))

@@ -18,8 +18,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr size_t width = PointTree::width;
 constexpr size_t leaf_size = PointTree::leaf_size;
 
-constexpr float least_squared = 1e-30F; // mm2, of a path that is not negligible
-
 using BoxTag = hn::CappedTag<float, width>;
 using PointTag = hn::CappedTag<float, leaf_size>;
 
@@ -160,22 +158,9 @@ HWY_ATTR void near_points(const PointLanes& a, const PointLanes& b, uint32_t row
     }
 }
 
-HWY_ATTR void near_paths(const PointLanes& a, const PointLanes& b, const PointLanes& end,
-                         uint32_t rows, float limit_squared,
-                         std::array<uint16_t, leaf_size>& columns) {
-    for (; rows != 0; rows &= rows - 1) {
-        const auto row = static_cast<size_t>(std::countr_zero(rows));
-        const Float3 from = point_of(b, row), to = point_of(end, row);
-        const Float3 sweep = {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-        const float squared = sweep[0] * sweep[0] + sweep[1] * sweep[1] + sweep[2] * sweep[2];
-        const float per_length = squared > least_squared ? 1.0F / squared : 0.0F;
-        columns[row] = near_path(a, from, sweep, per_length, limit_squared);
-    }
-}
-
 const LaneKernels* kernels() {
-    static constexpr LaneKernels table = {project_boxes, project_points, near_boxes, middles_apart,
-                                          near_box,      near_points,    near_paths};
+    static constexpr LaneKernels table = {project_boxes, project_points, near_boxes,
+                                          middles_apart, near_box,       near_points};
     return &table;
 }
 

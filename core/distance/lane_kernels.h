@@ -59,11 +59,6 @@ struct LaneKernels {
     void (*near_points)(const PointLanes& a, const PointLanes& b, uint32_t rows,
                         const Float3& sweep, float per_length, float limit_squared,
                         std::array<uint16_t, PointTree::leaf_size>& columns);
-
-    /// near_points() for points of B that each move straight to their positions in `end`.
-    void (*near_paths)(const PointLanes& a, const PointLanes& b, const PointLanes& end,
-                       uint32_t rows, float limit_squared,
-                       std::array<uint16_t, PointTree::leaf_size>& columns);
 };
 
 /// The kernels to use.

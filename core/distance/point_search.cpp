@@ -16,7 +16,7 @@ namespace core {
 class PairComparison {
 public:
     PairComparison(const Transform& a_from_b, const PairGoal& goal)
-        : motion_(a_from_b, goal), goal_(goal), moves_(motion_.moves()) {}
+        : motion_{a_from_b, goal.sweep}, goal_(goal), moves_(motion_.moves()) {}
 
     /// Whether the goal is reached already.
     bool done() const { return best_.distance == 0.0 || (goal_.any && best_.found()); }
@@ -40,10 +40,10 @@ public:
     void compare(const PointPlace& a, const PointPlace& b) {
         if (a.tree == nullptr || b.tree == nullptr) return; // no first pair
         const Vec3& p = a.position();
-        const MovingPoint q = motion_.of(b.position());
-        const Vec3 apart = p - q.at;
-        const double at = moves_ ? nearest_time(apart, q.sweep) : 0.0;
-        const Vec3 then = moves_ ? apart - at * q.sweep : apart;
+        const Vec3 q = motion_.start * b.position();
+        const Vec3 apart = p - q;
+        const double at = moves_ ? nearest_time(apart, motion_.sweep) : 0.0;
+        const Vec3 then = moves_ ? apart - at * motion_.sweep : apart;
         const double squared = glm::dot(then, then);
         if (!(squared < near_squared_)) return;
         near_squared_ = squared;
@@ -54,7 +54,7 @@ public:
         best_.distance = distance;
         best_.points = {a.index(), b.index()};
         best_.witness_a = p;
-        best_.witness_b = q.at + at * q.sweep;
+        best_.witness_b = q + at * motion_.sweep;
         best_.at = at;
     }
 
@@ -143,7 +143,7 @@ private:
 
     /// Whether the bounding balls show that nothing is within the limit.
     bool is_beyond_limit() const {
-        if (goal_.limit == infinity || motion_.end) return false;
+        if (goal_.limit == infinity) return false;
         const PointTree::Node& a = body_a_.nodes[0];
         const PointTree::Node& b = body_b_.nodes[0];
         const double reach = static_cast<double>(a.reach) + static_cast<double>(b.reach);
@@ -157,7 +157,7 @@ private:
     /// Restarts at the roots in the best frame known so far.
     void start() {
         frame_ = next_frame();
-        sweep_ = single(motion_.end ? Vec3(0.0) : frame_.along(motion_.sweep));
+        sweep_ = single(frame_.along(motion_.sweep));
         limit_squared_ = squared_above(std::max(worth(), 0.0));
         a_.begin(body_a_, frame_, nullptr);
         b_.begin(body_b_, frame_, &motion_);
@@ -175,13 +175,12 @@ private:
     /// are more reliable than the pair itself.
     SearchFrame next_frame() const {
         const Vec3& middle_of_a = body_a_.nodes[0].origin;
-        const MovingPoint middle_of_b = motion_.of(body_b_.nodes[0].origin);
+        const Vec3 middle_of_b = motion_.start * body_b_.nodes[0].origin;
         if (!(near_squared_ > 0.0) || near_squared_ == infinity)
-            return search_frame(middle_of_b.at - middle_of_a, Vec3(0.0), middle_of_a,
-                                middle_of_b.sweep);
+            return search_frame(middle_of_b - middle_of_a, Vec3(0.0), middle_of_a, motion_.sweep);
         const Vec3 between = near_apart_ / std::sqrt(near_squared_);
         return search_frame(across(between), wide(near_a_.leaf->along), near_a_.position(),
-                            middle_of_b.sweep);
+                            motion_.sweep);
     }
 
     Vec3 across(const Vec3& between) const {
@@ -264,7 +263,7 @@ private:
         const float limit = limit_for(a, b);
         const uint32_t all = (1U << b.leaf->count) - 1U;
         const uint32_t rows =
-            near_squared_ == infinity || motion_.end
+            near_squared_ == infinity
                 ? all
                 : all & rows_near(b, a_.box(pair.a / lane_width, pair.a % lane_width), limit);
         if (rows == 0) return;
@@ -311,10 +310,7 @@ private:
     void for_near(const VisitedLeaf& a, const VisitedLeaf& b, uint32_t rows, float limit,
                   const Act& act) {
         std::array<uint16_t, PointTree::leaf_size> columns;
-        if (motion_.end)
-            kernels_.near_paths(a.points, b.points, b.end, rows, limit, columns);
-        else
-            kernels_.near_points(a.points, b.points, rows, sweep_, per_length_, limit, columns);
+        kernels_.near_points(a.points, b.points, rows, sweep_, per_length_, limit, columns);
         const uint32_t used = (1U << a.leaf->count) - 1U;
         for (; rows != 0; rows &= rows - 1) {
             const auto row = static_cast<uint32_t>(std::countr_zero(rows));

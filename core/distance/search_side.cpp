@@ -45,15 +45,6 @@ constexpr uint32_t lane_count = PointTree::width;
 /// take less than ten roundings.
 constexpr float rounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-/// Extends boxes by other boxes, lane by lane.
-void extend(BoxLanes& boxes, const BoxLanes& by) {
-    for (size_t k = 0; k < 3; ++k)
-        for (size_t lane = 0; lane < lane_count; ++lane) {
-            boxes.lower[k][lane] = std::min(boxes.lower[k][lane], by.lower[k][lane]);
-            boxes.upper[k][lane] = std::max(boxes.upper[k][lane], by.upper[k][lane]);
-        }
-}
-
 /// Bound of rounding in double precision: coordinates in the frame and distances of points take
 /// about ten operations on numbers as large as these lengths. A path of less than 1e-15 mm is
 /// ignored.
@@ -82,9 +73,7 @@ void SearchSide::begin(const PointTree& tree, const SearchFrame& frame,
     tree_ = &tree;
     node_count_ = leaf_count_ = 0;
     start_ = pose_in(frame, motion ? motion->start : Transform{});
-    spreads_ = motion && motion->end;
-    if (spreads_) end_ = pose_in(frame, *motion->end);
-    sweep_ = motion && !spreads_ ? frame.along(motion->sweep) : Vec3(0.0);
+    sweep_ = motion ? frame.along(motion->sweep) : Vec3(0.0);
     coarse_ = coarse(tree, frame.origin, motion);
     visit(0);
 }
@@ -100,9 +89,9 @@ SearchSide::Pose SearchSide::pose_in(const SearchFrame& frame, const Transform& 
     return pose;
 }
 
-SearchSide::Sight SearchSide::sight(const Pose& pose, const Vec3& origin, float reach) const {
+SearchSide::Sight SearchSide::sight(const Vec3& origin, float reach) const {
     Sight sight;
-    const Vec3 from = pose.frame_from_body * origin;
+    const Vec3 from = start_.frame_from_body * origin;
     for (int k = 0; k < 3; ++k) {
         const auto i = static_cast<size_t>(k);
         sight.base[i] = static_cast<float>(from[k]);
@@ -113,7 +102,7 @@ SearchSide::Sight SearchSide::sight(const Pose& pose, const Vec3& origin, float 
             static_cast<float>(from[k] + std::min(sweep_[k], 0.0)) - sight.margin[i];
         sight.view.upper[i] =
             static_cast<float>(from[k] + std::max(sweep_[k], 0.0)) + sight.margin[i];
-        sight.view.direction[i] = single(pose.directions[i]);
+        sight.view.direction[i] = single(start_.directions[i]);
     }
     return sight;
 }
@@ -130,12 +119,7 @@ uint32_t SearchSide::visit(uint32_t number) {
         const bool leaf = (node.child[lane] & PointTree::leaf_flag) != 0;
         visited.size[lane] = leaf ? -1.0F : node.radius[lane];
     }
-    kernels_->project_boxes(node, sight(start_, node.origin, node.reach).view, visited.boxes);
-    if (spreads_) {
-        BoxLanes end;
-        kernels_->project_boxes(node, sight(end_, node.origin, node.reach).view, end);
-        extend(visited.boxes, end);
-    }
+    kernels_->project_boxes(node, sight(node.origin, node.reach).view, visited.boxes);
     return id;
 }
 
@@ -161,16 +145,10 @@ const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
 }
 
 void SearchSide::look_at(VisitedLeaf& leaf) const {
-    leaf.margin = 0.0F;
-    const auto project = [&](const Pose& pose, PointLanes& points) {
-        Sight seen = sight(pose, leaf.leaf->origin, leaf.leaf->reach);
-        seen.view.lower = seen.base;
-        leaf.margin =
-            std::max(leaf.margin, *std::max_element(seen.margin.begin(), seen.margin.end()));
-        kernels_->project_points(*leaf.leaf, seen.view, points);
-    };
-    project(start_, leaf.points);
-    if (spreads_) project(end_, leaf.end);
+    Sight seen = sight(leaf.leaf->origin, leaf.leaf->reach);
+    seen.view.lower = seen.base;
+    leaf.margin = *std::max_element(seen.margin.begin(), seen.margin.end());
+    kernels_->project_points(*leaf.leaf, seen.view, leaf.points);
 }
 
 FrameBox SearchSide::box(uint32_t at, uint32_t lane) const {

@@ -38,7 +38,6 @@ struct VisitedNode {
 /// A visited leaf.
 struct VisitedLeaf {
     PointLanes points; // at the start
-    PointLanes end;    // at the end; unused if all points move alike
     float margin;      // bound of the rounding of a coordinate
     const PointTree* tree;
     const PointTree::Leaf* leaf;
@@ -86,16 +85,15 @@ private:
     };
 
     static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
-    Sight sight(const Pose& pose, const Vec3& origin, float reach) const;
+    Sight sight(const Vec3& origin, float reach) const;
     uint32_t visit(uint32_t number);
     void look_at(VisitedLeaf& leaf) const;
 
     const LaneKernels* kernels_ = nullptr;
     const PointTree* tree_ = nullptr;
     uint32_t node_count_ = 0, leaf_count_ = 0; // visited
-    Pose start_, end_;
-    bool spreads_ = false;   // the points do not all move alike
-    Vec3 sweep_ = Vec3(0.0); // common displacement along the directions, otherwise
+    Pose start_;
+    Vec3 sweep_ = Vec3(0.0); // along the directions
     float coarse_ = 0.0F;    // rounding of double precision, for a body far away
 };
 

@@ -93,15 +93,15 @@ using Node = SphereTree::Node;
 struct Pair {
     const Node* a;
     const Node* b;
-    MovingPoint b_centre;
-    double gap; // lower bound of the distance between their points
+    Vec3 b_centre; // at the start of the motion
+    double gap;    // lower bound of the distance between their points
 };
 
 class SphereSearch {
 public:
     SphereSearch(const SphereTree& a, const SphereTree& b, const Transform& a_from_b,
                  const PairGoal& goal)
-        : motion_(a_from_b, goal),
+        : motion_{a_from_b, goal.sweep},
           goal_(goal),
           moves_(motion_.moves()),
           rounding_(rounding_of(a.nodes[0], b.nodes[0], motion_)),
@@ -109,8 +109,8 @@ public:
           b_root_(&b.nodes[0]) {}
 
     ClosestPair run(const Node* first_a, const Node* first_b) {
-        if (first_a) compare_points(tested(first_a, first_b, motion_.of(first_b->centre)));
-        push(tested(a_root_, b_root_, motion_.of(b_root_->centre)));
+        if (first_a) compare_points(tested(first_a, first_b, start_of(first_b)));
+        push(tested(a_root_, b_root_, start_of(b_root_)));
         while (size_ > 0 && !done()) {
             const Pair pair = stack_[--size_];
             if (pair.gap >= worth()) continue;
@@ -142,13 +142,14 @@ private:
     /// Only pairs closer than this still matter.
     double worth() const { return best_.found() ? best_.distance - goal_.tolerance : goal_.limit; }
 
-    double apart(const Vec3& a, const MovingPoint& b) const {
-        return moves_ ? swept_distance(a - b.at, b.sweep) : glm::distance(a, b.at);
+    double apart(const Vec3& a, const Vec3& b) const {
+        return moves_ ? swept_distance(a - b, motion_.sweep) : glm::distance(a, b);
     }
 
-    /// If the points of a sphere move straight from one pose to another, they stay within a sphere
-    /// of the same size: on the way the points are closer together, if anything.
-    Pair tested(const Node* a, const Node* b, const MovingPoint& b_centre) {
+    /// The centre of a sphere of B at the start of the motion.
+    Vec3 start_of(const Node* b) const { return motion_.start * b->centre; }
+
+    Pair tested(const Node* a, const Node* b, const Vec3& b_centre) {
         ++best_.node_tests;
         const double gap = apart(a->centre, b_centre);
         if (a->is_leaf() && b->is_leaf()) return {a, b, b_centre, gap};
@@ -166,19 +167,19 @@ private:
         best_.distance = pair.gap;
         best_.points = {pair.a->point, pair.b->point};
         best_.witness_a = pair.a->centre;
-        best_.at = nearest_time(pair.a->centre - pair.b_centre.at, pair.b_centre.sweep);
-        best_.witness_b = pair.b_centre.at + best_.at * pair.b_centre.sweep;
+        best_.at = nearest_time(pair.a->centre - pair.b_centre, motion_.sweep);
+        best_.witness_b = pair.b_centre + best_.at * motion_.sweep;
     }
 
     void split(const Pair& pair) {
         const bool split_a =
             !pair.a->is_leaf() && (pair.b->is_leaf() || pair.a->radius >= pair.b->radius);
         Pair near = split_a ? tested(pair.a + 1, pair.b, pair.b_centre)
-                            : tested(pair.a, pair.b + 1, motion_.of((pair.b + 1)->centre));
+                            : tested(pair.a, pair.b + 1, start_of(pair.b + 1));
         const Node* const a_right = a_root_ + pair.a->right;
         const Node* const b_right = b_root_ + pair.b->right;
         Pair far = split_a ? tested(a_right, pair.b, pair.b_centre)
-                           : tested(pair.a, b_right, motion_.of(b_right->centre));
+                           : tested(pair.a, b_right, start_of(b_right));
         if (far.gap < near.gap) std::swap(near, far);
         push(far);
         push(near);

@@ -8,7 +8,7 @@
 
 namespace test_support {
 
-/// The least distance of two sets of points while each point of B moves straight; tries every pair.
+/// The least distance of two sets of points while B moves by the sweep; tries every pair.
 inline double brute_force_distance(const std::vector<core::Vec3>& a,
                                    const std::vector<core::Vec3>& b,
                                    const core::Transform& a_from_b,
@@ -16,9 +16,8 @@ inline double brute_force_distance(const std::vector<core::Vec3>& a,
     double least = core::infinity;
     for (const core::Vec3& q : b) {
         const core::Vec3 start = a_from_b * q;
-        const core::Vec3 sweep = goal.end ? *goal.end * q - start : goal.sweep;
         for (const core::Vec3& p : a)
-            least = std::min(least, core::swept_distance(p - start, sweep));
+            least = std::min(least, core::swept_distance(p - start, goal.sweep));
     }
     return least;
 }
