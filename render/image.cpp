@@ -1,22 +1,13 @@
 #include "render/image.h"
 
-#include <algorithm>
-#include <cstdlib>
-
 #include <fmt/format.h>
 
-#define STB_IMAGE_IMPLEMENTATION
-#define STB_IMAGE_STATIC
-#define STBI_ONLY_PNG
-#define STBI_NO_LINEAR
-#define STBI_NO_HDR
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #pragma GCC diagnostic ignored "-Wmissing-field-initializers"
 #pragma GCC diagnostic ignored "-Wshadow"
-#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
@@ -42,19 +33,6 @@ std::string jpeg_bytes(const Image& image, int quality) {
     return bytes;
 }
 
-core::Result<Image> read_png(const std::filesystem::path& path) {
-    Image image;
-    int channels = 0;
-    uint8_t* bytes = stbi_load(path.c_str(), &image.width, &image.height, &channels, 4);
-    if (bytes == nullptr)
-        return core::fail(core::ErrorCode::io, fmt::format("cannot read the picture '{}': {}",
-                                                           path.string(), stbi_failure_reason()));
-    image.rgba.assign(
-        bytes, bytes + 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
-    stbi_image_free(bytes);
-    return image;
-}
-
 Image halved(const Image& image) {
     Image half{image.width / 2, image.height / 2, {}};
     half.rgba.resize(4 * static_cast<size_t>(half.width) * static_cast<size_t>(half.height));
@@ -68,26 +46,6 @@ Image halved(const Image& image) {
                 half.rgba[next++] = static_cast<uint8_t>((sum + 2) / 4);
             }
     return half;
-}
-
-ImageDifference difference(const Image& a, const Image& b, int tolerance) {
-    ImageDifference found;
-    found.same_size = a.width == b.width && a.height == b.height;
-    if (!found.same_size || a.rgba.empty()) return found;
-    size_t different = 0;
-    double sum = 0.0;
-    for (size_t i = 0; i < a.rgba.size(); i += 4) {
-        int most = 0;
-        for (size_t c = 0; c < 4; ++c) {
-            const int apart = std::abs(a.rgba[i + c] - b.rgba[i + c]);
-            most = std::max(most, apart);
-            sum += apart;
-        }
-        different += most > tolerance ? 1 : 0;
-    }
-    found.mean = sum / static_cast<double>(a.rgba.size());
-    found.different = static_cast<double>(different) / (static_cast<double>(a.rgba.size()) / 4.0);
-    return found;
 }
 
 } // namespace render

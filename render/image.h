@@ -25,18 +25,7 @@ core::Result<void> write_png(const Image& image, const std::filesystem::path& pa
 /// The bytes of a JPEG file. `quality`: 1 to 100. Transparency is ignored.
 std::string jpeg_bytes(const Image& image, int quality);
 
-core::Result<Image> read_png(const std::filesystem::path& path);
-
 /// Half the size, each pixel the mean of four: used for anti-aliasing.
 Image halved(const Image& image);
-
-/// The difference of two pictures.
-struct ImageDifference {
-    bool same_size = false;
-    double mean = 0.0;      // of all channels, 0..255
-    double different = 0.0; // fraction of pixels with a channel beyond the tolerance
-};
-
-ImageDifference difference(const Image& a, const Image& b, int tolerance = 12);
 
 } // namespace render

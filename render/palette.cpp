@@ -48,12 +48,6 @@ Color color(ColorScheme theme, Role role) {
     return (theme == ColorScheme::dark ? dark : light)[static_cast<size_t>(role)];
 }
 
-ClearanceState clearance_state(std::optional<double> clearance, double allowance) {
-    if (!clearance) return ClearanceState::none;
-    if (*clearance < allowance) return ClearanceState::violation;
-    return *clearance <= 2.0 * allowance ? ClearanceState::near : ClearanceState::clear;
-}
-
 Color state_color(ColorScheme theme, ClearanceState state) {
     switch (state) {
     case ClearanceState::violation:

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace render {
 
@@ -60,18 +59,11 @@ constexpr size_t role_count = static_cast<size_t>(Role::section) + 1;
 
 Color color(ColorScheme theme, Role role);
 
-/// A clearance compared with its allowance; `none` while it is unknown.
+/// A clearance compared with its allowance: `violation` less than it, `near` up to twice the
+/// allowance, `none` while it is unknown.
 enum class ClearanceState : uint8_t { none, clear, near, violation };
-
-/// violation: less than the allowance. near: up to twice the allowance.
-ClearanceState clearance_state(std::optional<double> clearance, double allowance);
 
 /// The colour of a state in lists, on the path and on the timeline.
 Color state_color(ColorScheme theme, ClearanceState state);
-
-/// The colour of a clearance in mm by its state.
-inline Color clearance_color(ColorScheme theme, std::optional<double> clearance, double allowance) {
-    return state_color(theme, clearance_state(clearance, allowance));
-}
 
 } // namespace render

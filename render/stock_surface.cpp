@@ -539,10 +539,4 @@ size_t StockSurface::update(const core::CutModel& model) {
     return made;
 }
 
-StockBricks stock_bricks(const core::CutModel& model) {
-    StockSurface surface;
-    surface.update(model);
-    return surface.bricks();
-}
-
 } // namespace render

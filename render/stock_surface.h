@@ -69,7 +69,4 @@ private:
     BrickWorkspace workspace_;
 };
 
-/// The complete surface of a model.
-StockBricks stock_bricks(const core::CutModel& model);
-
 } // namespace render

@@ -203,17 +203,6 @@ SurfacePoint surface_point(const CutModel& model, const LineEnd& end) {
     return {point, normal_at_end(sweep, point, outward), sweep.block};
 }
 
-std::vector<SurfacePoint> surface_points(const CutModel& model, int axis) {
-    const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
-    std::vector<SurfacePoint> points;
-    for (int v = 0; v < family.v_count(); ++v)
-        for (int u = 0; u < family.u_count(); ++u)
-            for (size_t i = 0; i < family.line(u, v).size(); ++i)
-                for (const bool upper : {false, true})
-                    points.push_back(surface_point(model, {axis, u, v, i, upper}));
-    return points;
-}
-
 namespace {
 
 /// How far beyond an edge an end still counts as on the edge, mm.

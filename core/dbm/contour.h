@@ -50,9 +50,6 @@ struct LineEnd {
 /// Cost:    a search of at most 40 steps along the move for each convex piece of the cutter.
 SurfacePoint surface_point(const CutModel& model, const LineEnd& end);
 
-/// The surface at all ends of one family in order: row by row, upwards along the line.
-std::vector<SurfacePoint> surface_points(const CutModel& model, int axis);
-
 // Steps of dual contouring, shared by all traversals of the cells. Nodes are where the lines of the
 // three families meet: node (i, j, k) is on the lines i - 1, j - 1, k - 1, so the grid has a border
 // of nodes outside of all lines. Node (i, j, k) is the lowest corner of cell (i, j, k).

@@ -155,12 +155,4 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
     return line;
 }
 
-bool is_gone(const CutModel& model) {
-    // A box not refitted since the last cut may be empty.
-    for (int j = 0; j < model.columns.v_count(); ++j)
-        for (int i = 0; i < model.columns.u_count(); ++i)
-            if (!model.columns.line(i, j).empty()) return false;
-    return true;
-}
-
 } // namespace core

@@ -155,7 +155,4 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
 /// The numbers of the logged sweeps that may have reached into a box, in order.
 std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box);
 
-/// Whether the model contains no material.
-bool is_gone(const CutModel& model);
-
 } // namespace core

@@ -27,9 +27,6 @@ struct ElementSweep {
 /// Cost:    closed form for cylinders, cones and balls; some 100 evaluations for a rounded corner.
 std::optional<Interval> line_interval(const ElementSweep& sweep, int axis, double u, double v);
 
-/// The segments of a line inside a whole profile at rest: the union over its pieces.
-IntervalList line_intervals(const RevolvedProfile& profile, int axis, double u, double v);
-
 /// The segment of a line along an axis inside the swept volume of a tilted convex piece. The sweep
 /// gives positions of the profile's origin.
 ///

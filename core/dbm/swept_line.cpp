@@ -247,14 +247,6 @@ std::optional<Interval> line_interval(const ElementSweep& sweep, int axis, doubl
     return cone_across(sweep, axis, u, v);
 }
 
-IntervalList line_intervals(const RevolvedProfile& profile, int axis, double u, double v) {
-    IntervalList lines;
-    for (const ProfileElement& element : profile.elements)
-        if (const auto interval = line_interval({element, {}, {}}, axis, u, v))
-            lines.add(*interval);
-    return lines;
-}
-
 namespace {
 
 constexpr Range everywhere{-infinity, infinity};

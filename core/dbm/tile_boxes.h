@@ -45,13 +45,6 @@ struct TileBoxes {
                + static_cast<size_t>(u / ScanLines::tile_side);
     }
 
-    size_t block_index(int u, int v) const {
-        const int across = u % ScanLines::tile_side / block_side;
-        const int along = v % ScanLines::tile_side / block_side;
-        return index(u, v) * blocks_per_tile
-               + static_cast<size_t>(along * blocks_per_side + across);
-    }
-
     /// Records cut blocks of a tile.
     void note(size_t tile, uint32_t cut_blocks) {
         if (cut_blocks == 0) return;

@@ -120,13 +120,6 @@ private:
     std::vector<Interval> across_u_, across_v_;
 };
 
-/// Whether one interval of a column contains the segment, up to `error`.
-bool holds(const LineView& column, const Interval& stretch, double error) {
-    return std::any_of(column.begin(), column.end(), [&](const Interval& i) {
-        return i.lower <= stretch.lower + error && i.upper >= stretch.upper - error;
-    });
-}
-
 } // namespace
 
 Interval cell_of(const OuterModel& model, int axis, int i) {
@@ -171,19 +164,6 @@ OuterModel outer_model(const CutModel& stock) {
 std::vector<Aabb> boxes_of(const OuterModel& model) {
     if (model.families.empty()) return {};
     return BoxBuilder(model).run();
-}
-
-bool holds(const OuterModel& model, const Dbm& lines, double error) {
-    for (const ScanLines& columns : model.families) {
-        const ScanLines& family = lines.families[static_cast<size_t>(columns.axis())];
-        for (int v = 0; v < family.v_count(); ++v)
-            for (int u = 0; u < family.u_count(); ++u)
-                for (const Interval& stretch : family.line(u, v))
-                    for (const auto& [i, j] : {std::pair(u, v), std::pair(u + 1, v),
-                                               std::pair(u, v + 1), std::pair(u + 1, v + 1)})
-                        if (!holds(columns.line(i, j), stretch, error)) return false;
-    }
-    return true;
 }
 
 namespace {

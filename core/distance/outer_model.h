@@ -53,7 +53,4 @@ Interval cell_of(const OuterModel& model, int axis, int i);
 /// Proof:   README.md, "Outer models".
 std::vector<Aabb> boxes_of(const OuterModel& model);
 
-/// Whether all material on the lines is within the columns along them, up to `error`.
-bool holds(const OuterModel& model, const Dbm& lines, double error);
-
 } // namespace core

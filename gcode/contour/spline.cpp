@@ -115,22 +115,4 @@ SplinePoint point_at(const NurbsCurve& curve, double parameter) {
     return {d.back().x / weight, d.back().y / weight};
 }
 
-core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve) {
-    const double last = curve.spans();
-    const double step = last / static_cast<double>(curve.points.size() * 15);
-    std::vector<SplinePoint> chords;
-    // The parameter is accumulated, not multiplied: rounding of the sum decides whether there is
-    // one more chord before the last knot, and LinuxCNC accumulates.
-    for (double parameter = step; parameter < last; parameter += step) {
-        const SplinePoint at = point_at(curve, parameter);
-        if (!std::isfinite(at.x) || !std::isfinite(at.y))
-            return core::fail(ErrorCode::invalid_value,
-                              "the weights of the control points cancel out and the curve runs to "
-                              "infinity: make each weight P positive");
-        chords.push_back(at);
-    }
-    chords.push_back(curve.points.back().at);
-    return chords;
-}
-
 } // namespace gcode

@@ -100,13 +100,6 @@ core::Result<NurbsCurve> finish_nurbs(const NurbsGathering& gathering);
 /// Source: C. de Boor, "On calculating with B-splines", Journal of Approximation Theory 6 (1972).
 SplinePoint point_at(const NurbsCurve& curve, double parameter);
 
-/// The end points of the straight feed moves by which LinuxCNC's preview approximates the curve: 15
-/// per control point, at equal steps of the parameter.
-///
-/// Result: ends at the last control point. Rounding may add a point just before it, as in LinuxCNC.
-/// Errors: the weights cancel out somewhere.
-core::Result<std::vector<SplinePoint>> preview_chords(const NurbsCurve& curve);
-
 /// The state that spline blocks pass on to each other.
 struct SplineState {
     NurbsGathering gathering{}; // collected since G5.2

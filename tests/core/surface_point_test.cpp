@@ -42,6 +42,18 @@ void expect_true_surface(const CutBox& world, const SurfacePoint& s, Seen& seen)
     ++(smooth ? seen.smooth : seen.edges);
 }
 
+/// The surface at all ends of one family.
+std::vector<SurfacePoint> surface_points(const CutModel& model, int axis) {
+    const ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
+    std::vector<SurfacePoint> points;
+    for (int v = 0; v < family.v_count(); ++v)
+        for (int u = 0; u < family.u_count(); ++u)
+            for (size_t i = 0; i < family.line(u, v).size(); ++i)
+                for (const bool upper : {false, true})
+                    points.push_back(surface_point(model, {axis, u, v, i, upper}));
+    return points;
+}
+
 void expect_true_surfaces(bool tilted, unsigned seed) {
     std::mt19937 rng(seed);
     Seen seen;

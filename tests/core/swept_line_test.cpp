@@ -188,15 +188,5 @@ TEST(LineInterval, FindsARoundedCornerThatRampsAcrossTheLine) {
     EXPECT_GT(seen.hit, 10);
 }
 
-TEST(LineIntervals, UniteThePiecesOfAProfileAtRest) {
-    const RevolvedProfile neck{{{0, 5, 2, 5, 0}, {2, 1, 6, 1, 0}, {6, 4, 8, 4, 0}}};
-    const IntervalList outer = line_intervals(neck, 2, 3.0, 0.0);
-    ASSERT_EQ(outer.size(), 2u);
-    EXPECT_EQ(outer[0], (Interval{0.0, 2.0}));
-    EXPECT_EQ(outer[1], (Interval{6.0, 8.0}));
-    EXPECT_EQ(line_intervals(neck, 2, 0.5, 0.0).size(), 1u);
-    EXPECT_TRUE(line_intervals(neck, 2, 5.5, 0.0).empty());
-}
-
 } // namespace
 } // namespace core

@@ -4,6 +4,18 @@
 #include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_LINEAR
+#define STBI_NO_HDR
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wshadow"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
 #include "render/offscreen.h"
 #include "render/renderer.h"
 #include "tests/render/sample_scene.h"
@@ -13,6 +25,46 @@ namespace render {
 namespace {
 
 const Viewport size{480, 300};
+
+core::Result<Image> read_png(const std::filesystem::path& path) {
+    Image image;
+    int channels = 0;
+    uint8_t* bytes = stbi_load(path.c_str(), &image.width, &image.height, &channels, 4);
+    if (bytes == nullptr)
+        return core::fail(core::ErrorCode::io, fmt::format("cannot read the picture '{}': {}",
+                                                           path.string(), stbi_failure_reason()));
+    image.rgba.assign(
+        bytes, bytes + 4 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+    stbi_image_free(bytes);
+    return image;
+}
+
+/// The difference of two pictures.
+struct ImageDifference {
+    bool same_size = false;
+    double mean = 0.0;      // of all channels, 0..255
+    double different = 0.0; // fraction of pixels with a channel beyond the tolerance
+};
+
+ImageDifference difference(const Image& a, const Image& b, int tolerance = 12) {
+    ImageDifference found;
+    found.same_size = a.width == b.width && a.height == b.height;
+    if (!found.same_size || a.rgba.empty()) return found;
+    size_t different = 0;
+    double sum = 0.0;
+    for (size_t i = 0; i < a.rgba.size(); i += 4) {
+        int most = 0;
+        for (size_t c = 0; c < 4; ++c) {
+            const int apart = std::abs(a.rgba[i + c] - b.rgba[i + c]);
+            most = std::max(most, apart);
+            sum += apart;
+        }
+        different += most > tolerance ? 1 : 0;
+    }
+    found.mean = sum / static_cast<double>(a.rgba.size());
+    found.different = static_cast<double>(different) / (static_cast<double>(a.rgba.size()) / 4.0);
+    return found;
+}
 
 /// A context and a renderer for all tests of this file.
 class Picture : public testing::Test {

@@ -107,17 +107,6 @@ TEST(Palette, HasTheColoursOfTheTable) {
     EXPECT_EQ(color(ColorScheme::dark, Role::holder).a, 140); // 55 %
 }
 
-TEST(ClearanceColour, FollowsTheAllowance) {
-    EXPECT_EQ(clearance_state(std::nullopt, 1.0), ClearanceState::none);
-    EXPECT_EQ(clearance_state(-0.2, 1.0), ClearanceState::violation);
-    EXPECT_EQ(clearance_state(0.99, 1.0), ClearanceState::violation);
-    EXPECT_EQ(clearance_state(1.0, 1.0), ClearanceState::near);
-    EXPECT_EQ(clearance_state(2.0, 1.0), ClearanceState::near);
-    EXPECT_EQ(clearance_state(2.01, 1.0), ClearanceState::clear);
-    EXPECT_EQ(clearance_color(ColorScheme::dark, 0.5, 1.0),
-              color(ColorScheme::dark, Role::violation));
-}
-
 TEST(Colour, MixesFromOneToTheOther) {
     const Color a{0, 100, 200, 255}, b{100, 0, 100, 55};
     EXPECT_EQ(mixed(a, b, 0.0), a);

@@ -158,6 +158,12 @@ std::vector<core::CutterSweep> sample_moves(std::vector<PathPoint>& path) {
     return sweeps;
 }
 
+StockBricks stock_bricks(const core::CutModel& model) {
+    StockSurface surface;
+    surface.update(model);
+    return surface.bricks();
+}
+
 Scene sample_scene(double spacing) {
     const core::Setup setup = sample_setup();
     Scene scene;

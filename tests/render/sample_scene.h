@@ -6,6 +6,9 @@
 
 namespace render {
 
+/// The complete surface of a model.
+StockBricks stock_bricks(const core::CutModel& model);
+
 /// A flat cutter with a sharp corner, and a ball.
 std::shared_ptr<const core::Cutter> flat_cutter(double radius);
 std::shared_ptr<const core::Cutter> ball_cutter(double radius);

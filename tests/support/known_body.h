@@ -34,7 +34,11 @@ inline core::IntervalList line_of(const TruePart& part, int axis, double u, doub
         return TorusLines{double(torus->ring), double(torus->tube)}.line(axis, u, v);
     if (const auto* box = std::get_if<TrueBox>(&part))
         return core::line_of({core::SolidBox{box_of(*box)}, 0.0}, axis, u, v);
-    return core::line_intervals(profile_of(part), axis, u, v);
+    core::IntervalList line;
+    for (const core::ProfileElement& element : profile_of(part).elements)
+        if (const auto interval = core::line_interval({element, {}, {}}, axis, u, v))
+            line.add(*interval);
+    return line;
 }
 
 inline core::ColumnFunction columns_of(const TruePart& part) {

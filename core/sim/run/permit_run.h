@@ -25,8 +25,6 @@ struct MotionEntry {
     double due = infinity; // latest time for its permit; infinite for the first motion, which waits
     double seen = infinity;    // when the control received the permit
     double entered = infinity; // when the machine began the motion
-
-    bool was_late() const { return seen > due; }
 };
 
 /// A machine that follows its plan and enters no motion without a permit. A plain value: copy it to
