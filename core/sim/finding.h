@@ -28,6 +28,8 @@ struct Finding {
     std::string cure;                  // what removes it; may be empty
     std::array<std::string, 2> pair{}; // the two bodies concerned; empty if there are none
     double shortfall = 0.0;            // minimum clearance minus clearance, mm
+
+    bool operator==(const Finding&) const = default;
 };
 
 /// Severities from the set-up, by rule name. They override the defaults.

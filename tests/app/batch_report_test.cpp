@@ -24,22 +24,23 @@ using testing::HasSubstr;
 using testing::Not;
 
 StoredFinding near_miss(const std::string& text, uint32_t line) {
-    return {.rule = "near-miss",
-            .severity = Severity::error,
-            .block = line,
-            .line = line,
-            .text = text,
-            .message = "The holder comes near to <clamp-1> & \"more\".",
-            .cure = "Go round it.",
-            .pair = {"holder", "clamp-1"},
-            .shortfall = 1.25};
+    return {{.rule = "near-miss",
+             .severity = Severity::error,
+             .block = core::BlockIndex{line},
+             .message = "The holder comes near to <clamp-1> & \"more\".",
+             .cure = "Go round it.",
+             .pair = {"holder", "clamp-1"},
+             .shortfall = 1.25},
+            line,
+            "",
+            text};
 }
 
 /// One program of each kind.
 BatchResult batch_of_all_kinds() {
     const ProgramResult good{.program = "parts/good.nc",
                              .verdict = core::Verdict::clear,
-                             .findings = {{.rule = "air-cut", .severity = Severity::note}},
+                             .findings = {{{.rule = "air-cut", .severity = Severity::note}}},
                              .blocks = 9,
                              .seconds = 0.5};
     ProgramResult bad{.program = "parts/Gehäuse 50%.nc",
@@ -47,7 +48,7 @@ BatchResult batch_of_all_kinds() {
                       .verdict = core::Verdict::violation,
                       .findings = {near_miss("N20 G0 X5.", 7),
                                    near_miss("N30 G0 X5.", 9),
-                                   {.rule = "program", .message = "bell \x07 and line\nend"}},
+                                   {{.rule = "program", .message = "bell \x07 and line\nend"}}},
                       .blocks = 12,
                       .tightest = Tightest{.block = 7,
                                            .line = 7,

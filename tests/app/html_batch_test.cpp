@@ -24,7 +24,7 @@ using testing::Not;
 TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
     ProgramResult program{.verdict = core::Verdict::clear, .blocks = 3};
     EXPECT_EQ(outcome_of(program), Outcome::clear);
-    program.findings = {{.rule = "no-feed", .severity = Severity::error}};
+    program.findings = {{{.rule = "no-feed", .severity = Severity::error}}};
     EXPECT_EQ(outcome_of(program), Outcome::errors);
     program.verdict = core::Verdict::collision;
     EXPECT_EQ(outcome_of(program), Outcome::collision);
@@ -37,11 +37,11 @@ TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
 
 TEST(RuleTally, CountsProgramsAndFindingsErrorsFirst) {
     BatchResult batch;
-    batch.programs = {{.findings = {{.rule = "b", .severity = Severity::note},
-                                    {.rule = "z", .severity = Severity::error}}},
-                      {.findings = {{.rule = "b", .severity = Severity::note},
-                                    {.rule = "b", .severity = Severity::note},
-                                    {.rule = "b", .severity = Severity::error}}}};
+    batch.programs = {{.findings = {{{.rule = "b", .severity = Severity::note}},
+                                    {{.rule = "z", .severity = Severity::error}}}},
+                      {.findings = {{{.rule = "b", .severity = Severity::note}},
+                                    {{.rule = "b", .severity = Severity::note}},
+                                    {{.rule = "b", .severity = Severity::error}}}}};
     EXPECT_EQ(rule_tallies(batch), (std::vector<RuleTally>{{Severity::error, "b", 1, 1},
                                                            {Severity::error, "z", 1, 1},
                                                            {Severity::note, "b", 2, 3}}));
@@ -164,7 +164,7 @@ TEST(HtmlBatch, SaysNothingOfMissingOnesWhereAllAreThere) {
     EXPECT_THAT(batch_html_report(batch), Not(HasSubstr("class=\"missing\"")));
     batch.programs.push_back(one_of_many(5, 0)); // undecided
     EXPECT_STREQ(batch_outcome_class(batch), "undecided");
-    batch.programs[0].findings = {{.rule = "no-feed", .severity = Severity::error}};
+    batch.programs[0].findings = {{{.rule = "no-feed", .severity = Severity::error}}};
     EXPECT_EQ(batch_outcome_text(batch), "1 of 2 programs has errors");
     EXPECT_STREQ(batch_outcome_class(batch), "error");
     batch.programs[0] = one_of_many(50, 0); // stopped
@@ -221,7 +221,7 @@ TEST(HtmlBatch, HoldsNamesAndTextsAsTextOnly) {
     batch.programs[0].dialect = evil;
     batch.programs[0].error = StoredError{evil, 1, 1, evil};
     batch.programs[1].findings[0] = {
-        .rule = evil, .text = evil, .message = evil, .cure = evil, .pair = {evil, evil}};
+        {.rule = evil, .message = evil, .cure = evil, .pair = {evil, evil}}, 0, "", evil};
     batch.programs[1].assumptions = {evil};
     batch.programs[1].tightest->pair = {evil, evil};
     batch.unchecked = {evil};

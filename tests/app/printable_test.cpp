@@ -42,13 +42,13 @@ void expect_harmless(const std::string& text) {
 ProgramResult hostile_result() {
     return {.program = hostile,
             .setup = hostile,
-            .findings = {{.rule = "near-miss",
-                          .severity = core::Severity::error,
-                          .line = 7,
-                          .file = hostile,
-                          .text = hostile,
-                          .message = hostile,
-                          .pair = {hostile, hostile}}},
+            .findings = {{{.rule = "near-miss",
+                           .severity = core::Severity::error,
+                           .message = hostile,
+                           .pair = {hostile, hostile}},
+                          7,
+                          hostile,
+                          hostile}},
             .tightest = Tightest{.line = 7, .pair = {hostile, hostile}, .upper = 0.0}};
 }
 

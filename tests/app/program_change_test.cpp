@@ -19,12 +19,13 @@ TEST(Numberless, LeavesWhatTheBlockSays) {
 }
 
 StoredFinding near_miss(uint32_t line, const std::string& text) {
-    return {.rule = "near-miss",
-            .severity = core::Severity::error,
-            .block = line,
-            .line = line,
-            .text = text,
-            .pair = {"holder", "clamp-1"}};
+    return {{.rule = "near-miss",
+             .severity = core::Severity::error,
+             .block = core::BlockIndex{line},
+             .pair = {"holder", "clamp-1"}},
+            line,
+            "",
+            text};
 }
 
 TEST(ChangeBetween, FollowsFindingsWhereverTheirBlockGoes) {

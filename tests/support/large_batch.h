@@ -24,18 +24,19 @@ inline app::ProgramResult one_of_many(size_t i, size_t findings) {
     for (size_t k = 0; k < findings; ++k) {
         const auto line = static_cast<uint32_t>(5 + 3 * k);
         program.findings.push_back(
-            {.rule = k % 3 == 0   ? "near-miss"
-                     : k % 3 == 1 ? "rapid-near-clamp"
-                                  : "air-cut",
-             .severity = static_cast<Severity>(1 + (i + k) % 3),
-             .block = line,
-             .line = line,
-             .text = fmt::format("N{} G0 X{:.3f} Y{}.", line, 0.013 * static_cast<double>(i), k),
-             .message = fmt::format("The holder comes within {:.3f} mm of clamp-{} in part {}.",
-                                    0.001 * static_cast<double>((i * 13 + k) % 2000), k % 4, i),
-             .cure = "Retract above the fixture before going across.",
-             .pair = {"holder", fmt::format("clamp-{}", k % 4)},
-             .shortfall = 0.5});
+            {{.rule = k % 3 == 0   ? "near-miss"
+                      : k % 3 == 1 ? "rapid-near-clamp"
+                                   : "air-cut",
+              .severity = static_cast<Severity>(1 + (i + k) % 3),
+              .block = core::BlockIndex{line},
+              .message = fmt::format("The holder comes within {:.3f} mm of clamp-{} in part {}.",
+                                     0.001 * static_cast<double>((i * 13 + k) % 2000), k % 4, i),
+              .cure = "Retract above the fixture before going across.",
+              .pair = {"holder", fmt::format("clamp-{}", k % 4)},
+              .shortfall = 0.5},
+             line,
+             "",
+             fmt::format("N{} G0 X{:.3f} Y{}.", line, 0.013 * static_cast<double>(i), k)});
     }
     program.assumptions = {
         "rapids run straight",

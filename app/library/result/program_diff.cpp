@@ -105,11 +105,11 @@ ProgramChange change_along(const std::vector<std::pair<size_t, size_t>>& pairs,
         before, after,
         [&](const StoredFinding& finding) {
             if (!finding.block) return std::string();
-            const auto found = later.find(*finding.block);
+            const auto found = later.find(core::value_of(*finding.block));
             return found == later.end() ? "gone" : std::to_string(found->second);
         },
         [](const StoredFinding& finding) {
-            return finding.block ? std::to_string(*finding.block) : std::string();
+            return finding.block ? std::to_string(core::value_of(*finding.block)) : std::string();
         });
 }
 

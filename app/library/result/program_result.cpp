@@ -35,15 +35,12 @@ StoredError kept(const core::Error& error, FileBytes& bytes) {
 }
 
 StoredFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
-    StoredFinding made{.rule = finding.rule,
-                       .severity = finding.severity,
-                       .message = utf8_text(finding.message),
-                       .cure = utf8_text(finding.cure),
-                       .pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])},
-                       .shortfall = finding.shortfall};
+    StoredFinding made{finding};
+    made.message = utf8_text(finding.message);
+    made.cure = utf8_text(finding.cure);
+    made.pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])};
     if (!finding.block) return made;
     const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
-    made.block = core::value_of(*finding.block);
     made.line = block.line;
     made.file = shown_name(block.file, bytes);
     made.text = utf8_text(block.text);
@@ -67,7 +64,7 @@ std::optional<Tightest> tightest_of(const CheckRun& run) {
 Json json_of(const StoredFinding& finding) {
     return {{"rule", finding.rule},
             {"severity", core::name_of(finding.severity)},
-            {"block", finding.block ? Json(*finding.block) : Json(nullptr)},
+            {"block", finding.block ? Json(core::value_of(*finding.block)) : Json(nullptr)},
             {"line", finding.line},
             {"file", finding.file},
             {"text", finding.text},
@@ -107,17 +104,17 @@ StoredError error_from(const Json& json) {
 }
 
 StoredFinding finding_from(const Json& json) {
-    StoredFinding finding{.rule = json.at("rule"),
-                          .severity = named_as<core::Severity, 4>(json.at("severity")),
-                          .line = whole_from<uint32_t>(json.at("line")),
-                          .file = json.at("file"),
-                          .text = json.at("text"),
-                          .message = json.at("message"),
-                          .cure = json.at("cure"),
-                          .pair = pair_from(json.at("pair")),
-                          .shortfall = number_from(json.at("shortfall"))};
+    StoredFinding finding{{.rule = json.at("rule"),
+                           .severity = named_as<core::Severity, 4>(json.at("severity")),
+                           .message = json.at("message"),
+                           .cure = json.at("cure"),
+                           .pair = pair_from(json.at("pair")),
+                           .shortfall = number_from(json.at("shortfall"))},
+                          whole_from<uint32_t>(json.at("line")),
+                          json.at("file"),
+                          json.at("text")};
     if (const Json& block = json.at("block"); !block.is_null())
-        finding.block = whole_from<uint32_t>(block);
+        finding.block = core::BlockIndex{whole_from<uint32_t>(block)};
     return finding;
 }
 

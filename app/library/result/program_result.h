@@ -24,17 +24,12 @@ std::string shown_name(const std::string& path, FileBytes& bytes);
 /// The file name for a text made by shown_name.
 const std::string& name_shown_as(const std::string& text, const FileBytes& bytes);
 
-/// A finding with the line and text of its block, independent of the run. Texts are UTF-8.
-struct StoredFinding {
-    std::string rule;
-    core::Severity severity = core::Severity::warning;
-    std::optional<uint32_t> block; // empty: the program as a whole
-    uint32_t line = 0;             // of the block; 0 if there is none
-    std::string file;              // of a subprogram; empty for the main program
-    std::string text;              // of the block
-    std::string message, cure;
-    std::array<std::string, 2> pair{};
-    double shortfall = 0.0; // mm
+/// A finding with the line and text of its block, because a stored result has no blocks. Texts are
+/// UTF-8.
+struct StoredFinding : core::Finding {
+    uint32_t line = 0; // of the block; 0 if there is none
+    std::string file;  // of a subprogram; empty for the main program
+    std::string text;  // of the block
 
     bool operator==(const StoredFinding&) const = default;
 };

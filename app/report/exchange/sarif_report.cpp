@@ -86,7 +86,7 @@ Json finding_json(const ProgramResult& program, const StoredFinding& finding, si
         {"locations", Json::array({location_json(file, program.file_bytes, finding.line, 1)})},
         {"partialFingerprints", {{"feeler/v1", fingerprint_of(finding, before)}}}};
     json["properties"] = {{"program", program.program}, {"shortfall", finding.shortfall}};
-    if (finding.block) json["properties"]["block"] = *finding.block;
+    if (finding.block) json["properties"]["block"] = core::value_of(*finding.block);
     return json;
 }
 

@@ -382,7 +382,7 @@ void FindingColumns::add(const ProgramResult& program) {
 void FindingColumns::add(const StoredFinding& finding) {
     severity_.add(static_cast<int64_t>(finding.severity));
     rule_.add(rules_.index_of(finding.rule));
-    block_.add(finding.block ? int64_t{*finding.block} : -1);
+    block_.add(finding.block ? int64_t{core::value_of(*finding.block)} : -1);
     line_.add(finding.line);
     file_.add(shown_text(texts_, finding.file));
     text_.add(shown_text(texts_, finding.text));
