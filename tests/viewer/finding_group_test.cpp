@@ -81,6 +81,17 @@ TEST(FindingGroups, ThatAreAsBadComeInTheOrderOfTheProgram) {
     EXPECT_EQ(groups[2].rule, "collision");
 }
 
+TEST(FindingGroups, KeepEveryMessageOfFindingsAboutNoPair) {
+    std::vector<core::Finding> findings(3);
+    for (core::Finding& finding : findings) finding.rule = "gouge";
+    findings[0].message = findings[2].message = "0.5 mm of the part is missing.";
+    findings[1].message = "0.2 mm of the part is missing.";
+    const auto groups = grouped(ten_rows(), findings);
+    ASSERT_EQ(groups.size(), 2u);
+    EXPECT_EQ(groups[0].message, findings[0].message);
+    EXPECT_EQ(groups[1].message, findings[1].message);
+}
+
 TEST(FindingGroups, HoldEveryFindingOnce) {
     std::mt19937 random(7);
     for (int round = 0; round < 50; ++round) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/base/finding_group.h"
+
 namespace app {
 
 int status_of(const BatchResult& batch) {
@@ -12,9 +14,7 @@ int status_of(const BatchResult& batch) {
 }
 
 size_t count_of(const ProgramResult& result, core::Severity severity) {
-    return static_cast<size_t>(
-        std::count_if(result.findings.begin(), result.findings.end(),
-                      [&](const StoredFinding& finding) { return finding.severity == severity; }));
+    return count_of(result.findings, severity);
 }
 
 const char* name_of(Outcome outcome) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/library/result/batch_result.h"
@@ -45,12 +46,6 @@ std::string nearest_text(const ProgramResult& result) {
                        trimmed(tightest.pair[0]), trimmed(tightest.pair[1]), tightest.line);
 }
 
-std::string finding_counts(const ProgramResult& result) {
-    return counts_text(count_of(result, core::Severity::error),
-                       count_of(result, core::Severity::warning),
-                       count_of(result, core::Severity::note));
-}
-
 std::string change_text(const ProgramChange& change) {
     std::string text;
     constexpr double least = 0.0005; // below this it would be shown as 0
@@ -76,7 +71,7 @@ std::string version_text(const StoredVersion& kept, const StoredVersion* earlier
                     result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
     if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
-                        duration_text(result.cycle_time), finding_counts(result));
+                        duration_text(result.cycle_time), counts_text(result.findings));
     text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
                         kept.setup.empty() ? "set-up inferred" : "set-up " + trimmed(kept.setup),
                         kept.version.substr(0, kept.version.find(' ')));

@@ -1,11 +1,12 @@
 #include "app/report/text/batch_text.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/library/result/batch_result.h"
 
@@ -33,30 +34,36 @@ std::string nonzero_counts(const ProgramResult& result) {
     return text;
 }
 
+using RuleKey = std::tuple<int, std::string, std::string>;
+
+/// Severity, the worst first, rule and file.
+RuleKey rule_key(const StoredFinding& finding) {
+    return {-static_cast<int>(finding.severity), finding.rule, finding.file};
+}
+
+/// The findings of one severity, rule and file together.
+std::vector<GroupOf<StoredFinding>> rule_groups(const ProgramResult& result) {
+    auto groups = grouped_by(result.findings, rule_key);
+    std::sort(groups.begin(), groups.end(),
+              [](const auto& a, const auto& b) { return rule_key(*a.worst) < rule_key(*b.worst); });
+    return groups;
+}
+
 /// A line for each rule with findings: its line numbers and the message of its worst finding; the
 /// worst rule first.
 std::string rule_lines(const ProgramResult& result, const BatchStyle& style) {
-    struct Group {
-        const StoredFinding* worst;
-        std::set<uint32_t> lines;
-    };
-    std::map<std::pair<int, std::string>, Group> groups;
-    for (const StoredFinding& finding : result.findings) {
-        if (finding.severity != Severity::error && !style.verbose) continue;
-        const std::pair<int, std::string> key = {-static_cast<int>(finding.severity),
-                                                 finding.rule + finding.file};
-        Group& group = groups.try_emplace(key, Group{&finding, {}}).first->second;
-        if (finding.shortfall > group.worst->shortfall) group.worst = &finding;
-        if (finding.line != 0) group.lines.insert(finding.line);
-    }
     std::string text;
-    for (const auto& [key, group] : groups) {
+    for (const GroupOf<StoredFinding>& group : rule_groups(result)) {
         const StoredFinding& worst = *group.worst;
+        if (worst.severity != Severity::error && !style.verbose) continue;
         std::string line = fmt::format("{} {}", core::name_of(worst.severity), worst.rule);
         if (!worst.file.empty()) line += " in " + trimmed(worst.file);
-        if (!group.lines.empty())
-            line += fmt::format(", line{} {}", group.lines.size() == 1 ? "" : "s",
-                                line_ranges({group.lines.begin(), group.lines.end()}));
+        std::set<uint32_t> lines;
+        for (const StoredFinding* finding : group.findings)
+            if (finding->line != 0) lines.insert(finding->line);
+        if (!lines.empty())
+            line += fmt::format(", line{} {}", lines.size() == 1 ? "" : "s",
+                                line_ranges({lines.begin(), lines.end()}));
         text += wrapped(line + ": " + worst.message, 11, 2);
     }
     return text;

@@ -1,10 +1,10 @@
 #include "app/report/text/text_report.h"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 
+#include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/check/conclusion.h"
@@ -16,33 +16,17 @@
 namespace app {
 namespace {
 
-/// Findings of several blocks with the same rule and the same pair.
-struct FindingGroup {
-    const core::Finding* worst = nullptr;
+/// The lines of the blocks that have the findings of a group.
+std::vector<uint32_t> lines_of(const CheckRun& run, const GroupOf<core::Finding>& group) {
     std::vector<uint32_t> lines;
-};
-
-std::vector<FindingGroup> grouped(const CheckRun& run) {
-    std::vector<FindingGroup> groups;
-    std::map<std::pair<std::string, std::string>, size_t> known;
-    for (const core::Finding& finding : run.findings) {
-        const std::string about =
-            finding.pair[0].empty() ? finding.message : finding.pair[0] + " / " + finding.pair[1];
-        const auto [at, is_new] = known.try_emplace({finding.rule, about}, groups.size());
-        if (is_new) groups.push_back({});
-        FindingGroup& group = groups[at->second];
-        if (!group.worst || finding.shortfall > group.worst->shortfall) group.worst = &finding;
-        if (finding.block) group.lines.push_back(run.blocks[core::value_of(*finding.block)].line);
-    }
-    std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
-        return a.worst->severity > b.worst->severity;
-    });
-    return groups;
+    for (const core::Finding* finding : group.findings)
+        if (finding->block) lines.push_back(run.blocks[core::value_of(*finding->block)].line);
+    return lines;
 }
 
 std::string finding_groups_text(const CheckRun& run) {
     std::string text;
-    for (const FindingGroup& group : grouped(run)) {
+    for (const GroupOf<core::Finding>& group : grouped_by(run.findings, subject_of)) {
         const core::Finding& worst = *group.worst;
         text += fmt::format("{:<8} {}", core::name_of(worst.severity), worst.rule);
         if (worst.block) {
@@ -51,10 +35,11 @@ std::string finding_groups_text(const CheckRun& run) {
         }
         text += "\n" + wrapped(worst.message, 9);
         if (!worst.cure.empty()) text += wrapped("Cure: " + worst.cure, 9);
-        if (group.lines.size() > 1)
-            text += wrapped(fmt::format("The worst of {} blocks, lines {}.", group.lines.size(),
-                                        line_ranges(group.lines)),
-                            9);
+        const std::vector<uint32_t> lines = lines_of(run, group);
+        if (lines.size() > 1)
+            text += wrapped(
+                fmt::format("The worst of {} blocks, lines {}.", lines.size(), line_ranges(lines)),
+                9);
         text += "\n";
     }
     return text;
@@ -150,12 +135,7 @@ bool has_word(const std::string& text, const std::string& name) {
 
 } // namespace
 
-std::string counts_text(const CheckRun& run) {
-    std::map<core::Severity, size_t> counts;
-    for (const core::Finding& finding : run.findings) ++counts[finding.severity];
-    return counts_text(counts[core::Severity::error], counts[core::Severity::warning],
-                       counts[core::Severity::note]);
-}
+std::string counts_text(const CheckRun& run) { return counts_text(run.findings); }
 
 std::string outcome_text(const CheckRun& run) {
     if (run.stopped) return "STOPPED, not checked to its end";

@@ -1,11 +1,10 @@
 #include "app/view/model/finding_group.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 #include <fmt/format.h>
 
+#include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
@@ -58,6 +57,21 @@ void add(FindingGroup& group, const std::vector<BlockRow>& rows, const core::Fin
     ++group.count;
 }
 
+FindingGroup group_of(const std::vector<BlockRow>& rows, const GroupOf<core::Finding>& alike) {
+    FindingGroup group;
+    group.rule = alike.worst->rule;
+    group.pair = alike.worst->pair;
+    std::vector<const core::Finding*> findings = alike.findings;
+    std::stable_sort(findings.begin(), findings.end(),
+                     [](const auto* a, const auto* b) { return a->block < b->block; });
+    for (const core::Finding* finding : findings) add(group, rows, *finding);
+    const auto worst =
+        std::max_element(group.stretches.begin(), group.stretches.end(),
+                         [](const auto& a, const auto& b) { return a.shortfall < b.shortfall; });
+    group.worst = static_cast<size_t>(worst - group.stretches.begin());
+    return group;
+}
+
 /// The largest shortfall in the group, mm.
 double shortfall_of(const FindingGroup& group) {
     return group.stretches.empty() ? 0.0 : group.stretches[group.worst].shortfall;
@@ -71,26 +85,9 @@ size_t first_of(const FindingGroup& group) {
 
 std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
                                   const std::vector<core::Finding>& findings) {
-    std::vector<const core::Finding*> sorted;
-    for (const core::Finding& finding : findings)
-        if (finding.severity > core::Severity::off) sorted.push_back(&finding);
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [](const auto* a, const auto* b) { return a->block < b->block; });
-    std::map<std::tuple<std::string, std::string, std::string>, FindingGroup> found;
-    for (const core::Finding* finding : sorted) {
-        FindingGroup& group = found[{finding->rule, finding->pair[0], finding->pair[1]}];
-        group.rule = finding->rule;
-        group.pair = finding->pair;
-        add(group, rows, *finding);
-    }
     std::vector<FindingGroup> groups;
-    for (auto& [key, group] : found) {
-        const auto worst = std::max_element(
-            group.stretches.begin(), group.stretches.end(),
-            [](const auto& a, const auto& b) { return a.shortfall < b.shortfall; });
-        group.worst = static_cast<size_t>(worst - group.stretches.begin());
-        groups.push_back(std::move(group));
-    }
+    for (const GroupOf<core::Finding>& alike : grouped_by(findings, subject_of))
+        groups.push_back(group_of(rows, alike));
     std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
         if (a.severity != b.severity) return a.severity > b.severity;
         if (shortfall_of(a) != shortfall_of(b)) return shortfall_of(a) > shortfall_of(b);

@@ -19,7 +19,7 @@ struct FindingStretch {
     std::string message, cure;       // of the finding in the worst block
 };
 
-/// All findings of one rule about one pair of bodies.
+/// All findings of one rule about one pair of bodies or, if they are about none, with one message.
 struct FindingGroup {
     std::string rule;
     std::array<std::string, 2> pair; // empty if the rule is not about a pair

@@ -76,13 +76,10 @@ void mark_rows(ViewModel& model) {
     }
 }
 
-void count_rows(ViewModel& model) {
+void collect_offending(ViewModel& model) {
     model.offending.clear();
-    model.near_count = 0;
-    for (size_t i = 0; i < model.rows.size(); ++i) {
+    for (size_t i = 0; i < model.rows.size(); ++i)
         if (is_offending(model.rows[i])) model.offending.push_back(i);
-        if (is_near(model.rows[i])) ++model.near_count;
-    }
 }
 
 void take_rows(ViewModel& model, RowsUpdate& update) {
@@ -168,7 +165,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (news.findings) model.findings = *std::move(news.findings);
     if (has_rows || news.findings) {
         mark_rows(model);
-        count_rows(model);
+        collect_offending(model);
         apply_filter(model);
         if (news.findings || !model.findings.empty())
             model.groups = grouped(model.rows, model.findings);

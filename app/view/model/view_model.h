@@ -114,7 +114,6 @@ struct ViewModel {
     std::vector<core::Finding> findings;
     std::vector<FindingGroup> groups; // of `findings`
     std::vector<size_t> offending;    // blocks, in program order
-    size_t near_count = 0;
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const PlaceView> place;
     std::vector<std::string> changes;

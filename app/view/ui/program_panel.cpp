@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "app/base/finding_group.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/row_filter.h"
 #include "app/view/model/view_model.h"
@@ -127,15 +128,16 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-/// Draws the numbers of violations, near blocks and all blocks, next to the tabs.
+/// Draws the numbers of errors, warnings and all blocks, next to the tabs.
 void draw_counts(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
-    const std::string counts = fmt::format("of {}", model.rows.size());
-    const std::string bad =
-        fmt::format("{} {}", frame.fonts.icon(Icon::warning), model.offending.size());
-    const std::string near = fmt::format("{} {}", frame.fonts.icon(Icon::near), model.near_count);
+    const size_t errors = count_of(model.findings, core::Severity::error);
+    const size_t warnings = count_of(model.findings, core::Severity::warning);
+    const std::string bad = fmt::format("{} {}", frame.fonts.icon(Icon::warning), errors);
+    const std::string doubtful = fmt::format("{} {}", frame.fonts.icon(Icon::near), warnings);
+    const std::string blocks = counted(model.rows.size(), "block");
     const float gap = frame.px(12);
-    // If there is little room, violations come first.
+    // If there is little room, errors come first.
     const float room = area.width - frame.px(26) - (ImGui::GetItemRectMax().x - area.x);
     float width = ImGui::CalcTextSize(bad.c_str()).x;
     const auto fits = [&](const std::string& words) {
@@ -144,18 +146,17 @@ void draw_counts(Frame& frame, const Area& area) {
         width = wider;
         return true;
     };
-    const bool near_fits = fits(near), counts_fit = near_fits && fits(counts);
+    const bool warnings_fit = fits(doubtful), blocks_fit = warnings_fit && fits(blocks);
     ImGui::SameLine(area.width - width - frame.px(14));
-    text(frame.fonts.text, frame.look.color(model.offending.empty() ? Role::dim : Role::violation),
-         bad);
-    tip(frame, "Blocks that are not proven clear, or have a finding of severity error");
-    if (!near_fits) return;
+    text(frame.fonts.text, frame.look.color(errors == 0 ? Role::dim : Role::violation), bad);
+    tip(frame, "Errors, as in the report");
+    if (!warnings_fit) return;
     ImGui::SameLine(0, gap);
-    text(frame.fonts.text, frame.look.color(model.near_count == 0 ? Role::dim : Role::near), near);
-    tip(frame, "Blocks with less than twice their allowance");
-    if (!counts_fit) return;
+    text(frame.fonts.text, frame.look.color(warnings == 0 ? Role::dim : Role::near), doubtful);
+    tip(frame, "Warnings, as in the report");
+    if (!blocks_fit) return;
     ImGui::SameLine(0, gap);
-    text(frame.fonts.text, frame.look.color(Role::dim), counts);
+    text(frame.fonts.text, frame.look.color(Role::dim), blocks);
 }
 
 } // namespace
