@@ -19,7 +19,8 @@ namespace app {
 
 struct CheckRun;
 
-/// The facts of a block that conditions use, taken from a record or from a row of a list.
+/// The facts of a block that conditions use. They come from a record or, in the window, which has
+/// no record, from a row of its list.
 struct BlockFacts {
     size_t block = 0;
     uint32_t line = 0;

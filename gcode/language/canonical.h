@@ -127,9 +127,13 @@ std::string name_of_offset(size_t index);
 /// XY, ZX, YZ, UV, WU or VW.
 std::string_view name_of(Plane plane);
 
+/// What the interpreter can say of a remark. Whether a rule is off or an error depends on the
+/// set-up.
 enum class Severity : uint8_t { note, warning };
 
-/// A remark about a block that does not stop the program.
+/// A remark about a block that does not stop the program. Traces print it with its line and column;
+/// a check turns it into a core::Finding, with the severity that the set-up gives its rule, which
+/// the interpreter does not know.
 struct Warning {
     Severity severity;
     core::SourceSpan where;

@@ -17,13 +17,11 @@ struct CheckedBlock;
 namespace core {
 struct Setup;
 }
-namespace app {
-struct CheckedBlock;
-}
 
 namespace app::viewer {
 
-/// An executed block as the panels show it. Plain data that can be passed between threads.
+/// An executed block as the panels show it. A copy, because the thread of the window must not read
+/// the record, to which another thread adds blocks; and a small one, without pairs and events.
 struct BlockRow {
     uint32_t line = 0;
     std::string text;
