@@ -39,9 +39,8 @@ std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
     return has_whole_seconds ? 2500ms : 50ms;
 }
 
-bool may_change_unseen(const FileStamp& stamp) {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return stamp.is_there && last_change(stamp) > now - tick_of(stamp);
+bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_point now) {
+    return stamp.is_there && last_change(stamp) > now.time_since_epoch() - tick_of(stamp);
 }
 
 std::filesystem::path place_of(const std::filesystem::path& path) {

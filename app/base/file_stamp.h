@@ -28,7 +28,8 @@ std::chrono::nanoseconds tick_of(const FileStamp& stamp);
 /// Whether the file was written so recently that another write may have left its time stamp
 /// unchanged, so its content may be newer than what was read. Always true for a time in the future,
 /// as from a clock that is ahead, because the true time of writing is unknown.
-bool may_change_unseen(const FileStamp& stamp);
+bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_point now =
+                                                   std::chrono::system_clock::now());
 
 /// The absolute path of a file that exists or will be written, with all links resolved. Empty if it
 /// cannot be determined, as for a loop of links.

@@ -1,3 +1,4 @@
+#include <optional>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using test_support::ScopedFolder;
 
-/// Waits until earlier writes no longer count as just written.
+/// Waits until earlier writes no longer count as just written, and a new one gets another time
+/// stamp.
 void let_it_rest() { std::this_thread::sleep_for(std::chrono::milliseconds(80)); }
 
 class WatchedFilesTest : public testing::Test {
@@ -33,18 +35,12 @@ protected:
         looks();
     }
 
-    /// Writes and scans within the time in which a file counts as just written. On a busy machine
-    /// this may need several attempts.
-    template <typename Action>
-    void in_a_moment(const Action& write_and_look) {
-        using Clock = std::chrono::steady_clock;
-        for (int tries = 0; tries < 1000; ++tries) {
-            files.begin_again();
-            const Clock::time_point begin = Clock::now();
-            write_and_look();
-            if (Clock::now() - begin < std::chrono::milliseconds(20)) return;
-        }
-        FAIL() << "writing a file and looking at it takes more than 20 ms";
+    /// Stops the clock of the files: what is written from now on counts as just written.
+    void stop_the_clock() { stopped = WatchTime::now(); }
+
+    void advance_the_clock(std::chrono::milliseconds time) {
+        stopped->of_day += time;
+        stopped->steady += time;
     }
 
     std::vector<std::string> changed() {
@@ -57,7 +53,9 @@ protected:
     using Names = std::vector<std::string>;
 
     ScopedFolder folder;
-    WatchedFiles files{{folder / "report.json"}};
+    std::optional<WatchTime> stopped; // empty: the clock goes
+    WatchedFiles files{{folder / "report.json"},
+                       [this] { return stopped ? *stopped : WatchTime::now(); }};
 };
 
 TEST_F(WatchedFilesTest, TellOfAFileThatWasWrittenOrReplacedOrTakenAway) {
@@ -141,33 +139,32 @@ TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
 }
 
 TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
-    in_a_moment([&] {
-        folder.write("a.nc", "G0 X2\n");
-        watch([&] { core::file_bytes(folder / "a.nc"); });
-    });
+    stop_the_clock();
+    folder.write("a.nc", "G0 X2\n");
+    watch([&] { core::file_bytes(folder / "a.nc"); });
     EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
 }
 
 TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
-    in_a_moment([&] {
-        folder.write("old.nc", "G0 X2\n");
-        const auto an_hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
-        fs::last_write_time(folder / "old.nc", an_hour_ago);
-        fs::rename(folder / "old.nc", folder / "a.nc");
-        watch([&] { core::file_bytes(folder / "a.nc"); });
-    });
+    stop_the_clock();
+    folder.write("old.nc", "G0 X2\n");
+    const auto now = fs::last_write_time(folder / "old.nc");
+    fs::last_write_time(folder / "old.nc", now - std::chrono::hours(1));
+    fs::rename(folder / "old.nc", folder / "a.nc");
+    watch([&] { core::file_bytes(folder / "a.nc"); });
     EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
 }
 
 TEST_F(WatchedFilesTest, CountATimeToComeOnce) {
+    stop_the_clock();
     const auto look = [&] { core::file_bytes(folder / "a.nc"); };
-    const auto in_an_hour = fs::file_time_type::clock::now() + std::chrono::hours(1);
+    const auto in_an_hour = fs::last_write_time(folder / "a.nc") + std::chrono::hours(1);
     for (const auto seconds : {0, 1}) {
         fs::last_write_time(folder / "a.nc", in_an_hour + std::chrono::seconds(seconds));
         files.begin_again();
         watch(look);
         EXPECT_EQ(changed(), Names{"a.nc"}) << "nobody knows when it was written";
-        let_it_rest();
+        advance_the_clock(std::chrono::seconds(1));
         files.begin_again();
         watch(look);
         EXPECT_EQ(changed(), Names{});
@@ -177,14 +174,24 @@ TEST_F(WatchedFilesTest, CountATimeToComeOnce) {
 }
 
 TEST_F(WatchedFilesTest, AreNotSettledWhileAFileMayBeWrittenWithoutAnotherTime) {
+    stop_the_clock();
     folder.write("a.nc", "G0 X2\n");
-    const auto in_an_hour = fs::file_time_type::clock::now() + std::chrono::hours(1);
+    const auto in_an_hour = fs::last_write_time(folder / "a.nc") + std::chrono::hours(1);
     fs::last_write_time(folder / "a.nc",
                         std::chrono::time_point_cast<std::chrono::seconds>(in_an_hour));
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    let_it_rest();
-    EXPECT_FALSE(files.look_again().are_files_settled) << "its clock has whole seconds";
-    folder.write("a.nc", "G0 X9\n");
+    advance_the_clock(std::chrono::seconds(2));
+    EXPECT_FALSE(files.look_again().are_files_settled) << "its time stamps may have steps of 2 s";
+    advance_the_clock(std::chrono::seconds(1));
+    EXPECT_TRUE(files.look_again().are_files_settled);
+}
+
+TEST_F(WatchedFilesTest, AreSettledAtOnceIfAFileThatWasJustWrittenIsWrittenAgain) {
+    stop_the_clock();
+    folder.write("a.nc", "G0 X2\n");
+    watch([&] { core::file_bytes(folder / "a.nc"); });
+    EXPECT_FALSE(files.look_again().are_files_settled);
+    folder.write("a.nc", "G0 X2\nG1 X5\n");
     files.look_again();
     EXPECT_TRUE(files.look_again().are_files_settled) << "what has changed is checked at once";
 }

@@ -44,7 +44,12 @@ std::vector<std::string> each_once(const std::vector<std::string>& paths) {
 
 } // namespace
 
-WatchedFiles::WatchedFiles(const std::vector<std::string>& own) {
+WatchTime WatchTime::now() {
+    return {std::chrono::system_clock::now(), std::chrono::steady_clock::now()};
+}
+
+WatchedFiles::WatchedFiles(const std::vector<std::string>& own, std::function<WatchTime()> clock)
+    : clock_(std::move(clock)) {
     for (const std::string& path : own) add_own(path);
 }
 
@@ -79,14 +84,14 @@ std::string WatchedFiles::names_of(const std::string& folder) const {
 /// Whether a file may be written again without a new time stamp. A stamp in the future would always
 /// count as fresh, so the time since it was first seen decides.
 bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& stamp) {
-    if (!may_change_unseen(stamp)) {
+    const WatchTime now = clock_();
+    if (!may_change_unseen(stamp, now.of_day)) {
         fresh_.erase(path);
         return false;
     }
-    const auto now = std::chrono::steady_clock::now();
-    Seen& seen = fresh_.try_emplace(path, Seen{stamp, now}).first->second;
-    if (seen.stamp != stamp) seen = {stamp, now};
-    return now - seen.since <= tick_of(stamp);
+    Seen& seen = fresh_.try_emplace(path, Seen{stamp, now.steady}).first->second;
+    if (seen.stamp != stamp) seen = {stamp, now.steady};
+    return now.steady - seen.since <= tick_of(stamp);
 }
 
 WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& asked,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -12,12 +13,22 @@
 
 namespace app {
 
+/// A moment by both clocks: time stamps of files follow the time of day, which may be set.
+struct WatchTime {
+    std::chrono::system_clock::time_point of_day;
+    std::chrono::steady_clock::time_point steady;
+
+    static WatchTime now();
+};
+
 /// The paths that a check has accessed, each with its state at the first access. In listed folders,
 /// names that begin with a dot are ignored.
 class WatchedFiles {
 public:
-    /// `own`: files that the check itself writes; they do not count as changes.
-    explicit WatchedFiles(const std::vector<std::string>& own = {});
+    /// `own`: files that the check itself writes; they do not count as changes. `clock`: called by
+    /// each access to a path.
+    explicit WatchedFiles(const std::vector<std::string>& own = {},
+                          std::function<WatchTime()> clock = WatchTime::now);
 
     /// Adds a file to `own`.
     void add_own(const std::string& path);
@@ -78,6 +89,7 @@ private:
     std::string names_of(const std::string& folder) const;
     static bool differ(const Asked& asked, const Look& a, const Look& b);
 
+    std::function<WatchTime()> clock_;
     std::set<std::string> own_, own_reads_;
     std::map<std::string, Place> places_; // by path
     std::map<std::string, Seen> fresh_;   // by path; also of earlier checks
