@@ -198,7 +198,7 @@ TEST(Prompt, ChangesNothingWhenItIsAskedForNonsense) {
     EXPECT_THAT(talk.fails("step x"), HasSubstr("not a count"));
     EXPECT_THAT(talk.fails("break 999"), HasSubstr("its last line is"));
     EXPECT_THAT(talk.fails("break N999"), HasSubstr("no block N999"));
-    EXPECT_THAT(talk.fails("break somewhere"), HasSubstr("not a place to stop"));
+    EXPECT_THAT(talk.fails("break somewhere"), HasSubstr("not a location"));
     EXPECT_THAT(talk.fails("break other.nc:3"), HasSubstr("no file other.nc"));
     EXPECT_THAT(talk.fails("until clearence < 1"), HasSubstr("nearest name is 'clearance'"));
     EXPECT_THAT(talk.fails("goto block 9999"), HasSubstr("ends after"));

@@ -54,7 +54,7 @@ core::Result<void> read_place(PromptState& state, const std::string& text, Break
     }
     if (first != "line" && !is_location(text))
         return core::fail(ErrorCode::syntax,
-                          fmt::format("'{}' is not a place to stop: write a line (23), a block "
+                          fmt::format("'{}' is not a location: write a line (23), a block "
                                       "(N210), FILE:LINE, a tool (T3), finding, rule NAME, or if "
                                       "CONDITION",
                                       text));

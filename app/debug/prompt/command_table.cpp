@@ -25,19 +25,19 @@ constexpr PromptCommand commands[] = {
     {"reverse-continue", "rc", "[COUNT]", "go back to the previous breakpoint", go_on_back, true},
     {"until", "u", "LINE|CONDITION", "run to a line, or to a block that meets a condition\n"
      "until 120, until N210, until clearance < 1 and rapid", go_until, false},
-    {"goto", "jump", "PLACE", "go forwards or back to: block 17, line 120, N210, start, end", go_to, false},
+    {"goto", "jump", "LOCATION", "go forwards or back to: block 17, line 120, N210, start, end", go_to, false},
     {"run", "r", "", "run from the beginning to the first breakpoint", run_program, false},
     {"start", "", "", "go to the beginning", start_program, false},
     {"next-finding", "nf", "", "run to the next block that has an error or is not proven clear", go_to_finding, true},
     {"previous-finding", "pf", "", "go back to the previous block that has an error or is not proven clear", go_back_to_finding, true},
     {"next-tool", "nt", "", "run to the next tool change", go_to_tool, true},
     {"previous-tool", "pt", "", "go back to the previous tool change", go_back_to_tool, true},
-    {"break", "b", "[PLACE] [if CONDITION]", "stop before a block\n"
-     "PLACE is a line (23), a block (N210), a line of a subprogram (sub.nc:5), a tool change (T3), "
+    {"break", "b", "[LOCATION] [if CONDITION]", "stop before a block\n"
+     "LOCATION is a line (23), a block (N210), a line of a subprogram (sub.nc:5), a tool change (T3), "
      "finding, or rule NAME. Conditions can use the block (clearance < 1 and rapid, near-miss, "
      "\"clamp-1\", ~ \"G81\") and the control before it (#100 = 5, z < -2, plane = ZX). "
-     "Without PLACE: the current line.", set_breakpoint, false},
-    {"tbreak", "tb", "[PLACE] [if CONDITION]", "like break, but stop only once", set_temporary, false},
+     "Without LOCATION: the current line.", set_breakpoint, false},
+    {"tbreak", "tb", "[LOCATION] [if CONDITION]", "like break, but stop only once", set_temporary, false},
     {"watch", "", "EXPRESSION", "stop when a value of the control changes: z, #100, offset", watch_value, false},
     {"delete", "d", "[ID...]", "remove the given breakpoints and watchpoints, or all", delete_breakpoint, false},
     {"disable", "", "[ID...]", "switch breakpoints and watchpoints off", disable_breakpoint, false},

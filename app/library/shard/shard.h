@@ -7,7 +7,7 @@ namespace app {
 
 struct BatchPlan;
 
-/// A program in the plan of a batch, with what must be equal on all machines.
+/// A program in the plan of a batch, with what must be equal on all computers.
 struct PlannedProgram {
     std::string name;   // path, as in its result
     uintmax_t size = 0; // of the file, bytes; 0 if it cannot be read
@@ -16,7 +16,7 @@ struct PlannedProgram {
     bool operator==(const PlannedProgram&) const = default;
 };
 
-/// The results of one machine for its part of a batch, with the plan of the whole batch.
+/// The results of one computer for its part of a batch, with the plan of the whole batch.
 struct Shard {
     std::string file;    // from which it was read; not stored
     std::string version; // of Feeler: see build_version

@@ -104,7 +104,7 @@ private:
 };
 
 /// The other databases in the folder, of shards and of whole batches, so that a program that moves
-/// to another machine is not checked twice. They are only read; unreadable ones are ignored.
+/// to another computer is not checked twice. They are only read; unreadable ones are ignored.
 class SiblingStores {
 public:
     /// Opens those next to `path`, the database of `own`, that exist now. A database that stays

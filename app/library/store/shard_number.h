@@ -25,7 +25,7 @@ std::string text_of(const ShardId& share);
 core::Result<ShardId> share_named(const std::string& text);
 
 /// The sorted indices of the programs of a shard. Depends only on the sizes and their order, so all
-/// machines agree: in order of decreasing size, each program goes to the shard with the fewest
+/// computers agree: in order of decreasing size, each program goes to the shard with the fewest
 /// bytes so far.
 std::vector<size_t> share_of(std::span<const uintmax_t> sizes, const ShardId& share);
 
