@@ -99,8 +99,8 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
         ->check(CLI::IsMember({"text", "json", "csv"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
-    auto* vcd = command.add_option("--vcd", options->vcd,
-                                   "Write the signals of the device to this file, for GTKWave");
+    auto* vcd = command.add_option(
+        "--vcd", options->vcd, "Write the signals of the coprocessor to this file, for GTKWave");
     auto* from = command.add_option("--from", options->from, "First block for --vcd")
                      ->needs(vcd)
                      ->check(CLI::NonNegativeNumber);
@@ -110,7 +110,7 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--past-refusals", options->past_refusals,
                      "Run refused blocks as if the operator had allowed them");
     command.add_flag("--no-fit", options->no_fit,
-                     "Do not search for the smallest sufficient device");
+                     "Do not search for the smallest sufficient coprocessor");
     command.callback([options, &exit_code] {
         auto done = coproc(*options);
         exit_code = done ? *done : failed(done.error());

@@ -140,9 +140,10 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
 
 core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& place) {
     if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{} is not a valid allowance: it must be from 0 to 1000 mm",
-                                      number_text(*change.distance)));
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{} is not a valid minimum clearance: it must be from 0 to 1000 mm",
+                        number_text(*change.distance)));
     setup.allowance = change.distance;
     setup.search_limit = core::search_limit_of(setup);
     forget_bounds(place.machine);
@@ -199,8 +200,8 @@ std::string text(const OtherWorkOffset& change) {
 }
 
 std::string text(const OtherAllowance& change) {
-    if (!change.distance) return "the allowances are the default ones";
-    return fmt::format("the allowance is {} mm", number_text(*change.distance));
+    if (!change.distance) return "the minimum clearances are the default ones";
+    return fmt::format("the minimum clearance is {} mm", number_text(*change.distance));
 }
 
 std::string text(const MovedFixture& change) {

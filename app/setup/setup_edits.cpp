@@ -86,10 +86,10 @@ std::vector<EditRefusal> refusals_of(const SetupEdits& edits) {
     for (const auto& [number, stated] : edits.tools) check_tool(stated.tool, refused);
     if (edits.allowance
         && !(*edits.allowance >= 0.0 && *edits.allowance <= core::largest_allowance))
-        refused.push_back(
-            {{},
-             "allowance",
-             fmt::format("an allowance must be between 0 and {:g} mm", core::largest_allowance)});
+        refused.push_back({{},
+                           "allowance",
+                           fmt::format("a minimum clearance must be between 0 and {:g} mm",
+                                       core::largest_allowance)});
     return refused;
 }
 

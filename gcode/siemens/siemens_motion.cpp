@@ -49,14 +49,16 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
     const double start_point[2] = {from[0], from[1]}, end_point[2] = {to[0], to[1]};
     const double centre_point[2] = {centre[0], centre[1]};
     const double radius = std::hypot(from[0] - centre[0], from[1] - centre[1]);
-    const double difference = std::abs(radius - std::hypot(to[0] - centre[0], to[1] - centre[1]));
+    const double end_radius = std::hypot(to[0] - centre[0], to[1] - centre[1]);
     const ArcTolerance& allowed = execution.dialect.arc;
-    if (radius < 1e-9 || difference > std::max(allowed.absolute_mm, allowed.relative * radius))
-        return refuse(execution,
-                      fmt::format("the radius of the arc is {:.4f} mm at its start and differs by "
-                                  "{:.4f} mm at its end",
-                                  radius, difference),
-                      wrong_arc);
+    if (radius < 1e-9
+        || std::abs(radius - end_radius) > std::max(allowed.absolute_mm, allowed.relative * radius))
+        return refuse(
+            execution,
+            fmt::format("the radius of the arc is {:.4f} mm at its start and {:.4f} mm at "
+                        "its end",
+                        radius, end_radius),
+            wrong_arc);
     const double angle = arc_angle(start_point, end_point, centre_point, turns);
     std::optional<double> path;
     const auto &rise_from = modal.position[axes.normal], &rise_to = end[axes.normal];

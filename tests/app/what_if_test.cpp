@@ -293,7 +293,7 @@ TEST(WhatIf, IsSaidAsAPersonWould) {
     EXPECT_EQ(text_of(app::OtherToolLength{ToolNumber{3}, 95.0}), "T3 is 95 mm long");
     EXPECT_EQ(text_of(app::OtherLengthOffset{OffsetNumber{3}, 95.5}), "H3 is 95.5 mm");
     EXPECT_EQ(text_of(app::OtherWorkOffset{6, 2, -4.0}), "G59.1 has its origin at Z-4");
-    EXPECT_EQ(text_of(app::OtherAllowance{1.0}), "the allowance is 1 mm");
+    EXPECT_EQ(text_of(app::OtherAllowance{1.0}), "the minimum clearance is 1 mm");
     EXPECT_EQ(text_of(app::MovedFixture{"clamp-1", {0.0, 10.0, -2.0}}),
               "clamp-1 is moved by 10 mm along Y, -2 mm along Z");
 }

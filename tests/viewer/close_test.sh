@@ -72,7 +72,7 @@ close 'while it goes to the last block'
 open_raster
 expect 'is open' 'block 0 of'
 press n
-close 'while it searches for the next violation'
+close 'while it searches for the next problem'
 
 open_raster
 expect 'is open' 'block 0 of'

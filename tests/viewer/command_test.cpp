@@ -38,6 +38,6 @@ TEST(Command, KeysAreThoseThatAreKnownFromElsewhere) {
     EXPECT_EQ(command_of(key::of('N'), mod::alt), std::nullopt);
 }
 
-TEST(Command, TipNamesTheKey) { EXPECT_EQ(tip_of(Command::next_offending), "Next violation (N)"); }
+TEST(Command, TipNamesTheKey) { EXPECT_EQ(tip_of(Command::next_offending), "Next problem (N)"); }
 
 } // namespace

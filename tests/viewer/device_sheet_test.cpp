@@ -64,7 +64,7 @@ TEST(DeviceSheet, NamesThePairOfWhatIsRefused) {
 TEST(DeviceSheet, NamesTheFaultOfADeviceThatHasStopped) {
     MadeAnswer answer = viewer_test::refused();
     answer.stop = hwsim::Stop::stack_overflow;
-    EXPECT_EQ(sheet_of(answer).answer, "The device has stopped: stack-overflow");
+    EXPECT_EQ(sheet_of(answer).answer, "The coprocessor has stopped: stack-overflow");
 }
 
 TEST(DeviceSheet, SaysWhyABlockCannotBeAsked) {
@@ -139,7 +139,7 @@ TEST(DeviceStatus, TellsWhatGoesOn) {
     EXPECT_EQ(device_status(model), "") << "the answers are there";
     EXPECT_EQ(value_of(device_sheet(model), "sufficient"), "searching: 50 %");
     model.device.study = nullptr;
-    EXPECT_EQ(device_status(model), "Loading the stock into the device \xE2\x80\xA6");
+    EXPECT_EQ(device_status(model), "Loading the stock into the coprocessor \xE2\x80\xA6");
     model.device.blocks = 7;
     EXPECT_EQ(device_status(model), "Checking block 7 \xE2\x80\xA6 50 %");
     model.device.failure = core::Error{core::ErrorCode::invalid_value, {3, 1}, "must be above 0"};

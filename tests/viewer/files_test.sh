@@ -42,7 +42,7 @@ still 01-before
 
 # The last line but one changes: current line, camera and breakpoint stay.
 sed -i 's/^M30$/G4 P0.2\nM30/' "$program"
-expect 'a saved program is reloaded at the same line' 'line 44 \(block 38 of 46, violation\)'
+expect 'a saved program is reloaded at the same line' 'line 44 \(block 38 of 46, problem\)'
 convert "$pictures/01-before.png" -crop 760x600+380+110 "$work/before.png"
 # True once the check has reached the block and the message is gone.
 is_as_before() {

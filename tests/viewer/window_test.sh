@@ -28,7 +28,7 @@ press Home
 expect 'Home goes to the beginning' 'block 0 of'
 
 press n
-expect 'N goes to the first violation' 'line 44 \(block 38 of 45, violation\)'
+expect 'N goes to the first problem' 'line 44 \(block 38 of 45, problem\)'
 still 03-violation
 press f
 shows 04-closest-pair 'F shows the closest pair' differ 03-violation 04-closest-pair
@@ -62,7 +62,7 @@ press Escape
 picture 06-filter-cleared
 
 xdotool mousemove 1198 810 click 1
-expect 'a click on the timeline goes to its block' 'block 38 of 45, violation'
+expect 'a click on the timeline goes to its block' 'block 38 of 45, problem'
 xdotool mousemove 640 810 mousedown 1 mousemove 500 810 mousemove 400 810 mouseup 1
 expect 'dragging scrubs back' 'block 1[23] of 45'
 frames # process the release before the mouse moves on
@@ -85,7 +85,7 @@ shows 10-small 'a smaller window is filled to its edge' is_filled 10-small
 xdotool windowsize "$window" 1440 900
 shows 10-large 'a larger window is drawn' differ 10-small 10-large 100000
 click 1198 810
-expect 'clicks hit the right block after a change of size' 'block 38 of 45, violation'
+expect 'clicks hit the right block after a change of size' 'block 38 of 45, problem'
 press 1
 picture 11-top
 press F12

@@ -133,12 +133,12 @@ CommandResult go_to(PromptState& state, const std::string& arguments) {
 
 CommandResult go_to_finding(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.next_finding(), "violation");
+    return text + told_of_search(state, state.session.next_finding(), "problem");
 }
 
 CommandResult go_back_to_finding(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.previous_finding(), "violation");
+    return text + told_of_search(state, state.session.previous_finding(), "problem");
 }
 
 CommandResult go_to_tool(PromptState& state, const std::string& arguments) {

@@ -71,8 +71,9 @@ std::string html_summary(const CheckRun& run) {
     rows += row("blocks", fmt::format("{}, {} with motion", run.blocks.size(), moving));
     rows += row("cycle time", duration_text(run.cycle_time));
     rows += row("removed", fmt::format("{:.1f} mm\xC2\xB3", run.removed));
-    rows += row("allowance", run.setup.allowance ? fmt::format("{} mm", *run.setup.allowance)
-                                                 : "the default of each pair of bodies");
+    rows +=
+        row("minimum clearance", run.setup.allowance ? fmt::format("{} mm", *run.setup.allowance)
+                                                     : "the default of each pair of bodies");
     rows += row("dialect", std::string(gcode::dialect(run.dialect).name));
     rows += row("engine", name_of(run.engine));
     if (run.comparison) rows += row("part", facts_of(*run.comparison, run.setup.part->tolerance));

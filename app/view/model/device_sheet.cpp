@@ -67,7 +67,7 @@ std::string answer_words(const Subject& subject) {
     case DeviceAnswer::refused:
         return subject.block().permit.stop == hwsim::Stop::violation
                    ? why() + " come closer than allowed"
-                   : "The device has stopped: " + why();
+                   : "The coprocessor has stopped: " + why();
     case DeviceAnswer::not_asked:
         return "Not permitted: " + why();
     }
@@ -195,12 +195,12 @@ DevicePart run_part(const ViewModel& model) {
     add_stops(study, part);
     part.lines.push_back({"latency p50", time_text(study.figures->p50)});
     part.lines.push_back({"latency max", time_text(study.figures->longest)});
-    part.lines.push_back({"device busy", percent(study.figures->busy_share)});
+    part.lines.push_back({"busy", percent(study.figures->busy_share)});
     if (study.agreement->missed > 0)
         part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
     part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});
-    part.lines.push_back({"device", fmt::format("{} x {}, {} MHz", device.elements, device.threads,
-                                                device.clock_mhz)});
+    part.lines.push_back({"coprocessor", fmt::format("{} x {}, {} MHz", device.elements,
+                                                     device.threads, device.clock_mhz)});
     const auto best = smallest(study.result->fits);
     std::string enough = "none of those tried";
     if (model.device.is_running)
@@ -238,7 +238,8 @@ DeviceSheet device_sheet(const ViewModel& model) {
 std::string device_status(const ViewModel& model) {
     const DeviceModel& device = model.device;
     if (!model.changes.empty())
-        return "A what-if is in effect, but the device runs the program as the files describe it. "
+        return "A what-if is in effect, but the coprocessor runs the program as the files describe "
+               "it. "
                "Undo the what-if, or enter the change in the set-up.";
     if (device.failure) {
         std::string words = device.failure->message;
@@ -249,7 +250,7 @@ std::string device_status(const ViewModel& model) {
     }
     if (!model.program) return "Waiting for the program \xE2\x80\xA6";
     if (!device.is_running || device.study) return {};
-    if (device.blocks == 0) return "Loading the stock into the device \xE2\x80\xA6";
+    if (device.blocks == 0) return "Loading the stock into the coprocessor \xE2\x80\xA6";
     return fmt::format("Checking block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
                        100.0 * device.share);
 }

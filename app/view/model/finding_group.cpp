@@ -187,7 +187,7 @@ Notes notes_in(const std::string& text) {
 }
 
 std::string text_of(const Notes& notes) {
-    std::string text = "# Notes on findings, written by feeler view.\n";
+    std::string text = "# Comments on findings, written by feeler view.\n";
     for (const FindingNote& note : notes)
         text += fmt::format(
             "\n[[note]]\nprogram = {}\nrule = {}\npart = {}\nbody = {}\nfile = {}\nline = {}\n"

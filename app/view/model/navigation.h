@@ -24,7 +24,7 @@ void step_over(ViewModel& model, bool forward);
 /// Goes to the block after the call of the current subprogram.
 void step_out(ViewModel& model);
 
-/// Goes to the next or previous violation. While the check still runs, waits for one and goes there
+/// Goes to the next or previous problem. While the check still runs, waits for one and goes there
 /// as soon as it is found. False: there is none.
 bool go_to_offending(ViewModel& model, bool forward);
 /// Goes to the awaited violation if the check has found it. False: there is none.

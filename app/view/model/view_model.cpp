@@ -191,15 +191,15 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
 }
 
 std::string no_violation(const ViewModel& model) {
-    if (!model.is_recorded) return "No violation found yet";
+    if (!model.is_recorded) return "No problem found yet";
     const bool is_judged = std::all_of(model.rows.begin(), model.rows.end(), [](const auto& row) {
         return !moves(row) || (row.is_known && row.is_judged);
     });
     if (model.stopped)
-        return fmt::format("No violation up to line {}, where the check stopped",
+        return fmt::format("No problem up to line {}, where the check stopped",
                            model.stopped->where.line);
-    return is_judged ? "There is no violation"
-                     : "No violation in the checked blocks; blocks marked ? cannot be checked";
+    return is_judged ? "No problem found"
+                     : "No problem in the checked blocks; blocks marked ? cannot be checked";
 }
 
 void say(ViewModel& model, const std::string& text, double now) {

@@ -150,7 +150,7 @@ struct ViewModel {
     Popup popup = Popup::none;
     std::string message; // shown for some seconds
     double message_until = 0.0;
-    bool awaits_offending = false;   // go to the next violation once one is found
+    bool awaits_offending = false;   // go to the next problem once one is found
     std::optional<uint64_t> walking; // number of the walk whose end is awaited
     bool wants_interrupt = false;    // of walks that are no longer awaited
     bool list_follows = true;        // the list scrolls to the cursor in the next frame
@@ -182,7 +182,7 @@ void stay(ViewModel& model);
 /// Applies an update of the worker. `now`: seconds, for the display of messages.
 void take_in(ViewModel& model, SessionUpdate news, double now);
 
-/// The message that there is no violation, and how much was checked.
+/// The message that there is no problem, and how much was checked.
 std::string no_violation(const ViewModel& model);
 
 /// Shows a message at the bottom of the view for some seconds.

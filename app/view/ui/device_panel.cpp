@@ -46,7 +46,7 @@ void draw_status(Frame& frame) {
     const DeviceModel& device = frame.model.device;
     if (device.failure)
         text(frame.fonts.strong, frame.look.color(Role::violation),
-             std::string(frame.fonts.icon(Icon::warning)) + "  The device cannot be run");
+             std::string(frame.fonts.icon(Icon::warning)) + "  The coprocessor cannot be run");
     wrapped_text(frame.fonts.text, frame.look.color(device.failure ? Role::text : Role::dim),
                  status);
     if (device.is_running)

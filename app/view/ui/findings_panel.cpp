@@ -98,7 +98,7 @@ void FindingsPanel::draw_note(Frame& frame, const StretchPlace& place) {
     }
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - frame.px(10));
     if (std::exchange(model.note_wants_focus, false)) ImGui::SetKeyboardFocusHere();
-    ImGui::InputTextWithHint("##note", "Note on this finding (R)", &typed_);
+    ImGui::InputTextWithHint("##note", "Comment on this finding (R)", &typed_);
     if (ImGui::IsItemDeactivatedAfterEdit()) write_note_at(model, place, typed_);
 }
 
@@ -167,7 +167,7 @@ void FindingsPanel::draw(Frame& frame, const Area& area) {
     draw_list_tabs(frame);
     ImGui::Dummy(ImVec2(0, frame.px(6)));
     wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
-                 "Ctrl+Down, Ctrl+Up: next, previous \xC2\xB7 R: note \xC2\xB7 V: lines");
+                 "Ctrl+Down, Ctrl+Up: next, previous \xC2\xB7 R: comment \xC2\xB7 V: lines");
     ImGui::BeginChild("groups", ImVec2(area.width - frame.px(18), 0), false,
                       ImGuiWindowFlags_NoNav);
     if (model.groups.empty())

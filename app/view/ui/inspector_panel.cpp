@@ -7,6 +7,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/sim/run/finding_text.h"
 
 namespace app::viewer {
 namespace {
@@ -41,7 +42,8 @@ std::string sentence_of(const ViewModel& model, const BlockRow& row) {
     if (!row.is_judged) return "this motion cannot be checked";
     if (!row.upper) return "nothing within the search limit";
     const std::string unit = length_unit(model);
-    const std::string allowance = "allowance " + length_at_most(model, *row.allowance) + " " + unit;
+    const std::string allowance =
+        "minimum clearance " + length_at_most(model, *row.allowance) + " " + unit;
     if (row.verdict == core::Verdict::collision) return allowance + " \xC2\xB7 collision";
     const double margin = *row.lower - *row.allowance;
     if (margin >= -core::resolution)
@@ -87,9 +89,8 @@ void draw_pair(Frame& frame) {
     value_row(frame, "Tool side", row.part);
     value_row(frame, "Obstacle", row.body);
     if (row.duration > 0.0)
-        value_row(frame, "At",
-                  fmt::format("{:.0f} % of block",
-                              std::clamp(100.0 * row.witness_time / row.duration, 0.0, 100.0)));
+        value_row(frame, "When",
+                  core::moment_text(std::clamp(row.witness_time / row.duration, 0.0, 1.0)));
     value_row(frame, "Bounds",
               fmt::format("{} \xE2\x80\xA6 {} {}", length_at_least(frame.model, *row.lower, 3),
                           length_at_most(frame.model, *row.upper, 3), length_unit(frame.model)));

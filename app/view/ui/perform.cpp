@@ -31,7 +31,7 @@ void zoom(ViewModel& model, double factor) {
 
 void find_offending(ViewModel& model, bool forward, double now) {
     if (!go_to_offending(model, forward)) return say(model, no_violation(model), now);
-    if (model.awaits_offending) say(model, "Waiting for the next violation to be found", now);
+    if (model.awaits_offending) say(model, "Waiting for the next problem to be found", now);
 }
 
 void step_findings(ViewModel& model, bool forward, double now) {

@@ -227,7 +227,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
                  fmt::format("Takes effect from block {} on; earlier blocks do not change.",
                              model.cursor.block));
     draw_lengths(frame, setup);
-    row_name(frame, "Allowance");
+    row_name(frame, "Minimum clearance");
     if (length_to_try(frame, "allowance", allowance_))
         model.wanted_change = OtherAllowance{allowance_};
     if (!setup.fixtures.empty()) draw_fixture(frame, setup);

@@ -410,7 +410,7 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
 
 void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
                           const std::vector<EditRefusal>& refused) {
-    text(frame.fonts.strong, frame.look.color(Role::text), "Allowance");
+    text(frame.fonts.strong, frame.look.color(Role::text), "Clearance");
     source_mark(frame, shown.allowance_source, true);
     field_name(frame, "Minimum clearance");
     bool is_usual = !wanted.allowance;

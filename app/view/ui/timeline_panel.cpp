@@ -152,7 +152,7 @@ void draw_allowance(Frame& frame, ImDrawList& list, const Bars& bars, double all
     for (float x = bars.area.x; x < bars.area.x + bars.area.width; x += frame.px(8))
         list.AddLine({x, y}, {std::min(x + frame.px(4.5), bars.area.x + bars.area.width), y}, color,
                      1.2F);
-    const std::string words = "allowance " + length_at_most(frame.model, allowance);
+    const std::string words = "minimum clearance " + length_at_most(frame.model, allowance);
     ImFont* const font = frame.fonts.small;
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
     const ImVec2 at(bars.area.x + frame.px(6), y - size.y - frame.px(1));

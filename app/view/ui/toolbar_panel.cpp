@@ -56,10 +56,10 @@ void draw_walk(Frame& frame) {
 void draw_stops(Frame& frame) {
     const bool none = frame.model.is_recorded && frame.model.offending.empty();
     ImGui::BeginDisabled(none);
-    if (word_button(frame, Icon::warning, "Prev", true, "Previous violation (Shift+N)"))
+    if (word_button(frame, Icon::warning, "Prev", true, "Previous problem (Shift+N)"))
         frame.perform(Command::previous_offending);
     ImGui::SameLine();
-    if (word_button(frame, Icon::warning, "Next", false, "Next violation (N)"))
+    if (word_button(frame, Icon::warning, "Next", false, "Next problem (N)"))
         frame.perform(Command::next_offending);
     ImGui::EndDisabled();
 }

@@ -487,7 +487,7 @@ std::string window_title(const ViewModel& model) {
     std::string title = std::filesystem::path(model.program->program).filename().string();
     if (model.has_rows())
         title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
-                             model.rows.size() - 1, is_offending(model.row()) ? ", violation" : "");
+                             model.rows.size() - 1, is_offending(model.row()) ? ", problem" : "");
     title += device_words(model);
     if (!model.missing.empty()) title += ", file missing or empty";
     if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);

@@ -50,7 +50,7 @@ void keep_notes(ViewModel& model, const std::filesystem::path& path, const Setup
     std::filesystem::create_directories(path.parent_path(), ignored);
     model.notes = merged(notes_in(read_text(path).value_or("")), model.notes, notes_key(model));
     const auto written = write(path, text_of(model.notes));
-    if (!written) say(model, "The note could not be saved: " + written.error().message, now);
+    if (!written) say(model, "The comment could not be saved: " + written.error().message, now);
 }
 
 } // namespace app::viewer

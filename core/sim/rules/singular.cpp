@@ -81,10 +81,11 @@ std::optional<Finding> singular_orientation(const Machine& machine, const Motion
     if (seen.turn >= far_turn && seen.turn > turn_per_lean * seen.lean
         && seen.way < way_per_degree * seen.turn) {
         finding.message =
-            fmt::format("Near the pole: {} turns {:.1f} degrees while the tip moves {:.3f} mm and "
+            fmt::format("Near a singular orientation: {} turns {:.1f} degrees while the tip moves "
+                        "{:.3f} mm and "
                         "the tool tilts by {:.2f} degrees. Meanwhile the tool dwells in the cut.",
                         axis_letters[seen.axis], seen.turn, seen.way, seen.lean);
-        finding.cure = "Tilt the tool or the work a few degrees farther away from the pole, or "
+        finding.cure = "Tilt the tool or the work a few degrees farther away from it, or "
                        "retract before the axis swings round.";
         return finding;
     }

@@ -116,12 +116,6 @@ std::string rapid_into_stock(const std::string& part, MoveWithin within) {
     return fmt::format("Rapid into material: the {} collides with the stock{}.", part, whose);
 }
 
-/// When in the block it happens, at fraction `at` of its duration.
-std::string how_far(double at) {
-    if (at < 0.005) return "at the start of the block";
-    return fmt::format("after {:.0f} % of the block", 100.0 * at);
-}
-
 std::string message_of(const PairClearance& pair, const std::string& rule, const BlockMove& move,
                        const std::string& part, const std::string& body, double at) {
     const char* kind = move.only_dog_leg ? "On a straight line this rapid would be clear, but the "
@@ -133,7 +127,7 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
     if (rule == "spindle-off")
         return "The flutes meet the stock while the spindle is stopped or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
-        return fmt::format("{} {} collides with {} {}.", kind, part, body, how_far(at));
+        return fmt::format("{} {} collides with {} {}.", kind, part, body, moment_text(at));
     const double keep = pair.allowance.distance;
     const int digits = digits_below(pair.upper, keep);
     if (pair.verdict == Verdict::violation)
@@ -192,6 +186,11 @@ double shortfall_of(const PairClearance& pair) {
 }
 
 } // namespace
+
+std::string moment_text(double fraction) {
+    if (fraction < 0.005) return "at the start of the block";
+    return fmt::format("after {:.0f} % of the block", 100.0 * fraction);
+}
 
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                    const SimulatorState& state) {

@@ -20,6 +20,9 @@ struct BlockMove {
     MoveWithin within = MoveWithin::nothing;
 };
 
+/// When in a block something happens, after a fraction of its duration.
+std::string moment_text(double fraction);
+
 /// The finding for a pair below its allowance in a block, with its cure.
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                    const SimulatorState& state);
