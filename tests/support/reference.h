@@ -24,13 +24,17 @@ inline bool reference_is_installed() {
     return std::filesystem::exists("/usr/bin/rs274") && std::filesystem::exists("/usr/bin/python3");
 }
 
-/// Runs programs, whose lines must end in M2, with LinuxCNC's interpreter.
-inline std::vector<ReferenceRun> run_reference(const std::vector<std::string>& programs) {
+/// Runs programs, whose lines must end in M2, with LinuxCNC's interpreter. Some of its cycles never
+/// end: the programs at the indices `may_be_endless` count as refused after a short time.
+inline std::vector<ReferenceRun> run_reference(const std::vector<std::string>& programs,
+                                               const std::vector<size_t>& may_be_endless = {}) {
     const ScopedFolder folder;
     std::string all;
     for (const std::string& program : programs) all += (all.empty() ? "" : "---\n") + program;
     const std::string script = FEELER_SOURCE_DIR "/tests/support/reference.py";
-    const Ran ran = run({"/usr/bin/python3", script, folder.write("programs", all)});
+    std::vector<std::string> command = {"/usr/bin/python3", script, folder.write("programs", all)};
+    for (const size_t index : may_be_endless) command.push_back(std::to_string(index));
+    const Ran ran = run(command);
     std::vector<ReferenceRun> runs;
     std::istringstream lines(ran.out);
     for (std::string line; std::getline(lines, line);) {

@@ -1,7 +1,10 @@
 #!/usr/bin/python3
 """Runs programs through LinuxCNC's interpreter and prints the motions of each, in mm.
 
-usage: reference.py FILE, with the programs separated by lines that say ---
+usage: reference.py FILE [INDEX...]
+
+FILE holds the programs, separated by lines that say ---. Those with an INDEX may never end, and count as
+refused after a short time. All others have as much time as any machine needs.
 """
 import ctypes
 import os
@@ -12,6 +15,7 @@ import sys
 import tempfile
 
 MM = 25.4
+PATIENCE, SHORT_PATIENCE = 300.0, 0.5  # seconds of the processor
 STRAIGHT = {"straight_traverse", "straight_feed", "rigid_tap"}
 
 
@@ -66,11 +70,13 @@ def main():
         import gcode
         with open(sys.argv[1]) as file:
             programs = file.read().split("---\n")
-        for text in programs:
+        endless = {int(index) for index in sys.argv[2:]}
+        for index, text in enumerate(programs):
             print("program", flush=True)
             child = os.fork()  # the state left by a program must not affect the next
             if child == 0:
-                signal.setitimer(signal.ITIMER_VIRTUAL, 0.2)  # some cycles never finish
+                limit = SHORT_PATIENCE if index in endless else PATIENCE
+                signal.setitimer(signal.ITIMER_VIRTUAL, limit)  # clock: ends only what never ends
                 sys.stdout = os.fdopen(os.dup(1), "w")  # some of them print as well
                 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
                 os.dup2(1, 2)

@@ -132,7 +132,7 @@ def module_calls(gcode, path, rows, folder, seconds):
     answer = folder + '/answer'
     child = os.fork()
     if child == 0:
-        signal.alarm(seconds)
+        signal.alarm(seconds)  # clock: 180 s, ends only what never ends
         silent = os.open(os.devnull, os.O_WRONLY)
         os.dup2(silent, 1)
         os.dup2(silent, 2)
@@ -157,7 +157,7 @@ def rs_calls(path, folder, seconds):
     out = folder + '/out'
     try:
         ran = subprocess.run(['/usr/bin/rs274', '-t', folder + '/tool.tbl', '-v',
-                              folder + '/rs.var', '-g', path, out], timeout=seconds,
+                              folder + '/rs.var', '-g', path, out], timeout=seconds,  # clock: as above
                              stdin=subprocess.DEVNULL, capture_output=True, cwd=folder)
     except subprocess.TimeoutExpired:
         return [], ('endless', 0, ''), []
