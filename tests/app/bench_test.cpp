@@ -105,8 +105,6 @@ TEST(Bench, FindsTheSameDistanceByBothEnginesNeverNearerThanTheTruth) {
             EXPECT_LT(row.paper.distance, row.separation + 0.2) << where;
             EXPECT_GT(row.paper.node_tests, row.paper.point_tests) << where;
             EXPECT_GT(row.fast.node_tests, 0u) << where;
-            EXPECT_GT(row.paper.seconds, 0.0) << where;
-            EXPECT_GT(row.fast.seconds, 0.0) << where;
         }
     }
 }
