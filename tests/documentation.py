@@ -173,6 +173,17 @@ def section_of(text, heading):
     return re.split(r"^## ", parts[1], flags=re.M)[0] if len(parts) > 1 else ""
 
 
+def undocumented_arguments(help_text, section):
+    """Positional arguments in the help of a subcommand that the synopsis, in capitals, lacks.
+
+    An argument with a choice of words may stand there as one of them."""
+    synopsis = re.search(r"^    feeler .*$", section, flags=re.M)
+    words = set(re.findall(r"\w+", synopsis.group())) if synopsis else set()
+    for name, choices in re.findall(r"^  (\w+) TEXT(?::\{(.*?)\})?", help_text, flags=re.M):
+        if not words.intersection({name.upper(), *choices.split(",")}):
+            yield name.upper()
+
+
 def undocumented(root, feeler):
     """Subcommands and options that --help lists and the command reference does not."""
     def help_of(*arguments):
@@ -186,7 +197,10 @@ def undocumented(root, feeler):
         own = section_of(text, command)
         if not own:
             found.append(f"docs/manual/commands.md: nothing about feeler {command}")
-        for names in re.findall(r"^  (-[^ ]+)", help_of(command), flags=re.M):
+        text_of_help = help_of(command)
+        for name in undocumented_arguments(text_of_help, own):
+            found.append(f"docs/manual/commands.md: feeler {command} takes {name}, which its synopsis lacks")
+        for names in re.findall(r"^  (-[^ ]+)", text_of_help, flags=re.M):
             if not any(re.search(rf"(?<![\w-]){name}(?![\w-])", own + shared) for name in names.split(",")):
                 found.append(f"docs/manual/commands.md: feeler {command} has {names}, which is not listed")
     return found

@@ -107,7 +107,7 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<MergeOptions>();
     CLI::App& command = *cli.add_subcommand("merge", "Join the results of check --shard");
     command
-        .add_option("shards", options->files,
+        .add_option("shard", options->files,
                     "Files written by check --shard --format shard, one per shard")
         ->required();
     command
