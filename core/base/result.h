@@ -14,6 +14,8 @@ struct SourceSpan {
     uint32_t line = 0;
     uint32_t column = 0;
     uint32_t length = 0;
+
+    bool operator==(const SourceSpan&) const = default;
 };
 
 enum class ErrorCode : uint8_t { io, syntax, unsupported, invalid_value, missing_value };
@@ -24,6 +26,8 @@ struct Error {
     SourceSpan where;
     std::string message; // one sentence that names the word or file at fault; no trailing newline
     std::string file{};  // path as the user gave it; set by the caller that knows it
+
+    bool operator==(const Error&) const = default;
 };
 
 template <typename T>

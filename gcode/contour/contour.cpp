@@ -195,12 +195,6 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
 
 } // namespace
 
-bool Corners::operator==(const Corners& other) const {
-    return asked.has_value() == other.asked.has_value()
-           && word.has_value() == other.word.has_value() && first == other.first
-           && waiting.size() == other.waiting.size();
-}
-
 core::Result<std::vector<ExecutedBlock>> take_for_corners(Corners& corners, ExecutedBlock block) {
     auto ready = take(corners, std::move(block));
     if (!ready) (void)give_up_corners(corners);
@@ -240,13 +234,6 @@ std::optional<FlatPoint> flat(const Position& place, Plane plane) {
     return FlatPoint{*place[axes.first], *place[axes.second]};
 }
 
-Position moved(Position place, Plane plane, FlatPoint to) {
-    const PlaneAxes axes = axes_of(plane);
-    place[axes.first] = to.u;
-    place[axes.second] = to.v;
-    return place;
-}
-
 double feed_of(const CanonicalCommand& command) {
     if (const auto* move = std::get_if<StraightFeed>(&command)) return move->feed;
     if (const auto* move = std::get_if<ArcFeed>(&command)) return move->feed;
@@ -258,7 +245,7 @@ double feed_of(const CanonicalCommand& command) {
 CanonicalCommand command_of(const CompensatedMove& move, const CanonicalCommand& programmed,
                             const Position& start, Plane plane, FlatPoint tip) {
     const Position end =
-        moved(move.rounds_corner ? start : *end_of(programmed), plane, move.end + tip);
+        moved_in_plane(move.rounds_corner ? start : *end_of(programmed), plane, move.end + tip);
     if (move.rapid) return StraightTraverse{end};
     if (!move.arc) return StraightFeed{end, feed_of(programmed)};
     const FlatPoint centre = move.arc->centre + tip;
@@ -435,15 +422,6 @@ core::Result<void> take_all(Contour& contour, const std::vector<ExecutedBlock>& 
 }
 
 } // namespace
-
-bool Contour::operator==(const Contour& other) const {
-    const auto place = [](const Contour& contour) {
-        return contour.path ? std::optional(contour.path->tool) : std::nullopt;
-    };
-    return corners == other.corners && place(*this) == place(other)
-           && pending.size() == other.pending.size() && ready.size() == other.ready.size()
-           && failure.has_value() == other.failure.has_value();
-}
 
 core::Result<void> take_block(Contour& contour, const BlockCommands& block,
                               const ModalState& before, const ModalState& after) {

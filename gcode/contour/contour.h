@@ -20,12 +20,16 @@ struct CornerWord {
     double size = 0.0; // mm
     core::SourceSpan where{};
     std::string written{};
+
+    bool operator==(const CornerWord&) const = default;
 };
 
 /// An executed block and the modal states before and after it.
 struct ExecutedBlock {
     BlockCommands result;
     ModalState before, after;
+
+    bool operator==(const ExecutedBlock&) const = default;
 };
 
 /// The corners of a run. A block that ends in a corner is held back until the next motion is known,
@@ -37,7 +41,7 @@ struct Corners {
     std::vector<ExecutedBlock> waiting{};
 
     bool is_idle() const { return !asked && !word; }
-    bool operator==(const Corners& other) const;
+    bool operator==(const Corners&) const = default;
 };
 
 /// Takes a block and returns the blocks that are now complete, in order. A corner becomes the last
@@ -64,10 +68,14 @@ struct PendingBlock {
         Position start;                        // as programmed
         std::vector<CanonicalCommand> moves{}; // the compensated motion
         bool is_waiting = false;
+
+        bool operator==(const Slot&) const = default;
     };
 
     BlockCommands result;
     std::vector<Slot> slots; // one for each command
+
+    bool operator==(const PendingBlock&) const = default;
 };
 
 /// Corners and cutter radius compensation of a run. Takes blocks as programmed and returns them
@@ -87,7 +95,7 @@ struct Contour {
     bool is_idle() const {
         return corners.is_idle() && !path && pending.empty() && ready.empty() && !failure;
     }
-    bool operator==(const Contour& other) const;
+    bool operator==(const Contour&) const = default;
 };
 
 /// Adds an executed block, with the state before and after it.

@@ -59,6 +59,8 @@ struct RadiusCompensation {
     FlatPoint waiting_way{};    // displacement of the first one, as programmed
     double waiting_angle = 0.0; // angle of the first one, for an arc
     core::SourceSpan waiting_where{};
+
+    bool operator==(const RadiusCompensation&) const = default;
 };
 
 /// Starts the compensation at a tool position; the next move in the plane is its entry.

@@ -1,7 +1,6 @@
 #include "gcode/exec/interpreter.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -17,6 +16,7 @@
 #include "gcode/exec/quick_move.h"
 #include "gcode/exec/statement.h"
 #include "gcode/exec/subprogram.h"
+#include "gcode/language/codes.h"
 #include "gcode/language/language.h"
 #include "gcode/text/source.h"
 
@@ -56,7 +56,7 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
 
 /// Scales lengths and angles without a decimal point to least increments: 0.001 mm, 0.0001 inch,
 /// 0.001 degrees. F, P and counts are not changed.
-void count_smallest_steps(Block& block, const ModalState& modal);
+void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect);
 
 namespace {
 
@@ -226,7 +226,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     }
     if (dialect.decimal_points_matter) {
         if (environment.counts_smallest_steps)
-            count_smallest_steps(block, state.modal);
+            count_smallest_steps(block, state.modal, dialect.id);
         else
             note_points(block, state, result);
     }
@@ -365,16 +365,6 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
 
 InterpreterState::InterpreterState() = default;
 
-bool continue_alike(const InterpreterState& a, const InterpreterState& b) {
-    const auto deciding = [](const InterpreterState& state) {
-        return std::tie(state.modal, state.next, state.next_block, state.tape_open, state.said_unit,
-                        state.said_home, state.said_time, state.points, state.ending, state.frames,
-                        state.modal_macros, state.said, state.parameters, state.tables,
-                        state.contour, state.spline, state.language, state.speaks_iso);
-    };
-    return deciding(a) == deciding(b);
-}
-
 bool holds_blocks_back(const InterpreterState& state) { return !state.contour->is_idle(); }
 
 InterpreterState initial_state(const Environment& environment) {
@@ -419,25 +409,6 @@ std::optional<Warning> ending_warning(const Environment& environment,
     if (state.ending == Ending::text_end || (state.ending == Ending::tape_mark && !proper_mark))
         return Warning{Severity::warning, where, "the program has no M2 or M30 at its end"};
     return std::nullopt;
-}
-
-Run run(const Program& program, const Environment& environment) {
-    Run whole;
-    whole.library = std::make_shared<ProgramLibrary>(program, dialect(environment.dialect),
-                                                     environment.search_path);
-    Interpreter interpreter(*whole.library, environment);
-    whole.state = initial_state(environment);
-    while (true) {
-        auto result = interpreter.next(whole.state);
-        if (!result) {
-            whole.error = std::move(result).error();
-            return whole;
-        }
-        if (!*result) break;
-        whole.blocks.push_back(**result);
-    }
-    whole.ending = ending_warning(environment, whole.state);
-    return whole;
 }
 
 void keep_calls(const InterpreterState& state, BeforeBlock& before) {
@@ -503,8 +474,6 @@ bool has_other_meanings(const Block& block) {
     });
 }
 
-bool is_cycle(double code) { return code >= 73.0 && code <= 89.0 && code != 80.0; }
-
 } // namespace
 
 void note_points(const Block& block, InterpreterState& state, BlockCommands& result) {
@@ -529,13 +498,16 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
     }
 }
 
-void count_smallest_steps(Block& block, const ModalState& modal) {
+void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect) {
     const bool waits = has_code(block, 'G', [](double code) { return code == 4.0; });
     if (waits) return; // X is a time; without a point it is in milliseconds anyway
     const bool to_inch = has_code(block, 'G', [](double code) { return code == 20.0; });
     const bool to_mm = has_code(block, 'G', [](double code) { return code == 21.0; });
     const bool inch = to_inch || (modal.unit == LengthUnit::inch && !to_mm);
-    const bool cycle = modal.cycle || has_code(block, 'G', is_cycle);
+    const bool cycle = modal.cycle || has_code(block, 'G', [&](double number) {
+                           const Code* code = find_code('G', number, dialect);
+                           return code && code->is_cycle();
+                       });
     const bool calls = has_code(block, 'M', [](double code) { return code >= 96.0; });
     const bool turns = has_code(block, 'G', [](double code) { return code == 68.0; });
     for (Word& word : block.words) {

@@ -71,8 +71,6 @@ public:
         return static_cast<StateOf<T>&>(*state_).value;
     }
 
-    bool is_shared_with(const SharedLanguageState& other) const { return state_ == other.state_; }
-
     bool operator==(const SharedLanguageState& other) const {
         return state_ == other.state_ || (state_ && other.state_ && state_->equals(*other.state_));
     }
@@ -123,10 +121,6 @@ struct InterpreterState {
     RuleWatch rules;
 };
 
-/// Whether a program continues identically from two states: everything is equal except the data of
-/// the rules and of the search for endless loops.
-bool continue_alike(const InterpreterState& a, const InterpreterState& b);
-
 /// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.
 bool holds_blocks_back(const InterpreterState& state);
 
@@ -160,16 +154,5 @@ private:
 /// A warning about the end of the program: no M2 or M30.
 std::optional<Warning> ending_warning(const Environment& environment,
                                       const InterpreterState& state);
-
-/// The result of running a whole program, which is not read in windows, to its end or first error.
-struct Run {
-    std::shared_ptr<ProgramLibrary> library; // owns the texts that blocks refer to
-    std::vector<BlockCommands> blocks;
-    std::optional<Warning> ending; // as ending_warning
-    std::optional<core::Error> error;
-    InterpreterState state; // after the last good block
-};
-
-Run run(const Program& program, const Environment& environment);
 
 } // namespace gcode

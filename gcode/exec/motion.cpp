@@ -202,19 +202,10 @@ void place_by_radius_and_angle(const Execution& execution, Position& target) {
     target[axes.second] = polar.origin[1] + radius * turn[0][1];
 }
 
-namespace {
-
-bool moves_in_machine(const Execution& execution) {
-    const CodeWord* action = execution.statement.of(ModalGroup::action);
-    return action && action->code->number == g_code(53);
-}
-
-} // namespace
-
 std::optional<size_t> axis_left_out_of_rotation(const Execution& execution) {
     const ModalState& modal = execution.modal();
     const auto& before = modal.transforms.before_rotation;
-    if (!before || !modal.transforms.rotation || moves_in_machine(execution)
+    if (!before || !modal.transforms.rotation || in_machine_coordinates(execution)
         || modal.distance == DistanceMode::incremental || modal.transforms.polar)
         return std::nullopt;
     const auto normal = static_cast<size_t>(modal.transforms.rotation->normal);

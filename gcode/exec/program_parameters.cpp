@@ -172,7 +172,7 @@ bool is_siemens(const Environment& environment) {
 }
 
 bool is_fanuc(const Environment& environment) {
-    return dialect(environment.dialect).system_parameters >= SystemParameters::fanuc;
+    return remembers_words(dialect(environment.dialect).system_parameters);
 }
 
 } // namespace

@@ -104,9 +104,8 @@ struct Flow {
     core::SourceSpan span{};
     uint32_t label_name = 0; // index into the pool's names; a number is stored as its digits
     bool has_label = false;
-    Expression label;             // o#1 call, o[...] call
-    Expression condition;         // of if, while, repeat; the target of GOTO; the value of return
-    double plain_condition = 0.0; // the condition, if it is a plain number
+    Expression label;     // o#1 call, o[...] call
+    Expression condition; // of if, while, repeat; the target of GOTO; the value of return
     bool has_condition = false;
     std::vector<Expression> arguments{};
 };

@@ -19,10 +19,14 @@ namespace gcode {
 /// mm/min; end points in program coordinates of the offsets active at the command.
 struct StraightTraverse {
     Position end;
+
+    bool operator==(const StraightTraverse&) const = default;
 };
 struct StraightFeed {
     Position end;
     double feed;
+
+    bool operator==(const StraightFeed&) const = default;
 };
 struct ArcFeed {
     Position end;
@@ -30,6 +34,8 @@ struct ArcFeed {
     double centre[2]; // along the plane's first and second axis
     int turns;        // as LinuxCNC: +1 up to one turn counter-clockwise, -2 up to two clockwise
     double feed;
+
+    bool operator==(const ArcFeed&) const = default;
 };
 /// A probing move. It stops at contact, or goes to its end if there is none.
 struct StraightProbe {
@@ -37,77 +43,117 @@ struct StraightProbe {
     double feed;
     bool towards;      // until contact is made; otherwise until it is lost
     bool must_succeed; // missing contact is an error
+
+    bool operator==(const StraightProbe&) const = default;
 };
 /// A feed synchronised with the spindle.
 struct ThreadFeed {
     Position end;
     double pitch;    // mm per revolution
     bool back_again; // G33.1: reverses at the end and returns to its start
+
+    bool operator==(const ThreadFeed&) const = default;
 };
 struct Dwell {
     double seconds;
+
+    bool operator==(const Dwell&) const = default;
 };
 struct SelectTool {
     core::ToolNumber tool;
+
+    bool operator==(const SelectTool&) const = default;
 };
 struct ChangeTool {
     std::optional<core::ToolNumber> tool; // empty: T0, an empty spindle
+
+    bool operator==(const ChangeTool&) const = default;
 };
 /// M61: declares the tool in the spindle.
 struct NameTool {
     std::optional<core::ToolNumber> tool;
+
+    bool operator==(const NameTool&) const = default;
 };
 struct Spindle {
     core::SpindleDirection direction;
     double speed; // rev/min; m/min under G96
+
+    bool operator==(const Spindle&) const = default;
 };
 struct Coolant {
     bool mist, flood;
+
+    bool operator==(const Coolant&) const = default;
 };
 struct SelectPlane {
     Plane plane;
+
+    bool operator==(const SelectPlane&) const = default;
 };
 /// A work offset, G52 or G92 changed, or another work offset was activated.
 struct SetOffset {
     Offsets offsets; // all active offsets after the change
+
+    bool operator==(const SetOffset&) const = default;
 };
 struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
     AxisValues offset;                        // mm and degrees; the length is along Z
     bool follows_tip = false;                 // G43.4, G43.5
+
+    bool operator==(const UseToolLengthOffset&) const = default;
 };
 struct UseSpindleMode {
     bool surface_speed;   // G96; false: G97
     double speed;         // m/min, or rev/min
     double fastest_speed; // rev/min; 0: no limit
+
+    bool operator==(const UseSpindleMode&) const = default;
 };
 struct SetPathMode {
     PathMode mode;
     double tolerance, naive_tolerance; // mm
+
+    bool operator==(const SetPathMode&) const = default;
 };
 enum class OverrideKind : uint8_t { feed, speed, adaptive_feed, feed_hold };
 struct EnableOverride {
     OverrideKind kind;
     bool enabled;
+
+    bool operator==(const EnableOverride&) const = default;
 };
 struct SetOutput {
     int number;
     double value;
     bool is_analog;
     bool with_motion; // with the next motion; otherwise immediately
+
+    bool operator==(const SetOutput&) const = default;
 };
 struct WaitForInput {
     int number;
     bool is_analog;
     double seconds; // 0: does not wait
+
+    bool operator==(const WaitForInput&) const = default;
 };
 /// A message of the program to the operator.
 struct Message {
     std::string text;
+
+    bool operator==(const Message&) const = default;
 };
-struct ProgramStop {};
-struct OptionalStop {};
-struct ProgramEnd {};
+struct ProgramStop {
+    bool operator==(const ProgramStop&) const = default;
+};
+struct OptionalStop {
+    bool operator==(const OptionalStop&) const = default;
+};
+struct ProgramEnd {
+    bool operator==(const ProgramEnd&) const = default;
+};
 
 using CanonicalCommand =
     std::variant<StraightTraverse, StraightFeed, ArcFeed, StraightProbe, ThreadFeed, Dwell,
@@ -140,6 +186,8 @@ struct Warning {
     std::string message;
     std::string_view rule = "program"; // stable name of the rule
     std::string cure{};                // may be empty
+
+    bool operator==(const Warning&) const = default;
 };
 
 /// One block as executed.
@@ -156,6 +204,8 @@ struct BlockCommands {
     std::vector<uint32_t> columns{}; // of the words that produced the commands
     std::vector<Warning> warnings{};
     std::shared_ptr<const std::string> own_text{}; // owns `text` when the windows have moved on
+
+    bool operator==(const BlockCommands&) const = default;
 };
 
 } // namespace gcode

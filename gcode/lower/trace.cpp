@@ -138,29 +138,10 @@ struct Details {
     std::string operator()(const ProgramEnd&) const { return {}; }
 };
 
-std::string to_text(const Warning& warning) {
-    return fmt::format("{}:{}: {}: {}\n", warning.where.line, warning.where.column,
-                       warning.severity == Severity::note ? "note" : "warning", warning.message);
-}
-
 } // namespace
 
 std::string to_text(const CanonicalCommand& command) {
     return std::string(command_name(command)) + std::visit(Details{}, command);
-}
-
-std::string to_text(const Run& run) {
-    std::string text;
-    for (const BlockCommands& block : run.blocks) {
-        for (const CanonicalCommand& command : block.commands)
-            text += fmt::format("{}: {}\n", block.line, to_text(command));
-        for (const Warning& warning : block.warnings) text += to_text(warning);
-    }
-    if (run.ending) text += to_text(*run.ending);
-    if (run.error)
-        text += fmt::format("{}:{}: error: {}\n", run.error->where.line, run.error->where.column,
-                            run.error->message);
-    return text;
 }
 
 } // namespace gcode

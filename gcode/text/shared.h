@@ -27,8 +27,6 @@ public:
         return *value_;
     }
 
-    bool is_shared_with(const Shared& other) const { return value_ == other.value_; }
-
     bool operator==(const Shared& other) const {
         return value_ == other.value_ || *value_ == *other.value_;
     }

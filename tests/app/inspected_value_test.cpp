@@ -6,6 +6,7 @@
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
+#include "tests/support/whole_run.h"
 
 namespace app_test {
 namespace {

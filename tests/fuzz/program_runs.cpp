@@ -13,6 +13,7 @@
 #include "gcode/lower/lowering.h"
 #include "gcode/text/source.h"
 #include "tests/fuzz/chosen_program.h"
+#include "tests/support/same_state.h"
 
 namespace test_support {
 namespace {

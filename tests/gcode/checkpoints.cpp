@@ -44,10 +44,10 @@ size_t memory_of(const InterpreterState& state, const InterpreterState* before) 
     for (const PendingBlock& block : state.contour->pending)
         bytes += memory_of(block.result) + block.slots.size() * sizeof(PendingBlock::Slot);
     for (const BlockCommands& block : state.contour->ready) bytes += memory_of(block);
-    if (!before || !state.parameters.is_shared_with(before->parameters))
+    if (!before || &*state.parameters != &*before->parameters)
         bytes += memory_of(*state.parameters);
-    if (!before || !state.tables.is_shared_with(before->tables)) bytes += memory_of(*state.tables);
-    if (!before || !state.language.is_shared_with(before->language)) bytes += sizeof(KlartextState);
+    if (!before || &*state.tables != &*before->tables) bytes += memory_of(*state.tables);
+    if (!before || state.language.get() != before->language.get()) bytes += sizeof(KlartextState);
     return bytes;
 }
 

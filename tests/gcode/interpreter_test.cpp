@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/gcode/programs.h"
+#include "tests/support/same_state.h"
 
 namespace gcode {
 namespace {
@@ -96,6 +97,16 @@ TEST(Interpreter, LeavesTheStateAloneOnError) {
         EXPECT_GT(result.error().where.column, 0u) << mistake;
         EXPECT_TRUE(continue_alike(state, before)) << mistake;
     }
+}
+
+TEST(Interpreter, DistinguishesStatesByTheirWaitingBlocks) {
+    InterpreterState state = initial_state(known_environment(DialectId::fanuc));
+    state.contour.write().corners.word = CornerWord{};
+    state.contour.write().corners.waiting.emplace_back();
+    InterpreterState other = state;
+    EXPECT_TRUE(continue_alike(state, other));
+    other.contour.write().corners.waiting[0].before.position[0] = 1.0;
+    EXPECT_FALSE(continue_alike(state, other));
 }
 
 TEST(Interpreter, GivesTheSameAgainFromACopiedState) {

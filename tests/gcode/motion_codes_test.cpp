@@ -6,6 +6,7 @@
 #include "gcode/contour/spline.h"
 #include "gcode/lower/lowering.h"
 #include "tests/gcode/programs.h"
+#include "tests/support/same_state.h"
 
 namespace gcode {
 namespace {

@@ -4,10 +4,9 @@
 #include <string>
 #include <string_view>
 
-#include "gcode/exec/interpreter.h"
 #include "gcode/language/environment.h"
-#include "gcode/lower/trace.h"
 #include "gcode/text/source.h"
+#include "tests/support/whole_run.h"
 
 namespace gcode {
 

@@ -6,6 +6,7 @@
 
 #include "gcode/exec/quick_move.h"
 #include "tests/gcode/programs.h"
+#include "tests/support/same_state.h"
 
 namespace gcode {
 namespace {

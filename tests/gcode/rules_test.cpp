@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/gcode/programs.h"
+#include "tests/support/same_state.h"
 
 namespace gcode {
 namespace {

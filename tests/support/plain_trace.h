@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "gcode/exec/interpreter.h"
 #include "gcode/language/environment.h"
 #include "tests/support/plain_command.h"
+#include "tests/support/whole_run.h"
 
 namespace test_support {
 
