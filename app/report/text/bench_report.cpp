@@ -13,8 +13,8 @@ namespace app {
 namespace {
 
 const char* const preface =
-    "The tables behind the figures of Uddin and Yamazaki, Study of Distance Computation between "
-    "Objects Represented by Discrete Boundary Model (2010), and cases that the paper omits.";
+    "The data of the figures in Uddin and Yamazaki, Study of Distance Computation between Objects "
+    "Represented by Discrete Boundary Model (2010), and cases that the paper omits.";
 
 const char* const figures =
     "  Figures 6, 7, 8   table 1.1: error and time by mesh size, time by points\n"
