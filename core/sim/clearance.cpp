@@ -46,7 +46,7 @@ Allowance allowance_of(const Setup& setup, const Pair& pair) {
         if (const auto rule = ruled(setup, part, names_of_body(setup, pair))) return *rule;
     }
     if (pair.fixture) return {setup.allowance.value_or(fixture_distance), 0.0};
-    if (pair.part >= PartKind::holder) return {setup.allowance.value_or(stock_distance), 0.0};
+    if (!is_below_holder(pair.part)) return {setup.allowance.value_or(stock_distance), 0.0};
     return {0.0, default_contact};
 }
 
@@ -63,10 +63,18 @@ bool names_a_kind(std::string_view name) {
 }
 
 const std::string& part_name(const Setup& setup, const Pair& pair) {
-    static const std::string names[] = {name_of(PartKind::flutes), name_of(PartKind::shank),
-                                        name_of(PartKind::holder)};
-    if (pair.part < PartKind::nose) return names[static_cast<size_t>(pair.part)];
-    return setup.machine.bodies[pair.carried].name;
+    static const std::string flutes = name_of(PartKind::flutes), shank = name_of(PartKind::shank),
+                             holder = name_of(PartKind::holder);
+    switch (pair.part) {
+    case PartKind::flutes:
+        return flutes;
+    case PartKind::shank:
+        return shank;
+    case PartKind::holder:
+        return holder;
+    default:
+        return setup.machine.bodies[pair.carried].name;
+    }
 }
 
 const std::string& body_name(const Setup& setup, const Pair& pair) {

@@ -32,6 +32,11 @@ enum class PartKind : uint8_t { flutes, shank, holder, nose, machine };
 
 const char* name_of(PartKind kind);
 
+/// Whether a part belongs to the tool below its holder: it is close to the stock when it cuts.
+constexpr bool is_below_holder(PartKind kind) {
+    return kind == PartKind::flutes || kind == PartKind::shank;
+}
+
 /// One part of a tool assembly. Frame: the tool's tip is the origin, its axis is Z.
 struct ToolPart {
     PartKind kind = PartKind::flutes;

@@ -14,6 +14,20 @@ namespace {
 constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
                                         "G59", "G59.1", "G59.2", "G59.3"};
 
+/// Null for the planes of the secondary axes.
+const char* code_of_plane(Plane plane) {
+    switch (plane) {
+    case Plane::xy:
+        return "G17";
+    case Plane::zx:
+        return "G18";
+    case Plane::yz:
+        return "G19";
+    default:
+        return nullptr;
+    }
+}
+
 bool is_feed(const CanonicalCommand& command) {
     return std::holds_alternative<StraightFeed>(command) || std::holds_alternative<ArcFeed>(command)
            || std::holds_alternative<ThreadFeed>(command);
@@ -89,8 +103,8 @@ private:
         if (lacks(&ModalState::unit)) need(modal.unit == LengthUnit::inch ? "G20" : "G21");
         if (lacks(&ModalState::distance))
             need(modal.distance == DistanceMode::incremental ? "G91" : "G90");
-        if (lacks(&ModalState::plane) && modal.plane <= Plane::yz)
-            need(fmt::format("G{}", 17 + static_cast<int>(modal.plane)));
+        if (const char* code = code_of_plane(modal.plane); code && lacks(&ModalState::plane))
+            need(code);
         if (modal.transforms != at_.alone.transforms)
             need("the active rotation, scaling, mirror image or tilted plane");
         if (modal.offsets.axis != at_.alone.offsets.axis) need("G92");

@@ -84,7 +84,18 @@ core::Result<void> run_statement(Execution& execution) {
 }
 
 bool is_motion(CommandKind kind) {
-    return kind >= straight && kind <= tangent_polar && kind != pole;
+    switch (kind) {
+    case straight:
+    case straight_polar:
+    case arc:
+    case arc_polar:
+    case arc_of_radius:
+    case tangent_arc:
+    case tangent_polar:
+        return true;
+    default:
+        return false;
+    }
 }
 
 /// M99 calls the cycle once; M89 calls it after each motion from its block on, until M99 or another

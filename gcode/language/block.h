@@ -94,7 +94,20 @@ enum class FlowKind : uint8_t {
 
 /// Whether a kind is a flow statement of native Siemens other than a jump.
 constexpr bool is_siemens_statement(FlowKind kind) {
-    return kind >= FlowKind::for_loop && kind <= FlowKind::give_back;
+    switch (kind) {
+    case FlowKind::for_loop:
+    case FlowKind::end_for:
+    case FlowKind::endless_loop:
+    case FlowKind::end_endless:
+    case FlowKind::until:
+    case FlowKind::repeat_part:
+    case FlowKind::procedure:
+    case FlowKind::declaration:
+    case FlowKind::give_back:
+        return true;
+    default:
+        return false;
+    }
 }
 
 /// The flow statement of a line. It is alone on its line except for a block number and comments;

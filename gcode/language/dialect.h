@@ -32,7 +32,7 @@ enum class SystemParameters : uint8_t { rs274, siemens, fanuc, haas };
 
 /// Whether macros can read the words and times of earlier blocks.
 constexpr bool remembers_words(SystemParameters parameters) {
-    return parameters >= SystemParameters::fanuc;
+    return parameters == SystemParameters::fanuc || parameters == SystemParameters::haas;
 }
 
 /// Which codes are not allowed between G41 and G40.

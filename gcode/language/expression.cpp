@@ -216,6 +216,42 @@ bool is_angle_of_turn(Operation operation) {
     return operation == Operation::arc_tangent || operation == Operation::arc_sine;
 }
 
+constexpr bool is_operand(Operation operation) {
+    return operation == Operation::number || operation == Operation::numbered
+           || operation == Operation::named || operation == Operation::exists;
+}
+
+constexpr bool takes_two_values(Operation operation) {
+    switch (operation) {
+    case Operation::arc_tangent:
+    case Operation::hypotenuse:
+    case Operation::power:
+    case Operation::multiply:
+    case Operation::divide:
+    case Operation::modulo:
+    case Operation::divide_whole:
+    case Operation::add:
+    case Operation::subtract:
+    case Operation::equal:
+    case Operation::not_equal:
+    case Operation::greater:
+    case Operation::greater_or_equal:
+    case Operation::less:
+    case Operation::less_or_equal:
+    case Operation::truth_and:
+    case Operation::truth_or:
+    case Operation::truth_xor:
+    case Operation::bits_and:
+    case Operation::bits_or:
+    case Operation::bits_xor:
+    case Operation::least:
+    case Operation::greatest:
+        return true;
+    default:
+        return false;
+    }
+}
+
 constexpr size_t deepest = 64;
 
 /// The value stack for evaluating an expression.
@@ -227,9 +263,9 @@ public:
 
     core::Result<void> apply(const Instruction& step) {
         const core::SourceSpan where{.line = line_, .column = step.column, .length = 1};
-        if (step.operation <= Operation::exists) return load(step, where);
+        if (is_operand(step.operation)) return load(step, where);
         const Operation operation = done_for(step.operation, arithmetic_);
-        const bool pair = operation >= Operation::arc_tangent;
+        const bool pair = takes_two_values(operation);
         const Value right = pair ? pop() : Value{};
         const Value left = pop();
         if (is_comparison_with_vacant(operation, left, right)) return {};

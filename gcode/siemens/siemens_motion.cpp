@@ -334,11 +334,25 @@ core::Result<void> move_by_mode(Execution& execution) {
     return move(execution);
 }
 
+bool changes_frame(SiemensAction action) {
+    switch (action) {
+    case SiemensAction::shift:
+    case SiemensAction::add_shift:
+    case SiemensAction::turn:
+    case SiemensAction::add_turn:
+    case SiemensAction::scale:
+    case SiemensAction::add_scale:
+    case SiemensAction::mirror:
+    case SiemensAction::add_mirror:
+        return true;
+    default:
+        return false;
+    }
+}
+
 bool has_frame_words(const Execution& execution) {
     for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords)
-        if (use.keyword->action >= SiemensAction::shift
-            && use.keyword->action <= SiemensAction::add_mirror)
-            return true;
+        if (changes_frame(use.keyword->action)) return true;
     return false;
 }
 

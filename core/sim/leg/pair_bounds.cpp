@@ -100,8 +100,7 @@ bool PairBounds::can_probably_skip(const TrackedPair& known) const {
     constexpr double slack = 0.1; // mm: the next block often has that much more room
     // If the pair decides after all, a bound with much drift is a poor one. For bodies away from
     // the flutes, check_late gives a better one.
-    const double most_drift =
-        known.pair.part < PartKind::holder ? 2.0 : std::max(2.0, 0.25 * apart);
+    const double most_drift = is_below_holder(known.pair.part) ? 2.0 : std::max(2.0, 0.25 * apart);
     if (known.drift + travel_ > most_drift) return false;
     return setup_.detail == Detail::deciding_pair && memory_.deciding
            && !(known.pair == *memory_.deciding) && apart > required

@@ -17,7 +17,7 @@ constexpr size_t enough = 500; // maximum number of legs per tool that are check
 /// gap: the shank becomes longer.
 ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
     for (ToolPart& part : tool.parts) {
-        if (part.kind < from) continue;
+        if (part.kind != from && part.kind != PartKind::holder) continue;
         for (ProfileElement& element : part.profile.elements) {
             element.z0 += by;
             element.z1 += by;
