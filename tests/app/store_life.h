@@ -18,7 +18,7 @@
 /// Processes that store results in a database until they are killed.
 namespace store_life {
 
-inline constexpr int program_count = 2000;
+inline constexpr int most_results = 2000; // of one process
 
 struct Kept {
     app::CheckJob job;
@@ -46,18 +46,19 @@ struct Life {
 };
 
 /// Stores one result after another and writes its number to a pipe once it is stored, until the
-/// process is killed.
+/// process is killed. Ends only if it cannot store a result.
 [[noreturn]] inline void keep_on(const Life& life, const std::string& database,
                                  const std::string& program, int first, int pipe) {
     auto store = app::ResultStore::open(database, "1");
-    for (int i = first; store && i < program_count; ++i) {
+    if (!store) ::_exit(1);
+    for (int i = first; i < first + most_results; ++i) {
         const Kept each = numbered(program, i);
-        if (!store->keep(each.job, each.run, each.result)) break;
-        if (life.waits && !store->flush()) break;
+        if (!store->keep(each.job, each.run, each.result)) ::_exit(1);
+        if (life.waits && !store->flush()) ::_exit(1);
         if (!life.waits) ::usleep(5'000);
-        if (::write(pipe, &i, sizeof i) != sizeof i) break;
+        if (::write(pipe, &i, sizeof i) != sizeof i) ::_exit(1);
     }
-    ::_exit(0);
+    while (true) ::pause();
 }
 
 /// The last number that a process wrote, and the last one a second before its end.

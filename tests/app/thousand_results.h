@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include <fmt/format.h>
@@ -24,9 +25,9 @@ public:
             folder.write(fmt::format("{}.nc", i), fmt::format("G0 X{}\n", i));
     }
 
-    /// Stores all results, like a batch that checks everything.
-    void keep_all() const {
-        auto store = app::ResultStore::open(database, "1");
+    /// Stores all results, like a batch that checks everything. `gathering`: see ResultStore::open.
+    void keep_all(std::chrono::milliseconds gathering = std::chrono::milliseconds(150)) const {
+        auto store = app::ResultStore::open(database, "1", nullptr, gathering);
         ASSERT_TRUE(store);
         const std::string digest = app::sha256_of_file(mesh);
         for (size_t i = 0; i < count; ++i) {

@@ -78,7 +78,7 @@ TEST(StoreSpeed, LosesAtAKillNothingOlderThanASecond) {
     for (int kill = 0; kill < 8; ++kill) {
         const Life life{false, true, static_cast<useconds_t>(random() % 500'000 + 900'000)};
         const Last last = killed(life, folder / "db", program, next);
-        ASSERT_GE(last.number, next - 1) << "it ended by itself";
+        ASSERT_GE(last.number, next - 1) << "it could not store a result";
         auto store = ResultStore::open(folder / "db", "1");
         ASSERT_TRUE(store) << store.error().message;
         const int count = count_in(*store, program, last.number + 3);

@@ -154,11 +154,12 @@ ResultStore& ResultStore::operator=(ResultStore&&) noexcept = default;
 ResultStore::~ResultStore() = default;
 
 core::Result<ResultStore> ResultStore::open(const std::string& path, const std::string& version,
-                                            std::shared_ptr<RetryBudget> retries) {
+                                            std::shared_ptr<RetryBudget> retries,
+                                            std::chrono::milliseconds gathering) {
     auto state = std::make_unique<State>(path, version);
     state->answers = std::make_shared<InputAnswers>();
     state->retries = retries ? std::move(retries) : std::make_shared<RetryBudget>();
-    state->writer = std::make_shared<ResultWriter>(path, state->retries);
+    state->writer = std::make_shared<ResultWriter>(path, state->retries, gathering);
     return open_as(path, std::move(state));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -41,11 +42,14 @@ public:
     ~ResultStore();
 
     /// Opens a store. `version`: of this Feeler; results of other versions are not found. Waits for
-    /// other processes within the retry budget.
+    /// other processes within the retry budget. `gathering`: how long results are collected before
+    /// they are written in one transaction.
     ///
     /// Errors: io, with the file; unsupported for a database of another program or a newer version.
-    static core::Result<ResultStore> open(const std::string& path, const std::string& version,
-                                          std::shared_ptr<RetryBudget> retries = nullptr);
+    static core::Result<ResultStore>
+    open(const std::string& path, const std::string& version,
+         std::shared_ptr<RetryBudget> retries = nullptr,
+         std::chrono::milliseconds gathering = std::chrono::milliseconds(150));
 
     /// Opens a store for reading only. It shares cached file accesses and the retry budget with
     /// `own`. When it finds a result, it records in `own` that the result is still valid.

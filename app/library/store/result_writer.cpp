@@ -11,9 +11,6 @@
 namespace app {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr auto gathering = 150ms;
 constexpr size_t most_bytes = size_t{64} << 20; // of rows waiting to be written
 
 size_t row_size(const StoredRow& row) {
@@ -97,8 +94,9 @@ core::Result<void> ResultWriter::Connection::write(const Group& group) {
     return writing.commit();
 }
 
-ResultWriter::ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries)
-    : path_(std::move(path)), retry_budget_(std::move(retries)) {}
+ResultWriter::ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries,
+                           std::chrono::milliseconds gathering)
+    : path_(std::move(path)), retry_budget_(std::move(retries)), gathering_(gathering) {}
 
 ResultWriter::~ResultWriter() {
     {
@@ -154,7 +152,7 @@ void ResultWriter::work() {
     while (true) {
         changed_.wait(lock, [&] { return is_ending_ || !waiting_.is_empty(); });
         if (waiting_.is_empty()) return;
-        changed_.wait_for(lock, gathering, [&] {
+        changed_.wait_for(lock, gathering_, [&] {
             return is_ending_ || is_hurried_ || waiting_.bytes >= most_bytes;
         });
         write(lock);

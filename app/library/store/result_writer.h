@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
@@ -40,11 +41,12 @@ struct Sighting {
     int64_t at = 0; // microseconds since 1970
 };
 
-/// Writes results into a database in a separate thread and in groups: what arrives within 150 ms is
-/// written in one transaction. Thread-safe.
+/// Writes results into a database in a separate thread and in groups: what arrives within the
+/// gathering time is written in one transaction. Thread-safe.
 class ResultWriter {
 public:
-    ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries);
+    ResultWriter(std::string path, std::shared_ptr<RetryBudget> retries,
+                 std::chrono::milliseconds gathering);
 
     /// Writes everything that is waiting.
     ~ResultWriter();
@@ -82,6 +84,7 @@ private:
 
     std::string path_;
     std::shared_ptr<RetryBudget> retry_budget_;
+    std::chrono::milliseconds gathering_;
     std::unique_ptr<Connection> connection_; // used by the thread only
     std::mutex mutex_;                       // guards all members below
     std::condition_variable changed_;
