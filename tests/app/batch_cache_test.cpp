@@ -88,7 +88,7 @@ TEST(BatchCache, ThatOthersHoldIsGivenUpOnceForARun) {
     const auto ran = feeler({"check", folder.path().string(), "--jobs", "1"});
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_NE(ran.err.find("results.db: database is locked"), std::string::npos) << ran.err;
-    EXPECT_EQ(ran.err.find("goes on"), ran.err.rfind("goes on")) << "told once: " << ran.err;
+    EXPECT_EQ(ran.err.find("goes on"), ran.err.rfind("goes on")) << "reported once: " << ran.err;
     EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
 }
 

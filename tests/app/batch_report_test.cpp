@@ -183,7 +183,7 @@ TEST(Sarif, HasNoMoreResultsThanCodeHostsTake) {
     const auto& results = cut["results"];
     EXPECT_EQ(results[24'994], whole["results"][24'994]);
     EXPECT_EQ(results[24'995], whole["results"][24'995]);
-    EXPECT_EQ(results[24'996], whole["results"][24'997]) << "its fingerprint is not counted anew";
+    EXPECT_EQ(results[24'996], whole["results"][24'997]) << "its fingerprint is not numbered again";
 }
 
 TEST(Sarif, HasTheWorstOfEachProgramBeforeOthers) {

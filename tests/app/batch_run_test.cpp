@@ -141,7 +141,7 @@ TEST_F(BatchRun, StopsWhileAProgramIsLookedOver) {
     hooks.is_stopped = [&] { return ++questions >= 20; };
     const BatchResult batch = run_batch(endless, {}, hooks);
     EXPECT_GE(questions, 20) << "the program was still looked over";
-    EXPECT_LT(questions, 40) << "it goes on after it was stopped";
+    EXPECT_LT(questions, 40) << "it continues after it was stopped";
     EXPECT_EQ(batch.unchecked.size(), 1U);
     EXPECT_TRUE(batch.programs.empty());
 }
@@ -195,7 +195,7 @@ TEST(MemoryBudget, HoldsWhatIsTakenAtTheSameTimeWithinIt) {
         });
     for (std::thread& thread : threads) thread.join();
     EXPECT_LE(most, 10);
-    EXPECT_GE(most, 8) << "all threads had one byte at the same time";
+    EXPECT_GE(most, 8) << "all threads held one byte at the same time";
 }
 
 TEST(MemoryBudget, GivesItAllToOneThatIsLarger) {
@@ -218,11 +218,11 @@ TEST(MemoryBudget, GivesItAllToOneThatIsLarger) {
     };
     wait_for_two_more_looks();
     EXPECT_FALSE(large);
-    EXPECT_FALSE(small) << "the small one passed by the large one";
+    EXPECT_FALSE(small) << "the small one overtook the large one";
     budget.give_back(1.0);
     first.join();
     wait_for_two_more_looks();
-    EXPECT_FALSE(small) << "the large one was to be alone";
+    EXPECT_FALSE(small) << "the large one must run alone";
     budget.give_back(100.0);
     second.join();
 }
@@ -231,7 +231,7 @@ TEST(MemoryBudget, LetsNobodyWaitWhenItIsOver) {
     MemoryBudget budget(10.0);
     ASSERT_TRUE(budget.take(8.0, [] { return false; }));
     EXPECT_FALSE(budget.take(8.0, [] { return true; }));
-    EXPECT_TRUE(budget.take(2.0, [] { return false; })) << "nothing was taken by who gave up";
+    EXPECT_TRUE(budget.take(2.0, [] { return false; })) << "a job that gave up took no memory";
 }
 
 } // namespace

@@ -199,7 +199,7 @@ TEST_F(BatchSurvival, KeepsTheModelsOfAllJobsWithinTheMemory) {
     };
     const long one = peak({lib() + "/big a.nc"});
     const long all = peak({lib() + "/big *.nc", "--jobs", "4", "--memory", "1"});
-    EXPECT_GT(one, 100'000) << "else nothing is shown";
+    EXPECT_GT(one, 100'000) << "otherwise nothing is shown";
     EXPECT_LT(all, one + one / 3);
 }
 

@@ -160,7 +160,7 @@ TEST_F(Batch, WritesEachFormatToItsFile) {
     EXPECT_THAT(bytes_of(folder / "b.xml"), HasSubstr("<testsuites"));
     EXPECT_EQ(json::parse(bytes_of(folder / "c.json"))["programs"].size(), 3U);
     EXPECT_THAT(ran.out, testing::StartsWith("program,setup,"));
-    EXPECT_THAT(ran.err, HasSubstr("3 programs in ")) << "lines for people make way for the rows";
+    EXPECT_THAT(ran.err, HasSubstr("3 programs in ")) << "lines for people give way to the rows";
 }
 
 TEST_F(Batch, RefusesFormatsAndFilesThatDoNotPairUp) {

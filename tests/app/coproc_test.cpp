@@ -47,7 +47,7 @@ TEST(PermitTiming, TakesBlocksThatOverlapInTheDeviceForNoLongerThanTheyDid) {
         timed_with_permits(plan, {{0.5, false, 0.5}, {0.6, false, 0.1}, {1.5, false, 0.1}}, {});
     EXPECT_NEAR(made.blocks[0].permitted, 0.5, 1e-9);
     EXPECT_NEAR(made.blocks[1].permitted, 0.6, 1e-9);
-    EXPECT_NEAR(made.blocks[2].permitted, 1.5, 1e-9) << "it is in the device for so long";
+    EXPECT_NEAR(made.blocks[2].permitted, 1.5, 1e-9) << "the time that it spends in the device";
     EXPECT_NEAR(made.busy, 0.7, 1e-9);
     EXPECT_EQ(made.missed, 0U);
 }
@@ -67,7 +67,7 @@ TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
     const std::vector<BlockService> services = {{1e-6}, {1e-6}, {1e-6, true}};
     const PermitTiming stands = timed_with_permits(plan, services, {});
     EXPECT_EQ(stands.refused, 2U);
-    EXPECT_NEAR(stands.taken, 1.0, 0.1) << "it brakes towards the place";
+    EXPECT_NEAR(stands.taken, 1.0, 0.1) << "it brakes before the block";
     EXPECT_EQ(stands.blocks[2].entered, core::infinity);
     EXPECT_FALSE(timed_with_permits(plan, services, {}, true).refused);
 }

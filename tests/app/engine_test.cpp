@@ -27,7 +27,7 @@ TEST(Engine, TheCoprocessorGivesLowerBoundsOfItsOwn) {
         EXPECT_EQ(b.verdict, "clear") << b.text;
         EXPECT_EQ(b.removed, a.removed) << b.text;
         EXPECT_EQ(b.duration, a.duration);
-        EXPECT_FALSE(b.deciding.upper) << "a cover says nothing of how near bodies come at most";
+        EXPECT_FALSE(b.deciding.upper) << "a cover gives no upper bound";
         if (a.deciding.upper) {
             EXPECT_LE(b.deciding.lower, *a.deciding.upper) << b.text;
             EXPECT_GE(b.deciding.lower, *a.deciding.upper - 1.0) << b.text;
@@ -42,7 +42,7 @@ TEST(Engine, TheCoprocessorRefusesARapidThroughTheStockOnceAndTheShankInASlot) {
                                  "G21 G90 G54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-20 Y50 Z30\nZ-5\n"
                                  "X120\nX-20\nZ60\nM30\n",
                                  coprocessor);
-    EXPECT_EQ(across.errors(), "refused 7") << "what it ran into is gone then";
+    EXPECT_EQ(across.errors(), "refused 7") << "the material that it hit is removed";
     EXPECT_EQ(across.at_line(7).verdict, "collision");
     EXPECT_GT(across.at_line(7).removed, 4000.0);
     const Checked deep = check(SetupWriter(), slot("-25", "10"), coprocessor);

@@ -137,7 +137,7 @@ TEST(HtmlBatchColumns, CountAllFindingsWhereThereAreTooMany) {
     const BatchResult batch = large_batch(3, 2500);
     const json data = json::parse(batch_columns_json(batch)), &found = data["findings"];
     EXPECT_EQ(unpacked(found["count"]), (std::vector<int64_t>{1000, 1000, 1000}));
-    EXPECT_EQ(unpacked(found["severity"])[0], 3) << "the worst are those that stay";
+    EXPECT_EQ(unpacked(found["severity"])[0], 3) << "the worst ones remain";
     int64_t all = 0;
     for (size_t k = 2; k < found["tally"].size(); k += 3) all += found["tally"][k].get<int64_t>();
     EXPECT_EQ(all, 3 * 2500);

@@ -128,7 +128,7 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
     };
     EXPECT_EQ(bounds(1.0006, 2.0004), std::pair(int64_t{1000}, int64_t{1001}));
     EXPECT_EQ(bounds(1.9996, 1.9996), std::pair(int64_t{1999}, int64_t{1}));
-    EXPECT_EQ(bounds(-2e-6, 0.0), std::pair(int64_t{0}, int64_t{0})) << "-1 is: not known";
+    EXPECT_EQ(bounds(-2e-6, 0.0), std::pair(int64_t{0}, int64_t{0})) << "-1 means unknown";
 }
 
 TEST(HtmlBounds, ShowNoLowerBoundLargerThanItIs) {

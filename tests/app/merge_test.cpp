@@ -191,7 +191,8 @@ TEST_F(Merge, HasTheStatusOfAll) {
 TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
     const Ran ran = check({"--shard", "2/3", "--format", "jsonl", "--no-cache"});
     EXPECT_THAT(ran.err, HasSubstr("shard 2/3: 4 of 13 programs"));
-    EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 5) << "and the word for nothing";
+    EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 5)
+        << "four programs and the last record";
     const Ran empty = check({"--shard", "20/20", "--no-cache"});
     EXPECT_THAT(empty.out, HasSubstr("shard 20/20: 0 of 13 programs"));
 }

@@ -54,7 +54,7 @@ ProgramResult hostile_result() {
 
 TEST(Printable, KeepsLineEndsAndTextsOfAnyLanguage) {
     EXPECT_EQ(printable("Gehäuse µ\n\n"), "Gehäuse µ\n\n");
-    EXPECT_EQ(printable("Geh\xe4use"), "Gehäuse") << "what is no UTF-8 is Latin-1";
+    EXPECT_EQ(printable("Geh\xe4use"), "Gehäuse") << "text that is not UTF-8 is read as Latin-1";
     EXPECT_EQ(printable("a\r\nb\x1b[2J"), "a \nb [2J");
     EXPECT_EQ(printable("\xc2\x9b"
                         "31m\x9b"

@@ -64,7 +64,7 @@ rules = { near-miss = "error" }
     EXPECT_EQ(plain.rules,
               (core::RuleSeverities{{"air-cut", Severity::off}, {"near-miss", Severity::warning}}));
     EXPECT_EQ(special.setup, folder / "sub/plate.toml");
-    EXPECT_EQ(special.settings.dialect, gcode::DialectId::haas) << "said by an earlier table";
+    EXPECT_EQ(special.settings.dialect, gcode::DialectId::haas) << "from an earlier table";
     EXPECT_EQ(special.mesh_size, 0.25);
     EXPECT_EQ(special.rules.at("near-miss"), Severity::error);
     EXPECT_EQ(special.rules.at("air-cut"), Severity::off);
@@ -245,7 +245,7 @@ TEST_F(NestedProject, FailsWhereItCannotBeRead) {
     ASSERT_EQ(gone.failures.size(), 1U);
     EXPECT_THAT(gone.failures[0].message, HasSubstr("is a link that leads nowhere"));
     const auto named = plan_batch({folder / "job"}, {});
-    ASSERT_FALSE(named) << "not searched as if it were no project";
+    ASSERT_FALSE(named) << "not searched like a plain folder";
     EXPECT_THAT(named.error().message, HasSubstr("is a link that leads nowhere"));
 }
 

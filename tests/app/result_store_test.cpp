@@ -249,7 +249,7 @@ TEST_F(Kept, IsNotFoundForAnotherFolderOfTheSameName) {
     EXPECT_TRUE(*store.find(linked));
     fs::remove(other / "current");
     fs::create_directory_symlink(fs::temp_directory_path(), other / "current");
-    EXPECT_FALSE(*store.find(linked)) << "there is another a.nc, or none";
+    EXPECT_FALSE(*store.find(linked)) << "a.nc is another file, or missing";
 }
 
 } // namespace

@@ -346,7 +346,7 @@ TEST(SavedSetup, OfAnInferredOneSaysWhatIsInferredAndWhatIsStated) {
     EXPECT_THAT(*text, HasSubstr("tool 2 is"));
     const std::string dialect(gcode::dialect(app::read_check(own.job)->run.dialect).name);
     EXPECT_THAT(*text, HasSubstr("dialect = \"" + dialect + "\""))
-        << "whatever comes into the program";
+        << "whatever the program becomes";
     expect_saved_as_it_is(own.job, own.folder / "s.toml");
 }
 
@@ -370,7 +370,7 @@ TEST(SavedSetup, NeverReplacesAFileUnasked) {
     ASSERT_TRUE(app::save_setup(own.job, path, true, app::write_output));
     EXPECT_THAT(bytes_of(path), HasSubstr("[stock]"));
     EXPECT_EQ(app::proposed_setup_path(own.job), own.folder / "p.toml");
-    EXPECT_EQ(own.folder.names().size(), 2u) << "nothing is left behind";
+    EXPECT_EQ(own.folder.names().size(), 2u) << "no other file remains";
 }
 
 TEST(SavedSetup, StaysBesideTheFilesThatItNames) {

@@ -59,7 +59,8 @@ TEST_F(Places, AreTheSameFromWhereverOneCalls) {
 
 TEST_F(Places, TellNamesOfOneFileApart) {
     const RelativePaths places = from("lib", "r.db");
-    EXPECT_EQ(places.place_of("linked.nc"), "linked.nc") << "subprograms are looked for beside it";
+    EXPECT_EQ(places.place_of("linked.nc"), "linked.nc")
+        << "subprograms are searched for next to the link";
     EXPECT_EQ(places.path_of("linked.nc"), folder / "lib/linked.nc");
 }
 

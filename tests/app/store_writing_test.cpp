@@ -91,11 +91,11 @@ TEST_F(OneResult, IsRefusedWhileSomebodyHasTheDatabase) {
     ASSERT_TRUE(store);
     auto other = app::Database::open(path, app::Database::Access::read_write);
     ASSERT_TRUE(other && other->run("BEGIN EXCLUSIVE"));
-    ASSERT_TRUE(store->keep(each.job, each.run, each.result)) << "nobody waits yet";
+    ASSERT_TRUE(store->keep(each.job, each.run, each.result)) << "the write is deferred";
     EXPECT_EQ(store->find(each.job).error().message, "database is locked");
     EXPECT_EQ(store->flush().error().message, "database is locked");
     EXPECT_FALSE(store->keep(each.job, each.run, each.result));
-    EXPECT_GT(attempts, 100) << "it gives up before others can end";
+    EXPECT_GT(attempts, 100) << "it gives up before the others are done";
     ASSERT_TRUE(other->run("COMMIT"));
     EXPECT_EQ(*store->find(each.job), std::nullopt);
     store->try_again();
@@ -106,7 +106,7 @@ TEST_F(OneResult, IsRefusedWhileSomebodyHasTheDatabase) {
     ASSERT_TRUE(other->run("BEGIN EXCLUSIVE"));
     const int before = attempts.exchange(0);
     EXPECT_FALSE(store->find(each.job));
-    EXPECT_LT(2 * attempts, before) << "who is to stop waits as long as before";
+    EXPECT_LT(2 * attempts, before) << "a stopping run waits less";
 }
 
 TEST(ResultStore, OfAnOlderFormatIsTakenOver) {

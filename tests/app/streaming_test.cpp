@@ -43,7 +43,7 @@ TEST(Streaming, NeedsNoMoreMemoryForALongProgram) {
     EXPECT_LT(longer.kib, shorter.kib + 1024);
     const std::string text = test_support::bytes_of(folder / "long.jsonl");
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), many + 4)
-        << "plane, offset, rapid and end beside the feeds";
+        << "plane, offset, rapid and end in addition to the feeds";
     EXPECT_NE(text.find("\"text\":\"N300000 G1"), std::string::npos);
 }
 

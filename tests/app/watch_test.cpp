@@ -164,8 +164,8 @@ TEST_F(Watch, SaysInTheReportsThatTheProgramStopped) {
     EXPECT_THAT(bytes_of(folder / "r.csv"), HasSubstr("clear"));
     folder.write("plate.nc", program({"X-20. Y50.", "Z-3.", "G777"}));
     const std::string seen = pass(terminal);
-    EXPECT_THAT(seen, HasSubstr("STOPPED")) << "what was checked before, in place of the rows";
-    EXPECT_THAT(seen, Not(HasSubstr("<html"))) << "nobody wants to read that";
+    EXPECT_THAT(seen, HasSubstr("STOPPED")) << "the previous result instead of the rows";
+    EXPECT_THAT(seen, Not(HasSubstr("<html"))) << "HTML does not go to the terminal";
     EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("STOPPED"));
     EXPECT_THAT(bytes_of(folder / "r.html"), HasSubstr("G777"));
     EXPECT_THAT(seen, HasSubstr("r.csv: described an earlier version; deleted"));
@@ -185,7 +185,7 @@ TEST_F(Watch, TakesAwayWhatTellsOfAnEarlierVersion) {
         Terminal terminal =
             watching({folder / word, "--format", "json", "-o", report, "--no-cache"});
         pass(terminal);
-        EXPECT_EQ(bytes_of(report), "of another day\n") << "the watch has not written it";
+        EXPECT_EQ(bytes_of(report), "of another day\n") << "the watch did not write it";
         terminal.while_stopped([&] {
             folder.write("plate.toml", setup("42"));
             folder.write("feeler.toml", "[[program]]\nfiles = \".\"\n");

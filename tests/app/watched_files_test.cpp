@@ -93,7 +93,7 @@ TEST_F(WatchedFilesTest, TellOfNamesThatComeIntoAFolderAndBelow) {
     folder.write("sub/deep/x.nc", "");
     EXPECT_EQ(changed(), Names{"deep"});
     fs::remove(folder / "sub/deep/x.nc");
-    EXPECT_EQ(changed(), Names{}) << "all is as it was";
+    EXPECT_EQ(changed(), Names{}) << "nothing has changed";
 }
 
 TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesItself) {
@@ -127,7 +127,7 @@ TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
     const std::string report = folder.write("report.json", "{}");
     EXPECT_FALSE(files.reads(report));
     watch([&] { core::is_there(report); });
-    EXPECT_FALSE(files.reads(report)) << "nothing in it was asked for";
+    EXPECT_FALSE(files.reads(report)) << "nothing in it was accessed";
     fs::create_symlink(report, folder / "link");
     watch([&] {
         core::notify_file_access({core::FileQuestion::content, folder / "link", {}, {}});
@@ -142,7 +142,7 @@ TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
     stop_the_clock();
     folder.write("a.nc", "G0 X2\n");
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
+    EXPECT_EQ(changed(), Names{"a.nc"}) << "either version may have been read";
 }
 
 TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
@@ -152,7 +152,7 @@ TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
     fs::last_write_time(folder / "old.nc", now - std::chrono::hours(1));
     fs::rename(folder / "old.nc", folder / "a.nc");
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    EXPECT_EQ(changed(), Names{"a.nc"}) << "who knows which of both was read";
+    EXPECT_EQ(changed(), Names{"a.nc"}) << "either version may have been read";
 }
 
 TEST_F(WatchedFilesTest, CountATimeToComeOnce) {
@@ -163,7 +163,7 @@ TEST_F(WatchedFilesTest, CountATimeToComeOnce) {
         fs::last_write_time(folder / "a.nc", in_an_hour + std::chrono::seconds(seconds));
         files.begin_again();
         watch(look);
-        EXPECT_EQ(changed(), Names{"a.nc"}) << "nobody knows when it was written";
+        EXPECT_EQ(changed(), Names{"a.nc"}) << "the time of writing is unknown";
         advance_the_clock(std::chrono::seconds(1));
         files.begin_again();
         watch(look);
@@ -308,7 +308,7 @@ TEST_F(WatchedFilesTest, NameAFileOnceHoweverItWasCalled) {
     folder.write("a.nc", "G0 X1\nG1 X5\n");
     EXPECT_EQ(changed(), Names{"a.nc"});
     fs::remove(folder / "a.nc");
-    EXPECT_EQ(changed(), (Names{"a.nc", "link.nc"})) << "a link to nothing is no name of it";
+    EXPECT_EQ(changed(), (Names{"a.nc", "link.nc"})) << "a dangling link is not a name of it";
 }
 
 TEST_F(WatchedFilesTest, KeepTheFirstLookOfSeveral) {

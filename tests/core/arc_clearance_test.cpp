@@ -65,7 +65,7 @@ PairClearance passed(const Round& round) {
     const BlockResult result = run_block(setup, {BlockIndex{1}, false, arc}, state);
     for (const PairClearance& pair : result.pairs)
         if (pair.pair == Pair{PartKind::flutes, 0}) return pair;
-    ADD_FAILURE() << "the pair is told of";
+    ADD_FAILURE() << "the pair is missing from the result";
     return {};
 }
 

@@ -36,7 +36,7 @@ TEST(BoundText, TakesRoundingForNothing) {
     EXPECT_EQ(at_least(1.9999999999), "2.000");
     EXPECT_EQ(at_most(2.0000000001), "2.000");
     EXPECT_EQ(at_least(1.999999), "1.999")
-        << "what is less by more than half the resolution is not";
+        << "a number below it by more than half the resolution is not";
     EXPECT_EQ(at_most(2.000001), "2.001");
 }
 

@@ -80,7 +80,7 @@ TEST(LateLook, KnowsWhatTheFlutesTookOnTheirWay) {
     for (const PairClearance& pair : nibble.pairs) {
         if (pair.pair != Pair{PartKind::shank}) continue;
         told = true;
-        EXPECT_LE(pair.lower, 3.0) << "the wall of the shank comes over the fin";
+        EXPECT_LE(pair.lower, 3.0) << "the side of the shank passes over the fin";
     }
     EXPECT_TRUE(told);
 }
@@ -107,7 +107,7 @@ TEST(TurningCut, LeavesAllThatStandsInTheColumns) {
         EXPECT_EQ(lower_at(round, angle, -depth - 1e-6), 0.0) << angle;
         gone += lower_at(round, angle, -0.5) > 0.1;
     }
-    EXPECT_GT(gone, 100U) << "the flutes did pass";
+    EXPECT_GT(gone, 100U) << "the flutes passed there";
 }
 
 } // namespace

@@ -103,7 +103,7 @@ TEST_P(RandomPermitRun, EntersNothingWithoutAPermitAndBrakesNoHarderThanItsAxesC
     double before = 0.0, place = 0.0;
     size_t held = 0;
     while (!run.is_done()) {
-        ASSERT_LT(run.time(), 1e4) << "it goes on by itself";
+        ASSERT_LT(run.time(), 1e4) << "it continues by itself";
         const uint32_t permitted = permitted_at(known, run.time());
         step(run, permitted);
         ASSERT_LE(run.place(), run.starts[permitted] + 1e-9);

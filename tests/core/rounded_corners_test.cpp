@@ -75,7 +75,7 @@ TEST(RoundedCorners, ComeNearerToAClampInsideByTheTolerance) {
     // The control may take a path that deviates by the tolerance towards the clamp.
     EXPECT_LE(corner.seen.lower, gap - tolerance + 1e-9);
     EXPECT_GE(corner.seen.lower, gap - tolerance - 1e-3);
-    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "2 mm must be kept";
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "the minimum clearance is 2 mm";
 }
 
 TEST(RoundedCorners, StayFartherFromAClampOutside) {
@@ -84,7 +84,7 @@ TEST(RoundedCorners, StayFartherFromAClampOutside) {
     corner.give({within(tolerance)});
     corner.pass();
     EXPECT_GE(corner.seen.upper, gap + tolerance - 1e-9);
-    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "2 mm must be kept";
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "the minimum clearance is 2 mm";
 }
 
 TEST(RoundedCorners, LeaveNoDoubtWhereTheAllowanceIsKeptAllTheSame) {
@@ -124,7 +124,7 @@ TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
     unstated.give({PathModeChange{Blending::continuous, {}}});
     unstated.pass();
     EXPECT_NEAR(unstated.seen.lower, 2.1, 1e-6);
-    EXPECT_EQ(unstated.state.assumptions.size(), 1U) << "what is taken for granted is listed";
+    EXPECT_EQ(unstated.state.assumptions.size(), 1U) << "the assumption is listed";
 }
 
 TEST(RoundedCorners, LeaveDoubtWhereACornerMayStandThatWasNotCut) {

@@ -135,7 +135,7 @@ TEST(CubesRound, HoldTheSurfaceOfABodyHoweverItIsTurned) {
         const core::Aabb box = bounds(body);
         const Vec3 count = box.size() / 1.3;
         EXPECT_LT(cubes.centres.size(), (count.x + 1) * (count.y + 1) * (count.z + 1) * 0.8)
-            << "what is inside is left out";
+            << "inner records are omitted";
         for (int turn = 0; turn < 6; ++turn) {
             const core::Mat3 orientation = turn == 0 ? core::Mat3(1.0) : random_turn(rng);
             const std::vector<Record> cylinders = cylinders_round(cubes, orientation).value();

@@ -19,7 +19,7 @@ double number_behind(const std::string& text, const std::string& words) {
     double number = -1.0;
     if (at == std::string::npos
         || std::sscanf(text.c_str() + at + words.size(), "%lf", &number) != 1)
-        ADD_FAILURE() << "no number behind '" << words << "' in: " << text;
+        ADD_FAILURE() << "no number after '" << words << "' in: " << text;
     return number;
 }
 

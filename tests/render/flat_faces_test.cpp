@@ -65,7 +65,7 @@ TEST(FlatFaces, LookLikeTheWholeSurfaceFromEverySide) {
         apart += std::abs(drawn.distance - whole.distance) > 1e-4 || drawn.tint != whole.tint;
     }
     EXPECT_GT(seen, 5000U);
-    EXPECT_LT(apart, seen / 200) << "but for what stands out by a tenth of a cell";
+    EXPECT_LT(apart, seen / 200) << "except for details that protrude by a tenth of a cell";
 }
 
 TEST(FlatFaces, AreFew) {

@@ -109,7 +109,7 @@ private:
         if (pair.cuts_fixture(known_.world) && cut_fixtures_[*pair.fixture])
             return judge_cut_fixture(block, claim, pair, crashed);
         if (!told && known_.setup.detail == core::Detail::every_pair)
-            fail("every pair is told of", describe(claim, {}));
+            fail("every pair is reported", describe(claim, {}));
         ClearanceSearch search(known_.world, block, pair, crashed, dice_.random);
         if (claim.found()) {
             const core::Vec3 p = in_body(claim.on_body, pair);
@@ -138,8 +138,7 @@ private:
         search.improve(40, 1.5, -core::infinity);
         ++tally_.cut_fixtures;
         if (search.best().near.distance < -core::contact_depth(claim.allowance) - 1e-6)
-            fail("what still stands of a fixture is not overlapped",
-                 describe(claim, search.best()));
+            fail("the remaining fixture is not overlapped", describe(claim, search.best()));
     }
 
     /// Stores which expendable fixtures the flutes may have cut.
@@ -251,7 +250,7 @@ private:
         const double lower = core::separation(point, state_->stock, goal).separation.lower;
         ++tally_.standing;
         if (lower > 1e-8)
-            fail("what stands is in a column",
+            fail("all material is in a column",
                  fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }
 

@@ -128,13 +128,13 @@ TEST(DeviceWorker, ARunEndsWithItsPanelAndWithAWhatIf) {
     device.shown = true;
     ASSERT_TRUE(watcher.wait_for([&] { return device.study != nullptr; }));
     device.shown = false;
-    EXPECT_FALSE(watcher.send()) << "what came of it stays on the timeline";
+    EXPECT_FALSE(watcher.send()) << "its result stays on the timeline";
     EXPECT_TRUE(device.study);
     watcher.model.changes = {"T1 is longer"};
     EXPECT_TRUE(watcher.send());
     EXPECT_FALSE(device.study);
     device.shown = true;
-    EXPECT_FALSE(watcher.send()) << "nothing is run while the program goes another way";
+    EXPECT_FALSE(watcher.send()) << "nothing runs during a what-if";
     watcher.model.changes.clear();
     EXPECT_TRUE(watcher.send());
     EXPECT_TRUE(device.is_running);

@@ -46,7 +46,7 @@ TEST(FindingGroups, MergeBlocksThatFollowOneAnother) {
     ASSERT_EQ(groups[0].stretches.size(), 2u);
     const FindingStretch& first = groups[0].stretches[0];
     EXPECT_EQ(first.first, 2u);
-    EXPECT_EQ(first.last, 5u) << "what does not move does not part them";
+    EXPECT_EQ(first.last, 5u) << "blocks without motion do not separate them";
     EXPECT_EQ(first.count, 3u);
     EXPECT_EQ(first.worst, 3u);
     EXPECT_DOUBLE_EQ(*first.clearance, 0.75);
@@ -62,7 +62,7 @@ TEST(FindingGroups, ComeWithTheWorstFirst) {
         {whole, finding_in(1, "low-retract", "clamp-1", 9.0, core::Severity::warning),
          finding_in(2, "near-miss", "clamp-2", 0.1), finding_in(3, "near-miss", "clamp-1", 0.4),
          finding_in(4, "air-cut", "", 1.0, core::Severity::off)});
-    ASSERT_EQ(groups.size(), 4u) << "what is off is not told";
+    ASSERT_EQ(groups.size(), 4u) << "rules that are off are not reported";
     EXPECT_EQ(groups[0].pair[1], "clamp-1");
     EXPECT_EQ(groups[1].pair[1], "clamp-2");
     EXPECT_FALSE(groups[1].stretches[0].clearance) << "the row is about another pair";
@@ -148,7 +148,7 @@ TEST(FindingGroups, AreWalkedThroughAndFollowTheCursor) {
     EXPECT_EQ(model.cursor.block, 2u);
     EXPECT_TRUE(step_stretch(model, true));
     EXPECT_EQ(model.cursor.block, 8u);
-    EXPECT_EQ(selected_stretch(model)->group, 1u) << "the one gone to, not the first of the block";
+    EXPECT_EQ(selected_stretch(model)->group, 1u) << "the selected one, not the first of the block";
     EXPECT_FALSE(step_stretch(model, true));
     go_to(model, 2);
     EXPECT_EQ(*selected_stretch(model), (StretchPlace{1, 0}));

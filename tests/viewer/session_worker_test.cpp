@@ -177,7 +177,7 @@ TEST(SessionWorker, TellsWhatIsFoundOnALongWalk) {
     EXPECT_TRUE(watcher.model.walking);
     watcher.worker().show({50, true});
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.place != nullptr; }));
-    EXPECT_TRUE(watcher.model.walking) << "a place is shown on the way";
+    EXPECT_TRUE(watcher.model.walking) << "a block is shown on the way";
     ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.walking; }));
     EXPECT_EQ(watcher.model.cursor.block, watcher.model.rows.size() - 1);
 }
@@ -209,7 +209,7 @@ TEST(SessionWorker, SaysWhyAProgramCannotBeOpened) {
     EXPECT_NE(watcher.model.failure->message, "");
     watcher.open(clamped_plate());
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.is_recorded; }))
-        << "the next one opens as if nothing had been";
+        << "the next one opens as usual";
 }
 
 /// The next end of a walk that a worker tells of.
