@@ -242,6 +242,7 @@ std::string clearance_text(double lower, std::optional<double> upper, double all
 
 std::string duration_text(double seconds) {
     const auto whole = static_cast<long long>(std::llround(seconds));
+    if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
     return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }

@@ -62,7 +62,8 @@ std::string counts_text(size_t errors, size_t warnings, size_t notes);
 /// bound. An upper bound below the allowance is never rounded up to it.
 std::string clearance_text(double lower, std::optional<double> upper, double allowance);
 
-/// "4 min 05 s".
+/// A time of at least 0 in whole seconds, or minutes from an hour on: "5 s", "4 min 05 s",
+/// "2 h 05 min".
 std::string duration_text(double seconds);
 
 /// The verdict on a program in capitals, with its meaning.

@@ -36,13 +36,6 @@ extern "C" void note_interrupt(int signal) {
     std::raise(signal);
 }
 
-std::string time_text(double seconds) {
-    const auto whole = static_cast<long>(seconds + 0.5);
-    if (whole >= 3600) return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
-    if (whole >= 60) return fmt::format("{} min {} s", whole / 60, whole % 60);
-    return fmt::format("{} s", whole);
-}
-
 std::string bar_text(double share, const std::string& what, double seconds) {
     constexpr int width = 20;
     const int filled = static_cast<int>(share * width);
@@ -51,7 +44,7 @@ std::string bar_text(double share, const std::string& what, double seconds) {
                     std::string(static_cast<size_t>(width - filled), '.'), 100.0 * share, what);
     // Early estimates are unreliable.
     if (share > 0.02 && seconds > 1.0)
-        text += fmt::format(", {} left", time_text(seconds * (1.0 - share) / share));
+        text += fmt::format(", {} left", duration_text(seconds * (1.0 - share) / share));
     return text.substr(0, 79);
 }
 

@@ -96,6 +96,14 @@ CoprocessorJob plate(const std::string& program) {
     return job;
 }
 
+TEST(TimeText, HasASuitableUnit) {
+    EXPECT_EQ(time_text(31.5e-6), "31.5 us");
+    EXPECT_EQ(time_text(-2.1e-3), "-2.1 ms");
+    EXPECT_EQ(time_text(3.4), "3.40 s");
+    EXPECT_EQ(time_text(179.7), "3 min 00 s");
+    EXPECT_EQ(time_text(-725.0), "-12 min 05 s");
+}
+
 TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     CoprocessorJob job = plate("clamped_plate_low.nc");
     job.other_elements = {1};

@@ -162,6 +162,14 @@ TEST(ReportFormats, AreInTheManual) {
             << format.name;
 }
 
+TEST(Duration, RoundsBeforeItDividesIntoUnits) {
+    EXPECT_EQ(duration_text(4.6), "5 s");
+    EXPECT_EQ(duration_text(59.7), "1 min 00 s");
+    EXPECT_EQ(duration_text(179.7), "3 min 00 s");
+    EXPECT_EQ(duration_text(3599.7), "1 h 00 min");
+    EXPECT_EQ(duration_text(7500.0), "2 h 05 min");
+}
+
 TEST(Progress, FitsALineOfATerminal) {
     EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .share = 0.0, .findings = 1}, 0.2),
               "[....................]   0 %  1 blocks, 1 finding");

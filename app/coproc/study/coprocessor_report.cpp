@@ -171,8 +171,7 @@ std::string time_text(double seconds) {
     if (size < 1e-3) return fmt::format("{:.1f} us", 1e6 * seconds);
     if (size < 1.0) return fmt::format("{:.1f} ms", 1e3 * seconds);
     if (size < 120.0) return fmt::format("{:.2f} s", seconds);
-    return fmt::format("{:.0f} min {:02.0f} s", std::floor(seconds / 60.0),
-                       std::fmod(seconds, 60.0));
+    return (seconds < 0.0 ? "-" : "") + duration_text(size);
 }
 
 std::string fit_text(const std::vector<DeviceFit>& fits) {
