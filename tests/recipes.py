@@ -11,9 +11,10 @@ The first words after the ``` of a code block give its kind:
     ```LANGUAGE FILE   a new file
     ```console         commands ($ ...) with their output, run in ROOT with the feeler of the recipes
 
-All recipes are applied to the same copy. Only the changed sources are compiled; they are linked before
-the libraries in BUILD. So an edit of a header must not change the layout of data that other sources
-read, and an example must not change a function that the compiler inlines elsewhere. Rows that a recipe
+All recipes are applied to the same copy. Only the changed sources, and those beside a changed header,
+are compiled; they are linked before the libraries in BUILD. So an edit of a header must not change the
+layout of data that other sources read, and an example must not change a function that the compiler
+inlines elsewhere. Rows that a recipe
 adds to tests/planted/table.txt are run like the existing ones.
 """
 import json
@@ -80,7 +81,7 @@ class Overlay:
         self.planted_rows = []
 
     def edit(self, name, lines):
-        source = self.folder / name if name in self.names else self.root / name
+        source = self.path_of(name)
         if not source.is_file():
             raise Stale(f"{name}: there is no such file")
         before = source.read_text(encoding="utf-8")
@@ -97,6 +98,9 @@ class Overlay:
             raise Stale(f"{name}: a new file, and it exists already")
         self.write(name, "\n".join(lines) + "\n")
         self.added.append(name)
+
+    def path_of(self, name):
+        return (self.folder if name in self.names else self.root) / name
 
     def write(self, name, text):
         self.names.add(name)
@@ -158,18 +162,31 @@ def compile_commands(build):
     return found
 
 
+def changed_sources(overlay):
+    """The sources of the program that recipes change or add, or whose own header they change."""
+    names = {name for name in overlay.names if name.endswith(".cpp")}
+    names.update(name[:-1] + "cpp" for name in overlay.names if name.endswith(".h"))
+    return sorted(name for name in names if not name.startswith("tests/")
+                  and (name in overlay.names or (overlay.root / name).is_file()))
+
+
+def is_built(overlay, name):
+    """Whether the CMakeLists.txt of its folder names a new source, or takes all sources there."""
+    listing = os.path.join(os.path.dirname(name), "CMakeLists.txt")
+    text = overlay.path_of(listing).read_text(encoding="utf-8")
+    return os.path.basename(name) in text or re.search(r"file\(GLOB \w+ CONFIGURE_DEPENDS \*\.cpp\)", text)
+
+
 def objects_of(overlay, build):
     """Compiles the sources that the recipes change or add. In a unity build, those of one library are
     compiled together; new sources are compiled like the others of their folder."""
     commands = compile_commands(build)
     neighbours = {os.path.dirname(source): command for source, command in commands.items()}
-    listed = "".join((overlay.folder / name).read_text(encoding="utf-8") for name in overlay.names
-                     if name.endswith("CMakeLists.txt"))
     groups = {}
-    for name in sorted(name for name in overlay.names if name.endswith(".cpp") and not name.startswith("tests/")):
+    for name in changed_sources(overlay):
         source = str(overlay.root / name)
-        if name in overlay.added and os.path.basename(name) not in listed:
-            raise Stale(f"{name}: a new source that no CMakeLists.txt of a recipe names")
+        if name in overlay.added and not is_built(overlay, name):
+            raise Stale(f"{name}: a new source that the CMakeLists.txt of its folder does not build")
         if name not in overlay.added and source not in commands:
             raise Stale(f"{name}: no library has this source")
         command, grouped = commands.get(source) or neighbours[os.path.dirname(source)]
@@ -181,7 +198,7 @@ def objects_of(overlay, build):
 
 def compiled_object(overlay, build, command, names, number):
     group, target = overlay.folder / f"group{number}.cpp", overlay.folder / f"group{number}.o"
-    group.write_text("".join(f'#include "{overlay.folder / name}"\n' for name in names), encoding="utf-8")
+    group.write_text("".join(f'#include "{overlay.path_of(name)}"\n' for name in names), encoding="utf-8")
     words = shlex.split(command)
     words[words.index("-o") + 1] = str(target)
     words[words.index("-c") + 1] = str(group)

@@ -8,6 +8,7 @@
 #include "app/check/block_events.h"
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
+#include "core/base/rule_table.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -67,7 +68,8 @@ void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState
     for (const gcode::Warning& warning : block.warnings) {
         // A work offset in the set-up counts as set even if it is all zeros.
         const auto active = static_cast<int>(state.control.modal.offsets.active);
-        if (warning.rule == "work-offset-unset" && check_.file.offsets_set.contains(active))
+        if (warning.rule == core::rule_id("work-offset-unset")
+            && check_.file.offsets_set.contains(active))
             continue;
         core::Finding finding = finding_of(*setup_, warning);
         finding.block = block.block;

@@ -12,6 +12,7 @@
 #include "app/check/prepared_check.h"
 #include "app/check/stock_file.h"
 #include "app/setup/inference/program_survey.h"
+#include "core/base/rule_table.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"
 #include "core/sim/part_comparison.h"
@@ -33,12 +34,13 @@ void look_for_judged_motions(CheckRun& run) {
     }
     if (!first) return;
     core::Finding finding;
-    finding.rule = "undecided";
+    finding.rule = core::rule_id("undecided");
     finding.severity = core::Severity::error;
     finding.block = first->block;
     finding.message = "No motion of the program could be checked.";
-    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(),
-                                     [](const auto& f) { return f.rule == "first-move"; });
+    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(), [](const auto& f) {
+        return f.rule == core::rule_id("first-move");
+    });
     finding.cure = !is_lost ? "Correct the other findings first."
                             : "State the axis positions at the first block: `start` under "
                               "[program] in the set-up, or the machine's home position.";
@@ -52,7 +54,7 @@ void say_not_judged(CheckRun& run, const std::string& why) {
     };
     if (why.empty() || std::none_of(run.blocks.begin(), run.blocks.end(), moves)) return;
     core::Finding finding;
-    finding.rule = "undecided";
+    finding.rule = core::rule_id("undecided");
     finding.severity = core::Severity::error;
     finding.message = "The motions were not checked: " + why + ".";
     finding.cure = "Check the program on the lathe's own control.";
@@ -116,7 +118,7 @@ bool take(std::string_view& text, std::string_view word) {
 }
 
 bool comes_of_a_collision(const CheckRun& run, const core::Finding& finding) {
-    if (finding.rule == "collision") return true;
+    if (finding.rule == core::rule_id("collision")) return true;
     const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
     return std::any_of(block.pairs.begin(), block.pairs.end(),
                        [&](const core::PairClearance& pair) {
@@ -138,7 +140,7 @@ bool is_allowed(const CheckRun& run, const core::Finding& finding) {
 core::Finding about_comment(const CheckedBlock& block, const AllowedRule& rule,
                             core::Severity severity) {
     core::Finding finding;
-    finding.rule = "program";
+    finding.rule = core::rule_id("program");
     finding.severity = severity;
     finding.block = block.block;
     finding.message = fmt::format("Line {}, column {}: the comment allows {}", block.line,
@@ -282,8 +284,9 @@ std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment env
 
 void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
                                    const gcode::Environment& environment) {
-    const auto note = std::find_if(run.findings.begin(), run.findings.end(),
-                                   [](const auto& f) { return f.rule == "block-delete"; });
+    const auto note = std::find_if(run.findings.begin(), run.findings.end(), [](const auto& f) {
+        return f.rule == core::rule_id("block-delete");
+    });
     if (note == run.findings.end()) return;
     const std::vector<Step> off = steps_of(program, environment, false);
     const std::vector<Step> on = steps_of(program, environment, true);
@@ -310,7 +313,7 @@ constexpr size_t most_findings = 10;
 core::Finding finding_of(const core::DeviationRegion& region) {
     const bool gouge = region.kind == core::Deviation::gouge;
     core::Finding finding;
-    finding.rule = gouge ? "gouge" : "rest-material";
+    finding.rule = gouge ? core::rule_id("gouge") : core::rule_id("rest-material");
     if (region.block) finding.block = core::BlockIndex{*region.block};
     const std::string where =
         fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over about {:.1f} mm2",
@@ -343,7 +346,8 @@ void add_findings(CheckRun& run, core::Deviation kind) {
     }
     if (more == 0) return;
     core::Finding finding;
-    finding.rule = kind == core::Deviation::gouge ? "gouge" : "rest-material";
+    finding.rule =
+        kind == core::Deviation::gouge ? core::rule_id("gouge") : core::rule_id("rest-material");
     finding.message = fmt::format("{} more regions deviate from the part by less.", more);
     add(run, finding);
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/check/check_run.h"
+#include "core/base/rule_table.h"
 #include "core/sim/run/simulator.h"
 #include "gcode/language/canonical.h"
 
@@ -15,8 +16,9 @@ namespace {
 constexpr double wear = 1.0; // mm; smaller differences between table and tool count as wear
 
 bool is_cause(std::string_view rule) {
-    return rule == "missing-length-offset" || rule == "length-offset-cancelled"
-           || rule == "offset-not-tool";
+    return rule == core::rule_id("missing-length-offset")
+           || rule == core::rule_id("length-offset-cancelled")
+           || rule == core::rule_id("offset-not-tool");
 }
 
 bool has_cause(std::span<const gcode::Warning> warnings) {
@@ -44,10 +46,11 @@ struct Counted {
 
 /// Whether a tool that is too low can cause a finding.
 bool can_be_caused_by_length(const core::Finding& finding) {
-    if (is_cause(finding.rule) || finding.rule == "spindle-off") return false;
-    if (finding.rule == "tool-change-unsafe") return false;
-    return finding.rule == "over-travel" || !finding.pair[0].empty() || finding.rule == "air-cut"
-           || finding.rule == "offset-implausible";
+    if (is_cause(finding.rule) || finding.rule == core::rule_id("spindle-off")) return false;
+    if (finding.rule == core::rule_id("tool-change-unsafe")) return false;
+    return finding.rule == core::rule_id("over-travel") || !finding.pair[0].empty()
+           || finding.rule == core::rule_id("air-cut")
+           || finding.rule == core::rule_id("offset-implausible");
 }
 
 /// The axis letter, with which a finding about a limit begins.
@@ -58,7 +61,7 @@ char axis_of(const core::Finding& finding) { return finding.message.substr(0, 1)
 bool are_about_the_same(const core::Finding& found, const core::Finding& left) {
     if (!found.pair[0].empty()) return found.block == left.block && found.pair == left.pair;
     if (found.rule != left.rule) return false;
-    if (found.rule == "over-travel")
+    if (found.rule == core::rule_id("over-travel"))
         return found.block == left.block && axis_of(found) == axis_of(left);
     return true; // a rule about many blocks
 }
@@ -100,7 +103,7 @@ struct Consequences {
 
     void take(const CheckRun& run, const core::Finding& finding) {
         worst = std::max(worst, finding.severity);
-        const bool goes_too_far = finding.rule == "over-travel";
+        const bool goes_too_far = finding.rule == core::rule_id("over-travel");
         if (finding.pair[0].empty() && !goes_too_far) return;
         blocks.insert(*finding.block);
         bodies.insert(goes_too_far                 ? "the limit of Z"

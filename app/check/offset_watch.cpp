@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
@@ -78,7 +79,7 @@ void add_feed(OffsetUse& use, const TipWay& way, const core::Aabb& stock, double
 
 core::Finding finding_of(const core::Setup& setup, size_t index, const OffsetUse& use, bool above) {
     core::Finding finding;
-    finding.rule = "offset-implausible";
+    finding.rule = core::rule_id("offset-implausible");
     finding.severity = core::severity_of(setup, finding.rule);
     finding.block = above ? use.above_block : use.below_block;
     finding.message =
@@ -170,7 +171,7 @@ std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const 
     const bool small = !unit_said && is_units_apart(widest / longest);
     if (!large && !small) return std::nullopt;
     core::Finding finding;
-    finding.rule = "units-jump";
+    finding.rule = core::rule_id("units-jump");
     finding.severity = core::severity_of(setup, finding.rule);
     finding.block = watch.first;
     finding.message = fmt::format("The feed moves span {:.1f} mm and the stock {:.1f} mm, about "

@@ -12,6 +12,7 @@
 #include "app/check/conclusion.h"
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
+#include "core/base/rule_table.h"
 #include "gcode/exec/restart.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/text/source.h"
@@ -142,8 +143,9 @@ std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& 
     finding.severity = core::severity_of(setup, finding.rule);
     if (finding.severity == core::Severity::off) return std::nullopt;
     finding.message = error.message + ". The control stops here with an alarm.";
-    finding.cure = finding.rule == "no-feed" ? "Add F to this block, in the unit of the feed mode."
-                                             : "Check the end point, centre and plane of this arc.";
+    finding.cure = finding.rule == core::rule_id("no-feed")
+                       ? "Add F to this block, in the unit of the feed mode."
+                       : "Check the end point, centre and plane of this arc.";
     return finding;
 }
 
@@ -178,7 +180,7 @@ std::optional<std::vector<core::Event>> ProgramRunner::next_events() {
 void ProgramRunner::use(const core::Setup& setup) { runner_->use(setup); }
 
 core::Result<void> ProgramRunner::start_at(const std::string& line) {
-    const gcode::Dialect& dialect = gcode::dialect(check_.file.environment.dialect);
+    const gcode::DialectId dialect = check_.file.environment.dialect;
     FEELER_TRY(const uint32_t number, gcode::line_meant(*check_.program, dialect, line));
     FEELER_TRY(const gcode::Restart restart,
                gcode::restart_at(*check_.library, check_.file.environment, number,
@@ -190,7 +192,7 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     make_moves_before(number);
     if (restart.missing.empty()) return {};
     core::Finding finding;
-    finding.rule = "restart-in-the-middle";
+    finding.rule = core::rule_id("restart-in-the-middle");
     finding.severity = core::severity_of(run_.setup, finding.rule);
     finding.block = core::BlockIndex{0};
     finding.message =
@@ -286,7 +288,7 @@ void ProgramRunner::report_missing_moves() {
         const core::FixtureMove& move = run_.setup.fixture_moves[i];
         if (state_->moves_made.contains(i)) continue;
         core::Finding finding;
-        finding.rule = "fixture-move";
+        finding.rule = core::rule_id("fixture-move");
         finding.severity = core::severity_of(run_.setup, finding.rule);
         // A set-up with a code may serve programs without it, but a line refers to this program.
         if (!move.line) finding.severity = std::min(finding.severity, core::Severity::note);

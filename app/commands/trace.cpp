@@ -11,6 +11,7 @@
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 
 namespace app {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/coproc/device_check.h"
+#include "core/base/rule_table.h"
 #include "core/sim/verdict.h"
 #include "hwsim/coprocessor.h"
 
@@ -54,7 +55,7 @@ const AskedPair* worst_of(const BlockPermit& permit) {
 
 core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
     core::Finding finding;
-    finding.rule = "refused";
+    finding.rule = core::rule_id("refused");
     if (const AskedPair* worst = worst_of(permit)) {
         finding.pair = {core::part_name(setup, worst->pair), core::body_name(setup, worst->pair)};
         finding.shortfall = std::max(0.0, worst->allowance.distance - worst->lower);

@@ -506,8 +506,7 @@ core::Result<uint32_t> DebugSession::line_with_block(uint32_t line) const {
 }
 
 core::Result<size_t> DebugSession::find_line(const std::string& line) {
-    const gcode::Dialect& dialect = gcode::dialect(environment().dialect);
-    FEELER_TRY(const uint32_t number, gcode::line_meant(program(), dialect, line));
+    FEELER_TRY(const uint32_t number, gcode::line_meant(program(), environment().dialect, line));
     const auto is_there = [&](size_t block) {
         const CheckedBlock& at = record().blocks[block];
         return at.line == number && at.file.empty();

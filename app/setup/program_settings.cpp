@@ -12,6 +12,7 @@
 #include "app/setup/table_reader.h"
 #include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/parameters.h"
 

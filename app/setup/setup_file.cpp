@@ -14,6 +14,7 @@
 #include "app/setup/tool_table.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/base/file_reads.h"
+#include "core/base/rule_table.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 
@@ -459,8 +460,8 @@ core::RuleSeverities read_severities(TableReader& table, const std::string& but)
             continue;
         }
         severities[rule] = severity_named(*word);
-        if (rule == "collision" && severities[rule] != core::Severity::error)
-            table.refuse("collision", "is always an error");
+        if (rule == core::rule_id("collision") && severities[rule] != core::Severity::error)
+            table.refuse(core::rule_id("collision"), "is always an error");
     }
     return severities;
 }

@@ -7,6 +7,7 @@
 
 #include "app/base/text.h"
 #include "app/setup/setup_file.h"
+#include "gcode/language/dialect.h"
 
 namespace app {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/contour/contour.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
@@ -174,7 +175,7 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
             {Severity::warning, entry.word->span,
              fmt::format("{}: D{} is not the offset of T{}, the tool in the spindle",
                          written(*entry.word), number, value_of(*modal.tool)),
-             "offset-not-tool", fmt::format("Use D{}.", value_of(*modal.tool))});
+             core::rule_id("offset-not-tool"), fmt::format("Use D{}.", value_of(*modal.tool))});
     if (const auto diameter = diameter_under(*execution.state.tables, number)) return *diameter;
     execution.warn(
         entry.word->span,

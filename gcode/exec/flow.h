@@ -3,6 +3,7 @@
 #include "gcode/exec/interpreter.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/language/block.h"
+#include "gcode/language/dialect.h"
 
 namespace gcode {
 

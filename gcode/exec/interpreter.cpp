@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/motion/machine.h"
 #include "gcode/contour/contour.h"
 #include "gcode/contour/spline.h"
@@ -61,6 +62,8 @@ void count_smallest_steps(Block& block, const ModalState& modal, DialectId diale
 namespace {
 
 using core::ErrorCode;
+
+static_assert(Warning{}.rule == core::rule_id("program"));
 
 /// Whether a flow statement may change the call level.
 bool changes_level(FlowKind kind) {
@@ -493,7 +496,7 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
                          "reads them as a thousandth or less",
                          written(word), word.has_point ? "a" : "no",
                          word.has_point ? "none" : "one"),
-             "missing-decimal-point", "Write every length with a decimal point."});
+             core::rule_id("missing-decimal-point"), "Write every length with a decimal point."});
         return;
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/expression.h"
 

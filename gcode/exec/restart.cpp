@@ -183,10 +183,9 @@ std::optional<Meeting> meet(ProgramLibrary& library, const Environment& environm
 
 } // namespace
 
-core::Result<uint32_t> line_meant(const Program& program, const Dialect& dialect,
-                                  std::string_view text) {
+core::Result<uint32_t> line_meant(const Program& program, DialectId id, std::string_view text) {
     const bool has_letter = !text.empty() && (text[0] == 'N' || text[0] == 'n');
-    const bool counts_blocks = dialect.language == Language::klartext;
+    const bool counts_blocks = dialect(id).language == Language::klartext;
     const auto number = number_in(has_letter ? text.substr(1) : text);
     if (number && !has_letter && !counts_blocks) {
         FEELER_TRY(const bool there, program.has_line(*number));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,6 +8,8 @@
 #include "gcode/exec/interpreter.h"
 
 namespace gcode {
+
+enum class DialectId : uint8_t;
 
 /// A program started in the middle.
 struct Restart {
@@ -20,8 +23,7 @@ struct Restart {
 /// a Heidenhain program "210").
 ///
 /// Errors: invalid_value when the program has no such line.
-core::Result<uint32_t> line_meant(const Program& program, const Dialect& dialect,
-                                  std::string_view text);
+core::Result<uint32_t> line_meant(const Program& program, DialectId dialect, std::string_view text);
 
 /// Prepares the start of a program at a line, with the control as after switching on and `tool` in
 /// the spindle. Runs the program twice up to the first feed after that line, from the start and

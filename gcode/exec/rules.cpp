@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
 #include "gcode/language/canonical.h"
 
@@ -72,7 +73,7 @@ void look_at_tool_change(Execution& execution, const ModalState& before) {
     watch.increments_stay =
         before.distance == DistanceMode::incremental && modal.distance == DistanceMode::incremental;
     if (const std::string on = left_over(before, false); !on.empty())
-        advise(execution, entry->word->span, "state-left-over",
+        advise(execution, entry->word->span, core::rule_id("state-left-over"),
                fmt::format("{}: still active at this tool change: {}", written(*entry->word), on),
                "Cancel it before the tool change.");
 }
@@ -98,19 +99,19 @@ void look_at_length(Execution& execution, const ModalState& before) {
     const SourceSpan where = moving_word(execution).span;
     const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
     if (watch.lacks_length && modal.length_sign != 0.0 && modal.length_number)
-        advise(execution, where, "missing-length-offset",
+        advise(execution, where, core::rule_id("missing-length-offset"),
                fmt::format("tool {} is in the spindle, but H{}, the length offset of another tool, "
                            "is still active",
                            tool, core::value_of(*modal.length_number)),
                cure);
     else if (watch.lacks_length)
-        advise(execution, where, "missing-length-offset",
+        advise(execution, where, core::rule_id("missing-length-offset"),
                fmt::format("tool {} moves in Z without a length offset: Z refers to the gauge "
                            "line, not to the tip",
                            tool),
                cure);
     else if (before.position[2] && modal.position[2] < before.position[2])
-        advise(execution, where, "length-offset-cancelled",
+        advise(execution, where, core::rule_id("length-offset-cancelled"),
                fmt::format("tool {} moves down after G49 cancelled its length offset", tool), cure);
     else
         return; // moves up after G49
@@ -131,7 +132,7 @@ void look_at_work_offset(Execution& execution) {
         const auto name = [](size_t index) {
             return index < 6 ? fmt::format("G{}", 54 + index) : fmt::format("G59.{}", index - 5);
         };
-        advise(execution, moving_word(execution).span, "work-offset-unset",
+        advise(execution, moving_word(execution).span, core::rule_id("work-offset-unset"),
                fmt::format("{} is active but has never been set, while {} is set", name(active),
                            name(other)),
                fmt::format("Set {}, or use the work offset the job was set up in.", name(active)));
@@ -145,7 +146,7 @@ void look_at_increments(Execution& execution) {
     if (execution.modal().distance == DistanceMode::absolute) watch.increments_stay = false;
     if (!watch.increments_stay || !moves(execution) || goes_to_machine_place(execution)) return;
     watch.increments_stay = false;
-    advise(execution, moving_word(execution).span, "incremental-left-on",
+    advise(execution, moving_word(execution).span, core::rule_id("incremental-left-on"),
            "the first move of this tool is incremental: G91 has been active since before the tool "
            "change",
            "Add G90 after the tool change.");
@@ -160,7 +161,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
         if (modal.distance == DistanceMode::incremental)
             on += fmt::format("{}G91", on.empty() ? "" : ", ");
         if (!on.empty())
-            advise(execution, action->word->span, "machine-move-with-state",
+            advise(execution, action->word->span, core::rule_id("machine-move-with-state"),
                    fmt::format("{}: move in machine coordinates while active: {}",
                                written(*action->word), on),
                    "Cancel it before G53.");
@@ -173,7 +174,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
     if (!between || !between->end[2]) return;
     const std::optional<double>& from = before.position[2];
     if (from ? *between->end[2] >= *from : *between->end[2] > 0.0) return;
-    advise(execution, action->word->span, "home-through-part",
+    advise(execution, action->word->span, core::rule_id("home-through-part"),
            fmt::format(
                "{} {}: with G90 the move to home first goes down to Z{:.3f} in work coordinates",
                written(*action->word), written(*word), *between->end[2]),
@@ -183,7 +184,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
 void look_at_units(Execution& execution, const ModalState& before) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry || !execution.state.rules.has_moved || execution.modal().unit == before.unit) return;
-    advise(execution, entry->word->span, "units-jump",
+    advise(execution, entry->word->span, core::rule_id("units-jump"),
            fmt::format("{}: the units change in the middle of the program: from here on the same "
                        "numbers are 25.4 times as {}",
                        written(*entry->word),
@@ -198,7 +199,8 @@ void look_at_end(Execution& execution) {
     const std::string on = left_over(execution.modal(), true);
     if (on.empty()) return;
     advise(
-        execution, execution.statement.of(ModalGroup::stopping)->word->span, "state-left-over",
+        execution, execution.statement.of(ModalGroup::stopping)->word->span,
+        core::rule_id("state-left-over"),
         fmt::format(
             "still active at the end of the program: {}; the next program may start with it", on),
         "Cancel it before the end.");
@@ -210,7 +212,7 @@ void look_at_block_delete(Execution& execution) {
     if (!switched || watch.said_block_delete) return;
     watch.said_block_delete = true;
     advise(
-        execution, {.line = execution.block.line, .column = 1}, "block-delete",
+        execution, {.line = execution.block.line, .column = 1}, core::rule_id("block-delete"),
         "blocks with '/' are run here; with block delete on at the machine, the path is different",
         "Also check the program with --block-delete on.", Severity::note);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 
@@ -69,7 +70,7 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
             {Severity::warning, where,
              fmt::format("{}: H{} is not the offset of T{}, the tool in the spindle", written(word),
                          *number, value_of(*tool)),
-             "offset-not-tool", fmt::format("Use H{}.", value_of(*tool))});
+             core::rule_id("offset-not-tool"), fmt::format("Use H{}.", value_of(*tool))});
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/contour/spline.h"
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
@@ -24,7 +25,7 @@ void assume_feed(Execution& execution) {
          fmt::format("{}: no feed rate: no F word has been programmed yet; Grbl 1.1 stops here "
                      "(error 22), older versions use {:g} mm/min, which is assumed",
                      written(mover), assumed),
-         "no-feed", "Program F before the first feed move."});
+         core::rule_id("no-feed"), "Program F before the first feed move."});
     modal.feed = assumed;
 }
 

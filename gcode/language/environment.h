@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,11 +11,12 @@
 #include <vector>
 
 #include "core/base/ids.h"
-#include "gcode/language/dialect.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/language/tables.h"
 
 namespace gcode {
+
+enum class DialectId : uint8_t;
 
 /// Limits on the run of a program.
 struct Limits {
@@ -26,7 +28,7 @@ struct Limits {
 /// The state of the control before the program starts. Lengths in mm, positions in machine
 /// coordinates.
 struct Environment {
-    DialectId dialect = DialectId::linuxcnc;
+    DialectId dialect{};                      // LinuxCNC
     bool block_delete = false;                // true: blocks with `/` are skipped
     LengthUnit machine_unit = LengthUnit::mm; // unit of LinuxCNC's offsets and start positions
     std::array<AxisValues, plain_offset_count> work_offsets{};

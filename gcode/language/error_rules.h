@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
+#include "core/base/rule_table.h"
 
 namespace gcode {
 
@@ -12,7 +13,9 @@ constexpr core::ErrorCode no_feed{65};
 
 /// The stable rule name of an interpreter error; empty if it has none.
 constexpr std::string_view rule_of(const core::Error& error) {
-    return error.code == wrong_arc ? "arc-radius" : error.code == no_feed ? "no-feed" : "";
+    return error.code == wrong_arc ? core::rule_id("arc-radius")
+           : error.code == no_feed ? core::rule_id("no-feed")
+                                   : "";
 }
 
 } // namespace gcode

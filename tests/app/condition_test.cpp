@@ -8,6 +8,7 @@
 #include "app/check/check_run.h"
 #include "app/debug/condition.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 
 namespace app_test {

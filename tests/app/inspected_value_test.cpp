@@ -4,6 +4,7 @@
 #include "app/debug/inspected_value.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 #include "tests/support/whole_run.h"

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/language/dialect.h"
 #include "tests/gcode/programs.h"
 
 namespace gcode {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/lower/trace.h"
 #include "gcode/text/source.h"

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 #include "tests/support/whole_run.h"

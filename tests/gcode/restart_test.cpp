@@ -79,7 +79,7 @@ TEST(Restart, RefusesALineThatTheProgramNeverComesTo) {
 
 TEST(LineMeant, IsALineOfTheFileOrTheBlockOfThatNumber) {
     const Program program = *program_from_text(text);
-    const Dialect& fanuc = dialect(DialectId::fanuc);
+    const DialectId fanuc = DialectId::fanuc;
     EXPECT_EQ(*line_meant(program, fanuc, "9"), 9U);
     EXPECT_EQ(*line_meant(program, fanuc, "N20"), 8U);
     EXPECT_EQ(*line_meant(program, fanuc, "n30"), 11U);
@@ -90,7 +90,7 @@ TEST(LineMeant, IsALineOfTheFileOrTheBlockOfThatNumber) {
 TEST(LineMeant, CountsTheBlocksOfKlartext) {
     const Program program =
         *program_from_text("0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S900\n2 END PGM A MM\n");
-    EXPECT_EQ(*line_meant(program, dialect(DialectId::heidenhain), "1"), 2U);
+    EXPECT_EQ(*line_meant(program, DialectId::heidenhain, "1"), 2U);
 }
 
 } // namespace

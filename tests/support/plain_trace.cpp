@@ -1,5 +1,6 @@
 #include "tests/support/plain_trace.h"
 
+#include "gcode/language/dialect.h"
 #include "gcode/lower/trace.h"
 #include "gcode/text/source.h"
 #include "tests/support/reference_interpreter.h"

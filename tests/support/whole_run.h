@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/lower/trace.h"
 #include "gcode/text/source.h"

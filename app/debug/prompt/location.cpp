@@ -10,7 +10,6 @@
 #include "app/check/check_run.h"
 #include "core/base/text.h"
 #include "gcode/exec/restart.h"
-#include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 
@@ -80,7 +79,7 @@ core::Result<Location> location_in(PromptState& state, const std::string& text) 
                               fmt::format("{} has no line {}", text.substr(0, colon), line));
         return Location{static_cast<uint32_t>(line), std::move(file)};
     }
-    const gcode::Dialect& dialect = gcode::dialect(state.session.environment().dialect);
+    const gcode::DialectId dialect = state.session.environment().dialect;
     const auto line = gcode::line_meant(state.session.program(), dialect, text);
     if (!line)
         return core::fail(ErrorCode::invalid_value,

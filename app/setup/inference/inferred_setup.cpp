@@ -13,8 +13,10 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_library.h"
+#include "core/base/rule_table.h"
 #include "core/dbm/solid.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 
 namespace app {
 namespace {
@@ -204,8 +206,8 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     } else {
         return std::nullopt;
     }
-    file.setup.rules["missing-length-offset"] = core::Severity::off;
-    file.setup.rules["tool-change-unsafe"] = core::Severity::off;
+    file.setup.rules[core::rule_id("missing-length-offset")] = core::Severity::off;
+    file.setup.rules[core::rule_id("tool-change-unsafe")] = core::Severity::off;
     if (file.needs_stock)
         file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
     return why;
@@ -222,7 +224,7 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         file.assumptions.push_back("the program has no spindle speed: it is set by hand");
     }
     if (seen.offsets_lengths) return;
-    file.setup.rules["missing-length-offset"] = core::Severity::off;
+    file.setup.rules[core::rule_id("missing-length-offset")] = core::Severity::off;
     file.assumptions.push_back(
         "the program uses no tool length offset: Z is touched off with each tool");
 }

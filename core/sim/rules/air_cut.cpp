@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/sim/rules/rules.h"
 
 namespace core {
@@ -24,7 +25,7 @@ std::optional<Finding> end_air(AirSeries& series, double diameter) {
     const AirSeries ended = std::exchange(series, {});
     if (!ended.begin || ended.way < least_way(diameter)) return std::nullopt;
     Finding finding;
-    finding.rule = "air-cut";
+    finding.rule = rule_id("air-cut");
     finding.block = ended.begin;
     finding.message = fmt::format("From here on, the tool feeds {:.0f} mm in {} through air, more "
                                   "than {:g} mm from the stock.",

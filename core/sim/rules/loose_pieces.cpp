@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/base/rule_table.h"
 #include "core/dbm/cut_model.h"
 #include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
@@ -47,7 +48,7 @@ Finding finding_of(const Setup& setup, const StockPiece& piece, double spacing,
                    const std::vector<std::string>& holders) {
     const Vec3 size = piece.box.size() + Vec3(spacing, spacing, 0);
     Finding finding;
-    finding.rule = "loose-piece";
+    finding.rule = rule_id("loose-piece");
     finding.severity = severity_of(setup, finding.rule);
     finding.message = fmt::format(
         "A piece of {:.1f} x {:.1f} x {:.1f} mm, {:.0f} mm3, is cut loose at X {:.1f} Y {:.1f} Z "
@@ -78,7 +79,7 @@ PieceWatch watch_of(const CutModel& stock) {
 std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
                                   const CutModel& stock, size_t first, PieceWatch& watch) {
     std::vector<Finding> findings;
-    if (first == stock.log.size() || severity_of(setup, "loose-piece") == Severity::off)
+    if (first == stock.log.size() || severity_of(setup, rule_id("loose-piece")) == Severity::off)
         return findings;
     const Aabb box = box_of_cuts(stock, first);
     watch.map.note_cut(stock, box);

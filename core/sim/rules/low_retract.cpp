@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
@@ -136,7 +137,7 @@ std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<Track
     const std::optional<double> higher = lift(look);
     if (!higher) return std::nullopt;
     Finding finding;
-    finding.rule = "low-retract";
+    finding.rule = rule_id("low-retract");
     finding.block = link.block;
     finding.pair = {part_name(link.setup, near->pair), body_name(link.setup, near->pair)};
     finding.shortfall = *higher;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
@@ -77,7 +78,7 @@ std::optional<Finding> singular_orientation(const Machine& machine, const Motion
     if (!places) return std::nullopt;
     const Seen seen = look(machine, motion, *places, tool_length);
     Finding finding;
-    finding.rule = "singular-orientation";
+    finding.rule = rule_id("singular-orientation");
     if (seen.turn >= far_turn && seen.turn > turn_per_lean * seen.lean
         && seen.way < way_per_degree * seen.turn) {
         finding.message =

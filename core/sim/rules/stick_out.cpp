@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
@@ -98,7 +99,7 @@ Finding about(const char* rule, std::optional<BlockIndex> block) {
 Finding short_stick_out(const ToolAssembly& tool, const ToolReach& reach) {
     const int number = value_of(tool.description.number);
     const double now = stick_out_of(tool);
-    Finding finding = about("stick-out-short", reach.holder_block);
+    Finding finding = about(rule_id("stick-out-short"), reach.holder_block);
     finding.pair = {name_of(PartKind::holder), "stock"};
     finding.shortfall = reach.more_stick_out;
     finding.message = fmt::format("Tool {} sticks out {:.1f} mm, too little for this depth: its "
@@ -120,7 +121,7 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
     const int number = value_of(tool.description.number);
     const double now = top_of_flutes(tool);
     const bool hopeless = reach.more_flute >= longest_stick_out;
-    Finding deep = about("over-engagement", reach.shank_block);
+    Finding deep = about(rule_id("over-engagement"), reach.shank_block);
     deep.pair = {name_of(PartKind::shank), "stock"};
     deep.shortfall = reach.more_flute;
     deep.message =
@@ -133,7 +134,7 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
             : fmt::format("Flutes of {:.1f} mm would be long enough{}; or use shallower passes.",
                           tenths_up(now + reach.more_flute), in_blocks(reach));
     Finding reach_short = deep;
-    reach_short.rule = "stick-out-short";
+    reach_short.rule = rule_id("stick-out-short");
     reach_short.message = fmt::format("Tool {} does not reach this depth: its shank "
                                       "begins {:.1f} mm above the tip and meets the wall.",
                                       number, now);
@@ -147,7 +148,7 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
 }
 
 Finding rubbing(const ToolAssembly& tool, const ToolReach& reach) {
-    Finding finding = about("over-engagement", reach.rub_block);
+    Finding finding = about(rule_id("over-engagement"), reach.rub_block);
     finding.severity = Severity::note;
     finding.pair = {name_of(PartKind::shank), "stock"};
     finding.message = fmt::format("Tool {} cuts deeper than its flutes are long ({:.1f} mm): its "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/sim/run/block_run.h"
 #include "core/sim/verdict.h"
 
@@ -32,7 +33,7 @@ void BlockRun::check_limits(const Motion& motion) {
         const double above = range.max[i] - axis.max.value_or(infinity);
         const double beyond = std::max(below, above);
         if (beyond <= resolution) continue;
-        find("over-travel",
+        find(rule_id("over-travel"),
              fmt::format("{} goes to {} in machine coordinates, {} {} beyond its limit.",
                          axis_letters[i],
                          below > above ? at_least(range.min[i]) : at_most(range.max[i]),
@@ -75,7 +76,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     }
     result.checked = false;
     if (std::exchange(state.told_unknown_start, true)) return;
-    find("first-move",
+    find(rule_id("first-move"),
          "The start position of the machine is unknown, so this motion cannot be checked.",
          "State the axis positions at the first block: `start` under [program] in the set-up, or "
          "the machine's home position.");
@@ -210,13 +211,14 @@ void BlockRun::move_without_tool(const Motion& motion) {
     if (std::exchange(state.told_unchecked_tool, true)) return;
     if (state.tool)
         find(
-            "undecided",
+            rule_id("undecided"),
             fmt::format("Tool {} moves, but it is not described: none of its motions can be "
                         "checked.",
                         value_of(*state.tool)),
             fmt::format("Describe it in the set-up: [[tool]] number = {}.", value_of(*state.tool)));
     else
-        find("undecided", "The program feeds before it calls a tool, so the tool is unknown.",
+        find(rule_id("undecided"),
+             "The program feeds before it calls a tool, so the tool is unknown.",
              "Call the tool (T and M6), or describe a single tool in the set-up.");
 }
 

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
+
 namespace core {
 namespace {
 
@@ -45,7 +47,7 @@ void BlockRun::carry_out(const ToolChange& change) {
     result.tool = change.tool;
     if (tool()) return check_tool_change();
     if (change.tool)
-        find("tool-not-in-table",
+        find(rule_id("tool-not-in-table"),
              fmt::format("Tool {} is called, but the set-up does not describe it.",
                          value_of(*change.tool)),
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
@@ -126,7 +128,7 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
     Finding finding = finding_of(setup, pair, move_of(pair), state);
     if (pair.pair != Pair{PartKind::flutes} || pair.verdict != Verdict::collision) return finding;
     if (drills_sideways) {
-        finding.rule = "collision";
+        finding.rule = rule_id("collision");
         finding.message = fmt::format("Tool {} is a drill and is fed sideways into the stock.",
                                       value_of(tool()->description.number));
         finding.cure = "Drill along the tool axis, or mill with a tool that cuts on its sides.";

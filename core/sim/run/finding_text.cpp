@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "core/sim/verdict.h"
@@ -10,18 +11,19 @@ namespace core {
 namespace {
 
 std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spindle_runs) {
-    if (move.only_dog_leg) return "dog-leg-rapid";
-    if (pair.verdict == Verdict::undecided) return "undecided";
+    if (move.only_dog_leg) return rule_id("dog-leg-rapid");
+    if (pair.verdict == Verdict::undecided) return rule_id("undecided");
     const bool rapid = move.motion == BlockMotion::rapid;
-    if (rapid && move.turns) return "rotary-with-tool-down";
+    if (rapid && move.turns) return rule_id("rotary-with-tool-down");
     const bool fixture = pair.pair.fixture.has_value();
     if (pair.verdict == Verdict::violation)
-        return rapid && fixture ? "rapid-near-clamp" : "near-miss";
-    if (!fixture && rapid) return "rapid-in-stock";
-    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs) return "spindle-off";
+        return rapid && fixture ? rule_id("rapid-near-clamp") : rule_id("near-miss");
+    if (!fixture && rapid) return rule_id("rapid-in-stock");
+    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs)
+        return rule_id("spindle-off");
     return pair.pair.part == PartKind::holder || pair.pair.part == PartKind::nose
-               ? "holder-into-wall"
-               : "collision";
+               ? rule_id("holder-into-wall")
+               : rule_id("collision");
 }
 
 /// Cure of a near miss: a shift along the axis that leads most directly away from the body.
@@ -72,11 +74,12 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
 std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body,
                     MoveWithin within) {
     const bool fixture = pair.pair.fixture.has_value();
-    if (rule == "rapid-in-stock") return cure_of_rapid(within);
-    if (rule == "rotary-with-tool-down") return "Retract the tool before the rotary axes turn.";
-    if (rule == "spindle-off")
+    if (rule == rule_id("rapid-in-stock")) return cure_of_rapid(within);
+    if (rule == rule_id("rotary-with-tool-down"))
+        return "Retract the tool before the rotary axes turn.";
+    if (rule == rule_id("spindle-off"))
         return "Start the spindle in the correct direction before the tool feeds into the stock.";
-    if (rule == "dog-leg-rapid")
+    if (rule == rule_id("dog-leg-rapid"))
         return fmt::format("A straight line would be clear: move the axes one after another around "
                            "{}, or use a fast feed move instead of the rapid.",
                            body);
@@ -123,8 +126,8 @@ std::string message_of(const PairClearance& pair, const std::string& rule, const
                        : move.turns      ? "While rotary axes turn, the"
                        : move.motion == BlockMotion::rapid ? words_for_rapid(move.within)
                                                            : "The";
-    if (rule == "rapid-in-stock") return rapid_into_stock(part, move.within);
-    if (rule == "spindle-off")
+    if (rule == rule_id("rapid-in-stock")) return rapid_into_stock(part, move.within);
+    if (rule == rule_id("spindle-off"))
         return "The flutes meet the stock while the spindle is stopped or turns the wrong way.";
     if (pair.verdict == Verdict::collision)
         return fmt::format("{} {} collides with {} {}.", kind, part, body, moment_text(at));
@@ -204,8 +207,9 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
     finding.rule = rule_of(pair, move, spindle_runs);
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
-    finding.cure = finding.rule == "undecided" ? cure_of_doubt(setup, pair, move, state.corners)
-                                               : cure_of(pair, finding.rule, body, move.within);
+    finding.cure = finding.rule == rule_id("undecided")
+                       ? cure_of_doubt(setup, pair, move, state.corners)
+                       : cure_of(pair, finding.rule, body, move.within);
     finding.pair = {part, body_name(setup, pair.pair)};
     finding.shortfall = shortfall_of(pair);
     if (!finding.cure.empty())
@@ -216,7 +220,7 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
 
 Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool) {
     Finding finding;
-    finding.rule = "tool-change-unsafe";
+    finding.rule = rule_id("tool-change-unsafe");
     finding.severity = severity_about(setup, pair, finding.rule);
     finding.pair = {part_name(setup, pair.pair), body_name(setup, pair.pair)};
     finding.message = change_message(pair, tool, finding.pair[0], body_in_words(setup, pair.pair));
