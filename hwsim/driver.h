@@ -81,7 +81,8 @@ double least_clearance(const FoundPair& found);
 /// Errors:  the device does not identify itself, or has another version.
 core::Result<Driver> open_device(DevicePort port);
 
-/// Loads a tool into the device: an upright body of revolution, as cylinders.
+/// Loads a tool into the device: an upright body of revolution, as cylinders. For users of the
+/// driver; a check uses load_records() with records that it has prepared.
 ///
 /// Errors:  those of cylinders_round(); no free slot; the memory is full or accepts no lines;
 ///          coordinates out of range.

@@ -126,16 +126,6 @@ Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag)
     return turned;
 }
 
-Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag,
-               const Vec3& pivot) {
-    Camera turned = orbited(camera, viewport, drag);
-    const CameraAxes was = axes(camera), is = axes(turned);
-    const Vec3 off = camera.target - pivot;
-    turned.target = pivot + glm::dot(off, was.right) * is.right + glm::dot(off, was.up) * is.up
-                    + glm::dot(off, was.backward) * is.backward;
-    return turned;
-}
-
 Camera panned(const Camera& camera, const Viewport& viewport, const Vec2& from, const Vec2& to,
               const Vec3& level) {
     Camera moved = camera;
@@ -194,18 +184,6 @@ Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box, 
     }
     framed.distance = std::clamp(std::max(distance, 1.0), least_distance, most_distance);
     return framed;
-}
-
-Camera between(const Camera& a, const Camera& b, double share) {
-    if (share <= 0.0) return a;
-    if (share >= 1.0) return b;
-    Camera camera = b;
-    camera.target = glm::mix(a.target, b.target, share);
-    camera.distance = a.distance * std::pow(b.distance / a.distance, share);
-    camera.yaw = wrapped(a.yaw + share * wrapped(b.yaw - a.yaw));
-    camera.pitch = a.pitch + share * (b.pitch - a.pitch);
-    camera.view_angle = a.view_angle + share * (b.view_angle - a.view_angle);
-    return camera;
 }
 
 } // namespace render

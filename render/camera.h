@@ -79,9 +79,6 @@ Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& pla
 /// Rotates the eye about the target by a drag in pixels; the height of the picture is half a turn.
 Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag);
 
-/// Rotates the eye about another point, which keeps its position in the picture.
-Camera orbited(const Camera& camera, const Viewport& viewport, const Vec2& drag, const Vec3& pivot);
-
 /// Moves so that a point at the depth of `level` follows a drag from `from` to `to`.
 Camera panned(const Camera& camera, const Viewport& viewport, const Vec2& from, const Vec2& to,
               const Vec3& level);
@@ -97,8 +94,5 @@ Camera seen_from(const Camera& camera, StandardView view);
 /// The same direction, with the whole box in the picture and a border of `margin` of its height.
 Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box,
                double margin = 0.06);
-
-/// A view between two, for animation: `a` at 0, `b` at 1.
-Camera between(const Camera& a, const Camera& b, double share);
 
 } // namespace render

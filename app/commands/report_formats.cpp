@@ -58,8 +58,6 @@ constexpr ReportFormat formats[] = {
 
 } // namespace
 
-std::span<const ReportFormat> report_formats() { return formats; }
-
 const ReportFormat& report_format(const std::string& name) {
     const auto* const found =
         std::find_if(std::begin(formats), std::end(formats),

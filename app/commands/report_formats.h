@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -40,13 +39,10 @@ struct ReportFormat {
     UnfinishedReport unfinished = UnfinishedReport::when_watching;
 };
 
-/// All formats, in the order of the help.
-std::span<const ReportFormat> report_formats();
-
 /// The format with this name, which must exist.
 const ReportFormat& report_format(const std::string& name);
 
-/// The names of all formats, without "shard" if `with_shard` is false.
+/// The names of all formats in the order of the help, without "shard" if `with_shard` is false.
 std::vector<std::string> format_names(bool with_shard);
 
 /// The list for help: "text, json, jsonl (one object per line), ... or junit".

@@ -72,6 +72,7 @@ public:
     void look_at(size_t place);
     /// The position of the last keyframe at or before a position.
     size_t keyframe_before(size_t place) const;
+    // How much the keyframes take, to verify that they stay within the budget.
     size_t keyframe_count() const;
     size_t keyframe_memory() const; // bytes
 

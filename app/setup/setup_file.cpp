@@ -426,10 +426,6 @@ core::Result<SetupFile> read_setup(const std::string& path, const ProgramSetting
     return tl::unexpected(*error);
 }
 
-core::Result<SetupFile> read_setup(const std::string& path) {
-    return read_setup(path, ProgramSettings{});
-}
-
 std::string setup_beside(const std::string& program) {
     const std::filesystem::path setup = std::filesystem::path(program).replace_extension(".toml");
     const bool is_one =

@@ -42,7 +42,6 @@ struct SetupFile {
 /// Errors: with file, line and column: a missing file, invalid TOML, an unknown key, an invalid
 ///         value, an open mesh, an impossible tool.
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over);
-core::Result<SetupFile> read_setup(const std::string& path);
 
 /// The name of the project file, which assigns set-ups to the programs of a folder.
 constexpr const char* project_file_name = "feeler.toml";

@@ -115,12 +115,6 @@ bool IntervalList::contains(double x) const {
     return at != end() && at->lower <= x;
 }
 
-double IntervalList::length() const {
-    double sum = 0.0;
-    for (const Interval& i : *this) sum += i.length();
-    return sum;
-}
-
 bool IntervalList::operator==(const IntervalList& other) const {
     return std::equal(begin(), end(), other.begin(), other.end());
 }

@@ -40,7 +40,6 @@ public:
 
     /// Whether `x` is inside an interval, ends included.
     bool contains(double x) const;
-    double length() const;
 
     bool empty() const { return size_ == 0; }
     size_t size() const { return size_; }

@@ -440,20 +440,6 @@ core::Result<TurningMoves> finishing_moves(TurningPoint start, const TurningCont
     return checked(std::move(writer));
 }
 
-core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoint end,
-                                                 double radius, bool counterclockwise) {
-    const ZxPoint from(start.z, start.x), to(end.z, end.x);
-    const double square = radius * radius / std::norm(to - from) - 0.25;
-    if (!(square >= 0.0))
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("the radius {:.4f} mm is too small to reach from the start "
-                                      "of the arc to its end: half the distance is {:.4f} mm",
-                                      radius, 0.5 * std::abs(to - from)));
-    const ZxPoint aside = ZxPoint(0, 1) * std::sqrt(square) * (to - from);
-    const ZxPoint centre = (from + to) / 2.0 + (counterclockwise ? aside : -aside);
-    return TurningArc{{centre.imag(), centre.real()}, counterclockwise};
-}
-
 namespace {
 
 constexpr double vanishing = 1e-3;   // program units: smaller segments are removed

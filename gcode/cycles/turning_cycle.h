@@ -84,10 +84,4 @@ core::Result<TurningMoves> roughing_moves(TurningPoint start, const TurningConto
 core::Result<TurningMoves> finishing_moves(TurningPoint start, const TurningContour& contour,
                                            const FinishingWords& words, double mm_per_unit = 1.0);
 
-/// The arc of a block with R instead of a centre: the shorter arc, regardless of the sign of R.
-///
-/// Errors: R is less than half the distance between the ends.
-core::Result<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoint end,
-                                                 double radius, bool counterclockwise);
-
 } // namespace gcode

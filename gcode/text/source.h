@@ -110,7 +110,8 @@ core::Result<Program> read_program(const std::string& path);
 ///         faulty line is reached.
 core::Result<Program> open_program(const std::string& path, size_t window = size_t(1) << 18);
 
-/// Makes a program from a text. `file` is the name used in errors.
+/// Makes a program from a text, for callers of the library that have no file. `file` is the name
+/// used in errors.
 ///
 /// Errors: syntax, as read_program.
 core::Result<Program> program_from_text(std::string_view text, std::string file = {});

@@ -9,6 +9,7 @@
 #include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_edits.h"
 #include "app/setup/setup_file.h"
 #include "gcode/language/dialect.h"
@@ -330,7 +331,7 @@ TEST(SavedSetup, PutsAllowancesWhereTomlTakesThem) {
         const auto after = app::rewritten_setup(text, edits);
         ASSERT_TRUE(after) << text << after.error().message;
         const test_support::ScopedFolder folder;
-        const auto read = app::read_setup(folder.write("s.toml", *after));
+        const auto read = app::read_setup(folder.write("s.toml", *after), {});
         ASSERT_TRUE(read) << *after << read.error().message;
         EXPECT_EQ(read->setup.allowance, 3.0) << *after;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/report/text/text_report.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/setup_writer.h"
@@ -16,7 +17,7 @@ using test_support::SetupWriter;
 /// The error of a set-up, as printed; empty if it is valid.
 std::string error_of(const std::string& text) {
     const test_support::ScopedFolder folder;
-    const auto read = read_setup(folder.write("setup.toml", text));
+    const auto read = read_setup(folder.write("setup.toml", text), {});
     return read ? std::string() : error_text(read.error());
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/report/text/text_report.h"
 #include "app/setup/holder_library.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scoped_folder.h"
@@ -19,7 +20,7 @@ const test_support::ScopedFolder& folder() {
 }
 
 core::Result<SetupFile> read(const std::string& tool) {
-    return read_setup(folder().write("setup.toml", SetupWriter().tool(tool).text()));
+    return read_setup(folder().write("setup.toml", SetupWriter().tool(tool).text()), {});
 }
 
 const std::string flat = "number = 4\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n";
@@ -130,12 +131,14 @@ TEST(ToolTable, SaysWhatItTakesForGranted) {
 }
 
 TEST(ToolTable, TellsTheControlLengthWearAndDiameter) {
-    const auto file = read_setup(folder().write(
-        "setup.toml", SetupWriter()
-                          .tool(flat + "gauge_length = 88\n")
-                          .lengths("[[length_offset]]\nnumber = 3\nlength = 95\nwear = -0.2\n"
-                                   "diameter = 9.8\n")
-                          .text()));
+    const auto file = read_setup(
+        folder().write("setup.toml",
+                       SetupWriter()
+                           .tool(flat + "gauge_length = 88\n")
+                           .lengths("[[length_offset]]\nnumber = 3\nlength = 95\nwear = -0.2\n"
+                                    "diameter = 9.8\n")
+                           .text()),
+        {});
     ASSERT_TRUE(file.has_value());
     const gcode::LengthOffset& offset = file->environment.length_offsets.at(core::OffsetNumber{3});
     EXPECT_EQ(offset.length, 95.0);

@@ -82,7 +82,7 @@ TEST(IntervalList, ReturnsTheLengthThatWasReallyThere) {
     list.add({6.0, 7.0});
     EXPECT_EQ(list.subtract({3.0, 6.5}), 1.5);
     EXPECT_EQ(list.subtract({3.0, 6.5}), 0.0);
-    EXPECT_EQ(list.length(), 3.5);
+    EXPECT_EQ(LineView(list).length(), 3.5);
     EXPECT_EQ(list.subtract({-INFINITY, INFINITY}), 3.5);
     EXPECT_TRUE(list.empty());
 }

@@ -23,8 +23,8 @@ void expect_near(const IntervalList& found, const IntervalList& expected, double
     IntervalList more = found, less = expected;
     for (const Interval& i : expected) more.subtract({i.lower - slack, i.upper + slack});
     for (const Interval& i : found) less.subtract({i.lower - slack, i.upper + slack});
-    EXPECT_LT(more.length(), 1e-12);
-    EXPECT_LT(less.length(), slack);
+    EXPECT_LT(LineView(more).length(), 1e-12);
+    EXPECT_LT(LineView(less).length(), slack);
 }
 
 /// Expects that the scan of every line equals the oracle, and scan_line to the last bit.

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <complex>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -12,6 +14,17 @@ namespace {
 
 /// A shaft of radius 10, 10 long, followed by a cone up to radius 16.
 const TurningContour shaft = {{{10, 0}}, {{10, -10}}, {{16, -16}}, {{18, -16}}};
+
+/// The arc with this radius between two points: the shorter one.
+std::optional<TurningArc> turning_arc_from_radius(TurningPoint start, TurningPoint end,
+                                                  double radius, bool counterclockwise) {
+    const std::complex<double> from(start.z, start.x), to(end.z, end.x);
+    const double square = radius * radius / std::norm(to - from) - 0.25;
+    if (!(square >= 0.0)) return std::nullopt;
+    const auto aside = std::complex<double>(0, 1) * std::sqrt(square) * (to - from);
+    const auto centre = (from + to) / 2.0 + (counterclockwise ? aside : -aside);
+    return TurningArc{{centre.imag(), centre.real()}, counterclockwise};
+}
 
 TurningMove rapid(double x, double z) { return {{x, z}, true}; }
 TurningMove feed(double x, double z) { return {{x, z}, false}; }

@@ -119,17 +119,13 @@ TEST(Camera, PanMovesWhatIsUnderTheCursorWithIt) {
     }
 }
 
-TEST(Camera, OrbitKeepsItsPivot) {
+TEST(Camera, OrbitKeepsItsTarget) {
     std::mt19937 random(6);
     for (int i = 0; i < 300; ++i) {
         const Camera camera = random_camera(random);
-        const Vec3 pivot = camera.target + Vec3(20, -10, 8);
-        const Camera turned = orbited(camera, wide, {120, -35}, pivot);
+        const Camera turned = orbited(camera, wide, {120, -35});
         EXPECT_NE(turned.yaw, camera.yaw);
-        const auto was = project(camera, wide, pivot), is = project(turned, wide, pivot);
-        EXPECT_LT(glm::distance(was->place, is->place), 1e-6);
-        EXPECT_NEAR(was->depth, is->depth, 1e-9);
-        EXPECT_EQ(orbited(camera, wide, {10, 10}).target, camera.target);
+        EXPECT_EQ(turned.target, camera.target);
     }
 }
 
@@ -165,18 +161,6 @@ TEST(Camera, KeepsItsScaleWithoutPerspective) {
     camera.projection = Projection::orthographic;
     EXPECT_NEAR(pixel_size(camera, wide, camera.target), with, 1e-12);
     EXPECT_NEAR(pixel_size(camera, wide, camera.target + Vec3(50, 50, 50)), with, 1e-12);
-}
-
-TEST(Camera, GoesTheShortWayRound) {
-    Camera a, b;
-    a.yaw = 3.0;
-    b.yaw = -3.0;
-    b.distance = 100.0;
-    EXPECT_EQ(between(a, b, 0.0), a);
-    EXPECT_EQ(between(a, b, 1.0), b);
-    const Camera half = between(a, b, 0.5);
-    EXPECT_NEAR(std::abs(half.yaw), 3.14159265, 1e-6);
-    EXPECT_NEAR(half.distance, 200.0, 1e-9);
 }
 
 } // namespace
