@@ -235,7 +235,7 @@ TEST(BenchText, SaysWhenTheEnginesDisagree) {
     BenchTable table = measured(paper_scene(), {2.0});
     table.rows[3].fast.distance = std::nextafter(table.rows[3].fast.distance, 0.0);
     const std::string text = text_bench({table});
-    EXPECT_THAT(text, HasSubstr("DISAGREE in 1 of 8 places"));
+    EXPECT_THAT(text, HasSubstr("DISAGREE in 1 of 8 cases"));
     EXPECT_THAT(text, Not(HasSubstr("to the last bit")));
 }
 

@@ -187,7 +187,7 @@ TEST(TurningProgram, IsNotJudgedAndSaysSo) {
     EXPECT_EQ(run.run.verdict, core::Verdict::undecided);
     EXPECT_EQ(run.count("undecided"), 1u);
     EXPECT_EQ(run.count("rapid-in-stock") + run.count("collision"), 0u);
-    EXPECT_THAT(run.run.findings.back().message, HasSubstr("line 1 says G8"));
+    EXPECT_THAT(run.run.findings.back().message, HasSubstr("line 1 has G8"));
 }
 
 std::optional<std::string> reason(const std::string& text) {

@@ -177,7 +177,7 @@ TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {
     EXPECT_EQ(checked.status, 0) << checked.err;
     std::string all;
     for (const std::string& each : checked.assumptions) all += each + "\n";
-    EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, by"), std::string::npos) << all;
+    EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, according to"), std::string::npos) << all;
     EXPECT_EQ(all.find("tool 1 is a"), std::string::npos) << all; // the set-up defines it
 }
 

@@ -75,7 +75,7 @@ TEST(DeviceModel, GoesRoundTheBlocksThatStopTheMachine) {
     EXPECT_EQ(calm.message, "No block is late or refused");
     calm.device.study = nullptr;
     perform(calm, Command::next_stop, 0.0);
-    EXPECT_NE(calm.message.find("has not answered"), std::string::npos);
+    EXPECT_NE(calm.message.find("No answers from the coprocessor yet"), std::string::npos);
 }
 
 TEST(DeviceModel, ForgetsItsAnswersWhenTheProgramIsReadAgain) {
