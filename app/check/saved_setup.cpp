@@ -1,8 +1,8 @@
 #include "app/check/saved_setup.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "app/check/prepared_check.h"
 #include "app/setup/setup_edits.h"
 #include "app/setup/setup_text.h"
+#include "core/base/file_reads.h"
 
 namespace app {
 namespace {
@@ -17,12 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 core::Result<std::string> text_of_file(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text(std::istreambuf_iterator<char>(file), {});
-    if (file.bad() || !file.is_open())
-        return tl::unexpected<core::Error>(
-            {core::ErrorCode::io, {}, "can no longer be read", path});
-    return text;
+    if (std::optional<std::string> text = core::file_bytes(path)) return *std::move(text);
+    return tl::unexpected<core::Error>({core::ErrorCode::io, {}, "can no longer be read", path});
 }
 
 bool are_one_file(const fs::path& a, const fs::path& b) {

@@ -6,6 +6,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/window.h"
+#include "core/base/file_reads.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {
@@ -96,14 +97,14 @@ TEST(FindingNotes, AreKeptBesideThoseOfOthers) {
     model.program = std::make_shared<const OpenedProgram>(opened);
     write_note(model.notes, "/a.nc", group_of("collision"), row_in(1, "G0"), "mine");
     keep_notes(model, path, app::write_output, 0.0);
-    EXPECT_EQ(notes_in(*read_text(path)), model.notes);
+    EXPECT_EQ(notes_in(*core::file_bytes(path)), model.notes);
     opened.program = "/b.nc";
     ViewModel other;
     other.program = std::make_shared<const OpenedProgram>(opened);
     write_note(other.notes, "/b.nc", group_of("collision"), row_in(1, "G0"), "yours");
     keep_notes(other, path, app::write_output, 0.0);
     EXPECT_EQ(other.notes.size(), 2u);
-    EXPECT_EQ(notes_in(*read_text(path)).size(), 2u);
+    EXPECT_EQ(notes_in(*core::file_bytes(path)).size(), 2u);
 }
 
 TEST(DroppedFiles, OfAnotherProgramTakeNoEditsAlong) {

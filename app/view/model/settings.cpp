@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 
 #include "app/setup/toml_file.h"
+#include "core/base/file_reads.h"
 
 namespace app::viewer {
 namespace {
@@ -84,9 +84,7 @@ std::string text_of(const Settings& s) {
 }
 
 Settings read_settings(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    if (!stream) return {};
-    return settings_in(std::string(std::istreambuf_iterator<char>(stream), {}));
+    return settings_in(core::file_bytes(file).value_or(""));
 }
 
 void write_settings(const Settings& settings, const std::filesystem::path& file) {

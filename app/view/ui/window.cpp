@@ -25,6 +25,7 @@
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
 #include "app/view/ui/panels.h"
+#include "core/base/file_reads.h"
 #include "render/image.h"
 #include "render/renderer.h"
 
@@ -441,7 +442,7 @@ core::Result<void> run_window(const WindowJob& job) {
     shown->model.settings = settings;
     shown->model.device.file = job.device.file;
     shown->model.device.shown = job.device.shown;
-    shown->model.notes = notes_in(read_text(job.notes_file).value_or(""));
+    shown->model.notes = notes_in(core::file_bytes(job.notes_file).value_or(""));
     listen_to_keys(window.get());
     glfwSetWindowUserPointer(window.get(), shown.get());
     shown->run();

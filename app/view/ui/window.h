@@ -43,11 +43,6 @@ core::Result<void> run_window(const WindowJob& job);
 /// the answer of the device if the coprocessor panel is open.
 std::string window_title(const ViewModel& model);
 
-/// Reads a whole file.
-///
-/// Errors: io.
-core::Result<std::string> read_text(const std::filesystem::path& path);
-
 /// The job after files were dropped on the window: a program, a set-up, or both. A new program
 /// discards the set-up and the breakpoints of the old one. Empty if there is nothing to open; then
 /// a message says why.

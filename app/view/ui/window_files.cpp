@@ -1,18 +1,10 @@
-#include <fstream>
-#include <iterator>
-
 #include "app/check/check_job.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
+#include "core/base/file_reads.h"
 
 namespace app::viewer {
-
-core::Result<std::string> read_text(const std::filesystem::path& path) {
-    std::ifstream file(path);
-    if (!file) return core::fail(core::ErrorCode::io, "there is no such file");
-    return std::string(std::istreambuf_iterator<char>(file), {});
-}
 
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
                                      ViewModel& model, double now) {
@@ -48,7 +40,8 @@ void keep_notes(ViewModel& model, const std::filesystem::path& path, const Setup
     if (path.empty() || !model.program) return;
     std::error_code ignored; // writing the file reports it
     std::filesystem::create_directories(path.parent_path(), ignored);
-    model.notes = merged(notes_in(read_text(path).value_or("")), model.notes, notes_key(model));
+    model.notes =
+        merged(notes_in(core::file_bytes(path).value_or("")), model.notes, notes_key(model));
     const auto written = write(path, text_of(model.notes));
     if (!written) say(model, "The comment could not be saved: " + written.error().message, now);
 }
