@@ -586,12 +586,7 @@ std::optional<size_t> offset_named(std::string_view name) {
     return gcode::plain_offset_count + *number - 1;
 }
 
-std::string number_text(double value) {
-    std::string text = fmt::format("{:.4f}", value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text == "-0" ? "0" : text;
-}
+std::string number_text(double value) { return core::number_text(value, 4); }
 
 InspectedValue quantity(std::optional<double> value, std::string_view unit) {
     if (!value) return {std::nullopt, "unknown"};

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace core {
 
 size_t letters_apart(std::string_view a, std::string_view b) {
@@ -25,6 +27,18 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
         return letters_apart(name, a) < letters_apart(name, b);
     });
     return nearest == names.end() ? std::string() : *nearest;
+}
+
+std::string without_trailing_zeros(std::string number) {
+    if (number.find('.') == std::string::npos) return number;
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+    return number;
+}
+
+std::string number_text(double value, int decimals) {
+    const std::string text = without_trailing_zeros(fmt::format("{:.{}f}", value, decimals));
+    return text == "-0" ? "0" : text;
 }
 
 } // namespace core

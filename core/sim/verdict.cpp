@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
+
 namespace core {
 namespace {
 
@@ -72,11 +74,7 @@ std::string at_most(double upper, int digits) {
 std::string at_most_figures(double upper, int figures) {
     if (!(upper > 0.0)) return "0";
     const int before = static_cast<int>(std::floor(std::log10(upper))) + 1; // decimal point
-    std::string text = at_most(upper, std::max(figures - before, 0));
-    if (text.find('.') == std::string::npos) return text;
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
+    return without_trailing_zeros(at_most(upper, std::max(figures - before, 0)));
 }
 
 std::string clearance_at_least(double lower, int digits) {

@@ -4,18 +4,14 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "gcode/language/lexer.h"
 
 namespace gcode {
 namespace {
 
 /// Rounded to a millionth, without trailing zeros or negative zero.
-std::string number(double value) {
-    std::string text = fmt::format("{:.6f}", value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text == "-0" ? "0" : text;
-}
+std::string number(double value) { return core::number_text(value, 6); }
 
 std::string place(const Position& position) {
     std::string text;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/text.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
@@ -13,6 +14,14 @@ namespace core {
 namespace {
 
 using testing::HasSubstr;
+
+TEST(NumberText, HasNoTrailingZeros) {
+    EXPECT_EQ(number_text(1.5, 4), "1.5");
+    EXPECT_EQ(number_text(100.0, 4), "100");
+    EXPECT_EQ(number_text(100.0, 0), "100");
+    EXPECT_EQ(number_text(-1e-9, 6), "0");
+    EXPECT_EQ(number_text(-0.00005, 6), "-0.00005");
+}
 
 TEST(BoundText, ShowsNoLowerBoundLargerThanItIs) {
     EXPECT_EQ(at_least(1.9996), "1.999");
