@@ -23,6 +23,12 @@ bool CheckRun::has_errors() const {
     });
 }
 
+std::vector<std::string> CheckRun::all_assumptions() const {
+    std::vector<std::string> all = assumptions;
+    all.insert(all.end(), later_assumptions.begin(), later_assumptions.end());
+    return all;
+}
+
 double least_clearance(const core::Setup& setup, const core::BlockResult& result) {
     double lower = result.checked ? setup.search_limit : 0.0;
     for (const core::PairClearance& pair : result.pairs) lower = std::min(lower, pair.lower);
@@ -71,11 +77,19 @@ void InputRecorder::note(const core::FileAccess& access) {
     inputs_.insert(std::move(input));
 }
 
+void use_coprocessor(CheckInput& input) {
+    input.engine = Engine::coprocessor;
+    input.assumptions.push_back(
+        "the coprocessor alone judges clearances and may refuse a clear block: its models are "
+        "larger than the bodies by about a mesh size");
+}
+
 } // namespace
 
 core::Result<CheckRun> run_check(const CheckJob& job) {
     const InputRecorder recorder;
     FEELER_TRY(PreparedCheck check, prepare_check(job));
+    if (job.engine == Engine::coprocessor) use_coprocessor(check.run);
     const Stopwatch checking;
     ProgramRunner runner(check);
     runner.after_block = job.after_block;
@@ -85,10 +99,6 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
         runner.let_judge([&](std::span<const core::Event> block, const auto& before) {
             return device->judge(block, before);
         });
-        check.run.engine = Engine::coprocessor;
-        check.run.assumptions.push_back(
-            "the coprocessor alone judges clearances and may refuse a clear block: its models are "
-            "larger than the bodies by about a mesh size");
     }
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)

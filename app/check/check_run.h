@@ -44,12 +44,11 @@ struct CheckTimes {
     double check = 0.0; // interpreting, cutting, measuring
 };
 
-/// The input of a check: everything read, inferred and assumed before the first block. A run
-/// changes it only by adding assumptions.
+/// The input of a check: everything read, inferred and assumed before the first block. A run does
+/// not change it.
 struct CheckInput {
     std::string program_file;
-    std::string sha256;            // of the program
-    std::vector<InputFile> inputs; // files that were read or looked for
+    std::string sha256; // of the program
     gcode::DialectId dialect{};
     Engine engine{}; // exact
     core::Setup setup;
@@ -59,6 +58,8 @@ struct CheckInput {
 
 /// The results by block. They only grow while the program runs.
 struct CheckRecord {
+    std::vector<InputFile> inputs; // files that were read or looked for, also by the run
+    std::vector<std::string> later_assumptions; // those that the run adds to the input's
     std::vector<CheckedBlock> blocks;
     std::vector<core::Finding> findings; // after the run in the order of the blocks
     core::Verdict verdict = core::Verdict::clear;
@@ -84,6 +85,8 @@ struct CheckReport {
 /// ProgramRunner the record, and conclude the report.
 struct CheckRun : CheckInput, CheckRecord, CheckReport {
     bool has_errors() const;
+    /// The assumptions of the input, then those of the run.
+    std::vector<std::string> all_assumptions() const;
 };
 
 /// Progress of a check.

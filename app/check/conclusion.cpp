@@ -25,9 +25,9 @@ namespace app {
 namespace {
 
 /// Reports a program of which no motion could be judged: it has not been checked.
-void look_for_judged_motions(CheckRun& run) {
+void look_for_judged_motions(CheckRecord& record) {
     const CheckedBlock* first = nullptr;
-    for (const CheckedBlock& block : run.blocks) {
+    for (const CheckedBlock& block : record.blocks) {
         if (block.result.motion == core::BlockMotion::none) continue;
         if (block.result.checked) return;
         if (!first) first = &block;
@@ -38,28 +38,28 @@ void look_for_judged_motions(CheckRun& run) {
     finding.severity = core::Severity::error;
     finding.block = first->block;
     finding.message = "No motion of the program could be checked.";
-    const bool is_lost = std::any_of(run.findings.begin(), run.findings.end(), [](const auto& f) {
-        return f.rule == core::rule_id("first-move");
-    });
+    const bool is_lost =
+        std::any_of(record.findings.begin(), record.findings.end(),
+                    [](const auto& f) { return f.rule == core::rule_id("first-move"); });
     finding.cure = !is_lost ? "Correct the other findings first."
                             : "State the axis positions at the first block: `start` under "
                               "[program] in the set-up, or the machine's home position.";
-    run.findings.push_back(finding);
+    record.findings.push_back(finding);
 }
 
 /// Reports motions that were not checked, so that the program does not count as checked.
-void say_not_judged(CheckRun& run, const std::string& why) {
+void say_not_judged(CheckRecord& record, const std::string& why) {
     const auto moves = [](const CheckedBlock& block) {
         return block.result.motion != core::BlockMotion::none;
     };
-    if (why.empty() || std::none_of(run.blocks.begin(), run.blocks.end(), moves)) return;
+    if (why.empty() || std::none_of(record.blocks.begin(), record.blocks.end(), moves)) return;
     core::Finding finding;
     finding.rule = core::rule_id("undecided");
     finding.severity = core::Severity::error;
     finding.message = "The motions were not checked: " + why + ".";
     finding.cure = "Check the program on the lathe's own control.";
-    run.verdict = std::max(run.verdict, core::Verdict::undecided);
-    run.findings.push_back(finding);
+    record.verdict = std::max(record.verdict, core::Verdict::undecided);
+    record.findings.push_back(finding);
 }
 
 /// Sorts findings by block, those about the whole program last.
@@ -78,7 +78,8 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     run.statistics = end.statistics;
     run.points = core::point_count(end.stock.lines);
     run.lines = core::line_count(end.stock.lines);
-    for (const std::string& assumption : end.assumptions) run.assumptions.push_back(assumption);
+    run.later_assumptions.insert(run.later_assumptions.end(), end.assumptions.begin(),
+                                 end.assumptions.end());
     look_for_judged_motions(run);
     // A program that was checked only in part must not count as clear.
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
@@ -87,10 +88,10 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     run.stock = std::make_shared<const core::CutModel>(end.stock);
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
-    check_part(run);
-    look_at_both_switch_positions(run, *check.program, check.file.environment);
-    apply_allowed_rules(run, check.file.allow_comments);
-    combine_consequences(run, mismatches);
+    check_part(run, run, run);
+    look_at_both_switch_positions(run, run, *check.program, check.file.environment);
+    apply_allowed_rules(run, run, check.file.allow_comments);
+    combine_consequences(run, run, mismatches);
 }
 
 namespace {
@@ -117,20 +118,21 @@ bool take(std::string_view& text, std::string_view word) {
     return true;
 }
 
-bool comes_of_a_collision(const CheckRun& run, const core::Finding& finding) {
+bool comes_of_a_collision(const CheckInput& input, const CheckRecord& record,
+                          const core::Finding& finding) {
     if (finding.rule == core::rule_id("collision")) return true;
-    const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
+    const core::BlockResult& block = record.blocks[core::value_of(*finding.block)].result;
     return std::any_of(block.pairs.begin(), block.pairs.end(),
                        [&](const core::PairClearance& pair) {
                            return pair.verdict == core::Verdict::collision
-                                  && core::part_name(run.setup, pair.pair) == finding.pair[0]
-                                  && core::body_name(run.setup, pair.pair) == finding.pair[1];
+                                  && core::part_name(input.setup, pair.pair) == finding.pair[0]
+                                  && core::body_name(input.setup, pair.pair) == finding.pair[1];
                        });
 }
 
-bool is_allowed(const CheckRun& run, const core::Finding& finding) {
+bool is_allowed(const CheckRecord& record, const core::Finding& finding) {
     if (!finding.block) return false;
-    const std::string& text = run.blocks[core::value_of(*finding.block)].text;
+    const std::string& text = record.blocks[core::value_of(*finding.block)].text;
     if (text.find_first_of("(;") == std::string::npos) return false;
     const std::vector<AllowedRule> rules = allowed_rules(text);
     return std::any_of(rules.begin(), rules.end(),
@@ -166,10 +168,10 @@ std::optional<core::Finding> doubt_about(const CheckedBlock& block, const Allowe
 }
 
 /// Checks every comment of the executed lines once.
-void say_doubtful_comments(CheckRun& run, bool comments_count) {
+void say_doubtful_comments(const CheckInput& input, CheckRecord& record, bool comments_count) {
     std::set<std::pair<std::string, uint32_t>> seen;
     std::vector<core::Finding> found;
-    for (const CheckedBlock& block : run.blocks) {
+    for (const CheckedBlock& block : record.blocks) {
         if (block.text.find_first_of("(;") == std::string::npos) continue;
         if (!seen.emplace(block.file, block.line).second) continue;
         for (const AllowedRule& rule : allowed_rules(block.text))
@@ -177,22 +179,22 @@ void say_doubtful_comments(CheckRun& run, bool comments_count) {
                 found.push_back(*std::move(doubt));
     }
     for (core::Finding& finding : found) {
-        if (const auto set = run.setup.rules.find(finding.rule); set != run.setup.rules.end())
+        if (const auto set = input.setup.rules.find(finding.rule); set != input.setup.rules.end())
             finding.severity = set->second;
         if (finding.severity == core::Severity::off) continue;
-        const auto behind =
-            std::find_if(run.findings.begin(), run.findings.end(), [&](const core::Finding& other) {
-                return !other.block || *other.block > *finding.block;
-            });
-        run.findings.insert(behind, std::move(finding));
+        const auto behind = std::find_if(record.findings.begin(), record.findings.end(),
+                                         [&](const core::Finding& other) {
+                                             return !other.block || *other.block > *finding.block;
+                                         });
+        record.findings.insert(behind, std::move(finding));
     }
 }
 
-void say_severities(CheckRun& run) {
-    for (const auto& [rule, severity] : run.setup.rules) {
+void say_severities(const CheckInput& input, CheckRecord& record) {
+    for (const auto& [rule, severity] : input.setup.rules) {
         const core::Severity own = core::default_severity(rule).value_or(severity);
         if (severity == own) continue;
-        run.assumptions.push_back(
+        record.later_assumptions.push_back(
             severity == core::Severity::off
                 ? fmt::format("the set-up switches {} off; collisions are reported all the same",
                               rule)
@@ -222,14 +224,14 @@ std::vector<AllowedRule> allowed_rules(std::string_view line) {
     return rules;
 }
 
-void apply_allowed_rules(CheckRun& run, bool comments_count) {
-    say_severities(run);
-    say_doubtful_comments(run, comments_count);
+void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comments_count) {
+    say_severities(input, record);
+    say_doubtful_comments(input, record, comments_count);
     std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by message
     const auto judge = [&](const core::Finding& finding) {
-        if (!is_allowed(run, finding)) return false;
-        const uint32_t line = run.blocks[core::value_of(*finding.block)].line;
-        const bool collides = comes_of_a_collision(run, finding);
+        if (!is_allowed(record, finding)) return false;
+        const uint32_t line = record.blocks[core::value_of(*finding.block)].line;
+        const bool collides = comes_of_a_collision(input, record, finding);
         if (comments_count && !collides)
             allowed[finding.rule].push_back(line);
         else
@@ -238,13 +240,13 @@ void apply_allowed_rules(CheckRun& run, bool comments_count) {
                 .push_back(line);
         return comments_count && !collides;
     };
-    std::erase_if(run.findings, judge);
+    std::erase_if(record.findings, judge);
     for (const auto& [rule, lines] : allowed)
-        run.assumptions.push_back(fmt::format(
+        record.later_assumptions.push_back(fmt::format(
             "comments in the program allow {} in {}: {} omitted", rule, lines_text(lines),
             lines.size() == 1 ? "one finding is" : fmt::format("{} findings are", lines.size())));
     for (const auto& [why, lines] : refused)
-        run.assumptions.push_back(fmt::format(
+        record.later_assumptions.push_back(fmt::format(
             "a comment that allows a rule has no effect in {}: {}", lines_text(lines), why));
 }
 
@@ -282,12 +284,13 @@ std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment env
 
 } // namespace
 
-void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
+void look_at_both_switch_positions(const CheckInput& input, CheckRecord& record,
+                                   const gcode::Program& program,
                                    const gcode::Environment& environment) {
-    const auto note = std::find_if(run.findings.begin(), run.findings.end(), [](const auto& f) {
-        return f.rule == core::rule_id("block-delete");
-    });
-    if (note == run.findings.end()) return;
+    const auto note =
+        std::find_if(record.findings.begin(), record.findings.end(),
+                     [](const auto& f) { return f.rule == core::rule_id("block-delete"); });
+    if (note == record.findings.end()) return;
     const std::vector<Step> off = steps_of(program, environment, false);
     const std::vector<Step> on = steps_of(program, environment, true);
     const auto [here, there] =
@@ -298,7 +301,7 @@ void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
         note->cure.clear();
         return;
     }
-    note->severity = core::severity_of(run.setup, note->rule);
+    note->severity = core::severity_of(input.setup, note->rule);
     note->message =
         fmt::format("blocks with '/' are run here; with block delete on at the machine, "
                     "the path is different from line {} on",
@@ -330,17 +333,18 @@ core::Finding finding_of(const core::DeviationRegion& region) {
     return finding;
 }
 
-void add(CheckRun& run, core::Finding finding) {
-    finding.severity = core::severity_of(run.setup, finding.rule);
-    if (finding.severity != core::Severity::off) run.findings.push_back(std::move(finding));
+void add(const CheckInput& input, CheckRecord& record, core::Finding finding) {
+    finding.severity = core::severity_of(input.setup, finding.rule);
+    if (finding.severity != core::Severity::off) record.findings.push_back(std::move(finding));
 }
 
-void add_findings(CheckRun& run, core::Deviation kind) {
+void add_findings(const CheckInput& input, CheckRecord& record,
+                  const core::PartComparison& comparison, core::Deviation kind) {
     size_t told = 0, more = 0;
-    for (const core::DeviationRegion& region : run.comparison->regions) {
+    for (const core::DeviationRegion& region : comparison.regions) {
         if (region.kind != kind) continue;
         if (told++ < most_findings)
-            add(run, finding_of(region));
+            add(input, record, finding_of(region));
         else
             ++more;
     }
@@ -349,7 +353,7 @@ void add_findings(CheckRun& run, core::Deviation kind) {
     finding.rule =
         kind == core::Deviation::gouge ? core::rule_id("gouge") : core::rule_id("rest-material");
     finding.message = fmt::format("{} more regions deviate from the part by less.", more);
-    add(run, finding);
+    add(input, record, finding);
 }
 
 /// Colour of a deviation: green within the tolerance; from yellow to red for gouges and from cyan
@@ -365,12 +369,12 @@ core::Colour colour_of(double deviation, double tolerance) {
 
 } // namespace
 
-void check_part(CheckRun& run) {
-    if (!run.setup.part || !run.surface) return;
-    run.comparison = std::make_shared<const core::PartComparison>(
-        core::compare_with_part(*run.stock, *run.surface, *run.setup.part));
-    add_findings(run, core::Deviation::gouge);
-    add_findings(run, core::Deviation::excess);
+void check_part(const CheckInput& input, CheckRecord& record, CheckReport& report) {
+    if (!input.setup.part || !report.surface) return;
+    report.comparison = std::make_shared<const core::PartComparison>(
+        core::compare_with_part(*report.stock, *report.surface, *input.setup.part));
+    for (const core::Deviation kind : {core::Deviation::gouge, core::Deviation::excess})
+        add_findings(input, record, *report.comparison, kind);
 }
 
 std::string facts_of(const core::PartComparison& comparison, double tolerance) {

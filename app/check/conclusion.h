@@ -17,6 +17,9 @@ struct Program;
 
 namespace app {
 
+struct CheckInput;
+struct CheckRecord;
+struct CheckReport;
 struct CheckRun;
 struct LengthMismatch;
 struct PreparedCheck;
@@ -40,16 +43,18 @@ std::vector<AllowedRule> allowed_rules(std::string_view line);
 /// comments; findings of collisions stay. Adds to the assumptions: the removed findings, comments
 /// without effect, and each rule whose severity the set-up changes. An unknown rule name gives a
 /// warning; a comment that the set-up does not permit gives a note.
-void apply_allowed_rules(CheckRun& run, bool comments_count);
+void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comments_count);
 
-/// If the run has a note about blocks with `/`, checks whether the path differs when block delete
-/// is on. If so, raises the note to the severity of its rule.
-void look_at_both_switch_positions(CheckRun& run, const gcode::Program& program,
+/// If the record has a note about blocks with `/`, checks whether the path differs when block
+/// delete is on. If so, raises the note to the severity of its rule.
+void look_at_both_switch_positions(const CheckInput& input, CheckRecord& record,
+                                   const gcode::Program& program,
                                    const gcode::Environment& environment);
 
 /// Compares the remaining stock with the part of the set-up, if there is one: fills
-/// `run.comparison`, and adds a finding `gouge` or `rest-material` for each of the worst regions.
-void check_part(CheckRun& run);
+/// `report.comparison`, and adds a finding `gouge` or `rest-material` for each of the worst
+/// regions.
+void check_part(const CheckInput& input, CheckRecord& record, CheckReport& report);
 
 /// The result of the comparison as one line of text.
 std::string facts_of(const core::PartComparison& comparison, double tolerance);

@@ -89,8 +89,8 @@ std::string listed(const std::set<std::string>& names) {
 }
 
 /// Whether the block of a finding collides.
-bool collides_in(const CheckRun& run, const core::Finding& finding) {
-    const core::BlockResult& block = run.blocks[core::value_of(*finding.block)].result;
+bool collides_in(const CheckRecord& record, const core::Finding& finding) {
+    const core::BlockResult& block = record.blocks[core::value_of(*finding.block)].result;
     return block.verdict == core::Verdict::collision;
 }
 
@@ -101,7 +101,7 @@ struct Consequences {
     core::Severity worst = core::Severity::off;
     bool collides = false;
 
-    void take(const CheckRun& run, const core::Finding& finding) {
+    void take(const CheckRecord& record, const core::Finding& finding) {
         worst = std::max(worst, finding.severity);
         const bool goes_too_far = finding.rule == core::rule_id("over-travel");
         if (finding.pair[0].empty() && !goes_too_far) return;
@@ -109,14 +109,14 @@ struct Consequences {
         bodies.insert(goes_too_far                 ? "the limit of Z"
                       : finding.pair[1] == "stock" ? "the stock"
                                                    : finding.pair[1]);
-        collides = collides || collides_in(run, finding);
+        collides = collides || collides_in(record, finding);
     }
 };
 
 /// "The tool is 95.000 mm lower than intended and collides with the stock in 14 blocks from ...".
-std::string sentence(const CheckRun& run, const Consequences& all, double too_low) {
+std::string sentence(const CheckRecord& record, const Consequences& all, double too_low) {
     const auto line = [&](core::BlockIndex block) {
-        return run.blocks[core::value_of(block)].line;
+        return record.blocks[core::value_of(block)].line;
     };
     const std::string where =
         all.blocks.size() == 1
@@ -128,30 +128,31 @@ std::string sentence(const CheckRun& run, const Consequences& all, double too_lo
                        where);
 }
 
-std::optional<core::Finding> cause_of(const CheckRun& run, const LengthMismatch& mismatch) {
-    for (const core::Finding& finding : run.findings)
+std::optional<core::Finding> cause_of(const CheckRecord& record, const LengthMismatch& mismatch) {
+    for (const core::Finding& finding : record.findings)
         if (finding.block == mismatch.first && is_cause(finding.rule)) return finding;
     return std::nullopt;
 }
 
 /// Adds the sentence to the finding of the cause, or to `first`, the first consequence, if the
 /// cause has a lower severity.
-void add_sentence(CheckRun& run, const core::Finding& cause, const Consequences& all,
+void add_sentence(CheckRecord& record, const core::Finding& cause, const Consequences& all,
                   double too_low, std::optional<core::Finding> first) {
     if (all.blocks.empty()) return;
-    const std::string what = sentence(run, all, too_low);
-    const auto at = std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
-        return other.block == cause.block && other.rule == cause.rule;
-    });
+    const std::string what = sentence(record, all, too_low);
+    const auto at =
+        std::find_if(record.findings.begin(), record.findings.end(), [&](const auto& other) {
+            return other.block == cause.block && other.rule == cause.rule;
+        });
     if (!first) {
         at->message += " " + what;
         at->cure += " Then check again.";
         return;
     }
     first->message += fmt::format(" Cause: the length offset, see {} in line {}. {}", cause.rule,
-                                  run.blocks[core::value_of(*cause.block)].line, what);
+                                  record.blocks[core::value_of(*cause.block)].line, what);
     first->cure = cause.cure + " Then check again.";
-    run.findings.insert(at + 1, *std::move(first));
+    record.findings.insert(at + 1, *std::move(first));
 }
 
 } // namespace
@@ -190,26 +191,28 @@ void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
     state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
 }
 
-void combine_consequences(CheckRun& run, const std::vector<LengthMismatch>& mismatches) {
+void combine_consequences(CheckRecord& record, CheckReport& report,
+                          const std::vector<LengthMismatch>& mismatches) {
     for (const LengthMismatch& mismatch : mismatches) {
-        const auto cause = cause_of(run, mismatch);
+        const auto cause = cause_of(record, mismatch);
         if (!cause) continue;
         const auto is_caused = [&](const core::Finding& finding) {
             return is_consequence(mismatch, finding);
         };
         Consequences all;
-        for (const core::Finding& finding : run.findings)
-            if (is_caused(finding)) all.take(run, finding);
+        for (const core::Finding& finding : record.findings)
+            if (is_caused(finding)) all.take(record, finding);
         std::optional<core::Finding> first;
         if (all.worst > cause->severity && !all.blocks.empty())
-            first = *std::find_if(run.findings.begin(), run.findings.end(), [&](const auto& other) {
-                return is_caused(other) && other.severity == all.worst
-                       && (!all.collides || collides_in(run, other));
-            });
-        std::copy_if(run.findings.begin(), run.findings.end(), std::back_inserter(run.taken_in),
-                     is_caused);
-        std::erase_if(run.findings, is_caused);
-        add_sentence(run, *cause, all, mismatch.too_low, std::move(first));
+            first = *std::find_if(record.findings.begin(), record.findings.end(),
+                                  [&](const auto& other) {
+                                      return is_caused(other) && other.severity == all.worst
+                                             && (!all.collides || collides_in(record, other));
+                                  });
+        std::copy_if(record.findings.begin(), record.findings.end(),
+                     std::back_inserter(report.taken_in), is_caused);
+        std::erase_if(record.findings, is_caused);
+        add_sentence(record, *cause, all, mismatch.too_low, std::move(first));
     }
 }
 

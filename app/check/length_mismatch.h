@@ -18,7 +18,8 @@ struct Warning;
 
 namespace app {
 
-struct CheckRun;
+struct CheckRecord;
+struct CheckReport;
 
 /// Blocks in which the tool is lower than intended because the control uses a length that is too
 /// short.
@@ -50,8 +51,9 @@ void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
 /// next length or tool call that do not occur with the tool's true length. The finding of the rule
 /// `missing-length-offset`, `length-offset-cancelled` or `offset-not-tool` then states the number
 /// of blocks; if its severity is lower than theirs, one of them stays and states it. A rule that is
-/// off combines nothing. Blocks keep their verdicts, and `run.taken_in` holds the findings that
+/// off combines nothing. Blocks keep their verdicts, and `report.taken_in` holds the findings that
 /// were combined.
-void combine_consequences(CheckRun& run, const std::vector<LengthMismatch>& mismatches);
+void combine_consequences(CheckRecord& record, CheckReport& report,
+                          const std::vector<LengthMismatch>& mismatches);
 
 } // namespace app

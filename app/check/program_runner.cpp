@@ -153,10 +153,11 @@ std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& 
 
 ProgramRunner::ProgramRunner(PreparedCheck& check)
     : check_(check),
-      run_(check.run),
+      input_(check.run),
+      record_(check.run),
       runner_(std::make_unique<BlockRunner>(check)),
       state_(std::make_unique<RunState>(
-          start_of_program(check.file.environment, run_.setup, std::move(*check.machine)))) {
+          start_of_program(check.file.environment, input_.setup, std::move(*check.machine)))) {
     runner_->before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
         follow_correction(block, before);
     };
@@ -184,28 +185,28 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
     FEELER_TRY(const uint32_t number, gcode::line_meant(*check_.program, dialect, line));
     FEELER_TRY(const gcode::Restart restart,
                gcode::restart_at(*check_.library, check_.file.environment, number,
-                                 run_.setup.tool_at_start));
+                                 input_.setup.tool_at_start));
     state_->control = restart.state;
     state_->lowering = gcode::initial_lowering(state_->control);
-    run_.assumptions.push_back(fmt::format(
+    record_.later_assumptions.push_back(fmt::format(
         "the program starts at line {}, with the control in its power-on state", number));
     make_moves_before(number);
     if (restart.missing.empty()) return {};
     core::Finding finding;
     finding.rule = core::rule_id("restart-in-the-middle");
-    finding.severity = core::severity_of(run_.setup, finding.rule);
+    finding.severity = core::severity_of(input_.setup, finding.rule);
     finding.block = core::BlockIndex{0};
     finding.message =
         fmt::format("Started here, the program cuts without settings of earlier lines: {}.",
                     fmt::join(restart.missing, ", "));
     finding.cure = "Enter them by hand first, or start at the previous tool change.";
-    if (finding.severity != core::Severity::off) run_.findings.push_back(finding);
+    if (finding.severity != core::Severity::off) record_.findings.push_back(finding);
     return {};
 }
 
 void ProgramRunner::make_moves_before(uint32_t line) {
-    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
-        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+    for (size_t i = 0; i < input_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = input_.setup.fixture_moves[i];
         bool made = move.line && *move.line < line;
         for (uint32_t before = 1; move.code && !made && before < line; ++before) {
             const auto text = check_.program->find_line(before);
@@ -215,27 +216,27 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         state_->moves_made.insert(i);
         state_->machine.fixtures_there[move.from] = false;
         if (move.to) state_->machine.fixtures_there[*move.to] = true;
-        run_.assumptions.push_back(
+        record_.later_assumptions.push_back(
             fmt::format("{} has been moved, as stated in lines before the start",
-                        run_.setup.fixtures[move.from].name));
+                        input_.setup.fixtures[move.from].name));
     }
 }
 
 void ProgramRunner::stop(core::Error error) {
-    const core::BlockIndex block{static_cast<uint32_t>(run_.blocks.size())};
+    const core::BlockIndex block{static_cast<uint32_t>(record_.blocks.size())};
     if (auto finding = alarm(runner_->setup(), error)) {
         const bool in_main = error.file == check_.program->file;
         const auto text = check_.program->find_line(error.where.line);
-        run_.blocks.push_back({block,
-                               error.where.line,
-                               in_main && text && *text ? std::string(**text) : std::string(),
-                               in_main ? std::string() : error.file,
-                               {},
-                               {}});
+        record_.blocks.push_back({block,
+                                  error.where.line,
+                                  in_main && text && *text ? std::string(**text) : std::string(),
+                                  in_main ? std::string() : error.file,
+                                  {},
+                                  {}});
         finding->block = block;
-        run_.findings.push_back(*std::move(finding));
+        record_.findings.push_back(*std::move(finding));
     }
-    run_.stopped = std::move(error);
+    record_.stopped = std::move(error);
 }
 
 void ProgramRunner::follow_correction(const gcode::BlockCommands& block, const RunState& before) {
@@ -269,37 +270,37 @@ std::vector<LengthMismatch> ProgramRunner::length_mismatches() const {
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     for (const core::BlockTime& time : timed) {
         if (core::value_of(time.block) < first_to_time_) continue;
-        core::settle_time(run_.blocks[core::value_of(time.block)].result, time);
+        core::settle_time(record_.blocks[core::value_of(time.block)].result, time);
         if (on_timed) on_timed(time);
     }
 }
 
 void ProgramRunner::compare_with_stock() {
     for (core::Finding& finding : implausible_offsets(state_->offsets, runner_->setup()))
-        run_.findings.push_back(std::move(finding));
+        record_.findings.push_back(std::move(finding));
     if (auto jump =
             units_off_the_stock(state_->units, runner_->setup(), state_->machine.stock.outer_box,
                                 state_->control.modal.unit_said))
-        run_.findings.push_back(*std::move(jump));
+        record_.findings.push_back(*std::move(jump));
 }
 
 void ProgramRunner::report_missing_moves() {
-    for (size_t i = 0; i < run_.setup.fixture_moves.size(); ++i) {
-        const core::FixtureMove& move = run_.setup.fixture_moves[i];
+    for (size_t i = 0; i < input_.setup.fixture_moves.size(); ++i) {
+        const core::FixtureMove& move = input_.setup.fixture_moves[i];
         if (state_->moves_made.contains(i)) continue;
         core::Finding finding;
         finding.rule = core::rule_id("fixture-move");
-        finding.severity = core::severity_of(run_.setup, finding.rule);
+        finding.severity = core::severity_of(input_.setup, finding.rule);
         // A set-up with a code may serve programs without it, but a line refers to this program.
         if (!move.line) finding.severity = std::min(finding.severity, core::Severity::note);
         if (finding.severity == core::Severity::off) continue;
         finding.message =
-            fmt::format("{} is never moved: the program {}.", run_.setup.fixtures[move.from].name,
+            fmt::format("{} is never moved: the program {}.", input_.setup.fixtures[move.from].name,
                         move.line ? fmt::format("executes no block of line {}", *move.line)
                                   : fmt::format("has no M{}", *move.code));
         finding.cure = move.line ? "In the set-up, name a line that is executed, or an M code."
                                  : "Add the M code that stops the program for the move.";
-        run_.findings.push_back(std::move(finding));
+        record_.findings.push_back(std::move(finding));
     }
 }
 
@@ -311,20 +312,20 @@ bool ProgramRunner::advance() {
         return false;
     }
     CheckedBlock& checked = (**step).checked;
-    run_.verdict = std::max(run_.verdict, checked.result.verdict);
-    run_.removed += checked.result.removed;
-    for (core::Finding& finding : (**step).findings) run_.findings.push_back(std::move(finding));
+    record_.verdict = std::max(record_.verdict, checked.result.verdict);
+    record_.removed += checked.result.removed;
+    for (core::Finding& finding : (**step).findings) record_.findings.push_back(std::move(finding));
     if (runner_->setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
     if (checked.file.empty()) last_line_ = checked.line;
-    run_.blocks.push_back(std::move(checked));
+    record_.blocks.push_back(std::move(checked));
     enter((**step).timed);
     return true;
 }
 
 CheckProgress ProgramRunner::progress() const {
-    return {run_.blocks.size(),
+    return {record_.blocks.size(),
             static_cast<double>(last_line_) / static_cast<double>(check_.program->line_count()),
-            run_.findings.size()};
+            record_.findings.size()};
 }
 
 void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t findings) {
@@ -334,38 +335,38 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
     correction_.reset();
     std::erase_if(corrections_,
                   [&](const LengthMismatch& done) { return core::value_of(done.first) >= blocks; });
-    run_.blocks.resize(blocks);
-    run_.findings.resize(findings);
-    run_.stopped.reset();
-    run_.verdict = core::Verdict::clear;
-    run_.removed = 0.0;
+    record_.blocks.resize(blocks);
+    record_.findings.resize(findings);
+    record_.stopped.reset();
+    record_.verdict = core::Verdict::clear;
+    record_.removed = 0.0;
     last_line_ = 0;
-    for (const CheckedBlock& block : run_.blocks) {
-        run_.verdict = std::max(run_.verdict, block.result.verdict);
-        run_.removed += block.result.removed;
+    for (const CheckedBlock& block : record_.blocks) {
+        record_.verdict = std::max(record_.verdict, block.result.verdict);
+        record_.removed += block.result.removed;
         if (block.file.empty()) last_line_ = block.line;
     }
 }
 
 void ProgramRunner::end() {
     const gcode::Environment& environment = check_.file.environment;
-    if (!run_.stopped)
+    if (!record_.stopped)
         if (const auto warning = gcode::ending_warning(environment, state_->control))
-            run_.findings.push_back(finding_of(runner_->setup(), *warning));
+            record_.findings.push_back(finding_of(runner_->setup(), *warning));
     end_correction();
     for (core::Finding& finding : core::end_of_run(runner_->setup(), state_->machine))
-        run_.findings.push_back(std::move(finding));
+        record_.findings.push_back(std::move(finding));
     if (check_.stock_is_stated) compare_with_stock();
-    if (!run_.stopped) report_missing_moves();
+    if (!record_.stopped) report_missing_moves();
     std::vector<core::BlockTime> timed;
     core::stop_clock(state_->clock, timed);
     enter(timed);
-    run_.cycle_time = state_->clock.time;
+    check_.run.cycle_time = state_->clock.time;
 }
 
 void ProgramRunner::stop_here() {
-    const CheckedBlock& last = run_.blocks.back();
-    run_.stopped = core::in_file(
+    const CheckedBlock& last = record_.blocks.back();
+    record_.stopped = core::in_file(
         {core::ErrorCode::io,
          {.line = last.line, .column = 1},
          "the check was stopped after this block; the rest of the program is not checked",

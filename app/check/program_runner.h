@@ -17,7 +17,9 @@ struct BlockTime;
 namespace app {
 
 class BlockRunner;
+struct CheckInput;
 struct CheckProgress;
+struct CheckRecord;
 class CorrectedRun;
 struct PreparedCheck;
 struct RunState;
@@ -98,7 +100,8 @@ private:
     void report_missing_moves();
 
     PreparedCheck& check_;
-    CheckRun& run_;
+    const CheckInput& input_;
+    CheckRecord& record_;
     std::unique_ptr<BlockRunner> runner_;
     std::unique_ptr<RunState> state_;
     uint32_t last_line_ = 0; // of the main program

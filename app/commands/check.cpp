@@ -205,7 +205,7 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
                                              .told = told},
                                             read},
                                            targets);
-    told = run->assumptions;
+    told = run->all_assumptions();
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }

@@ -297,7 +297,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
             return tl::unexpected(core::in_file(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
     run->keyframes_->note(0, 0.0, run->runner_->state());
-    run->told_.assumptions = run->record().assumptions;
+    run->told_.assumptions = run->record().later_assumptions;
     return run;
 }
 
@@ -348,7 +348,7 @@ void RecordedRun::finish() {
     is_complete_ = true;
     told_.findings = record().findings;
     for (const MadeChange& made : changes_)
-        check_->run.assumptions.push_back(
+        check_->run.later_assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
     check_->run.times.check = marks_.back().seconds;
     runner_->conclude(needs_surface_);
@@ -426,7 +426,7 @@ void RecordedRun::record_again_from(size_t place) {
     CheckRun& run = check_->run;
     if (is_complete_) {
         run.findings = told_.findings;
-        run.assumptions = told_.assumptions;
+        run.later_assumptions = told_.assumptions;
         run.taken_in.clear();
         run.comparison.reset();
         run.surface.reset();

@@ -37,7 +37,7 @@ Inferred infer(const std::string& program, const std::string& name = "p.nc") {
     if (!run) return result;
     result.run = *std::move(run);
     EXPECT_FALSE(result.run.stopped) << result.run.stopped->message;
-    for (const std::string& each : result.run.assumptions) result.assumed += each + "\n";
+    for (const std::string& each : result.run.all_assumptions()) result.assumed += each + "\n";
     return result;
 }
 

@@ -122,7 +122,7 @@ CommandResult show_program(PromptState& state, const std::string&) {
     text += fmt::format("so far: {}\n", verdict_text(record.verdict));
     if (state.session.is_recorded())
         text += fmt::format("cycle time {}\n", duration_text(record.cycle_time));
-    for (const std::string& assumed : record.assumptions)
+    for (const std::string& assumed : record.all_assumptions())
         text += wrapped("assumed: " + assumed, 0, 2);
     return text;
 }

@@ -165,7 +165,7 @@ ProgramResult result_of(const CheckRun& run, const std::string& setup) {
                          .tightest = tightest_of(run),
                          .seconds = run.times.read + run.times.model + run.times.check};
     if (run.stopped) result.error = kept(*run.stopped, bytes);
-    for (const std::string& assumption : run.assumptions)
+    for (const std::string& assumption : run.all_assumptions())
         result.assumptions.push_back(utf8_text(assumption));
     for (const core::Finding& finding : run.findings)
         result.findings.push_back(kept(finding, run, bytes));

@@ -70,7 +70,7 @@ std::string html_report(const CheckRun& run, const ReportViews& views) {
                                      {"notice", notice_of(views)},
                                      {"cards", html_cards(run, views)},
                                      {"terms", html_bound_terms(run)},
-                                     {"assumptions", list_of(run.assumptions)},
+                                     {"assumptions", list_of(run.all_assumptions())},
                                      {"blocks", blocks_json(run)},
                                      {"views", views_json(views)},
                                      {"bundle", std::string(view_bundle())},

@@ -165,7 +165,7 @@ Json heading_json(const CheckRun& run) {
     json["engine"] = name_of(run.engine);
     json["allowance"] = run.setup.allowance ? Json(*run.setup.allowance) : Json(nullptr);
     json["mesh_size"] = run.setup.mesh_size;
-    json["assumptions"] = run.assumptions;
+    json["assumptions"] = run.all_assumptions();
     json["verdict"] = core::name_of(run.verdict);
     json["cycle_time"] = run.cycle_time;
     if (run.stopped) json["error"] = error_json(*run.stopped);

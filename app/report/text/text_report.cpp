@@ -118,7 +118,7 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
         text +=
             fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
     if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
-    return text + assumptions_text(run.assumptions, told);
+    return text + assumptions_text(run.all_assumptions(), told);
 }
 
 /// Whether a text contains the name as a whole word.
