@@ -80,7 +80,7 @@ TEST(UnsafeToolChange, IsTheVerdictOfItsBlock) {
     EXPECT_EQ(inside.errors(), "tool-change-unsafe 8, rapid-in-stock 9");
     EXPECT_EQ(inside.at_line(8).verdict, "collision");
     EXPECT_EQ(inside.verdict, "collision");
-    EXPECT_THAT(inside.finding("tool-change-unsafe").message, HasSubstr("stand in the stock"));
+    EXPECT_THAT(inside.finding("tool-change-unsafe").message, HasSubstr("collide with the stock"));
     const Checked free = changed_at("50.");
     EXPECT_EQ(free.errors(), "");
     EXPECT_EQ(free.at_line(8).verdict, "clear");
