@@ -1,8 +1,8 @@
 #include "render/setup_scene.h"
 
 #include <algorithm>
-#include <cctype>
 
+#include "core/base/text.h"
 #include "core/motion/machine.h"
 #include "core/sim/moving_body.h"
 #include "render/body_mesh.h"
@@ -46,10 +46,7 @@ BodyRole fixture_role(const core::Fixture& fixture) {
 } // namespace
 
 bool is_clamp(const std::string& name) {
-    std::string lower;
-    for (const char c : name)
-        lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lower.find("clamp") != std::string::npos;
+    return core::lower_case(name).find("clamp") != std::string::npos;
 }
 
 SetupMeshes setup_meshes(const core::Setup& setup) {

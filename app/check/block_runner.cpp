@@ -9,6 +9,7 @@
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -20,8 +21,7 @@ std::string as_sentence(std::string text) {
         return i < text.size()
                && (std::islower(static_cast<unsigned char>(text[i])) || text[i] == ' ');
     };
-    if (is_small(0) && is_small(1))
-        text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (is_small(0) && is_small(1)) text[0] = core::upper(text[0]);
     if (!text.empty() && text.back() != '.') text += '.';
     return text;
 }

@@ -1,7 +1,6 @@
 #include "app/check/conclusion.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
 
@@ -13,6 +12,7 @@
 #include "app/check/stock_file.h"
 #include "app/setup/inference/program_survey.h"
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/geom/mesh.h"
 #include "core/sim/part_comparison.h"
@@ -95,13 +95,6 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
 }
 
 namespace {
-
-std::string lower(std::string_view text) {
-    std::string low(text);
-    for (char& letter : low)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return low;
-}
 
 /// "line 7", "lines 7, 9, 12".
 std::string lines_text(const std::vector<uint32_t>& lines) {
@@ -207,7 +200,7 @@ void say_severities(const CheckInput& input, CheckRecord& record) {
 
 std::vector<AllowedRule> allowed_rules(std::string_view line) {
     std::vector<AllowedRule> rules;
-    const std::string low = lower(line);
+    const std::string low = core::lower_case(line);
     for (size_t at = low.find_first_of("(;"); at != std::string::npos;
          at = low.find_first_of("(;", at + 1)) {
         std::string_view rest = std::string_view(low).substr(at + 1);

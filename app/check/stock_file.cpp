@@ -1,11 +1,11 @@
 #include "app/check/stock_file.h"
 
-#include <algorithm>
 #include <cassert>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/dbm/cut_model.h"
 #include "core/dbm/stock_mesh.h"
 #include "core/dbm/stock_record.h"
@@ -29,9 +29,7 @@ double rounding_of(const core::Mesh& mesh) {
 } // namespace
 
 core::Result<MeshForm> mesh_form(const std::string& path) {
-    std::string ending = std::filesystem::path(path).extension();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = core::lower_case(std::filesystem::path(path).extension().string());
     if (ending == ".stl") return MeshForm::stl;
     if (ending == ".ply") return MeshForm::ply;
     if (ending == ".feeler") return MeshForm::record;

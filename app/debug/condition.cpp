@@ -11,6 +11,7 @@
 #include "app/check/check_run.h"
 #include "app/debug/condition_parser.h"
 #include "app/debug/inspected_value.h"
+#include "core/base/text.h"
 #include "core/sim/clearance.h"
 #include "core/sim/finding.h"
 #include "core/sim/run/simulator.h"
@@ -121,7 +122,9 @@ bool any_finding(const BlockFacts& facts, Predicate&& is_so) {
 }
 
 bool is_about(const Node& node, const BlockFacts& facts) {
-    const auto is_meant = [&](const std::string& name) { return lowered(name) == node.text; };
+    const auto is_meant = [&](const std::string& name) {
+        return core::lower_case(name) == node.text;
+    };
     return std::any_of(facts.bodies.begin(), facts.bodies.end(), is_meant)
            || any_finding(facts, [&](const core::Finding& finding) {
                   return is_meant(finding.pair[0]) || is_meant(finding.pair[1]);
@@ -130,7 +133,7 @@ bool is_about(const Node& node, const BlockFacts& facts) {
 
 /// Whether a line begins with an N word, possibly after a `/`.
 bool begins_with(std::string_view text, const std::string& number) {
-    const std::string line = lowered(text);
+    const std::string line = core::lower_case(text);
     const size_t begin = line.find_first_not_of(" \t/");
     if (begin == std::string::npos || line.compare(begin, number.size(), number) != 0) return false;
     const size_t end = begin + number.size();
@@ -178,7 +181,7 @@ bool truth_of(const Node& node, const BlockFacts& facts) {
     case NodeKind::body:
         return is_about(node, facts);
     default: // contains
-        return lowered(facts.text).find(node.text) != std::string::npos;
+        return core::lower_case(facts.text).find(node.text) != std::string::npos;
     }
 }
 

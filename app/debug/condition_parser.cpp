@@ -129,7 +129,7 @@ private:
                               "#<_name>");
             while (gcode::is_digit(ahead(0))) ++at_;
         }
-        return token(Kind::name, begin, lowered(text_.substr(begin, at_ - begin)));
+        return token(Kind::name, begin, core::lower_case(text_.substr(begin, at_ - begin)));
     }
 
     /// A name, also `machine.x`, `G59.1.x` and `$AA_IM[X]`.
@@ -143,13 +143,13 @@ private:
             if (end == std::string_view::npos) return refuse(at_, "the ']' is missing");
             at_ = end + 1;
         }
-        std::string found = lowered(text_.substr(begin, at_ - begin));
+        std::string found = core::lower_case(text_.substr(begin, at_ - begin));
         for (const auto& [word, sign] : words)
             if (word == found) return token(Kind::sign, begin, std::string(sign));
         std::string whole = rule_from(begin);
-        if (core::default_severity(lowered(whole))) {
+        if (core::default_severity(core::lower_case(whole))) {
             at_ = begin + whole.size();
-            found = lowered(whole);
+            found = core::lower_case(whole);
         }
         ConditionToken name = token(Kind::name, begin, std::move(found));
         name.whole = std::move(whole);
@@ -161,7 +161,8 @@ private:
         size_t end = at_, of_rule = 0;
         while (end + 1 < text_.size() && text_[end] == '-' && is_letter(text_[end + 1])) {
             for (++end; end < text_.size() && is_letter(text_[end]); ++end) continue;
-            if (core::default_severity(lowered(text_.substr(begin, end - begin)))) of_rule = end;
+            if (core::default_severity(core::lower_case(text_.substr(begin, end - begin))))
+                of_rule = end;
         }
         return std::string(text_.substr(begin, (of_rule > 0 ? of_rule : end) - begin));
     }
@@ -289,10 +290,10 @@ std::vector<std::string> condition_names() {
 }
 
 std::vector<std::string> condition_names_beginning(const std::string& text) {
-    const std::string start = lowered(text);
+    const std::string start = core::lower_case(text);
     std::vector<std::string> names;
     for (std::string& name : condition_names())
-        if (lowered(name).starts_with(start)) names.push_back(std::move(name));
+        if (core::lower_case(name).starts_with(start)) names.push_back(std::move(name));
     return names;
 }
 
@@ -483,14 +484,14 @@ private:
         const std::vector<std::string> words = words_for(left);
         const bool is_one =
             words.empty() || std::any_of(words.begin(), words.end(), [&](const std::string& word) {
-                return lowered(word) == lowered(text);
+                return core::lower_case(word) == core::lower_case(text);
             });
         if (!is_one)
             return refuse(token, fmt::format("this cannot be '{}'; it may be {}", text,
                                              fmt::join(words, ", ")));
         return Node{.kind = NodeKind::word,
                     .type = ValueType::word,
-                    .text = lowered(text),
+                    .text = core::lower_case(text),
                     .column = token.column};
     }
 
@@ -555,7 +556,7 @@ private:
         if (token.kind == Kind::text)
             return Node{.kind = NodeKind::body,
                         .type = ValueType::truth,
-                        .text = lowered(token.text),
+                        .text = core::lower_case(token.text),
                         .column = token.column};
         return named(token);
     }
@@ -582,7 +583,7 @@ private:
         ++at_;
         return Node{.kind = NodeKind::contains,
                     .type = ValueType::truth,
-                    .text = lowered(token.text),
+                    .text = core::lower_case(token.text),
                     .column = column};
     }
 
@@ -591,7 +592,7 @@ private:
         const bool as_value = value && (is_compared_ || is_comparison(now()) || !truth);
         // Nothing can be subtracted from true or false, so near-mis is a misspelt name.
         const bool has_tail =
-            !as_value && !token.whole.empty() && lowered(token.whole) != token.text;
+            !as_value && !token.whole.empty() && core::lower_case(token.whole) != token.text;
         if (has_tail) return unknown(token);
         std::optional<Node> node = as_value ? std::move(value) : std::move(truth);
         if (!node) return unknown(token);
@@ -601,9 +602,9 @@ private:
 
     static tl::unexpected<core::Error> unknown(const ConditionToken& token) {
         const std::string written = token.whole.empty() ? token.text : token.whole;
-        return refuse(token,
-                      fmt::format("'{}' is not a known name; the nearest name is '{}'", written,
-                                  core::nearest_name(lowered(written), condition_names())));
+        return refuse(
+            token, fmt::format("'{}' is not a known name; the nearest name is '{}'", written,
+                               core::nearest_name(core::lower_case(written), condition_names())));
     }
 
     std::vector<ConditionToken> tokens_;

@@ -1,7 +1,6 @@
 #include "app/debug/inspected_value.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -64,13 +63,6 @@ std::optional<size_t> axis_named(std::string_view letter) {
     return std::nullopt;
 }
 
-std::string upper_case(std::string_view small) {
-    std::string text(small);
-    for (char& c : text)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return text;
-}
-
 /// `machine.x`, `g54.x`, `g59.1.x`, `g52.x`: one axis of a position or offset.
 std::optional<Reference> dotted(std::string_view text) {
     const size_t dot = text.rfind('.');
@@ -81,7 +73,7 @@ std::optional<Reference> dotted(std::string_view text) {
     if (of == "machine") return Reference{.kind = ValueKind::machine_axis, .axis = *axis};
     if (of == "g52") return Reference{.kind = ValueKind::local_origin, .axis = *axis};
     if (of == "g92") return Reference{.kind = ValueKind::axis_origin, .axis = *axis};
-    if (const auto index = offset_named(upper_case(of)))
+    if (const auto index = offset_named(core::upper_case(of)))
         return Reference{.kind = ValueKind::origin, .index = *index, .axis = *axis};
     return std::nullopt;
 }
@@ -116,7 +108,7 @@ std::optional<Reference> reference_in(std::string_view text) {
         return Reference{.kind = ValueKind::axis, .axis = *axis};
     if (const auto found = modal(text)) return found;
     if (const auto found = dotted(text)) return found;
-    if (const auto index = offset_named(upper_case(text)))
+    if (const auto index = offset_named(core::upper_case(text)))
         return Reference{.kind = ValueKind::offset, .index = *index};
     if (text.front() != 'h' && text.front() != 'd') return std::nullopt;
     const auto number = index_in(text.substr(1));
@@ -146,8 +138,8 @@ core::Result<InspectedValue> numbered(const Reference& asked,
     if (letter != (asked.letter == '#' ? '#' : static_cast<char>(asked.letter - 'a' + 'A')))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("this control has no {}{}: its parameters are {}1, {}2, ...",
-                                      upper_case(std::string(1, asked.letter)), asked.index, letter,
-                                      letter));
+                                      core::upper_case(std::string(1, asked.letter)), asked.index,
+                                      letter, letter));
     FEELER_TRY(const gcode::Value value,
                parameters_of(control, environment).numbered(static_cast<double>(asked.index), {}));
     return plain(value);
@@ -217,7 +209,7 @@ std::vector<std::string> all_names() {
     std::vector<std::string> names;
     for (const ModalEntry& entry : modal_table()) names.emplace_back(entry.name);
     for (const char letter : axis_letters) {
-        const std::string axis = lowered(std::string(1, letter));
+        const std::string axis = core::lower_case(std::string(1, letter));
         names.push_back(axis);
         names.push_back("machine." + axis);
     }
@@ -239,18 +231,19 @@ void add(std::vector<NamedValue>& values, std::string name, InspectedValue value
 } // namespace
 
 bool is_word(const InspectedValue& value, std::string_view word) {
-    const std::string small = lowered(word);
-    return lowered(value.text) == small || (!small.empty() && lowered(value.meaning) == small);
+    const std::string small = core::lower_case(word);
+    return core::lower_case(value.text) == small
+           || (!small.empty() && core::lower_case(value.meaning) == small);
 }
 
 bool names_value(const std::string& expression) {
-    return reference_in(lowered(without_blanks(expression))).has_value();
+    return reference_in(core::lower_case(without_blanks(expression))).has_value();
 }
 
 core::Result<InspectedValue> value_of(const std::string& expression,
                                       const gcode::InterpreterState& control,
                                       const gcode::Environment& environment) {
-    const std::string text = lowered(without_blanks(expression));
+    const std::string text = core::lower_case(without_blanks(expression));
     if (const auto asked = reference_in(text)) return read(*asked, control, environment);
     const bool declares = gcode::dialect(environment.dialect).names_are_declared;
     if (declares && !text.empty() && parameters_of(control, environment).exists(text))
@@ -283,7 +276,7 @@ std::vector<NamedValue> axis_values(const gcode::InterpreterState& control) {
             const bool tells = axis < 3 || work[axis].value_or(0.0) != 0.0
                                || machine[axis].value_or(0.0) != 0.0
                                || (offsets.machine && offsets.machine->axes[axis].present);
-            const std::string letter = lowered(std::string(1, axis_letters[axis]));
+            const std::string letter = core::lower_case(std::string(1, axis_letters[axis]));
             if (tells)
                 add(values, (of_machine ? "machine." : "") + letter,
                     axis_quantity(axis, place[axis]));
@@ -330,7 +323,7 @@ std::vector<NamedValue> offset_values(const gcode::InterpreterState& control) {
         add(values, "G52", {std::nullopt, text_of(gcode::WorkOffset{offsets.local, 0.0})});
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         if (offsets.axis[axis] != 0.0)
-            add(values, "G92." + lowered(std::string(1, axis_letters[axis])),
+            add(values, "G92." + core::lower_case(std::string(1, axis_letters[axis])),
                 axis_quantity(axis, offsets.axis[axis]));
     for (const auto& [number, entry] : tables.lengths)
         add(values, fmt::format("H{}", core::value_of(number)),
@@ -342,10 +335,10 @@ std::vector<NamedValue> offset_values(const gcode::InterpreterState& control) {
 }
 
 std::vector<std::string> names_beginning(const std::string& text) {
-    const std::string start = lowered(text);
+    const std::string start = core::lower_case(text);
     std::vector<std::string> names;
     for (std::string& name : all_names())
-        if (lowered(name).starts_with(start)) names.push_back(std::move(name));
+        if (core::lower_case(name).starts_with(start)) names.push_back(std::move(name));
     return names;
 }
 
@@ -595,13 +588,6 @@ InspectedValue quantity(std::optional<double> value, std::string_view unit) {
 
 InspectedValue axis_quantity(size_t axis, std::optional<double> value) {
     return quantity(value, gcode::is_rotary(axis) ? "deg" : "mm");
-}
-
-std::string lowered(std::string_view text) {
-    std::string small(text);
-    std::transform(small.begin(), small.end(), small.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return small;
 }
 
 } // namespace app

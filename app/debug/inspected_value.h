@@ -101,7 +101,4 @@ InspectedValue quantity(std::optional<double> value, std::string_view unit = {})
 /// As quantity, in degrees for rotary axes, else in mm.
 InspectedValue axis_quantity(size_t axis, std::optional<double> value);
 
-/// A text in lower case.
-std::string lowered(std::string_view text);
-
 } // namespace app

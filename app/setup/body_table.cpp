@@ -9,6 +9,7 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
 #include "core/base/file_reads.h"
+#include "core/base/text.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
@@ -186,7 +187,7 @@ core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
 
 /// The number of an M code such as "M61"; empty for any other text.
 std::optional<int> m_code(const std::string& text) {
-    if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != 'M') return {};
+    if (text.empty() || core::upper(text[0]) != 'M') return {};
     const auto number = number_in(std::string_view(text).substr(1));
     if (!number || *number < 0.0 || *number > 99999.0 || *number != std::floor(*number)) return {};
     return static_cast<int>(*number);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "core/base/text.h"
 #include "core/base/units.h"
 #include "core/motion/machine.h"
 #include "gcode/language/environment.h"
@@ -51,14 +52,12 @@ struct IniReader {
 };
 
 void IniReader::note_number(const std::string& key, const std::string& value) {
-    std::string name = "_ini[" + section + "]" + key;
+    const std::string name = "_ini[" + section + "]" + key;
     const auto is_small = [](unsigned char letter) { return std::islower(letter) != 0; };
     if (std::any_of(name.begin() + 5, name.end(), is_small)) return;
     const auto number = number_in(value);
     if (!number) return;
-    for (char& letter : name)
-        letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    file.values.insert_or_assign(name, *number);
+    file.values.insert_or_assign(core::lower_case(name), *number);
 }
 
 std::string IniReader::take(const std::string& key, const std::string& value) {
@@ -121,8 +120,7 @@ public:
         : values_(environment.ini_values) {
         const bool inch = environment.machine_unit == gcode::LengthUnit::inch;
         unit_ = inch && !core::is_rotary(axis) ? 25.4 : 1.0;
-        const int letter = std::tolower(static_cast<unsigned char>(core::axis_letters[axis]));
-        sections_ = {fmt::format("axis_{}", static_cast<char>(letter)),
+        sections_ = {fmt::format("axis_{}", core::lower(core::axis_letters[axis])),
                      fmt::format("axis_{}", axis), fmt::format("joint_{}", joint)};
     }
 

@@ -1,7 +1,6 @@
 #include "app/setup/program_settings.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -12,6 +11,7 @@
 #include "app/setup/table_reader.h"
 #include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
+#include "core/base/text.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/parameters.h"
@@ -135,7 +135,7 @@ std::optional<gcode::Position> position_in(const std::string& text) {
         return at;
     };
     for (const char* at = skip(text.data(), " \t,"); at != end; at = skip(at, " \t,")) {
-        const auto letter = static_cast<char>(std::toupper(static_cast<unsigned char>(*at)));
+        const char letter = core::upper(*at);
         const size_t axis = gcode::axis_letters.find(letter);
         if (axis >= gcode::axis_count || position[axis]) return std::nullopt;
         at = skip(at + 1, " \t=");

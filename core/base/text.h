@@ -6,6 +6,14 @@
 
 namespace core {
 
+/// A letter in upper or lower case. Only the letters A to Z change, whatever the locale.
+constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+/// A text in upper or lower case, letter by letter.
+std::string upper_case(std::string_view text);
+std::string lower_case(std::string_view text);
+
 /// The edit distance of two words: letters to change, insert or delete.
 size_t letters_apart(std::string_view a, std::string_view b);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +20,7 @@
 
 #include "core/base/file_reads.h"
 #include "core/base/result.h"
+#include "core/base/text.h"
 #include "core/base/union_find.h"
 #include "core/geom/line_crossing.h"
 #include "core/geom/mesh.h"
@@ -414,8 +414,7 @@ bool is_text_stl(std::string_view bytes) {
 }
 
 Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view bytes) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = lower_case(path.extension().string());
     if (extension == ".stl")
         return is_text_stl(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
     if (extension == ".obj") return MeshFormat::obj;

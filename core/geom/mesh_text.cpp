@@ -1,7 +1,6 @@
 #include "core/geom/mesh_text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <exception>
@@ -14,6 +13,7 @@
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/geom/line_crossing.h"
 
 namespace core {
@@ -58,10 +58,8 @@ std::optional<double> coordinate_of(std::string_view word) {
 std::optional<int64_t> integer_of(std::string_view word) { return number_of<int64_t>(word); }
 
 bool equals_ignoring_case(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
-        return std::tolower(static_cast<unsigned char>(x))
-               == std::tolower(static_cast<unsigned char>(y));
-    });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](char x, char y) { return lower(x) == lower(y); });
 }
 
 tl::unexpected<Error> fail_in_line(uint32_t line, const std::string& message) {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
+#include "core/base/text.h"
 #include "gcode/language/block.h"
 
 namespace gcode {
@@ -24,8 +25,8 @@ constexpr bool is_blank(char c) {
     return static_cast<unsigned char>(c) <= ' ' && (blanks >> c & 1);
 }
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
-constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+using core::lower;
+using core::upper;
 constexpr bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 constexpr bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 

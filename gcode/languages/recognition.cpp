@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "gcode/language/codes.h"
 #include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
@@ -36,8 +36,7 @@ Clue foreign_clue(std::string_view text, size_t line) {
 /// Features found only in the Siemens language: keywords after the block number, headers, values
 /// after `=`.
 Clue siemens_clue(std::string_view text, size_t line) {
-    std::string words;
-    for (const char c : text) words.push_back(upper(c));
+    std::string words = core::upper_case(text);
     size_t first = words.find_first_not_of(" \t/");
     if (first == std::string::npos) return std::nullopt;
     if (std::string_view(words).substr(first).starts_with(";$PATH="))
@@ -69,8 +68,8 @@ Clue siemens_clue(std::string_view text, size_t line) {
 
 /// Evidence from the file name: Siemens programs end in .MPF and .SPF.
 Clue name_clue(const std::string& file) {
-    std::string ending = file.substr(std::min(file.find_last_of('.'), file.size()));
-    for (char& c : ending) c = upper(c);
+    const std::string ending =
+        core::upper_case(file.substr(std::min(file.find_last_of('.'), file.size())));
     if (ending != ".MPF" && ending != ".SPF") return std::nullopt;
     return Recognition{DialectId::siemens, fmt::format("the file name ends in {}", ending)};
 }
@@ -88,8 +87,7 @@ bool has_polar_word(std::string_view letters) {
 Clue linuxcnc_clue(std::string_view text, size_t line) {
     std::string letters;
     for (const char c : text)
-        if (c != ' ' && c != '\t')
-            letters.push_back(static_cast<char>(std::toupper(static_cast<unsigned char>(c))));
+        if (c != ' ' && c != '\t') letters.push_back(upper(c));
     if (letters.find("#<") != std::string::npos || letters.starts_with("O<"))
         return found(DialectId::linuxcnc, line, "has a named parameter or O word");
     if (letters.find("(AXIS,") != std::string::npos || letters.find("(DEBUG,") != std::string::npos)

@@ -8,6 +8,7 @@
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
 #include "app/debug/prompt/state_text.h"
+#include "core/base/text.h"
 #include "core/sim/finding.h"
 
 namespace app {
@@ -27,7 +28,7 @@ core::Result<core::ToolNumber> tool_in(const std::string& text) {
 
 /// Splits a text at the word `if` into the place and the condition; no condition without `if`.
 std::pair<std::string, std::optional<std::string>> split_condition(const std::string& text) {
-    const std::string small = " " + lowered(text) + " ";
+    const std::string small = " " + core::lower_case(text) + " ";
     const size_t at = small.find(" if ");
     if (at == std::string::npos) return {text, std::nullopt};
     const std::string condition = at + 3 < text.size() ? text.substr(at + 3) : std::string();

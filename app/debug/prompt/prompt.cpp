@@ -10,6 +10,7 @@
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/state_text.h"
 #include "app/setup/setup_file.h"
+#include "core/base/text.h"
 #include "core/sim/finding.h"
 #include "gcode/text/source.h"
 
@@ -138,8 +139,9 @@ std::vector<std::string> Prompt::completions(std::string_view line) {
         before.pop_back();
     }
     Names all = before.empty() ? command_names() : names_behind(state_, before);
-    std::erase_if(
-        all, [&](const std::string& name) { return !lowered(name).starts_with(lowered(begun)); });
+    std::erase_if(all, [&](const std::string& name) {
+        return !core::lower_case(name).starts_with(core::lower_case(begun));
+    });
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;

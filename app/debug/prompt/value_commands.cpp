@@ -8,6 +8,7 @@
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
 #include "app/debug/prompt/state_text.h"
+#include "core/base/text.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -28,7 +29,7 @@ core::Result<double> value_in(const std::string& text) {
 }
 
 core::Result<int32_t> number_behind(char letter, const std::string& text) {
-    const bool lettered = !text.empty() && lowered(text.substr(0, 1))[0] == letter;
+    const bool lettered = !text.empty() && core::lower_case(text.substr(0, 1))[0] == letter;
     FEELER_TRY(const size_t number, number_in(text.substr(lettered ? 1 : 0)));
     if (number > 99999999)
         return core::fail(ErrorCode::invalid_value, fmt::format("'{}' is too large", text));
@@ -110,7 +111,7 @@ core::Result<WhatIf> change_in(const std::string& arguments) {
         return core::fail(ErrorCode::syntax,
                           "set what? tool 3 length 95, H3 95, G54.x -350, allowance 1, or "
                           "fixture clamp-1 by 0,10,0");
-    const std::string first = lowered(words[0]);
+    const std::string first = core::lower_case(words[0]);
     if (first == "fixture") return fixture_change(arguments);
     if (first == "allowance") return allowance_change(words);
     if (first == "tool" || first[0] == 't') return tool_change(std::move(words));

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "app/check/check_run.h"
+#include "core/base/text.h"
 
 namespace app {
 namespace {
@@ -390,8 +391,7 @@ ProgramChange change_between(const ProgramResult& before, const ProgramResult& a
 std::string without_number(std::string_view block) {
     std::string text;
     for (const char letter : block)
-        if (!std::isspace(static_cast<unsigned char>(letter)))
-            text += static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+        if (!std::isspace(static_cast<unsigned char>(letter))) text += core::upper(letter);
     const size_t skip = text.starts_with('/') ? 1 : 0;
     // N120, :120, or the bare number of a Klartext line.
     size_t end = skip;

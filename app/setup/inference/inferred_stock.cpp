@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "app/setup/inference/program_survey.h"
 #include "app/setup/tools/program_tools.h"
+#include "core/base/text.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/lexer.h"
@@ -300,7 +300,7 @@ std::optional<std::array<Vec3, 2>> workpiece_box(const std::vector<std::string>&
 std::string capitals(std::string_view text) {
     std::string result;
     for (const char c : text)
-        if (c != ' ' && c != '\t' && c != '\r') result += c >= 'a' && c <= 'z' ? c - 32 : c;
+        if (c != ' ' && c != '\t' && c != '\r') result += core::upper(c);
     return result;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/tool_text.h"
+#include "core/base/text.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
 #include "gcode/language/modal_state.h"
@@ -397,8 +398,7 @@ ToolComment read_tool_comment(std::string_view words, LengthUnit unit) {
     constexpr size_t longest = 200; // longer than any tool name; limits the cost of the patterns
     ToolComment comment;
     if (words.size() > longest) return comment;
-    std::string capitals(words);
-    for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    std::string capitals = core::upper_case(words);
     for (char& c : capitals)
         if (c == '_' || c == '\t') c = ' ';
     std::smatch match;
@@ -451,8 +451,7 @@ LineParts parts_of_line(std::string_view line) {
                 continue;
             }
         }
-        if (c != ' ' && c != '\t' && c != '\r')
-            parts.code += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        if (c != ' ' && c != '\t' && c != '\r') parts.code += core::upper(c);
     }
     return parts;
 }

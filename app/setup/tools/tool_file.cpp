@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "core/base/text.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/language/tables.h"
 
@@ -66,8 +67,7 @@ read_tool_file(const std::string& path, gcode::LengthUnit unit) {
         ToolLine tool{unit};
         for (const std::string& word : words) {
             const auto value = number_in(std::string_view(word).substr(1));
-            const char letter =
-                static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+            const char letter = core::upper(word[0]);
             const std::string wrong =
                 value ? tool.take(letter, *value) : "is not a letter and a number";
             if (!wrong.empty())

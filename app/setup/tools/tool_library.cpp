@@ -14,6 +14,7 @@
 #include "app/setup/tools/tool_text.h"
 #include "core/base/file_reads.h"
 #include "core/base/result.h"
+#include "core/base/text.h"
 #include "gcode/language/tables.h"
 
 namespace app {
@@ -206,8 +207,7 @@ std::optional<ToolShape> shape_of_bit(std::string shape) {
     shape = shape.substr(0, shape.find(".fcstd"));
     std::string letters;
     for (const char c : shape.substr(shape.find_last_of('/') + 1))
-        if (std::isalpha(static_cast<unsigned char>(c)) != 0)
-            letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (std::isalpha(static_cast<unsigned char>(c)) != 0) letters += core::lower(c);
     return shape_in(freecad_shapes(), letters);
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "app/setup/tools/found_tool.h"
+#include "core/base/text.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -104,7 +106,7 @@ std::string plain_capitals(std::string_view text) {
     replace_all(capitals, "\xC3\xB8", " DIA ");
     replace_all(capitals, "\xE2\x8C\x80", " DIA ");
     for (char& c : capitals) {
-        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        c = core::upper(c);
         if (c == ',') c = '.';
         if (c == '_' || c == '{' || c == '}' || c == '[' || c == ']' || c == '\t') c = ' ';
     }

@@ -1,15 +1,15 @@
 #include "app/view/model/file_watch.h"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
+
+#include "core/base/text.h"
 
 namespace app::viewer {
 namespace {
 
 bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string ending = core::lower_case(std::filesystem::path(path).extension().string());
     return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
 }
 

@@ -8,6 +8,7 @@
 
 #include "app/debug/condition_parser.h"
 #include "app/debug/inspected_value.h"
+#include "core/base/text.h"
 
 namespace app::viewer {
 namespace {
@@ -18,7 +19,7 @@ using FindingsOfBlock = std::map<size_t, std::vector<const core::Finding*>>;
 /// consists only of keywords.
 bool is_meant_as_condition(const std::string& text) {
     if (text.find_first_of("<>=~&|") != std::string::npos) return true;
-    std::istringstream words(lowered(text));
+    std::istringstream words(core::lower_case(text));
     std::string word;
     bool only_names = true;
     while (words >> word) {
@@ -58,7 +59,7 @@ RowFilter::RowFilter(const std::string& text) {
         refusal_ =
             fmt::format("Column {}: {}", condition.error().where.column, condition.error().message);
     } else {
-        wanted_ = lowered(wanted);
+        wanted_ = core::lower_case(wanted);
     }
 }
 
@@ -69,7 +70,8 @@ std::vector<size_t> RowFilter::passed(const std::vector<BlockRow>& rows,
     const bool asks_findings = condition_ && condition_->wanted().findings;
     const FindingsOfBlock known = asks_findings ? by_block(findings) : FindingsOfBlock{};
     const auto holds = [&](size_t block) {
-        if (!condition_) return lowered(rows[block].text).find(wanted_) != std::string::npos;
+        if (!condition_)
+            return core::lower_case(rows[block].text).find(wanted_) != std::string::npos;
         BlockFacts facts = facts_of(rows[block], block);
         if (const auto found = known.find(block); found != known.end())
             facts.findings = found->second;

@@ -12,6 +12,7 @@
 #include "app/view/model/row_filter.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/text.h"
 
 namespace app::viewer {
 namespace {
@@ -45,7 +46,7 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
             while (stop < text.size() && !std::isspace(static_cast<unsigned char>(text[stop]))
                    && !is_letter(stop) && text[stop] != '(')
                 ++stop;
-            const char c = static_cast<char>(std::toupper(static_cast<unsigned char>(text[i])));
+            const char c = core::upper(text[i]);
             if (c == 'N' || c == 'O') role = Role::dim;
             if (c == 'G' || c == 'M' || c == 'T') role = Role::accent;
             const std::string_view word(&text[i], stop - i);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "core/sim/verdict.h"
@@ -212,9 +213,7 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
                        : cure_of(pair, finding.rule, body, move.within);
     finding.pair = {part, body_name(setup, pair.pair)};
     finding.shortfall = shortfall_of(pair);
-    if (!finding.cure.empty())
-        finding.cure[0] =
-            static_cast<char>(std::toupper(static_cast<unsigned char>(finding.cure[0])));
+    if (!finding.cure.empty()) finding.cure[0] = upper(finding.cure[0]);
     return finding;
 }
 
