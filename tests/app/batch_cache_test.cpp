@@ -56,7 +56,7 @@ TEST(BatchCache, IsThatOfOneBuildAlsoWithoutABuildId) {
     }
 }
 
-TEST(BatchCache, IsNotThereWhereNobodyWantsIt) {
+TEST(BatchCache, IsNotCreatedWithNoCache) {
     const test_support::ScopedFolder folder;
     fill(folder);
     EXPECT_EQ(feeler({"check", folder.path().string(), "--no-cache"}).status, 0);
@@ -67,7 +67,7 @@ TEST(BatchCache, IsNotThereWhereNobodyWantsIt) {
     EXPECT_TRUE(std::filesystem::exists(folder / "r.db"));
 }
 
-TEST(BatchCache, ThatCannotBeUsedIsToldAndTheCheckGoesOn) {
+TEST(BatchCache, ReportsAnUnusableDatabaseAndContinues) {
     const test_support::ScopedFolder folder;
     fill(folder);
     const std::string wrong = folder.write("wrong.db", std::string(5000, 'x'));
@@ -92,7 +92,7 @@ TEST(BatchCache, ThatOthersHoldIsGivenUpOnceForARun) {
     EXPECT_TRUE(says(ran, "3 programs")) << ran.out;
 }
 
-TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
+TEST(BatchCache, OfAShardIsSeparateAndReadByAllRuns) {
     const test_support::ScopedFolder folder;
     fill(folder);
     const auto check = [&](const std::string& share) {
@@ -117,7 +117,7 @@ TEST(BatchCache, OfAShareIsItsOwnAndFoundByAll) {
     EXPECT_TRUE(says(history, "2 versions")) << history.out << history.err;
 }
 
-TEST(BatchCache, HistoryEndsWithTheProgramAsItIsAlsoIfAShareHasSeenItBefore) {
+TEST(BatchCache, HistoryEndsWithTheCurrentProgramEvenIfAShardCheckedItBefore) {
     const test_support::ScopedFolder folder;
     fill(folder);
     const std::string parts = folder.path().string(), b = folder / "b.nc";
@@ -185,7 +185,7 @@ TEST_F(Library, NeverSpeaksOfPathsAsAnotherCallNamedThem) {
     EXPECT_NE(history.find(": 1 version\n"), std::string::npos) << history;
 }
 
-TEST(BatchCache, BesideThatCannotBeReadIsAsGoodAsNone) {
+TEST(BatchCache, IgnoresAnUnreadableDatabaseOfAShard) {
     const test_support::ScopedFolder folder;
     fill(folder);
     std::filesystem::create_directory(folder / ".feeler");

@@ -69,7 +69,7 @@ BatchResult batch_of_all_kinds() {
 
 json sarif() { return json::parse(sarif_report(batch_of_all_kinds(), "/home/me/my shop")); }
 
-TEST(Sarif, HasWhatTheSchemaAsksFor) {
+TEST(Sarif, HasWhatTheSchemaRequires) {
     const json log = sarif();
     EXPECT_EQ(log["version"], "2.1.0");
     EXPECT_THAT(log["$schema"].get<std::string>(), HasSubstr("sarif-2.1.0"));
@@ -127,7 +127,7 @@ TEST(Sarif, NamesFilesByTheirBytes) {
     EXPECT_THAT(report, Not(HasSubstr("%C3")));
 }
 
-TEST(Sarif, TellsOfWhatWasNotRunToItsEnd) {
+TEST(Sarif, ReportsProgramsThatWereNotRunToTheirEnd) {
     const json run = sarif()["runs"][0];
     EXPECT_EQ(run["results"][4]["ruleId"], "not-run-to-its-end");
     EXPECT_EQ(run["results"][4]["locations"][0]["physicalLocation"]["region"]["startColumn"], 5);
@@ -216,7 +216,7 @@ TEST(Sarif, HasHelpForEachRule) {
         EXPECT_FALSE(rule.meaning.empty()) << rule.name;
 }
 
-TEST(Fingerprint, SurvivesNewNumbersBlanksAndPlaces) {
+TEST(Fingerprint, SurvivesNewNumbersBlanksAndLines) {
     const std::string before = fingerprint_of(near_miss("N20 G0 X5.", 7), 0);
     for (const char* text : {"N2000 G0 X5.", "G0 X5.", "n20g0x5.", "  N20  G0  X5. "})
         EXPECT_EQ(fingerprint_of(near_miss(text, 99), 0), before) << text;
@@ -226,7 +226,7 @@ TEST(Fingerprint, SurvivesNewNumbersBlanksAndPlaces) {
               fingerprint_of(near_miss("/N30 G0 X5.", 7), 0));
 }
 
-TEST(Fingerprint, TellsFindingsApart) {
+TEST(Fingerprint, DistinguishesFindings) {
     const std::string before = fingerprint_of(near_miss("N20 G0 X5.", 7), 0);
     EXPECT_NE(fingerprint_of(near_miss("N20 G0 X6.", 7), 0), before);
     EXPECT_NE(fingerprint_of(near_miss("/N20 G0 X5.", 7), 0), before);
@@ -334,7 +334,7 @@ TEST(BatchText, HasTheMessageOfTheWorstOfARuleAndEachLineOnce) {
     EXPECT_THAT(text, HasSubstr("error near-miss, line 7: It is at 0.000 mm."));
 }
 
-TEST(BatchReport, OfAShareSaysThatItIsOne) {
+TEST(BatchReport, OfAShardNamesTheShard) {
     BatchResult batch = batch_of_all_kinds();
     batch.share = "shard 2/8: 4 of 31 programs";
     EXPECT_EQ(json::parse(batch_json_report(batch))["share"], batch.share);
@@ -346,7 +346,7 @@ TEST(BatchReport, OfAShareSaysThatItIsOne) {
     EXPECT_THAT(batch_html_report(batch), HasSubstr("<b>" + batch.share));
 }
 
-TEST(BatchText, TellsOfErrorsAndWithVerboseOfAll) {
+TEST(BatchText, ListsErrorsAndWithVerboseEverything) {
     const BatchResult batch = batch_of_all_kinds();
     const std::string brief = batch_text(batch, {}), whole = batch_text(batch, {.verbose = true}),
                       quiet = batch_text(batch, {.quiet = true});
@@ -385,7 +385,7 @@ TEST(Sarif, CountsSkippedFilesWhereTheyAreMany) {
               "this and 999 more were skipped: is a picture or a video");
 }
 
-TEST(BatchText, IsColouredOnlyWhenAsked) {
+TEST(BatchText, IsColouredOnlyOnRequest) {
     const ProgramResult bad = batch_of_all_kinds().programs[1];
     EXPECT_THAT(program_text(bad, {}), Not(HasSubstr("\033")));
     EXPECT_THAT(program_text(bad, {.colour = true}), HasSubstr("\033[33mviolation"));

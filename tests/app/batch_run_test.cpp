@@ -93,7 +93,7 @@ TEST_F(BatchRun, SaysWhichProgramRanIntoTheLimitOfBlocks) {
     EXPECT_EQ(endless.verdict, core::Verdict::undecided);
 }
 
-TEST_F(BatchRun, TellsOfEachProgramOnce) {
+TEST_F(BatchRun, ReportsEachProgramOnce) {
     std::vector<std::string> ended, kept;
     BatchProgress last;
     BatchHooks hooks;
@@ -227,7 +227,7 @@ TEST(MemoryBudget, GivesItAllToOneThatIsLarger) {
     second.join();
 }
 
-TEST(MemoryBudget, LetsNobodyWaitWhenItIsOver) {
+TEST(MemoryBudget, LetsNoThreadWaitAfterAStop) {
     MemoryBudget budget(10.0);
     ASSERT_TRUE(budget.take(8.0, [] { return false; }));
     EXPECT_FALSE(budget.take(8.0, [] { return true; }));

@@ -63,7 +63,7 @@ TEST_F(BatchSurvival, ReplacesNoFileThatACheckReads) {
     }
 }
 
-TEST_F(BatchSurvival, TakesNoPictureInPlaceOfAnotherFile) {
+TEST_F(BatchSurvival, NeverOverwritesAnotherFileWithAPicture) {
     for (const std::string name : {"lib/call.nc", "lib/O2000.nc"}) {
         const std::string before = bytes_of(folder / name);
         const Ran ran = feeler({"shot", folder / "lib/call.nc", "-o", folder / name});
@@ -83,7 +83,7 @@ TEST_F(BatchSurvival, RefusesTwoReportsInOneFile) {
     EXPECT_FALSE(fs::exists(folder / "report"));
 }
 
-TEST_F(BatchSurvival, RefusesAReportOfWhichNobodyKnowsWhereItWouldBe) {
+TEST_F(BatchSurvival, RefusesAReportWhosePathCannotBeResolved) {
     fs::create_symlink("self", folder / "self");
     for (const std::string& place : {folder / "self", folder / std::string(300, 'n')}) {
         const Ran ran = feeler({"check", lib(), "--format", "json", "-o", place});
@@ -114,14 +114,14 @@ TEST_F(BatchSurvival, FollowsLinksToReportsThatAreNotThereYet) {
     EXPECT_THAT(twice.err, HasSubstr("two reports would go to"));
 }
 
-TEST_F(BatchSurvival, ReplacesItsOwnOldReportBesideThePrograms) {
+TEST_F(BatchSurvival, ReplacesItsOldReportNextToThePrograms) {
     for (int i = 0; i < 2; ++i) {
         const Ran ran = feeler({"check", folder.path(), "-o", folder / "lib/report.txt"});
         EXPECT_EQ(ran.status, 0) << ran.err;
     }
 }
 
-TEST_F(BatchSurvival, WritesItsReportsWhenItIsToldToEnd) {
+TEST_F(BatchSurvival, WritesItsReportsOnASignal) {
     folder.write("long.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.001", "GOTO 10"}));
     for (const int signal : {SIGTERM, SIGHUP}) {
         RunningProgram running({FEELER_BINARY, "check", folder / "lib/other.nc", folder / "long.nc",
@@ -160,7 +160,7 @@ TEST_F(BatchSurvival, OutlivesItsTerminalUnderNohup) {
     EXPECT_EQ(json::parse(bytes_of(folder / "report.json"))["programs"].size(), 3U);
 }
 
-TEST_F(BatchSurvival, WritesItsReportsWhenNobodyReadsItsLines) {
+TEST_F(BatchSurvival, WritesItsReportsWhenTheTerminalOutputIsFull) {
     const std::string report = folder / "report.json";
     for (const char* redirection : {"exec >/dev/full;", "exec 2>/dev/full;"}) {
         fs::remove(report);
@@ -177,7 +177,7 @@ TEST_F(BatchSurvival, WritesItsReportsWhenNobodyReadsItsLines) {
     EXPECT_TRUE(fs::exists(report));
 }
 
-TEST_F(BatchSurvival, GoesOnWithFewerThreadsThanWereAskedFor) {
+TEST_F(BatchSurvival, ContinuesWithFewerThreadsThanRequested) {
     for (int i = 0; i < 400; ++i)
         folder.write("lib/p" + std::to_string(i) + ".nc", bytes_of(folder / "lib/other.nc"));
     const Ran ran = feeler({"check", lib(), "--no-cache", "--jobs", "300"}, "ulimit -v 700000;");

@@ -56,7 +56,7 @@ protected:
     ScopedFolder folder;
 };
 
-TEST_F(Batch, ChecksAFolderWithASetupBesideEachProgram) {
+TEST_F(Batch, ChecksAFolderWithASetupNextToEachProgram) {
     const Ran ran = check({all()});
     EXPECT_EQ(ran.status, 1) << ran.err;
     EXPECT_EQ(ran.err, "");
@@ -84,7 +84,7 @@ TEST_F(Batch, EndsWithTwoAndGoesOnAfterABadProgram) {
     EXPECT_THAT(ran.out, HasSubstr("*.tap: matches no file"));
 }
 
-TEST_F(Batch, TellsOfAFolderWithoutPrograms) {
+TEST_F(Batch, ReportsAFolderWithoutPrograms) {
     fs::create_directory(folder / "empty");
     const Ran alone = check({folder / "empty"});
     EXPECT_EQ(alone.status, 2);
@@ -95,7 +95,7 @@ TEST_F(Batch, TellsOfAFolderWithoutPrograms) {
     EXPECT_THAT(beside.out, HasSubstr("clear      " + folder / "fine.nc"));
 }
 
-TEST_F(Batch, TellsOfAFileThatCannotBeRead) {
+TEST_F(Batch, ReportsAFileThatCannotBeRead) {
     if (::geteuid() == 0) GTEST_SKIP() << "root can read every file";
     fs::permissions(folder / "fine.nc", fs::perms::none);
     const Ran ran = check({all()});
@@ -137,7 +137,7 @@ TEST_F(Batch, ReadsAProjectInAFolder) {
     EXPECT_EQ(wrong.out, "");
 }
 
-TEST_F(Batch, SaysThatAProjectAboveIsNotAskedAboutAProgramThatIsNamed) {
+TEST_F(Batch, SaysThatAProjectAboveDoesNotApplyToANamedProgram) {
     folder.write("feeler.toml", "[[program]]\nfiles = \"*.nc\"\n");
     fs::create_directory(folder / "sub");
     for (const std::string name : {"new.nc", "sub/new.nc"}) {
@@ -242,7 +242,7 @@ TEST_F(Batch, SkipsTenThousandFilesInOneLine) {
     EXPECT_THAT(ran.out, HasSubstr("skipped: 10000 files, such as"));
 }
 
-TEST_F(Batch, IsColouredOnATerminalUnlessNoColourIsAskedFor) {
+TEST_F(Batch, IsColouredOnATerminalUnlessNoColorIsSet) {
     for (const char* colour : {"", "1"}) {
         ::setenv("NO_COLOR", colour, 1);
         test_support::Terminal terminal({FEELER_BINARY, "check", all()}, all());

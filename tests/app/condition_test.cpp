@@ -72,7 +72,7 @@ TEST(Condition, KnowsNoClearanceOfABlockThatWasNotJudged) {
     EXPECT_EQ(app::evaluate("clearance", {one.record, 1})->text, "unknown");
 }
 
-TEST(Condition, KnowsARuleThatIsToldWithAnotherOne) {
+TEST(Condition, MatchesARuleThatIsReportedAsPartOfAnother) {
     OneBlock one;
     std::swap(one.record.findings, one.record.taken_in);
     EXPECT_TRUE(one.holds("near-miss"));
@@ -180,7 +180,7 @@ TEST(Condition, TakesAnUnknownClearanceForLargerThanAnyNumber) {
     EXPECT_TRUE(one.holds("none", 1));
 }
 
-TEST(Condition, AsksTheControlOnlyWhereItNamesIt) {
+TEST(Condition, ReadsTheControlOnlyWhereItNamesIt) {
     for (const char* text : {"clearance < 1", "feed", "T3", "near-miss", "line = 3", "tool = 3"})
         EXPECT_FALSE(Condition::read(text)->asks_control()) << text;
     for (const char* text :

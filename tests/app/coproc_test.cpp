@@ -52,7 +52,7 @@ TEST(PermitTiming, TakesBlocksThatOverlapInTheDeviceForNoLongerThanTheyDid) {
     EXPECT_EQ(made.missed, 0U);
 }
 
-TEST(PermitTiming, AsksNoFartherAheadThanTheControlReads) {
+TEST(PermitTiming, RequestsNoFartherAheadThanTheControlReads) {
     std::vector<core::PermitMotion> plan;
     for (uint32_t i = 0; i < 20; ++i) plan.push_back({hop(1.0, 10), i});
     const PermitTiming timing =
@@ -62,7 +62,7 @@ TEST(PermitTiming, AsksNoFartherAheadThanTheControlReads) {
         EXPECT_NEAR(timing.blocks[i].asked, timing.blocks[i - 4].entered, 0.0021) << i;
 }
 
-TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
+TEST(PermitTiming, StopsBeforeARefusedBlockUnlessTheOperatorAllowsIt) {
     const std::vector<core::PermitMotion> plan = {{hop(1.0, 10), 0}, {hop(1.0, 10), 2}};
     const std::vector<BlockService> services = {{1e-6}, {1e-6}, {1e-6, true}};
     const PermitTiming stands = timed_with_permits(plan, services, {});
@@ -72,7 +72,7 @@ TEST(PermitTiming, StandsBeforeWhatIsRefusedUnlessAPersonLetsIt) {
     EXPECT_FALSE(timed_with_permits(plan, services, {}, true).refused);
 }
 
-TEST(PermitTiming, AsksForWhatMovesNothingBehindTheLastMotion) {
+TEST(PermitTiming, RequestsBlocksWithoutMotionAfterTheLastMotion) {
     const std::vector<core::PermitMotion> plan = {{hop(1.0, 10), 0}};
     const ControlConfig short_sighted{.look_ahead = 1};
     std::vector<BlockService> services(5, {1e-6, false, 1e-6});
@@ -163,7 +163,7 @@ TEST(CoprocessorRun, RefusesToPushAToolsCentreIntoTheStock) {
     EXPECT_EQ(agreement(ramp).refused, 0U);
 }
 
-TEST(CoprocessorRun, PermitsNothingToAToolThatNobodyKnows) {
+TEST(CoprocessorRun, PermitsNothingToAnUnknownTool) {
     const test_support::ScopedFolder folder;
     const CoprocessorRun run =
         beside_a_block(folder, "T7 M6\nG0 X0 Y0 Z50\nG1 Z40 F100\nT1 M6\nG0 Z60\n");
@@ -237,7 +237,7 @@ TEST(CoprocessorRun, BeginsInTheMiddleAsACheckDoes) {
     EXPECT_FALSE(run_beside_coprocessor(job));
 }
 
-TEST(CoprocessorRun, EndsEarlyWhereItIsTold) {
+TEST(CoprocessorRun, EndsEarlyOnRequest) {
     CoprocessorJob job = plate("clamped_plate.nc");
     job.check.after_block = [](const CheckProgress& progress) { return progress.blocks < 7; };
     const auto run = run_beside_coprocessor(job);

@@ -23,7 +23,7 @@ SetupWriter with_clamp_from(const std::string& y) {
     return SetupWriter().fixture("clamp-1", "box = [[40, " + y + ", -30], [60, 104, 45]]");
 }
 
-TEST(HolderBesideAClamp, CollidesWhenTheClampReachesIntoItsWay) {
+TEST(HolderNextToAClamp, CollidesWhenTheClampIsInItsPath) {
     const Checked checked = check(with_clamp_from("65"), slot);
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "collision");
@@ -35,7 +35,7 @@ TEST(HolderBesideAClamp, CollidesWhenTheClampReachesIntoItsWay) {
     EXPECT_NEAR(*pair.at, (60.0 - std::sqrt(175.0)) / 140.0, 1e-4);
 }
 
-TEST(HolderBesideAClamp, IsTooNearBelowTwoMillimetres) {
+TEST(HolderNextToAClamp, IsTooNearBelowTwoMillimetres) {
     const Checked checked = check(with_clamp_from("71.5"), slot);
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "violation");
@@ -44,7 +44,7 @@ TEST(HolderBesideAClamp, IsTooNearBelowTwoMillimetres) {
     expect_encloses(checked.at_line(8).deciding, 1.5, exact);
 }
 
-TEST(HolderBesideAClamp, IsClearWithThreeMillimetres) {
+TEST(HolderNextToAClamp, IsClearWithThreeMillimetres) {
     const Checked checked = check(with_clamp_from("73"), slot);
     EXPECT_EQ(checked.status, 0);
     EXPECT_EQ(checked.errors(), "");
@@ -56,7 +56,7 @@ TEST(HolderBesideAClamp, IsClearWithThreeMillimetres) {
 const SetupWriter low_clamp =
     SetupWriter().fixture("clamp-1", "box = [[40, 104, -30], [60, 130, 12]]");
 
-TEST(RapidPastAClamp, IsToldItsDistance) {
+TEST(RapidPastAClamp, IsReportedWithItsDistance) {
     const Checked checked = check(low_clamp, program({"G0 X-20. Y97.8", "Z2.5", "X120.", "Z60."}));
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.errors(), "rapid-near-clamp 8");
@@ -212,7 +212,7 @@ TEST(Collision, IsNotSilencedByTheRuleThatNamesIt) {
     }
 }
 
-TEST(FromAnUnknownPlace, AProgramOfWhichNoMotionCouldBeJudgedIsNotPassed) {
+TEST(FromAnUnknownPosition, AProgramOfWhichNoMotionCouldBeJudgedIsNotPassed) {
     const Checked checked = check(SetupWriter().program("dialect = \"fanuc\"\n").without_machine(),
                                   program({"G0 X50.", "Z-10.", "Z60."}));
     EXPECT_EQ(checked.status, 1);
@@ -220,7 +220,7 @@ TEST(FromAnUnknownPlace, AProgramOfWhichNoMotionCouldBeJudgedIsNotPassed) {
     EXPECT_NE(checked.errors().find("undecided"), std::string::npos);
 }
 
-TEST(Fixture, IsCutByNobodyUnlessItIsExpendable) {
+TEST(Fixture, IsNotCutUnlessItIsExpendable) {
     const std::string through = program({"G0 X-20. Y50.", "Z-5.", "G1 X150. F800.", "G0 Z60."});
     const std::string box = "box = [[110, 0, -30], [130, 100, 0]]\n";
     const Checked kept = check(SetupWriter().fixture("soft", box), through);

@@ -35,7 +35,7 @@ TEST(Diff, EndsWithZeroWhenItIsBetterOrTheSame) {
         << same.out;
 }
 
-TEST(Diff, OfASetupTellsEveryBlockAsJson) {
+TEST(Diff, OfASetupListsEveryBlockInJson) {
     const test_support::ScopedFolder folder;
     const std::string program = folder.write("a.ngc", "G21 G90 G54\nT1 M6\nG43 H1\nG0 X20 Y50\n"
                                                       "G0 Z40\nG0 X80\nM2\n");

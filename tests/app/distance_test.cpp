@@ -82,7 +82,7 @@ TEST(Distance, TurnsAboutXThenYThenZ) {
     EXPECT_NEAR(along_y, 30.0 - 1.0 - 10.0, 1e-6);
 }
 
-TEST(Distance, IsZeroOfBodiesThatTouchOverlapOrStandInsideOneAnother) {
+TEST(Distance, IsZeroForBodiesThatTouchOverlapOrContainOneAnother) {
     for (const char* move : {"0,0,0", "3,0,0", "20,0,0", "29.999,0,0"}) {
         const Json found = measure({"sphere:25", "sphere:5", "--move", move});
         EXPECT_EQ(found["lower"], 0.0) << move;
@@ -157,7 +157,7 @@ TEST(Distance, IsSymmetric) {
     EXPECT_NEAR(ab["upper"].get<double>(), ba["upper"].get<double>(), 1e-7);
 }
 
-TEST(Distance, IsToldInWords) {
+TEST(Distance, IsReportedInWords) {
     const Ran ran = feeler({"distance", "sphere:5", "sphere:5", "--move", "20,0,0"});
     EXPECT_EQ(ran.status, 0);
     EXPECT_NE(ran.out.find("10.000000 mm"), std::string::npos) << ran.out;

@@ -53,7 +53,7 @@ TEST(Engine, TheCoprocessorRefusesARapidThroughTheStockOnceAndTheShankInASlot) {
         << deep.finding("refused").message;
 }
 
-TEST(Engine, WhatTheCoprocessorCannotBeAskedIsNotCalledClear) {
+TEST(Engine, WhatTheCoprocessorCannotCheckIsNotCalledClear) {
     const Checked far = check(SetupWriter(),
                               "G21 G90 G54\nT1 M6\nG43 H1\nG0 X-20 Y50 Z30\nZ60\n"
                               "G0 X3000\nM30\n",

@@ -57,7 +57,7 @@ TEST(FixtureMove, OntoTheToolIsFoundWhereItIsPut) {
     EXPECT_EQ(checked.at_line(8).pair("flutes post").verdict, "collision");
 }
 
-TEST(FixtureMove, ByACodeThatStopsComesBehindTheMotionOfItsBlock) {
+TEST(FixtureMove, ByACodeThatStopsComesAfterTheMotionOfItsBlock) {
     for (const std::string code : {"M0", "M1", "M60", "M61"}) {
         const std::string move = "[[fixture.move]]\ncode = \"" + code + "\"\nremove = true\n";
         const Checked checked =
@@ -66,7 +66,7 @@ TEST(FixtureMove, ByACodeThatStopsComesBehindTheMotionOfItsBlock) {
     }
 }
 
-TEST(FixtureMove, StandsInBothPlacesWhereTheOrderIsTheBuilders) {
+TEST(FixtureMove, IsCheckedAtBothPositionsIfTheBuilderDefinesTheOrder) {
     const std::string away = "[[fixture.move]]\ncode = \"M61\"\nat = [0, 0, 100]\n";
     const Checked checked =
         check(with_post(away), program({"G0 X-20. Y50.", "Z10.", "X120. M61", "Z60."}));

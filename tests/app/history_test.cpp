@@ -40,7 +40,7 @@ protected:
     std::string program, setup;
 };
 
-TEST_F(TwoVersions, AreToldWithWhatBecameOther) {
+TEST_F(TwoVersions, AreListedWithTheirDifferences) {
     const auto ran = feeler({"history", program});
     ASSERT_EQ(ran.status, 0) << ran.err;
     EXPECT_EQ(ran.out.find(program + ": 2 versions\n"), 0u) << ran.out;
@@ -51,7 +51,7 @@ TEST_F(TwoVersions, AreToldWithWhatBecameOther) {
         << ran.out;
 }
 
-TEST_F(TwoVersions, AreToldAsJson) {
+TEST_F(TwoVersions, AreListedInJson) {
     const auto ran = feeler({"history", program, "--format", "json"});
     ASSERT_EQ(ran.status, 0) << ran.err;
     const auto json = nlohmann::json::parse(ran.out);

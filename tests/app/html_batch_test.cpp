@@ -84,7 +84,7 @@ TEST(HtmlBatchColumns, SayWhatTheResultsSay) {
     EXPECT_EQ(texts[data["errors"][1][4].get<size_t>()], "G999: no such code");
 }
 
-TEST(HtmlBatchColumns, RoundClearancesDownAndWhatMustBeKeptUp) {
+TEST(HtmlBatchColumns, RoundClearancesDownAndMinimumClearancesUp) {
     BatchResult batch = large_batch(3, 0);
     batch.programs[0].tightest =
         Tightest{.block = 11, .line = 23, .lower = 1.0006, .upper = 2.0004, .allowance = 2.0002};
@@ -235,7 +235,7 @@ TEST(HtmlBatch, HoldsNamesAndTextsAsTextOnly) {
     EXPECT_THAT(data["path"][0].get<std::string>(), HasSubstr("</script><script>alert(1)"));
 }
 
-TEST(HtmlBatch, AsksForNothingFromOutside) {
+TEST(HtmlBatch, LoadsNothingFromOutside) {
     const std::string page = batch_html_report(large_batch(2, 1));
     EXPECT_THAT(page, HasSubstr("default-src 'none'"));
     for (const char* way : {"src=\"http", "href=\"http", "@import", "fetch("})

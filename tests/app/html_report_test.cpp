@@ -195,7 +195,7 @@ TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {
     EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(1)"));
 }
 
-TEST(HtmlReport, AsksForNothingFromOutside) {
+TEST(HtmlReport, LoadsNothingFromOutside) {
     const std::string page = html_report(clamped_plate(), {});
     EXPECT_THAT(page, HasSubstr("default-src 'none'"));
     EXPECT_THAT(page, Not(HasSubstr("src=\"http")));

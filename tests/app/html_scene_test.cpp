@@ -123,7 +123,7 @@ TEST(PicturedRun, FindsWhatACheckFindsAndShowsTheWorstBlocks) {
     EXPECT_EQ(blocks.size(), 4U);
 }
 
-TEST(PicturedRun, EndsWhereItIsTold) {
+TEST(PicturedRun, EndsEarlyOnRequest) {
     CheckJob job = clamped_plate();
     job.after_block = [](const CheckProgress& progress) { return progress.blocks < 10; };
     ReportViews views;
@@ -133,7 +133,7 @@ TEST(PicturedRun, EndsWhereItIsTold) {
     EXPECT_EQ(run.stopped->message, run_check(job)->stopped->message);
 }
 
-TEST(PicturedRun, TellsOfAProgramThatCannotBeRead) {
+TEST(PicturedRun, ReportsAProgramThatCannotBeRead) {
     ReportViews views;
     EXPECT_FALSE(run_pictured_check({.program = folder + "programs/none.nc"}, views));
 }

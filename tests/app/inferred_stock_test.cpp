@@ -48,7 +48,7 @@ std::string faced_then_grooved(double x) {
            + std::to_string(x) + " Y4\nZ-3\nG1 Z-4\nX60\nG0 Z10\nM2\n";
 }
 
-TEST(GuessedStock, EndsWhereARapidGoesDownBesideTheCuts) {
+TEST(GuessedStock, EndsWhereARapidGoesDownNextToTheCuts) {
     const Inferred run = infer(faced_then_grooved(-15.0));
     EXPECT_EQ(run.count("rapid-in-stock"), 0u);
     EXPECT_THAT(run.assumed, HasSubstr("it ends at X -12.000, because line 11 plunges next to it"));
@@ -165,7 +165,7 @@ const std::string two_places = "G21 G90 G54\nT1 M6\nM3 S1000\nG43 H1 Z50\nX0 Y0\
                                "X80\nY40\nX0\nG0 Z50\nG55\nX40 Y20\nZ-30\nG1 Z-32\nX60\n"
                                "G0 Z50\nM30\n";
 
-TEST(WorkPlaces, StandApart) {
+TEST(StockAtWorkOffsets, LieApart) {
     const Inferred run = infer(two_places);
     EXPECT_FALSE(run.run.has_errors());
     EXPECT_THAT(run.assumed,
@@ -173,7 +173,7 @@ TEST(WorkPlaces, StandApart) {
     EXPECT_DOUBLE_EQ(run.stock().min.z, -7.0); // cuts in G55 do not count
 }
 
-TEST(WorkPlaces, DoNotHideWhatHappensAtTheMainOne) {
+TEST(StockAtWorkOffsets, DoNotHideCollisionsAtTheMainOne) {
     std::string through = two_places;
     through.replace(through.find("G0 Z50\nG55"), 6, "G0 X40 Y20\nZ50");
     const Inferred run = infer(through);

@@ -87,7 +87,7 @@ TEST(InferredSetup, AssumesHandworkWhereTheProgramLeavesIt) {
     EXPECT_EQ(speed.status, 0) << speed.report["findings"].dump();
 }
 
-TEST(InferredSetup, TellsAForgottenLengthOffsetWhereOthersAreThere) {
+TEST(InferredSetup, ReportsAForgottenLengthOffsetIfOthersArePresent) {
     std::string forgotten = pocket;
     forgotten.replace(forgotten.find("G0 Z20.\nM5"), 7,
                       "G0 Z20.\nT4 M6\nS5000 M3\nG49\nG0 Z10.\nG1 Z-1.\nX12.\nG0 Z20.");
@@ -177,7 +177,8 @@ TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {
     EXPECT_EQ(checked.status, 0) << checked.err;
     std::string all;
     for (const std::string& each : checked.assumptions) all += each + "\n";
-    EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, according to"), std::string::npos) << all;
+    EXPECT_NE(all.find("tool 2 is a ball end mill of 8 mm, according to"), std::string::npos)
+        << all;
     EXPECT_EQ(all.find("tool 1 is a"), std::string::npos) << all; // the set-up defines it
 }
 

@@ -59,7 +59,7 @@ TEST(IniMachine, GivesWayToWhatTheSetupSays) {
     EXPECT_EQ(machine.axes[0].min, -5.0);
 }
 
-TEST(IniMachine, SaysOfARotaryAxisThatItsPlaceIsNotKnown) {
+TEST(IniMachine, SaysThatThePositionOfARotaryAxisIsUnknown) {
     gcode::Environment environment;
     environment.ini_values = {{"_ini[axis_a]max_velocity", 30.0}, {"_ini[joint_0]home", 0.0}};
     core::Machine machine;
@@ -68,7 +68,7 @@ TEST(IniMachine, SaysOfARotaryAxisThatItsPlaceIsNotKnown) {
     EXPECT_FALSE(machine.axes[3].present);
 }
 
-TEST(IniMachine, TakesNoPlacesForAnInferredSetup) {
+TEST(IniMachine, TakesNoLimitsForAnInferredSetup) {
     gcode::Environment environment;
     environment.ini_values = {{"_ini[axis_x]max_limit", 30.0}, {"_ini[axis_x]max_velocity", 10.0}};
     core::Machine machine;

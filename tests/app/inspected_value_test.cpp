@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const std::vector<app::NamedValue>& values) {
     return names;
 }
 
-TEST(InspectedValue, TellsModesAsCodesWithTheirMeaning) {
+TEST(InspectedValue, ShowsModesAsCodesWithTheirMeaning) {
     const Control control("G20 G91 G18 G55 G95\nT3 M6\nS500 M4\nM8\nF0.01 G1 X1\n"
                           "G43 H3 Z1\nG41 D3 X2\n",
                           DialectId::fanuc);
@@ -74,7 +74,7 @@ TEST(InspectedValue, TellsModesAsCodesWithTheirMeaning) {
     EXPECT_EQ(control.text("G55.y"), "-200 mm");
 }
 
-TEST(InspectedValue, TellsWhereTheTipAndTheMachineStand) {
+TEST(InspectedValue, ShowsThePositionsOfTipAndMachine) {
     const Control control("G21 G90 G55\nG43 H3\nG0 X10 Y20 Z30\n", DialectId::fanuc);
     EXPECT_EQ(control.text("x"), "10 mm");
     EXPECT_EQ(control.text("machine.x"), "-290 mm");

@@ -188,7 +188,7 @@ TEST_F(Merge, HasTheStatusOfAll) {
     EXPECT_EQ(merge(2).status, 0);
 }
 
-TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
+TEST_F(Merge, AShardReportsOnlyItsOwnPrograms) {
     const Ran ran = check({"--shard", "2/3", "--format", "jsonl", "--no-cache"});
     EXPECT_THAT(ran.err, HasSubstr("shard 2/3: 4 of 13 programs"));
     EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 5)
@@ -197,7 +197,7 @@ TEST_F(Merge, TellsOfTheShareAloneUntilItHasAll) {
     EXPECT_THAT(empty.out, HasSubstr("shard 20/20: 0 of 13 programs"));
 }
 
-TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
+TEST_F(Merge, NamesTheUncheckedProgramsOfAnInterruptedShard) {
     write("long.nc", long_program());
     RunningProgram running(first_share());
     EXPECT_TRUE(running.wait_until_it_catches(SIGINT));
@@ -214,7 +214,7 @@ TEST_F(Merge, NamesWhatAShareWasInterruptedBefore) {
     EXPECT_EQ(report["programs"].size() + report["unchecked"].size(), 15U);
 }
 
-TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
+TEST_F(Merge, FindsNoOldShardOfARunThatWasKilled) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     write("long.nc", long_program());
     RunningProgram running(first_share());
@@ -228,7 +228,7 @@ TEST_F(Merge, FindsNoOldShareOfARunThatWasKilled) {
     EXPECT_THAT(feeler({"merge", share(2)}).err, HasSubstr("a shard is missing: 1/2"));
 }
 
-TEST_F(Merge, FindsNoOldShareOfAMachineThatSawNoPrograms) {
+TEST_F(Merge, FindsNoOldShardOfAComputerThatSawNoPrograms) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     fs::rename(folder / "lib", folder / "not mounted");
     fs::create_directory(folder / "lib");
@@ -238,7 +238,7 @@ TEST_F(Merge, FindsNoOldShareOfAMachineThatSawNoPrograms) {
     EXPECT_FALSE(fs::exists(share(1)));
 }
 
-TEST_F(Merge, FindsNoOldShareOfARunThatCannotBegin) {
+TEST_F(Merge, FindsNoOldShardOfARunThatCannotBegin) {
     for (const Words& more :
          {Words{"--search-path", folder / "not mounted"}, Words{"--blocks", "1-2"}}) {
         check_share(1, 2);
@@ -248,7 +248,7 @@ TEST_F(Merge, FindsNoOldShareOfARunThatCannotBegin) {
     }
 }
 
-TEST_F(Merge, FindsNoOldShareBehindALink) {
+TEST_F(Merge, FindsNoOldShardThroughALink) {
     fs::create_directory(folder / "far");
     fs::create_symlink("far/1.share", share(1));
     check_share(1, 2);
@@ -260,7 +260,7 @@ TEST_F(Merge, FindsNoOldShareBehindALink) {
     EXPECT_TRUE(fs::exists(folder / "far/1.share"));
 }
 
-TEST_F(Merge, WritesItsFilesThoughNobodyReadsTheScreen) {
+TEST_F(Merge, WritesItsFilesWhenThePipeIsClosed) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     const std::string all = folder / "all.json";
     // The reader of the pipe ends before the program starts.
@@ -272,7 +272,7 @@ TEST_F(Merge, WritesItsFilesThoughNobodyReadsTheScreen) {
     EXPECT_TRUE(fs::exists(all));
 }
 
-TEST_F(Merge, LeavesAFileThatIsNoShareUntilItIsReplaced) {
+TEST_F(Merge, LeavesAFileThatIsNotAShardUntilItIsReplaced) {
     folder.write("notes", "mine\n");
     fs::create_directory(folder / "empty");
     EXPECT_EQ(feeler({"check", folder / "empty", "--shard", "1/2", "--format", "shard", "-o",
@@ -287,7 +287,7 @@ TEST_F(Merge, LeavesAFileThatIsNoShareUntilItIsReplaced) {
     EXPECT_THAT(bytes_of(folder / "notes"), HasSubstr("feeler_shard"));
 }
 
-TEST_F(Merge, RefusesSharesThatWereAskedForOtherwise) {
+TEST_F(Merge, RefusesShardsWithOtherOptions) {
     check_share(1, 2);
     for (const Words& more : std::vector<Words>{{"--allowance", "2.5"},
                                                 {"--engine", "coprocessor"},
@@ -313,7 +313,7 @@ TEST_F(Merge, RefusesSharesThatWereAskedForOtherwise) {
     EXPECT_THAT(merge(2).err, "");
 }
 
-TEST_F(Merge, RefusesSharesOfOtherStatesOfTheLibrary) {
+TEST_F(Merge, RefusesShardsOfOtherStatesOfTheLibrary) {
     const auto why = [&](auto change) {
         check_share(1, 2);
         change();
@@ -344,7 +344,7 @@ TEST_F(Merge, RefusesSharesOfOtherStatesOfTheLibrary) {
                 HasSubstr("different files were missing"));
 }
 
-TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
+TEST_F(Merge, RefusesFilesThatAreNotShardsOfTheBatch) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     const auto why = [&](Words files) {
         files.insert(files.begin(), "merge");
@@ -370,7 +370,7 @@ TEST_F(Merge, RefusesFilesThatAreNoSharesOfIt) {
                 HasSubstr("was written by feeler 9"));
 }
 
-TEST_F(Merge, NeverLosesAShareThatItReads) {
+TEST_F(Merge, NeverOverwritesAShardThatItReads) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     const std::string before = bytes_of(share(2));
     const Ran ran = merge(2, {"--format", "json", "-o", share(2)});
@@ -379,7 +379,7 @@ TEST_F(Merge, NeverLosesAShareThatItReads) {
     EXPECT_EQ(bytes_of(share(2)), before);
 }
 
-TEST_F(Merge, NeverLosesWhatItsSharesHaveRead) {
+TEST_F(Merge, NeverOverwritesFilesThatItsShardsHaveRead) {
     for (int i = 1; i <= 2; ++i) check_share(i, 2);
     for (const char* name :
          {"lib/fine.nc", "lib/a bad one.nc", "lib/Geh\xe4use.nc", "setup.toml"}) {
@@ -392,7 +392,7 @@ TEST_F(Merge, NeverLosesWhatItsSharesHaveRead) {
     }
 }
 
-TEST_F(Merge, TakesAsLongAsItsSharesTogether) {
+TEST_F(Merge, TakesAsLongAsItsShardsTogether) {
     words = {folder / "lib/fine.nc", folder / "lib/near.nc", "--setup", folder / "setup.toml"};
     for (int i = 1; i <= 2; ++i) {
         check_share(i, 2);
@@ -405,7 +405,7 @@ TEST_F(Merge, TakesAsLongAsItsSharesTogether) {
     EXPECT_THAT(merge(2).out, HasSubstr("2 programs in 30.8 s"));
 }
 
-TEST_F(Merge, TakesNoShareThatIsNone) {
+TEST_F(Merge, RefusesAnInvalidShardNumber) {
     for (const char* name : {"3/2", "0/2", "2", "1/0", "1/99999999999", "x"}) {
         const Ran ran = check({"--shard", name, "--no-cache"});
         EXPECT_EQ(ran.status, 2) << name;

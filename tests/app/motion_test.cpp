@@ -73,7 +73,7 @@ TEST(OverTravel, IsFoundAHairBeyondTheLimitAndNotAtIt) {
     EXPECT_EQ(check(setup, program({"G0 Y200.001"})).errors(), "over-travel 6");
 }
 
-TEST(FirstMove, FromAnUnknownPlaceIsAWarningOnly) {
+TEST(FirstMove, FromAnUnknownPositionIsAWarningOnly) {
     const SetupWriter setup = SetupWriter().without_machine().program("dialect = \"fanuc\"\n");
     const Checked checked =
         check(setup, program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60."}));
@@ -114,7 +114,7 @@ TEST(ToolChange, IsCheckedWithTheLengthOfTheNewTool) {
     expect_encloses(high.at_line(9).pair("flutes block"), 3.0, 1e-6);
 }
 
-TEST(Tool, ThatNobodyDescribedLeavesItsMotionsUndecided) {
+TEST(Tool, WithoutADescriptionLeavesItsMotionsUndecided) {
     const Checked checked =
         check(SetupWriter(), "G21 G90 G54\nT7 M6\nS6000 M3\nG0 G43 H1 Z60.\nM30\n");
     EXPECT_EQ(checked.of_severity("warning").substr(0, 19), "tool-not-in-table 2");

@@ -73,7 +73,7 @@ TEST(Part, IsANoteWhereMaterialIsLeft) {
     EXPECT_TRUE(check(part_up_to("-0.3", "tolerance = 0.31"), idle).findings.empty());
 }
 
-TEST(Part, StandsInItsFrame) {
+TEST(Part, IsPlacedInItsFrame) {
     const ScopedFolder folder;
     folder.write("cube.stl",
                  test_support::binary_stl(test_support::box_mesh({0, 0, -30}, {100, 100, 0})));
@@ -110,7 +110,7 @@ TEST(Part, IsSavedInColours) {
     EXPECT_EQ(save(part_up_to("0"), "seen.stl").status, 2);
 }
 
-TEST(Part, IsToldInTheText) {
+TEST(Part, IsReportedInTheText) {
     const ScopedFolder folder;
     const auto ran = feeler({"check", folder.write("part.nc", slot), "--setup",
                              folder.write("setup.toml", part_up_to("0").text())});

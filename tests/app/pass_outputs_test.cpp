@@ -29,7 +29,7 @@ protected:
     PassOutputs outputs{{report}};
 };
 
-TEST_F(PassOutputsTest, TakeAwayWhatTellsOfAnEarlierVersion) {
+TEST_F(PassOutputsTest, RemoveReportsOfAnEarlierVersion) {
     outputs.end_pass(files);
     EXPECT_FALSE(is_there());
 }
@@ -40,7 +40,7 @@ TEST_F(PassOutputsTest, LeaveWhatIsWrittenAnew) {
     EXPECT_TRUE(is_there());
 }
 
-TEST_F(PassOutputsTest, LeaveWhatSomebodyElseHasWritten) {
+TEST_F(PassOutputsTest, LeaveFilesThatOthersHaveWritten) {
     folder.write("r.csv", "a list of mine\n");
     outputs.end_pass(files);
     outputs.begin_pass();

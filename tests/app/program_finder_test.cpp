@@ -152,7 +152,7 @@ TEST_F(ProgramFinder, TakesAProgramOnceHoweverItsFolderIsSpelled) {
     EXPECT_THAT(found.failures, IsEmpty());
 }
 
-TEST_F(ProgramFinder, KeepsALinkToAProgramBesideIt) {
+TEST_F(ProgramFinder, KeepsALinkInTheFolderOfItsProgram) {
     write("a.nc");
     fs::create_symlink("a.nc", folder / "b.nc");
     EXPECT_THAT(find({"."}).programs, ElementsAre("a.nc", "b.nc"));
@@ -175,7 +175,7 @@ private:
     bool is_root_;
 };
 
-TEST_F(ProgramFinder, TellsOfAFolderThatCannotBeRead) {
+TEST_F(ProgramFinder, ReportsAFolderThatCannotBeRead) {
     write("a.nc");
     write("locked/b.nc");
     write("listed/c.nc");

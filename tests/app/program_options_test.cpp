@@ -30,7 +30,7 @@ struct Traced {
     bool warns(const std::string& text) const { return ran.err.find(text) != std::string::npos; }
 };
 
-TEST(StartPosition, IsWhereTheAxesStandInMachineCoordinates) {
+TEST(StartPosition, IsInMachineCoordinates) {
     for (const char* place :
          {"X=-100,Y=20.5,Z=-3,A=90", "X-100Y20.5Z-3A90", "x=-100, y=+20.5 z-3 a90"}) {
         Traced traced;
@@ -207,7 +207,7 @@ TEST(ProgramTable, SaysTheSameInASetup) {
     EXPECT_TRUE(traced.says("number=2 length=5\n")) << "the command line counts before the set-up";
 }
 
-TEST(ProgramOptions, OfCheckMoveWhatStandsInAWorkOffset) {
+TEST(ProgramOptions, OfCheckMoveBodiesInAWorkOffset) {
     const ScopedFolder folder;
     const std::string variables = folder.write("v.var", "5221 -350\n5222 -200\n5223 -420\n");
     const std::string nc =

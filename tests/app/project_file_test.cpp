@@ -83,7 +83,7 @@ TEST_F(ProjectFile, GivesWayToOptions) {
     EXPECT_EQ(found.mesh_size, 1.0);
 }
 
-TEST_F(ProjectFile, LeavesASetupBesideTheProgramToItself) {
+TEST_F(ProjectFile, LeavesASetupNextToTheProgramAlone) {
     folder.write("a.nc", good);
     const std::string beside = folder.write("a.toml", "");
     const CheckJob found = job("[[program]]\nfiles = \"a.nc\"\n", "a.nc");
@@ -261,7 +261,7 @@ TEST_F(ProjectFile, SearchesItsFolderWhateverThatIsCalled) {
     EXPECT_EQ(plan->jobs[0].program, name + "/a.nc");
 }
 
-TEST_F(ProjectFile, TakesASetupBesideThatLeadsNowhereForOne) {
+TEST_F(ProjectFile, TakesADanglingSetupLinkNextToTheProgramAsItsSetup) {
     folder.write("a.nc", good);
     std::filesystem::create_symlink("not mounted", folder / "a.toml");
     const CheckJob found = job("[[program]]\nfiles = \"a.nc\"\n", "a.nc");
@@ -272,7 +272,7 @@ TEST_F(ProjectFile, TakesASetupBesideThatLeadsNowhereForOne) {
     EXPECT_THAT(run.error().message, HasSubstr("is a link that leads nowhere"));
 }
 
-TEST_F(ProjectFile, RefusesAKeyThatIsNotKnownWithItsPlaceAndTheNearest) {
+TEST_F(ProjectFile, RefusesAnUnknownKeyWithLineColumnAndTheNearestKey) {
     const core::Error error = refusal("[[program]]\nfiles = \"a.nc\"\n  setpu = \"b.toml\"\n");
     EXPECT_EQ(error.file, folder / "feeler.toml");
     EXPECT_EQ(error.where.line, 3U);

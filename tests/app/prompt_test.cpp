@@ -176,7 +176,7 @@ TEST(Prompt, ChangesSomethingAndTakesItBack) {
     EXPECT_THAT(talk.say({"set T1 99", "info tools"}), HasSubstr("99 mm long"));
 }
 
-TEST(Prompt, GoesToAnyPlace) {
+TEST(Prompt, GoesToAnyLocation) {
     const Talk talk;
     talk.say("goto end");
     EXPECT_TRUE(talk.session->is_recorded());
@@ -188,7 +188,7 @@ TEST(Prompt, GoesToAnyPlace) {
     EXPECT_THAT(talk.say("until N60"), HasSubstr("line 6"));
 }
 
-TEST(Prompt, ChangesNothingWhenItIsAskedForNonsense) {
+TEST(Prompt, ChangesNothingOnAnInvalidCommand) {
     const Talk talk;
     talk.say("step 5");
     const uint64_t before = digest_of(talk.session->state());

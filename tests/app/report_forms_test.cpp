@@ -118,7 +118,7 @@ TEST(Csv, HasNoTextThatASpreadsheetCarriesOut) {
         EXPECT_EQ(csv_cell(text), text);
 }
 
-TEST(Csv, LeavesNumbersNumbersBesideTextsThatWouldBeFormulas) {
+TEST(Csv, LeavesNumbersAloneButQuotesTextsThatWouldBeFormulas) {
     CheckRun run = clamped_plate(core::Detail::deciding_pair);
     CheckedBlock& block = run.blocks.back();
     for (CheckedBlock& each : run.blocks)

@@ -36,9 +36,9 @@ ResultStore opened(const std::string& path, const std::string& version = "1") {
 }
 
 /// A program and a mesh, the files that a check of them has read, and its assumed result.
-class Kept : public testing::Test {
+class StoredResultTest : public testing::Test {
 protected:
-    Kept() {
+    StoredResultTest() {
         job.program = folder.write("a.nc", "G0 X1\n");
         job.setup = folder.write("job.toml", "mesh_size = 1\n");
         folder.write("vise.stl", "solid");
@@ -77,13 +77,13 @@ protected:
     ProgramResult result;
 };
 
-TEST_F(Kept, IsFoundAgainToTheLastBit) {
+TEST_F(StoredResultTest, IsFoundAgainToTheLastBit) {
     EXPECT_EQ(found(job), std::nullopt);
     keep();
     EXPECT_EQ(found(job), result);
 }
 
-TEST_F(Kept, IsNotFoundWhenAnythingThatWasReadIsOther) {
+TEST_F(StoredResultTest, IsNotFoundAfterAChangeOfAnyInput) {
     keep();
     for (const char* name : {"a.nc", "job.toml", "vise.stl"}) {
         SCOPED_TRACE(name);
@@ -104,7 +104,7 @@ TEST_F(Kept, IsNotFoundWhenAnythingThatWasReadIsOther) {
     }
 }
 
-TEST_F(Kept, IsNotFoundForOtherOptionsOrByAnotherVersion) {
+TEST_F(StoredResultTest, IsNotFoundForOtherOptionsOrByAnotherVersion) {
     keep();
     std::vector<CheckJob> others(8, job);
     others[0].allowance = 2.0;
@@ -122,7 +122,7 @@ TEST_F(Kept, IsNotFoundForOtherOptionsOrByAnotherVersion) {
     EXPECT_EQ(found(roomier), result);
 }
 
-TEST_F(Kept, AreBothVersionsOfASetupThatGoesToAndFro) {
+TEST_F(StoredResultTest, BothVersionsOfASetupThatAlternatesAreStored) {
     keep();
     folder.write("job.toml", "mesh_size = 2\n");
     run.inputs[1] = content(job.setup);
@@ -143,7 +143,7 @@ TEST_F(Kept, AreBothVersionsOfASetupThatGoesToAndFro) {
     EXPECT_NE((*versions)[0].inputs, (*versions)[1].inputs);
 }
 
-TEST_F(Kept, HistoryEndsWithWhatWasSeenLast) {
+TEST_F(StoredResultTest, HistoryEndsWithTheLatestResult) {
     keep();
     const ProgramResult first = result;
     folder.write("a.nc", "G0 X2\n");
@@ -161,13 +161,13 @@ TEST_F(Kept, HistoryEndsWithWhatWasSeenLast) {
     EXPECT_EQ(*opened(path).seen_at(last), last.seen_at);
 }
 
-TEST_F(Kept, IsOneRowHoweverOftenItIsKept) {
+TEST_F(StoredResultTest, IsOneRowHoweverOftenItIsStored) {
     keep();
     keep();
     EXPECT_EQ(opened(path).history(job.program)->size(), 1u);
 }
 
-TEST_F(Kept, HistoryIsThatOfTheProgramFromWhereverItIsNamed) {
+TEST_F(StoredResultTest, HistoryIsTheSameFromAnyWorkingFolder) {
     keep();
     const fs::path before = fs::current_path();
     fs::current_path(folder.path());
@@ -177,7 +177,7 @@ TEST_F(Kept, HistoryIsThatOfTheProgramFromWhereverItIsNamed) {
     EXPECT_EQ(versions->size(), 1u);
 }
 
-TEST_F(Kept, AreNoRunsThatWereStopped) {
+TEST_F(StoredResultTest, StoppedRunsAreNotStored) {
     run.stopped = core::Error{core::ErrorCode::io, {}, "the check was stopped after this block"};
     keep();
     EXPECT_EQ(found(job), std::nullopt);
@@ -186,7 +186,7 @@ TEST_F(Kept, AreNoRunsThatWereStopped) {
     EXPECT_EQ(found(job), result);
 }
 
-TEST_F(Kept, IsNotFoundWhenItWasDamaged) {
+TEST_F(StoredResultTest, IsNotFoundWhenItWasDamaged) {
     keep();
     {
         auto database = app::open_store_file(path);
@@ -218,7 +218,7 @@ TEST(ResultStore, RefusesFilesThatAreNotItsOwn) {
                                          "3, this version supports 2)");
 }
 
-TEST(ResultStore, LiesInAFolderOfItsOwnUnlessAnotherIsNamed) {
+TEST(ResultStore, LiesInASeparateFolderUnlessAnotherIsNamed) {
     const ScopedFolder folder;
     const std::string path = app::default_store_path(folder.path());
     EXPECT_EQ(why_not(path), "");
@@ -237,7 +237,7 @@ TEST(ResultKey, HoldsTheBuildOfTheProgram) {
     EXPECT_EQ(app::build_version(), app::build_version());
 }
 
-TEST_F(Kept, IsNotFoundForAnotherFolderOfTheSameName) {
+TEST_F(StoredResultTest, IsNotFoundForAnotherFolderOfTheSameName) {
     const ScopedFolder other;
     fs::create_directory_symlink(folder.path(), other / "current");
     CheckJob linked = job;

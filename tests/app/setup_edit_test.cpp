@@ -307,7 +307,7 @@ TEST(SavedSetup, OfARealProgramMeansWhatWasInferred) {
     EXPECT_GE(count, 10u);
 }
 
-TEST(SavedSetup, KeepsWhatSomebodyWrote) {
+TEST(SavedSetup, KeepsTextWrittenByTheUser) {
     const std::string before = bytes_of(assets + "setups/clamped_plate.toml");
     SetupEdits edits;
     edits.stock = box_of({0, 0, -25}, {240, 150, 0});
@@ -374,7 +374,7 @@ TEST(SavedSetup, NeverReplacesAFileUnasked) {
     EXPECT_EQ(own.folder.names().size(), 2u) << "no other file remains";
 }
 
-TEST(SavedSetup, StaysBesideTheFilesThatItNames) {
+TEST(SavedSetup, StaysInTheFolderOfTheFilesThatItNames) {
     const test_support::ScopedFolder folder;
     CheckJob job;
     job.program = assets + "programs/clamped_plate.nc";

@@ -47,7 +47,7 @@ TEST(Frame, MayBeAnotherWorkOffset) {
             .fixture("clamp", "box = [[50, 114, -50], [70, 140, -8]]\nframe = \"G55\""));
 }
 
-TEST(Frame, MayBeABodyThatStandsTurned) {
+TEST(Frame, MayBeARotatedBody) {
     // The plate's X runs along Y, its Y along -X.
     expect_clamp_in_place(
         SetupWriter()
@@ -78,7 +78,7 @@ TEST(Placement, TurnsAboutXThenYThenZ) {
     expect_encloses(block.pair("flutes clamp"), to_clamp, 1e-6);
 }
 
-TEST(Placement, OfACylinderStandsOnItsPlaceAlongItsAxis) {
+TEST(Placement, OfACylinderIsTheSameAlongAnyAxis) {
     for (const char* axis : {"Z", "X"}) {
         const SetupWriter setup =
             SetupWriter().fixture("clamp", std::string("cylinder = { radius = 10, height = 20, "
@@ -194,7 +194,7 @@ TEST(Rules, ChangeTheSeverityAndWithItTheExitStatus) {
     EXPECT_EQ(off.verdict, "violation"); // the rule is off, but the verdict stays
 }
 
-TEST(Tools, StandInTheSpindleFromTheStartWhereTheProgramCallsNone) {
+TEST(Tools, AreInTheSpindleFromTheStartIfTheProgramCallsNone) {
     const Checked checked = check(
         SetupWriter(), "G21 G90 G54\nS6000 M3\nG0 G43 H1 Z60.\nX-20. Y50.\nZ-5.\nX120.\nM30\n");
     EXPECT_EQ(checked.errors(), "rapid-in-stock 6");

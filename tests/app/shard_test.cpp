@@ -23,7 +23,7 @@ std::vector<uintmax_t> random_sizes(size_t count) {
     return sizes;
 }
 
-TEST(ShareOf, TakesTheLargestFirstToTheLeastLoaded) {
+TEST(ShardOf, AssignsTheLargestFirstToTheLeastLoaded) {
     const std::vector<uintmax_t> sizes = {1, 7, 5, 5, 4, 0};
     // 7 to shard 1, 5 to 2, 5 to 3, 4 to 2 (a tie: the first), 1 to 3, the empty one to 3.
     EXPECT_EQ(app::share_of(sizes, {1, 3}), (std::vector<size_t>{1}));
@@ -31,7 +31,7 @@ TEST(ShareOf, TakesTheLargestFirstToTheLeastLoaded) {
     EXPECT_EQ(app::share_of(sizes, {3, 3}), (std::vector<size_t>{0, 3, 5}));
 }
 
-TEST(ShareOf, GivesEveryProgramToOneShare) {
+TEST(ShardOf, GivesEveryProgramToOneShard) {
     const std::vector<uintmax_t> sizes = random_sizes(500);
     for (const size_t n : {1, 2, 7, 64, 501}) {
         std::vector<size_t> all;
@@ -45,7 +45,7 @@ TEST(ShareOf, GivesEveryProgramToOneShare) {
 }
 
 /// Assigned largest first, no shard exceeds four thirds of the optimum.
-TEST(ShareOf, IsBalanced) {
+TEST(ShardOf, IsBalanced) {
     const std::vector<uintmax_t> sizes = random_sizes(500);
     const double whole = std::accumulate(sizes.begin(), sizes.end(), 0.0);
     const double largest = static_cast<double>(*std::max_element(sizes.begin(), sizes.end()));
@@ -60,7 +60,7 @@ TEST(ShareOf, IsBalanced) {
     }
 }
 
-TEST(ShareNamed, ReadsOneOfSomeAndNothingElse) {
+TEST(ShardNumber, IsReadAsNumberAndCountAndNothingElse) {
     EXPECT_EQ(*app::share_named("2/8"), (app::ShardId{2, 8}));
     EXPECT_EQ(*app::share_named("1/1"), (app::ShardId{1, 1}));
     for (const char* text : {"", "2", "0/3", "4/3", "1/0", "1/2/3", "-1/2", "1 /2", "a/b", "1/",
@@ -118,7 +118,7 @@ TEST(Merged, NamesTheSkippedFilesThatAllHaveSeen) {
     EXPECT_EQ(batch->skipped, (std::vector<app::SkippedFile>{{"part.stl", "is a mesh"}}));
 }
 
-TEST(Merged, LeavesUncheckedWhatAShareWasStoppedBefore) {
+TEST(Merged, LeavesUncheckedWhatAStoppedShardLacks) {
     std::vector<Shard> shards = three_shards();
     Shard& cut = shards[1];
     const std::string last = cut.results.back().program;
@@ -132,7 +132,7 @@ TEST(Merged, LeavesUncheckedWhatAShareWasStoppedBefore) {
     EXPECT_EQ(status_of(*batch), 2);
 }
 
-TEST(Merged, NamesSharesThatAreMissingOrThereTwice) {
+TEST(Merged, NamesMissingAndDuplicateShards) {
     const std::vector<Shard> all = three_shards();
     EXPECT_EQ(why_not({}), "there are no shards");
     EXPECT_EQ(why_not({all[0], all[2]}), "a shard is missing: 2/3");
@@ -143,7 +143,7 @@ TEST(Merged, NamesSharesThatAreMissingOrThereTwice) {
               "again.json is shard 2/3, and so is 2.json");
 }
 
-TEST(Merged, RefusesSharesOfDifferentBatches) {
+TEST(Merged, RefusesShardsOfDifferentBatches) {
     std::vector<Shard> shards = three_shards();
     shards[1].version = "2";
     EXPECT_EQ(why_not(shards), "2.json belongs to a different batch than 1.json: it was made by a "
@@ -174,7 +174,7 @@ TEST(Merged, RefusesSharesOfDifferentBatches) {
               "2.json belongs to a different batch than 1.json: it is shard 2/4, not one of 3");
 }
 
-TEST(Merged, RefusesResultsThatDoNotFitTheirShare) {
+TEST(Merged, RefusesResultsThatDoNotFitTheirShard) {
     std::vector<Shard> shards = three_shards();
     const std::string missing = shards[1].results.back().program;
     shards[1].results.pop_back();
@@ -186,13 +186,13 @@ TEST(Merged, RefusesResultsThatDoNotFitTheirShare) {
     EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
-TEST(Merged, RefusesAProgramThatTwoSharesHave) {
+TEST(Merged, RefusesAProgramThatTwoShardsContain) {
     std::vector<Shard> shards = three_shards();
     shards[2].unchecked = {shards[0].places[0]};
     EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
-TEST(Merged, NamesSomeOfManyMissingShares) {
+TEST(Merged, NamesSomeOfManyMissingShards) {
     Shard one = three_shards()[0];
     one.share.n = 1'000'000;
     EXPECT_THAT(why_not({one}), testing::EndsWith("20/1000000, 21/1000000, ..."));

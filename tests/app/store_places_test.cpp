@@ -17,9 +17,9 @@ using app::RelativePaths;
 using test_support::ScopedFolder;
 
 /// A library with links, with its database inside and files next to it.
-class Places : public testing::Test {
+class RelativePathsTest : public testing::Test {
 protected:
-    Places() {
+    RelativePathsTest() {
         for (const char* name : {"lib/setups", "lib/sub/deep", "old/setups", "new/setups", "other"})
             fs::create_directories(folder / name);
         for (const char* name : {"lib/a.nc", "lib/setups/s.toml", "lib/sub/a.nc",
@@ -30,7 +30,7 @@ protected:
         fs::create_symlink("../other/a.nc", folder / "lib/linked.nc");
     }
 
-    ~Places() override { fs::current_path(before); }
+    ~RelativePathsTest() override { fs::current_path(before); }
 
     RelativePaths from(const std::string& working_folder, const std::string& database) const {
         fs::current_path(folder / working_folder);
@@ -41,7 +41,7 @@ protected:
     const ScopedFolder folder;
 };
 
-TEST_F(Places, AreTheSameFromWhereverOneCalls) {
+TEST_F(RelativePathsTest, AreTheSameFromAnyWorkingFolder) {
     const std::string whole = folder / "lib/.feeler/r.db";
     EXPECT_EQ(from(".", "lib/.feeler/r.db").place_of("lib/setups/s.toml"), "setups/s.toml");
     EXPECT_EQ(from("lib", ".feeler/r.db").place_of("./setups//s.toml"), "setups/s.toml");
@@ -57,14 +57,14 @@ TEST_F(Places, AreTheSameFromWhereverOneCalls) {
     EXPECT_EQ(from("lib", "r.db").place_of(""), "");
 }
 
-TEST_F(Places, TellNamesOfOneFileApart) {
+TEST_F(RelativePathsTest, DistinguishNamesOfOneFile) {
     const RelativePaths places = from("lib", "r.db");
     EXPECT_EQ(places.place_of("linked.nc"), "linked.nc")
         << "subprograms are searched for next to the link";
     EXPECT_EQ(places.path_of("linked.nc"), folder / "lib/linked.nc");
 }
 
-TEST_F(Places, LeadWhereThePathDoesAlsoWhenALinkHasChanged) {
+TEST_F(RelativePathsTest, LeadToTheSameFileAsThePathAfterALinkHasChanged) {
     const std::string place = from(".", "lib/r.db").place_of("lib/current/../s.toml");
     const auto read = [&] {
         return test_support::bytes_of(from("lib/sub", "../r.db").path_of(place));
@@ -75,14 +75,14 @@ TEST_F(Places, LeadWhereThePathDoesAlsoWhenALinkHasChanged) {
     EXPECT_EQ(read(), "new/s.toml");
 }
 
-TEST_F(Places, MoveWithTheFolder) {
+TEST_F(RelativePathsTest, MoveWithTheFolder) {
     const std::string place = from(".", "lib/r.db").place_of("lib/setups/s.toml");
     fs::rename(folder / "lib", folder / "moved");
     EXPECT_EQ(from(".", "moved/r.db").path_of(place), folder / "moved/setups/s.toml");
 }
 
 /// A path from any folder must lead to the file that the system opens for it.
-TEST_F(Places, LeadWhereThePathDoes) {
+TEST_F(RelativePathsTest, LeadToTheSameFileAsThePath) {
     const std::vector<std::string> folders = {".",           "lib",  "lib/sub",
                                               "lib/current", "link", "other"};
     const std::vector<std::string> parts = {"..",     "lib",     "sub",      "deep",
@@ -148,7 +148,7 @@ TEST(QuotedPath, IsNotTheNameOfTheProgramWhichIsPutBack) {
     EXPECT_TRUE(app::quotes_paths(result, job, {}, "/home/w"));
 }
 
-TEST_F(Places, HoldUntilTheWorkingFolderIsAnother) {
+TEST_F(RelativePathsTest, HoldUntilTheWorkingFolderChanges) {
     const RelativePaths places = from("old", "../lib/.feeler/results.db");
     EXPECT_TRUE(places.still_hold());
     fs::rename(folder / "old", folder / "older");
@@ -156,12 +156,12 @@ TEST_F(Places, HoldUntilTheWorkingFolderIsAnother) {
     EXPECT_FALSE(places.still_hold());
 }
 
-TEST_F(Places, AreThoseOfTheFileHoweverItIsSpelled) {
+TEST_F(RelativePathsTest, AreThoseOfTheFileHoweverItIsSpelled) {
     EXPECT_EQ(from(".", "lib/.feeler/./results.db").place_of("lib/a.nc"), "a.nc");
     EXPECT_EQ(from(".", "lib//.feeler/results.db").place_of("lib/a.nc"), "a.nc");
 }
 
-TEST_F(Places, HoldUntilALinkToTheFolderIsSwapped) {
+TEST_F(RelativePathsTest, HoldUntilALinkToTheFolderIsChanged) {
     const RelativePaths places = from(".", "link/.feeler/results.db");
     EXPECT_TRUE(places.still_hold());
     fs::remove(folder / "link");

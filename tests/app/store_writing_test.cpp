@@ -72,7 +72,7 @@ TEST_F(OneResult, IsThereAtOnceForWhoeverWaitsForIt) {
     EXPECT_EQ(*store.find(each.job), each.result);
 }
 
-TEST_F(OneResult, IsWrittenAlsoIfNobodyWaits) {
+TEST_F(OneResult, IsWrittenWithoutAFlush) {
     ResultStore store = opened(path);
     ASSERT_TRUE(store.keep(each.job, each.run, each.result));
     const auto end = std::chrono::steady_clock::now() + 60s;

@@ -130,7 +130,7 @@ TEST(ToolTable, SaysWhatItTakesForGranted) {
     expect_refused(flat + "cuts_at_centre = false\ncentre_diameter = 10\n", "below diameter");
 }
 
-TEST(ToolTable, TellsTheControlLengthWearAndDiameter) {
+TEST(ToolTable, GivesTheControlLengthWearAndDiameter) {
     const auto file = read_setup(
         folder().write("setup.toml",
                        SetupWriter()

@@ -50,7 +50,7 @@ TEST(Trace, GivesEveryCommandItsBlockItsLineAndItsText) {
     EXPECT_EQ(feed["text"], "G1 Z-5. F200.");
 }
 
-TEST(Trace, GivesNineAxesOfWhichNobodyKnowsThoseThatWereNeverCommanded) {
+TEST(Trace, GivesNineAxesAndLeavesUncommandedOnesUnknown) {
     EXPECT_EQ(command("straight_traverse")["end"],
               Json::parse("[10.0, 20.0, null, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"));
     EXPECT_EQ(command("straight_feed")["end"][2], -5.0);
@@ -83,7 +83,7 @@ TEST(Trace, TakesTheOffsetsOfASetup) {
               Json::array({-350.0, -200.0, -420.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
 }
 
-TEST(Trace, IsToldInWords) {
+TEST(Trace, IsReadableText) {
     const ScopedFolder folder;
     const Ran ran = feeler({"trace", folder.write("p.nc", small_program), "--dialect", "fanuc"});
     EXPECT_EQ(ran.status, 0);

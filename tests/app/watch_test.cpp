@@ -133,7 +133,7 @@ TEST_F(Watch, SaysAgainWhatCameBack) {
     EXPECT_EQ(end(terminal), 0);
 }
 
-TEST_F(Watch, SeesALinkThatIsSwappedAlsoBehindKnownResults) {
+TEST_F(Watch, SeesAChangedLinkAlsoWithStoredResults) {
     for (const std::string name : {"one", "two"}) {
         fs::create_directory(folder / name);
         folder.write(name + "/a.nc", name == "one" ? fine : near);
@@ -176,7 +176,7 @@ TEST_F(Watch, SaysInTheReportsThatTheProgramStopped) {
     EXPECT_EQ(end(terminal), 0);
 }
 
-TEST_F(Watch, TakesAwayWhatTellsOfAnEarlierVersion) {
+TEST_F(Watch, RemovesReportsOfAnEarlierVersion) {
     const std::string report = folder.write("r.json", "of another day\n");
     const std::string project = folder.write("feeler.toml", "[rules]\nnone\n");
     folder.write("plate.toml", "[stock");
@@ -218,7 +218,7 @@ TEST_F(Watch, SeesAFolderWhereNothingWas) {
     EXPECT_EQ(end(terminal), 0);
 }
 
-TEST_F(Watch, KeepsNothingWhereNothingIsToBeKept) {
+TEST_F(Watch, WritesNothingToTheWorkingFolderWithNoCache) {
     fs::create_directory(folder / "here");
     const std::string home = fs::current_path();
     fs::current_path(folder / "here");
@@ -229,7 +229,7 @@ TEST_F(Watch, KeepsNothingWhereNothingIsToBeKept) {
     EXPECT_TRUE(fs::is_empty(folder / "here"));
 }
 
-TEST_F(Watch, GoesOnWhileOthersWriteBesideIt) {
+TEST_F(Watch, ContinuesWhileOthersWriteInTheFolder) {
     Terminal terminal = watching({folder.path(), "--no-cache"});
     pass(terminal);
     folder.write("plate.nc", near);

@@ -58,7 +58,7 @@ protected:
                        [this] { return stopped ? *stopped : WatchTime::now(); }};
 };
 
-TEST_F(WatchedFilesTest, TellOfAFileThatWasWrittenOrReplacedOrTakenAway) {
+TEST_F(WatchedFilesTest, ReportAFileThatWasWrittenReplacedOrRemoved) {
     folder.write("b.nc", "G0 X2\n");
     folder.write("c.nc", "G0 X3\n");
     let_it_rest();
@@ -73,7 +73,7 @@ TEST_F(WatchedFilesTest, TellOfAFileThatWasWrittenOrReplacedOrTakenAway) {
     EXPECT_EQ(changed(), (Names{"a.nc", "b.nc", "c.nc"}));
 }
 
-TEST_F(WatchedFilesTest, TellOfAFileThatWasLookedForAndHasCome) {
+TEST_F(WatchedFilesTest, ReportAMissingFileThatAppears) {
     watch([&] {
         core::is_file(folder / "plate.toml");
         gcode::file_in(folder.path(), "o1000.nc");
@@ -85,7 +85,7 @@ TEST_F(WatchedFilesTest, TellOfAFileThatWasLookedForAndHasCome) {
     EXPECT_EQ(changed(), (Names{"o1000.nc", "plate.toml"}));
 }
 
-TEST_F(WatchedFilesTest, TellOfNamesThatComeIntoAFolderAndBelow) {
+TEST_F(WatchedFilesTest, ReportNewNamesInAFolderAndBelow) {
     fs::create_directories(folder / "sub/deep");
     let_it_rest();
     watch([&] { walk_folder(folder.path()); });
@@ -109,7 +109,7 @@ TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesItself) {
     EXPECT_EQ(changed(), Names{folder.path().filename()});
 }
 
-TEST_F(WatchedFilesTest, DoNotCountWhatTheCheckWritesBehindALinkThatLedNowhere) {
+TEST_F(WatchedFilesTest, DoNotCountOutputThroughALinkThatWasDangling) {
     fs::create_symlink("new.json", folder / "latest");
     files.add_own(folder / "latest");
     const auto look = [&] {
@@ -138,14 +138,14 @@ TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
     EXPECT_FALSE(files.reads(report));
 }
 
-TEST_F(WatchedFilesTest, CountWhatWasWrittenJustWhenItWasRead) {
+TEST_F(WatchedFilesTest, CountAFileWrittenWhileItWasRead) {
     stop_the_clock();
     folder.write("a.nc", "G0 X2\n");
     watch([&] { core::file_bytes(folder / "a.nc"); });
     EXPECT_EQ(changed(), Names{"a.nc"}) << "either version may have been read";
 }
 
-TEST_F(WatchedFilesTest, CountWhatWasPutInPlaceJustWhenItWasRead) {
+TEST_F(WatchedFilesTest, CountAFileReplacedWhileItWasRead) {
     stop_the_clock();
     folder.write("old.nc", "G0 X2\n");
     const auto now = fs::last_write_time(folder / "old.nc");
@@ -261,7 +261,7 @@ TEST_F(WatchedFilesTest, SeeLinksThatLedNowhereLeadToAFileOrAFolder) {
     }
 }
 
-TEST_F(WatchedFilesTest, SeeAFileInThePlaceOfAPipeOrAFolder) {
+TEST_F(WatchedFilesTest, SeeAFileThatReplacesAPipeOrAFolder) {
     const std::string pipe = folder / "b.nc";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     fs::create_directory(folder / "c.nc");
@@ -289,7 +289,7 @@ TEST_F(WatchedFilesTest, SeeALinkToAFolderThatWasEnteredByAnotherNameLeadElsewhe
     EXPECT_EQ(changed(), Names{"current"});
 }
 
-TEST_F(WatchedFilesTest, SeeANameBehindTimesThatWerePutBack) {
+TEST_F(WatchedFilesTest, SeeANewNameDespiteRestoredTimes) {
     watch([&] { walk_folder(folder.path()); });
     const auto time = fs::last_write_time(folder.path());
     folder.write("b.nc", "");
@@ -311,7 +311,7 @@ TEST_F(WatchedFilesTest, NameAFileOnceHoweverItWasCalled) {
     EXPECT_EQ(changed(), (Names{"a.nc", "link.nc"})) << "a dangling link is not a name of it";
 }
 
-TEST_F(WatchedFilesTest, KeepTheFirstLookOfSeveral) {
+TEST_F(WatchedFilesTest, KeepTheFirstOfSeveralAccesses) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
     folder.write("a.nc", "G0 X1\nG1 X5\n");
     let_it_rest();

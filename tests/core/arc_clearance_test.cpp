@@ -84,7 +84,7 @@ double true_distance(const Round& round) {
     return std::max(0.0, least - round.pin_radius - 5.0);
 }
 
-TEST(ArcClearance, IsWithinAThousandthWhereverThePinStands) {
+TEST(ArcClearance, IsWithinAThousandthForAnyPositionOfThePin) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(0.0, 1.0);
     size_t near = 0, far = 0, ends = 0;

@@ -49,7 +49,7 @@ std::vector<BlockTime> times_of(const Machine& machine,
     return done;
 }
 
-TEST(BlockClock, GivesEveryBlockAPlaceInTime) {
+TEST(BlockClock, GivesEveryBlockATime) {
     const auto times = times_of(mill(1000), {{},
                                              {feed({0, 0, 0}, {100, 0, 0}, 6000)},
                                              {},

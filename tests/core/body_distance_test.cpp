@@ -63,7 +63,7 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
     expect_distance(separation(hollow, two, translation({38, 0, 0}), Vec3(0)), 0.0);
 }
 
-TEST(BodyDistance, OfABodyBesideAFoldInTheMatterIsZero) {
+TEST(BodyDistance, IsZeroNextToAFoldOfOverlappingMaterial) {
     const ExactBody folded = solid_mesh(test_support::cube_with_a_fold());
     const ExactBody cube = solid_mesh(box_mesh(Vec3(0), Vec3(1)));
     const Transform place = translation({3.5, 0.229, 5.0}); // above the fold, in the material

@@ -49,7 +49,7 @@ TEST(BoundText, TakesRoundingForNothing) {
     EXPECT_EQ(at_most(2.000001), "2.001");
 }
 
-TEST(BoundText, NeverShowsWhatIsTooNearAsWhatMustBeKept) {
+TEST(BoundText, NeverShowsASmallerClearanceAsTheMinimum) {
     test_support::Dice dice{std::mt19937(20261122)};
     size_t ties = 0;
     for (int i = 0; i < 20'000; ++i) {
@@ -100,7 +100,7 @@ Finding near_miss(double lower, double upper, double keep) {
     return finding_of({}, pair, {.motion = BlockMotion::feed}, {});
 }
 
-TEST(FindingText, ShowsWhatIsKeptBelowWhatMustBe) {
+TEST(FindingText, ShowsTheClearanceBelowTheMinimum) {
     EXPECT_THAT(
         near_miss(1.2346, 1.2346, 2.0).message,
         HasSubstr("within 1.234 mm of the stock (minimum clearance 2.000 mm; short by 0.766 mm)"));

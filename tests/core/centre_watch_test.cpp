@@ -109,7 +109,7 @@ TEST(CentreWatch, IsSilentInAHoleThatWasDrilled) {
     EXPECT_TRUE(shop.feed({50, 50, -12}));
 }
 
-TEST(CentreWatch, TellsARampFromADive) {
+TEST(CentreWatch, DistinguishesARampFromADive) {
     for (const double degrees : {2.0, 4.0, 6.5}) {
         Shop shop;
         shop.feed({20, 50, 0.2});
@@ -137,7 +137,7 @@ TEST(CentreWatch, IsSilentOnARampToAndFroThatIsLongEnough) {
     EXPECT_TRUE(found);
 }
 
-TEST(CentreWatch, TellsAHelixFromOneThatIsTooNarrow) {
+TEST(CentreWatch, DistinguishesAHelixFromOneThatIsTooNarrow) {
     EXPECT_LT(Shop().wind(4.0, 0.8, 6.0), -5.9);
     EXPECT_LT(Shop().wind(3.0, 0.5, 4.0), -3.9);
     EXPECT_NEAR(Shop().wind(1.5, 0.5, 4.0), -recess, 0.3); // the pillar in the centre

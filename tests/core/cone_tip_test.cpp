@@ -149,7 +149,7 @@ void expect_true_interval(const NearMiss& c, const std::optional<Interval>& foun
     EXPECT_GE(c.outside(found->upper + 1e-6), -1e-7);
 }
 
-TEST(ConeLine, IsTrueNextToTipAxisAndFlankHoweverTheToolStands) {
+TEST(ConeLine, IsTrueNextToTipAxisAndFlankForAnyOrientation) {
     std::mt19937 rng(811);
     Seen seen;
     for (int i = 0; i < 8000 && !::testing::Test::HasFailure(); ++i) {

@@ -58,7 +58,7 @@ TEST(OwnCut, IsNoneForFlutesThatGetSlimmerUpwards) {
     EXPECT_FALSE(Slot(dovetail).holds({60, 50, -5}, {60, 50, 10}, dovetail));
 }
 
-TEST(OwnCut, IsClosedAboveABallThatNothingStandsOn) {
+TEST(OwnCut, IsClosedAboveABallWithoutAShank) {
     EXPECT_FALSE(Slot(bare_ball, -8.0).holds({60, 50, -8}, {60, 50, 10}, bare_ball));
 }
 

@@ -86,7 +86,7 @@ TEST_P(AnyEngine, AgreesWithBruteForceOnScansOfSolids) {
     }
 }
 
-TEST_P(AnyEngine, AgreesWithBruteForceAtAnySizeAndPlace) {
+TEST_P(AnyEngine, AgreesWithBruteForceAtAnySizeAndPosition) {
     std::mt19937 rng(23);
     for (const double size : {1e-9, 1e-3, 1.0, 1e4, 1e9})
         for (const double away : {0.0, 1.0, 1e5, 1e11}) {

@@ -25,7 +25,7 @@ struct Looks {
     }};
 };
 
-TEST(FileReads, TellOfWhatWasReadAndOfWhatIsNotThere) {
+TEST(FileReads, ReportReadFilesAndMissingFiles) {
     const ScopedFolder folder;
     folder.write("a", "hello");
     const Looks looks;
@@ -82,7 +82,7 @@ TEST(FileReads, OfAFileBeyondTheLimitIsNoContent) {
               (std::vector<std::string>{"content a: 123456", "content a: -", "content a: -"}));
 }
 
-TEST(FileReads, AllWhoListenAreToldWhileTheyLive) {
+TEST(FileReads, ReachAllObserversDuringTheirLifetime) {
     const ScopedFolder folder;
     folder.write("a", "1");
     const Looks older;

@@ -47,7 +47,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
         << a.x << ' ' << a.y << ' ' << a.z << " and " << b.x << ' ' << b.y << ' ' << b.z;
 }
 
-TEST(TipPlace, OfATrunnionIsTurnedBackThroughBothAxes) {
+TEST(TipPosition, OfATrunnionIsTurnedBackThroughBothAxes) {
     const Vec3 a_point(10, 20, -500), c_point(-5, 12, -480);
     const Machine machine = trunnion(a_point, c_point);
     std::mt19937 rng(3);
@@ -61,7 +61,7 @@ TEST(TipPlace, OfATrunnionIsTurnedBackThroughBothAxes) {
     }
 }
 
-TEST(TipPlace, OfAForkHeadSwingsWithTheTool) {
+TEST(TipPosition, OfAForkHeadSwingsWithTheTool) {
     const Vec3 pivot(1, 2, 180);
     const Machine machine = fork_head(pivot);
     std::mt19937 rng(4);
@@ -72,7 +72,7 @@ TEST(TipPlace, OfAForkHeadSwingsWithTheTool) {
     }
 }
 
-TEST(TipPlace, IsExactAtQuarterTurns) {
+TEST(TipPosition, IsExactAtQuarterTurns) {
     const Machine machine = trunnion({0, 0, -100}, {0, 0, -100});
     AxisValues q{};
     q[2] = -50.0, q[3] = 90.0;
@@ -81,7 +81,7 @@ TEST(TipPlace, IsExactAtQuarterTurns) {
     EXPECT_EQ(tip_place(machine, q, 50.0), Vec3(0, -50, -100));
 }
 
-TEST(ReachTip, BringsTheTipToItsPlaceOnEveryMachine) {
+TEST(ReachTip, BringsTheTipToItsTargetOnEveryMachine) {
     std::mt19937 rng(5);
     for (const Machine& machine : machines())
         for (int i = 0; i < 200; ++i) {

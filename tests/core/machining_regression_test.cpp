@@ -85,7 +85,7 @@ TEST(LateLook, KnowsWhatTheFlutesTookOnTheirWay) {
     EXPECT_TRUE(told);
 }
 
-TEST(TurningCut, LeavesAllThatStandsInTheColumns) {
+TEST(TurningCut, KeepsAllRemainingMaterialInTheColumns) {
     const double round = 20.0, depth = 3.0;
     Nibbler run(on_a_trunnion(), {round, 0.0, -depth});
     const BlockResult turned = run.go(MotionKind::feed, {{5, 60.0}});

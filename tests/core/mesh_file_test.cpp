@@ -187,7 +187,7 @@ TEST(MeshFile, ReadsTwoSolidsOfOneAsciiStl) {
     EXPECT_EQ(signed_volume(file->mesh), 2000.0);
 }
 
-TEST(MeshFile, ReadsAnOffWithItsCountsBesideTheHeader) {
+TEST(MeshFile, ReadsAnOffWithItsCountsOnTheHeaderLine) {
     expect_cube(read("cube.off", with(cube_off, "OFF\n# a cube, with colours\n", "OFF ")));
 }
 
@@ -274,7 +274,8 @@ TEST(MeshFile, RefusesAnOffThatIsNotInOrder) {
     EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 5 8")),
                 HasSubstr("refers to vertex 8, but there are 8, counted from 0"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 -5 4")), HasSubstr("-5"));
-    EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 5")), HasSubstr("lists only 3"));
+    EXPECT_THAT(error_of("o.off", with(cube_off, "4 0 1 5 4", "4 0 1 5")),
+                HasSubstr("lists only 3"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "8 6 12", "8 7 12")),
                 HasSubstr("ends after 6 of 7 faces"));
     EXPECT_THAT(error_of("o.off", with(cube_off, "8 6 12", "9 6 12")), HasSubstr("o.off"));

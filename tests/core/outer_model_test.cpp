@@ -73,7 +73,7 @@ double standing_out(const std::vector<TruePart>& parts, double h) {
     return most;
 }
 
-TEST(OuterModel, StandsOutOfTheBodyByLessThanTheDiagonalOfACell) {
+TEST(OuterModel, ExceedsTheBodyByLessThanTheDiagonalOfACell) {
     for (const auto& parts : bodies())
         for (const double h : {0.7, 0.35})
             EXPECT_LT(standing_out(parts, h), 1.0001 * std::sqrt(3.0) * h);

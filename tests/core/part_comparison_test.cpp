@@ -131,7 +131,7 @@ TEST(PartComparison, MeasuresAGougedWall) {
     EXPECT_EQ(result.regions[0].block, 11u);
 }
 
-TEST(PartComparison, NamesTheBlockOfTheDeepestPlace) {
+TEST(PartComparison, NamesTheBlockOfTheDeepestGouge) {
     CutModel stock = slotted_model();
     cut_in_block(stock, 9, 4.0, {45, 8, -3}, {45, 8, 5});
     cut_in_block(stock, 12, 2.0, {49, 8, -1}, {52, 8, -1});

@@ -181,7 +181,7 @@ TEST(PermitRun, GoesFromOneHoldToTheNextAsItsAxesCan) {
     EXPECT_NEAR(run.time(), 2.2, 0.0021);
 }
 
-TEST(PermitRun, StandsStillAsLongAsPlanned) {
+TEST(PermitRun, PausesAsLongAsPlanned) {
     MotionTime pause;
     pause.duration = 0.5;
     PermitRun run = permit_run({{pause, 0}, {pause, 1}}, {});

@@ -87,7 +87,7 @@ TEST(RoundedCorners, StayFartherFromAClampOutside) {
     EXPECT_EQ(corner.seen.verdict, Verdict::undecided) << "the minimum clearance is 2 mm";
 }
 
-TEST(RoundedCorners, LeaveNoDoubtWhereTheAllowanceIsKeptAllTheSame) {
+TEST(RoundedCorners, LeaveNoDoubtWhereTheClearanceSufficesAnyway) {
     for (const Detail detail : {Detail::every_pair, Detail::deciding_pair, Detail::verdict}) {
         core::Setup setup = around_a_corner(2.31, true);
         setup.detail = detail;
@@ -127,7 +127,7 @@ TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
     EXPECT_EQ(unstated.state.assumptions.size(), 1U) << "the assumption is listed";
 }
 
-TEST(RoundedCorners, LeaveDoubtWhereACornerMayStandThatWasNotCut) {
+TEST(RoundedCorners, LeaveDoubtWhereACornerMayBeLeftUncut) {
     // A square corner in a slot, rounded by 2 mm at most, and a rapid down into it afterwards.
     for (const double tolerance : {0.02, 2.0}) {
         core::Setup setup = around_a_corner(20.0, true);

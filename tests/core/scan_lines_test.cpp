@@ -28,7 +28,7 @@ TEST(ScanLines, LeaveASnapshotAsItWas) {
     EXPECT_EQ(lines.line(21, 5), snapshot.line(21, 5)); // copied with the tile, not lost
 }
 
-TEST(ScanLines, ShareTheTilesThatNobodyTouched) {
+TEST(ScanLines, ShareUnchangedTiles) {
     ScanLines lines = filled(40, 40);
     const ScanLines snapshot = lines;
     lines.edit(20, 5);

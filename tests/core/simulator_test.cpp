@@ -269,7 +269,7 @@ TEST(Simulator, LeavesNoSkinWhereItCutsAsDeepAsItsFlutesAreLong) {
     EXPECT_EQ(run.rapid({50, 48, 10}).verdict, Verdict::clear);
 }
 
-TEST(Simulator, CannotJudgeAToolThatNobodyDescribed) {
+TEST(Simulator, CannotJudgeAnUndescribedTool) {
     Shift run(plain_setup());
     EXPECT_EQ(rules(run.give({ToolChange{ToolNumber{9}}})), Rules({"tool-not-in-table"}));
     const BlockResult moved = run.rapid({0, 0, 50});
@@ -279,7 +279,7 @@ TEST(Simulator, CannotJudgeAToolThatNobodyDescribed) {
     EXPECT_EQ(rules(run.rapid({0, 0, 60})), Rules());
 }
 
-TEST(Simulator, TellsOnceThatItDoesNotKnowWhereTheMachineStarts) {
+TEST(Simulator, ReportsAnUnknownStartPositionOnce) {
     Shift run(plain_setup());
     Motion first{.kind = MotionKind::rapid, .from = {}, .to = z_only(105.0)};
     const BlockResult unknown = run.give({first});
@@ -288,7 +288,7 @@ TEST(Simulator, TellsOnceThatItDoesNotKnowWhereTheMachineStarts) {
     EXPECT_EQ(rules(run.give({first})), Rules());
 }
 
-TEST(Simulator, ReportsAPairOnceForABlockOfSeveralMotionsFromAnUnknownPlace) {
+TEST(Simulator, ReportsAPairOnceForABlockOfSeveralMotionsFromAnUnknownPosition) {
     core::Setup setup = plain_setup();
     for (MachineAxis& axis : setup.machine.axes) {
         axis.min = -200.0;
@@ -312,7 +312,7 @@ TEST(Simulator, ReportsAPairOnceForABlockOfSeveralMotionsFromAnUnknownPlace) {
     EXPECT_NEAR(flutes->lower, 110.0 - 95.0, 1e-3); // at the first motion
 }
 
-TEST(Simulator, ChecksEveryWayFromAnUnknownPlaceWithinTheLimits) {
+TEST(Simulator, ChecksEveryPathFromAnUnknownPositionWithinTheLimits) {
     core::Setup setup = plain_setup();
     for (MachineAxis& axis : setup.machine.axes) {
         axis.min = -200.0;

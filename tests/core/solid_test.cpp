@@ -213,14 +213,14 @@ TEST(Holds, SaysWhatTheLineThroughThePointSays) {
     EXPECT_FALSE(holds(solid_mesh({}), Vec3(0.0)));
 }
 
-TEST(Holds, SeesTheMatterBesideAFoldOfTheSurface) {
+TEST(Holds, SeesTheMaterialNextToAFoldOfTheSurface) {
     const SolidMesh folded = solid_mesh(test_support::cube_with_a_fold());
     EXPECT_TRUE(holds(folded, {3.5, 0.229, 5.0}));
     EXPECT_FALSE(holds(folded, {3.5, 0.229, 11.0}));
     EXPECT_FALSE(holds(folded, {3.5, 0.229, -11.5})); // in the fold
 }
 
-TEST(ColumnOfAMesh, HoldsTheMatterBesideAFoldOfTheSurface) {
+TEST(ColumnOfAMesh, ContainsTheMaterialNextToAFoldOfTheSurface) {
     const Solid folded{solid_mesh(test_support::cube_with_a_fold()), 0.0};
     EXPECT_TRUE(column_of(folded, {3.5, 3.501, 0.229, 0.2291}).contains(5.0));
 }

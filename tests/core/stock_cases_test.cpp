@@ -77,7 +77,7 @@ TEST(StockCase, PecksGoDownStepByStep) {
     EXPECT_NEAR(removed, whole, 0.01 * whole);
 }
 
-TEST(StockCase, AWallThinnerThanACellStands) {
+TEST(StockCase, AWallThinnerThanACellRemains) {
     constexpr double wall = 0.17;
     CutModel model = block({40, 30, 20}, 0.5);
     for (const double side : {-1.0, 1.0}) {

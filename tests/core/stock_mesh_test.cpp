@@ -179,7 +179,7 @@ TEST(StockMesh, HasTheSameBitsEveryTime) {
     EXPECT_EQ(ply_bytes(once.mesh, {}), ply_bytes(again.mesh, {}));
 }
 
-TEST(StockMesh, TellsOfDetailsThatAreLost) {
+TEST(StockMesh, ReportsDetailsThatAreLost) {
     // A wall of 0.2 mm between two slots, thinner than the mesh size and between two lines.
     CutModel model = block_model(1.0);
     for (const double y : {15.0 - 3.1, 15.0 + 3.1})

@@ -257,7 +257,7 @@ TEST(LoosePieces, AreHeldByTheFixturesThatTouchThem) {
     EXPECT_NE(found[0].message.find("Still touched by near"), std::string::npos);
 }
 
-TEST(LoosePieces, AreToldOnceEach) {
+TEST(LoosePieces, AreReportedOnceEach) {
     // Sawn at X 20, along the same path again, then at X 40.
     std::vector<Vec3> tips = sawing;
     tips.insert(tips.end(), {{20, -10, 20}, {40, -10, -21}, {40, 50, -21}});

@@ -164,7 +164,7 @@ TEST(Timing, EntersATangentArcWithoutAStop) {
     EXPECT_NEAR(total(times), (100.0 + 20.0 * pi) / 80.0 + 80.0 / 1000.0, 1e-9);
 }
 
-TEST(Timing, TellsWhenAPlaceIsReached) {
+TEST(Timing, GivesTheMomentAtWhichAPointIsReached) {
     const auto times = times_of(plan_of(even_limits(500, 1000)), {line({100, 0, 0}, 100)});
     EXPECT_NEAR(times[0].moment(0.0), 0.0, 1e-12);
     EXPECT_NEAR(times[0].moment(1.25), std::sqrt(2.0 * 1.25 / 1000.0), 1e-12);

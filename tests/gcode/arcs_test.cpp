@@ -115,7 +115,7 @@ TEST(Arc, RefusesTheOffsetOfAnotherPlane) {
     EXPECT_THAT(error_of("G2 X10 I5 R5 F100", DialectId::linuxcnc), HasSubstr("1:8: I5"));
 }
 
-TEST(Arc, FromAnUnknownPlaceIsAnErrorThatSaysSo) {
+TEST(Arc, FromAnUnknownPositionIsAnError) {
     const Environment unknown{.dialect = DialectId::fanuc};
     const Ran ran = run_text("G0 X0\nG2 X10 I5 F100\n", unknown);
     ASSERT_TRUE(ran.run.error);

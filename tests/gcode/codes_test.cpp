@@ -50,7 +50,7 @@ TEST(Codes, BelongToDialects) {
     EXPECT_EQ(find_code('G', 81, DialectId::grbl), nullptr);
 }
 
-TEST(Codes, AnUnknownGCodeIsAnErrorWithItsPlace) {
+TEST(Codes, AnUnknownGCodeIsAnErrorWithLineAndColumn) {
     const Ran ran = run_text("G0 X1\nG1 G123 X2 F100\n");
     ASSERT_TRUE(ran.run.error);
     EXPECT_EQ(ran.run.error->code, core::ErrorCode::unsupported);
@@ -113,7 +113,7 @@ TEST(Codes, TwoOfOneModalGroupAreAnError) {
     EXPECT_EQ(error_of("G98 G98", DialectId::fanuc), "");
 }
 
-TEST(Codes, ACycleAndAMotionClashWhereTheyShareAGroup) {
+TEST(Codes, ACycleAndAMotionOfOneGroupClash) {
     EXPECT_THAT(error_of("G0 G81 X1 Z-1 R1 F1", DialectId::linuxcnc), HasSubstr("1:4: G0 and G81"));
     EXPECT_EQ(error_of("G0 G80 X1", DialectId::linuxcnc), "");
     EXPECT_EQ(error_of("G0 G80 G40 G49 X1", DialectId::fanuc), "");

@@ -103,7 +103,7 @@ TEST(Corners, ThatDoNotFitAreRefusedWithTheirWord) {
               "stops with an alarm (PS0055 on Fanuc)");
 }
 
-TEST(Corners, NeedAMotionInThePlaneBehindThem) {
+TEST(Corners, NeedAMotionInThePlaneAfterThem) {
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\nM30\n"),
                 HasSubstr("in the plane, but the program ends"));
     EXPECT_THAT(error_of("G1 X20. F100 ,R5.\n"), HasSubstr("the program ends"));

@@ -58,7 +58,7 @@ TEST(Expression, AVacantVariableIsNoWordAndNotZero) {
     EXPECT_EQ(value_of_text("[#1+3]", DialectId::fanuc), 3);
 }
 
-TEST(Expression, AssignmentsTakeEffectBehindTheLine) {
+TEST(Expression, AssignmentsTakeEffectAfterTheLine) {
     EXPECT_EQ(trace("G21\n#3=5\n#3=6 G0 X#3 #4=#3\nG0 Y#4 Z#3", DialectId::linuxcnc),
               "straight_traverse x=5 y=0 z=0\nstraight_traverse x=5 y=5 z=6\n");
 }

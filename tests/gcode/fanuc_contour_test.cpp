@@ -32,7 +32,7 @@ std::string path_of(const std::string& text) {
     return path;
 }
 
-TEST(FanucContour, BeginsBesideTheStartOfTheMoveBehindTheEntry) {
+TEST(FanucContour, BeginsAtTheOffsetStartOfTheMoveAfterTheEntry) {
     // Up from (10, 0) with the tool on the left: (8, 0), whatever the direction of the entry.
     EXPECT_EQ(path_of("G1 G41 D1 X10. F9\nY20.\nG40 X0\nM30\n"), "8000,0 8000,20000 0,20000 ");
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nY20.\nG40 X0\nM30\n"), "12000,0 12000,20000 0,20000 ");

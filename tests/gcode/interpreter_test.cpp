@@ -52,7 +52,7 @@ TEST(Interpreter, CountsBlocksNotLines) {
     EXPECT_FALSE(ran.run.ending);
 }
 
-TEST(Interpreter, IgnoresWhatStandsBehindTheSecondTapeMark) {
+TEST(Interpreter, IgnoresEverythingAfterTheSecondTapeMark) {
     const Ran ran = run_text("%\nG0 X1\n%\n!garbage\n", DialectId::linuxcnc);
     EXPECT_FALSE(ran.run.error);
     EXPECT_EQ(ran.run.blocks.size(), 1u);

@@ -49,13 +49,13 @@ TEST(StoredOffsets, AreG54WhereTheNumberIsNone) {
                   "message text=1\n");
 }
 
-TEST(MachinePlaces, AreNoneWithoutAMove) {
+TEST(MachineCoordinates, NeedAMove) {
     EXPECT_THAT(refused("G53"), HasSubstr("2:1: G53 applies to its own block only"));
     EXPECT_THAT(refused("G0 X1\nG53 M3 S100"), HasSubstr("3:1: G53 applies to its own block only"));
     EXPECT_EQ(refused("G53 G0"), "");
 }
 
-TEST(MachinePlaces, AreRefusedUnderG91AndInPolarWords) {
+TEST(MachineCoordinates, AreRefusedUnderG91AndInPolarWords) {
     EXPECT_THAT(refused("G91 G53 G0 X5"),
                 HasSubstr("2:5: G53 with G91 stops some controls and is ignored by others"));
     EXPECT_EQ(refused("G91\nG53 G90 G0 X5"), "");
@@ -63,7 +63,7 @@ TEST(MachinePlaces, AreRefusedUnderG91AndInPolarWords) {
                 HasSubstr("2:8: @5: @ and ^ are relative to the program origin"));
 }
 
-TEST(MachinePlaces, OfRotaryAxesDoNotCountTheTool) {
+TEST(MachineCoordinates, OfRotaryAxesIgnoreTheTool) {
     EXPECT_THAT(traced("G43.1 A3 Z2\nG53 G0 A10 Z0"), HasSubstr("z=-2 a=10\n"));
 }
 

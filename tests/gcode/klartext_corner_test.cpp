@@ -51,7 +51,7 @@ TEST(KlartextCorner, RoundsBetweenALineAndAnArc) {
     EXPECT_THAT(ran, HasSubstr("arc_feed x=0 y=10 z=0 plane=XY centre=0,0 turns=1"));
 }
 
-TEST(KlartextCorner, GoesOnTangentiallyBehindIt) {
+TEST(KlartextCorner, ContinuesTangentiallyAfterIt) {
     // The rounding ends upwards at (20,5); the arc to (10,15) then turns about (10,5).
     EXPECT_THAT(klartext("L X+0 Y+0 F100\nL X+20\nRND R5\nL Y+6\nCT X+10 Y+16\n"),
                 HasSubstr("arc_feed x=10 y=16 z=0 plane=XY centre=10,6 turns=1"));

@@ -101,7 +101,7 @@ TEST(KlartextCycle, MillsABoreAlongAHelix) {
               "r(0,0,2) ");
 }
 
-TEST(KlartextCycle, PatternsCallTheCycleAtEveryPlace) {
+TEST(KlartextCycle, PatternsCallTheCycleAtEveryPosition) {
     const std::string peck = "CYCL DEF 200 A Q200=2 Q201=-5 Q206=100 Q202=5 Q210=0 Q203=0 Q204=0 "
                              "Q211=0\n";
     EXPECT_EQ(cycle(peck

@@ -45,7 +45,7 @@ TEST(KlartextMotion, M91IsInMachineCoordinatesOfTheGaugeLine) {
     EXPECT_THAT(commands_of(ran.run), HasSubstr("straight_traverse x=0 y=0 z=-160\n"));
 }
 
-TEST(KlartextMotion, StartsSpindleAndCoolantBeforeTheMotionAndStopsThemBehind) {
+TEST(KlartextMotion, StartsSpindleAndCoolantBeforeTheMotionAndStopsThemAfterIt) {
     EXPECT_EQ(klartext("L X+1 FMAX M13\nL X+2 FMAX M5 M9\n"),
               "spindle direction=clockwise speed=0\n"
               "coolant mist=0 flood=1\n"
@@ -116,7 +116,7 @@ TEST(KlartextArc, TangentArcGoesOnInTheDirectionBeforeIt) {
     EXPECT_THAT(klartext_error("CT X+20 Y+10 F100\n"), HasSubstr("no previous move in the plane"));
 }
 
-TEST(KlartextArc, PolarPlacesTurnAboutThePole) {
+TEST(KlartextArc, PolarPositionsTurnAboutThePole) {
     EXPECT_EQ(klartext("CC X+10 Y+0\nLP PR+5 PA+90 FMAX\nLP IPA+90 F100\nCP IPA+90 DR+\n"),
               "straight_traverse x=10 y=5 z=0\n"
               "straight_feed x=5 y=0 z=0 feed=100\n"

@@ -13,7 +13,7 @@ std::string traced(std::string_view text) {
 }
 std::string refused(std::string_view text) { return error_of(text, DialectId::linuxcnc); }
 
-TEST(Linuxcnc, PolarPlacesKeepWhatTheyDoNotSay) {
+TEST(Linuxcnc, PolarPositionsKeepTheValuesThatTheyOmit) {
     EXPECT_EQ(traced("G0 @5 ^30"), "straight_traverse x=4.330127 y=2.5 z=0\n");
     EXPECT_THAT(traced("G0 X1 Y1\nG91 @2 ^45"), HasSubstr("x=0 y=3.414214 z=0\n"));
     EXPECT_THAT(traced("G0 X3 Y4\n^10\n@7"), HasSubstr("x=6.893654 y=1.215537 z=0\n"));

@@ -168,7 +168,7 @@ TEST(Lowering, UnknownAxesStayEmpty) {
     EXPECT_EQ(linear(motions[2].to), (Linear{1.0, 2.0, 5.0}));
 }
 
-TEST(Lowering, TellsToolsSpindleLengthsAndDwells) {
+TEST(Lowering, PassesOnToolsSpindleLengthsAndDwells) {
     const auto events = events_of("T1 M6\nS500 M4\nG43 H1\nG4 P1.\nT0 M6\nG49", example());
     ASSERT_EQ(events.size(), 7u);
     EXPECT_EQ(std::get<core::ToolChange>(events[0]).tool, core::ToolNumber(1));

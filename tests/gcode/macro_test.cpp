@@ -36,7 +36,7 @@ std::string arguments_of_call(std::string_view words) {
 }
 
 // Source: Fanuc B-64304, 15.7.1, argument specifications I and II.
-TEST(Macro, ArgumentsHaveFanucsPlaces) {
+TEST(Macro, ArgumentsSetTheVariablesThatFanucAssigns) {
     EXPECT_EQ(arguments_of_call("A1 B2 C3 D7 E8 F9 H11 I4 J5 K6 M13"),
               "1=1 2=2 3=3 4=4 5=5 6=6 7=7 8=8 9=9 11=11 13=13 ");
     EXPECT_EQ(arguments_of_call("Q17 R18 S19 T20 U21 V22 W23 X24 Y25 Z26"),

@@ -67,7 +67,7 @@ TEST(Spline, IsAFeedAndLeavesTheMotionModeAlone) {
     EXPECT_EQ(error("G21 F100\nG5.1 X10 Y1 I1 J1\nX3\nM2\n").substr(0, 4), "3:1:");
 }
 
-TEST(Spline, IsRefusedWithAPlaceWhereItsWordsAreWrong) {
+TEST(Spline, IsRefusedWithLineAndColumnIfItsWordsAreWrong) {
     EXPECT_EQ(error("G21 F100\nG5 X10 Y1 P1 Q1 Z3\nM2\n"),
               "2:17: Z3: a spline moves X and Y only: move Z in a separate block");
     EXPECT_EQ(error("G21 F100 G18\nG5.1 X10 Y1 I1 J1\nM2\n"),
@@ -155,7 +155,7 @@ TEST(Turning, KeepsTheValuesThatTheSubprogramSets) {
     EXPECT_NE(trace(program, linuxcnc).find("straight_traverse x=7 "), std::string::npos);
 }
 
-TEST(Turning, SaysWhatIsWrongWithThePlaceOfIt) {
+TEST(Turning, ReportsMistakesWithLineAndColumn) {
     EXPECT_EQ(error(shaft + "G71 X18 Z4\nM2\n"),
               "9:1: G71: no Q word: it must give the number of the subprogram with the contour; if "
               "it means millimetres, use G21");

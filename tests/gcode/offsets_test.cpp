@@ -198,7 +198,7 @@ TEST(Homing, GoesThroughTheIntermediatePoint) {
                                    "straight_traverse x=350 y=200 z=370\n");
 }
 
-TEST(Homing, KnowsTheSecondPlaceOnly) {
+TEST(Homing, KnowsTheSecondReferencePointOnly) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
         for (const std::string_view text : {"G91 G30 P3 Z0", "G91 G30 P4 Z0"})
             EXPECT_THAT(error_of(text, dialect),
@@ -232,7 +232,7 @@ TEST(Homing, SaysOnceThatHomeWasAssumed) {
     EXPECT_EQ(warnings_of("G21 G91 G28 Z0\nM30\n"), "");
 }
 
-TEST(Homing, BringsAnUnknownAxisToAKnownPlace) {
+TEST(Homing, BringsAnUnknownAxisToAKnownPosition) {
     const Ran ran = run_text("G91 G28 Z0\n", Environment{.dialect = DialectId::fanuc});
     EXPECT_EQ(commands_of(ran.run), "straight_traverse\nstraight_traverse z=0\n");
 }

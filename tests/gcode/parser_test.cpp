@@ -27,7 +27,7 @@ std::string refused(std::string_view text, DialectId id = DialectId::fanuc) {
     return std::to_string(read.error().where.column) + ": " + read.error().message;
 }
 
-TEST(Parser, ReadsWordsWithTheirPlaces) {
+TEST(Parser, ReadsWordsWithLineAndColumn) {
     const Block block = parsed("N10 g1X-2.5 Y+3");
     ASSERT_EQ(block.words.size(), 4u);
     EXPECT_EQ(block.words[0], (Word{.letter = 'N', .value = 10.0}));

@@ -48,7 +48,7 @@ void expect_near(const CompensatedMove& move, size_t id, FlatPoint end) {
     EXPECT_NEAR(move.end.v, end.v, 1e-12);
 }
 
-TEST(RadiusCompensation, EntersBesideTheProgrammedEnd) {
+TEST(RadiusCompensation, EntersAtTheOffsetEndPoint) {
     const Contour contour = left(2.0).line(10.0, 0.0).end();
     ASSERT_EQ(contour.moves.size(), 1u);
     expect_near(contour.moves[0], 1, {10.0, 2.0});
@@ -179,7 +179,7 @@ TEST(RadiusCompensation, RefusesAnInsideCornerThatTheToolCannotReach) {
     EXPECT_THAT(contour.error.value().message, HasSubstr("the inside corner at the start"));
 }
 
-TEST(RadiusCompensation, TellsOfAMoveTurnedRoundThatTheControlLetsPass) {
+TEST(RadiusCompensation, MarksAReversedMoveThatTheControlAccepts) {
     // The inside corner at its start reverses the second move; straight on after it.
     const Contour contour =
         left(2.0).line(10.0, 0.0).line(20.0, 0.0).line(20.0, 1.0).line(20.0, 1.5);

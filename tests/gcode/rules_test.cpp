@@ -41,13 +41,13 @@ std::string program(std::string_view body) {
     return std::string(head) + std::string(body) + "M30\n";
 }
 
-TEST(Rules, WantALengthOffsetBeforeTheFirstMotionInZ) {
+TEST(Rules, RequireALengthOffsetBeforeTheFirstMotionInZ) {
     EXPECT_THAT(rules_of(program("T1 M6\nG0 X0 Y0\nG0 Z5.\nG0 Z2.\n")),
                 ElementsAre("missing-length-offset@4"));
     EXPECT_THAT(rules_of(program("T1 M6\nG0 X0 Y0\nG43 H1 Z5.\nG0 Z2.\n")), IsEmpty());
 }
 
-TEST(Rules, WantTheLengthOffsetOfTheToolThatWasChangedIn) {
+TEST(Rules, RequireTheLengthOffsetOfTheNewTool) {
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nT2 M6\nG0 Z2.\n")),
                 ElementsAre("missing-length-offset@5"));
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nT2 M6\nG43 H2 Z2.\n")), IsEmpty());
@@ -58,11 +58,11 @@ TEST(Rules, LetARetreatInMachineCoordinatesGoWithoutALengthOffset) {
     EXPECT_THAT(rules_of(program("T1 M6\nG53 G0 Z0\nG91 G28 Z0\nG90\nG43 H1 Z5.\n")), IsEmpty());
 }
 
-TEST(Rules, WantNoLengthOffsetWhereToolChangesPutItOn) {
+TEST(Rules, RequireNoLengthOffsetWhereToolChangesActivateIt) {
     EXPECT_THAT(rules_of("G21 G90 G54\nT1 M6\nG0 Z5.\nM30\n", DialectId::grbl), IsEmpty());
 }
 
-TEST(Rules, WantTheOffsetNumberOfTheToolInTheSpindle) {
+TEST(Rules, RequireTheOffsetNumberOfTheToolInTheSpindle) {
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H2 Z5.\n")), ElementsAre("offset-not-tool@3"));
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nG41 D2 X1. F100\nX9.\nG40 X20.\n")),
                 ElementsAre("offset-not-tool@4"));
@@ -76,7 +76,7 @@ TEST(Rules, SeeAToolGoDownAfterItsLengthWasCancelled) {
     EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nG49\nG53 G0 Z0\n")), IsEmpty());
 }
 
-TEST(Rules, SeeAWorkOffsetThatNobodySet) {
+TEST(Rules, SeeAWorkOffsetThatWasNeverSet) {
     EXPECT_THAT(rules_of(program("G55\nG0 X0 Y0\nG0 X1.\n")), ElementsAre("work-offset-unset@3"));
     EXPECT_THAT(rules_of(program("G10 L2 P2 X-100.\nG55\nG0 X0 Y0\n")), IsEmpty());
     EXPECT_THAT(rules_of(program("G55\nG54\nG0 X0 Y0\n")), IsEmpty());

@@ -56,7 +56,7 @@ TEST(LinuxcncState, RemembersThatG92IsOnThoughItIsZero) {
     EXPECT_THAT(traced("G92 X5\nG92.2\nG92.2\nG92.3\nG0 X0 Y#5211"), HasSubstr(" x=0 y=-5"));
 }
 
-TEST(LinuxcncState, TakesAMotionCodeAloneAsAMoveToWhereItStands) {
+TEST(LinuxcncState, TakesAMotionCodeAloneAsAMoveToTheCurrentPosition) {
     EXPECT_THAT(traced("G0 X1\nG43.1 Z2\nG0"), EndsWith("straight_traverse x=1 y=0 z=-2\n"));
     EXPECT_THAT(refused("G21 G1"), HasSubstr("no feed rate"));
     EXPECT_THAT(refused("G21 F1\nM9 G2"), HasSubstr("G2 has no centre"));
@@ -91,7 +91,7 @@ TEST(LinuxcncState, RefusesWhatTheControlRefuses) {
     EXPECT_THAT(refused("o1 endif"), HasSubstr("'if' of 1 is missing before this line"));
 }
 
-TEST(LinuxcncState, PassesOverWhatStandsBehindAnOWordThatIsSkipped) {
+TEST(LinuxcncState, IgnoresTheRestOfALineAfterASkippedOWord) {
     EXPECT_THAT(traced("o1 if [0]\nG0 X1\no1 endif L0\nG0 X2"), EndsWith(" x=2 y=0 z=0\n"));
     EXPECT_THAT(refused("o1 if [1]\no1 endif L0"), HasSubstr("not a keyword"));
 }

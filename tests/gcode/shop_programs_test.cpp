@@ -85,7 +85,7 @@ TEST(ShopMacro, FixAndFupGoByTheAmount) {
     EXPECT_THAT(value("FUP[-2.1]", DialectId::linuxcnc), HasSubstr("x=-2 "));
 }
 
-TEST(ShopMacro, RoundIsToTheSmallestStepBehindAnAddress) {
+TEST(ShopMacro, RoundIsToTheLeastInputIncrementAfterAnAddress) {
     // The example of the manuals: the distances there and back are equal only with ROUND.
     const std::string program = "#1=1.2346\n#2=2.3456\nG91 G1 F9. X-[ROUND[#1]]\nX-[ROUND[#2]]\n"
                                 "X[ROUND[#1]+ROUND[#2]]";
@@ -142,7 +142,7 @@ TEST(ShopProgram, InKlartextMayMixWholeAndBrokenLengths) {
                 HasSubstr("outside the working plane"));
 }
 
-TEST(ShopProgram, LeavesOutWhatStandsBehindASlash) {
+TEST(ShopProgram, OmitsTheRestOfALineAfterASlash) {
     const std::string program = "G21 G0 X1. Y1.\nX4. /2 Y5.\nG91 X1.";
     Environment environment = known_environment(DialectId::fanuc);
     EXPECT_THAT(commands_of(run_text(program, environment).run), HasSubstr("x=4 y=5"));
@@ -151,7 +151,7 @@ TEST(ShopProgram, LeavesOutWhatStandsBehindASlash) {
     EXPECT_THAT(error_of(program, DialectId::linuxcnc), HasSubstr("start of the block"));
 }
 
-TEST(ShopProgram, MayHaveANameInPlaceOfANumber) {
+TEST(ShopProgram, MayHaveANameInsteadOfANumber) {
     const std::string program = "%\n<BRACKET>(OP 1)\nG21 G0 X1.\nM30\n%\n";
     EXPECT_EQ(recognised(program).dialect, DialectId::fanuc);
     EXPECT_THAT(trace(program), HasSubstr("x=1 "));

@@ -112,7 +112,7 @@ std::string holes(const std::string& text) {
     return found;
 }
 
-TEST(SiemensCycle, McallDrillsBehindEveryBlockThatMoves) {
+TEST(SiemensCycle, McallDrillsAfterEveryBlockThatMoves) {
     EXPECT_EQ(holes("MCALL CYCLE81(10,0,2,-5)\nG0 X1 Y2\nM8\nX3\nMCALL\nX9\n"),
               "1.000,2.000 3.000,2.000 ");
 }

@@ -118,7 +118,7 @@ TEST(SiemensCall, FindsFilesOfTheSearchPathInAnyCase) {
     EXPECT_TRUE(run_text("CALL \"..\"\n", environment).run.error);
 }
 
-TEST(SiemensCall, ModalCallsComeBehindEveryBlockThatMoves) {
+TEST(SiemensCall, ModalCallsComeAfterEveryBlockThatMoves) {
     EXPECT_EQ(places("G0\nMCALL SUB_F(3)\nX1\nR1=5\nX2\nMCALL\nX9\nM30\n%_N_SUB_F_SPF\n"
                      "PROC SUB_F(REAL DEEP)\nX=DEEP\nM17\n"),
               "1 3 2 3 9 ");

@@ -157,7 +157,7 @@ TEST(SiemensArc, EndsNearItsCircle) {
     EXPECT_EQ(siemens_error("G1 X1000 F100\nG3 X0 Y1000.9 I-1000 J0\n"), "");
 }
 
-TEST(SiemensPolar, PlacesTurnAboutThePole) {
+TEST(SiemensPolar, PositionsTurnAboutThePole) {
     EXPECT_EQ(siemens("G0 X30 Y40\nG111 X40 Y30\nG0 RP=10 AP=0\nAP=90\nG1 AP=IC(90) F100\n"
                       "G3 AP=270 RP=10\n"),
               "straight_traverse x=30 y=40 z=0\n"

@@ -22,7 +22,7 @@ std::string result_of(std::string_view text, DialectId dialect = DialectId::fanu
     return value ? fmt::format("{:.6g}", *value) : "vacant";
 }
 
-TEST(SystemVariables, PlacesAreThoseOfTheBlockBefore) {
+TEST(SystemVariables, PositionsAreThoseOfThePreviousBlock) {
     const std::string start = "G55 X10 Y2\nG43 H3 Z5\n";
     EXPECT_EQ(result_of(start + "#100=#5001"), "10");
     EXPECT_EQ(result_of(start + "#100=#5021"), "60");
@@ -112,7 +112,7 @@ TEST(SystemVariables, AlarmsEndTheRunWithTheirMessage) {
     EXPECT_EQ(trace("#3006=1 (TURN THE PART)\nM30"), "message text=TURN THE PART\nprogram_stop\n");
 }
 
-TEST(SystemVariables, TheClockStandsStillAndTimersGoOn) {
+TEST(SystemVariables, TheClockIsFixedAndTimersAdvance) {
     EXPECT_EQ(result_of("#100=#3011"), "2.02001e+07");
     EXPECT_THAT(warnings_of("#100=#3012\n#101=#3011"), HasSubstr("clock and timers are simulated"));
     EXPECT_EQ(result_of("#3001=0\nWHILE [#3001 LT 60000] DO 1\nEND 1\n#100=1"), "1");
@@ -157,7 +157,7 @@ TEST(FanucFlow, ThenMayDoSeveralThings) {
     EXPECT_EQ(result_of("#100=1\nIF [1 EQ 1] THEN GOTO 5\n#100=2\nN5 M30"), "1");
 }
 
-TEST(FanucFlow, JumpsAndLoopsStandAlone) {
+TEST(FanucFlow, JumpsAndLoopsMustBeAloneInTheirBlock) {
     for (const std::string line :
          {"G0 X5 GOTO 5", "GOTO 5 X7", "#1=2 GOTO 5", "IF [1 EQ 1] GOTO 5 X7", "END 1 X5",
           "GOTO 5 GOTO 5", "IF [1 EQ 1] THEN WHILE [1] DO 1"})

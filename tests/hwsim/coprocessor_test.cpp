@@ -240,7 +240,7 @@ TEST(Coprocessor, CountsWhatItDid) {
               5 - static_cast<int64_t>(device.read(Counter::longest)));
 }
 
-TEST(Coprocessor, CountsAPermitAsLateFromTheFirstCycleBehindItsBudget) {
+TEST(Coprocessor, CountsAPermitAsLateFromTheFirstCycleAfterItsBudget) {
     const auto asked = [](uint32_t budget) {
         TestDevice device;
         device.set_models({{{0, 0, 0}, 10, 5}}, {{{9'000, 0, 0}, 10, 5}});

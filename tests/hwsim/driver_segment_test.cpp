@@ -6,7 +6,7 @@
 namespace hwsim {
 namespace {
 
-TEST(DriverSegment, LooksAtSamplesAsNearAsAskedAndNoNearer) {
+TEST(DriverSegment, SamplesAsDenselyAsRequestedAndNoDenser) {
     FunctionalDevice device = functional_device({.memory_lines = 64}).value();
     uint32_t kind = 0;
     DevicePort port = port_of(device);

@@ -159,7 +159,7 @@ TEST(Driver, GivesLinesBackWhenNothingReadsThemAnyMore) {
     EXPECT_LT(driver.released.size(), 20U);
 }
 
-TEST(Driver, AsksNothingBeforeItsLinesAreWritten) {
+TEST(Driver, SendsNoSegmentBeforeItsLinesAreWritten) {
     DeviceConfig config = bench_config();
     config.cycles_per_line = 60;
     EmulatedDevice device = emulated_device(config).value();
@@ -244,7 +244,7 @@ TEST(Driver, KeepsAsManyModelsAsThereAreSlots) {
     EXPECT_EQ(driver.space.next, used);
 }
 
-TEST(Driver, HoldsSegmentsAgainstAModelThatIsTakenOutBehindThem) {
+TEST(Driver, ChecksSegmentsAgainstAModelThatIsRemovedAfterThem) {
     EmulatedDevice device = emulated_device(bench_config()).value();
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();

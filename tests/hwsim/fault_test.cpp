@@ -243,7 +243,7 @@ TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
     expect_recovers(device);
 }
 
-TEST(Fault, BehindTheLastNumberNothingIsTakenIn) {
+TEST(Fault, NothingIsAcceptedAfterTheLastSequenceNumber) {
     constexpr uint32_t last = 0xFFFF'FFFF;
     TestDevice device = working_device();
     device.state.permits.permit_sequence = last - 1;

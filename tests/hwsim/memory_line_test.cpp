@@ -101,7 +101,7 @@ TEST(MemoryLine, IsNotTakenForThatOfAnotherAddress) {
     }
 }
 
-TEST(MemoryLine, TellsNodesLeavesAndNothingApart) {
+TEST(MemoryLine, DistinguishesNodesLeavesAndNothing) {
     EXPECT_TRUE(Reference{}.is_none());
     EXPECT_FALSE(Reference{}.is_leaf());
     for (const uint32_t line : {0U, 1U, (1U << 26) - 1})

@@ -34,7 +34,7 @@ Checked deep_slot(double stick_out) {
                           "G1 X140.", "G0 Z60.", "X-40.", "Z-28.", "G1 X140.", "G0 Z60."}));
 }
 
-TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryAllowance) {
+TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryMinimumClearance) {
     // Minimum clearance above the walls is 1 mm: depth 24 needs 25, depth 28 needs 29.
     const FindingLine told = deep_slot(24.0).finding("stick-out-short");
     EXPECT_EQ(told.line, 12);
@@ -70,7 +70,7 @@ Checked two_pockets(double retract) {
                                  "X85. F800.", "G0 Z60."}));
 }
 
-TEST(Cure, OfALowRetractClearsWhatStandsBetween) {
+TEST(Cure, OfALowRetractClearsTheObstacle) {
     const FindingLine told = two_pockets(4.0).finding("low-retract");
     EXPECT_EQ(told.line, 11);
     const double higher = number_behind(told.cure, "Retract ");

@@ -63,7 +63,7 @@ TEST(Clipped, KeepsCharactersWhole) {
     EXPECT_EQ(app::clipped("abcdefgh", 6), "abc...");
 }
 
-TEST(TextReport, WrapsTheTightestPlace) {
+TEST(TextReport, WrapsTheTightestBlock) {
     const test_support::ScopedFolder folder;
     const SetupWriter setup = SetupWriter().fixture(
         "a very long name of a clamp that somebody thought up on a Friday afternoon before going",

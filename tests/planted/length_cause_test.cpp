@@ -90,7 +90,7 @@ TEST(WrongLength, LeavesADrillThatIsFedSideways) {
     EXPECT_THAT(wrong.errors(), HasSubstr("collision 9"));
 }
 
-TEST(WrongLength, LeavesWhatAMachinePlaceRunsInto) {
+TEST(WrongLength, LeavesCollisionsOfMovesInMachineCoordinates) {
     // G53 ignores the length offset, so the right one changes nothing.
     const std::string lines = "G0 X50. Y110.\nG53 G0 Z-318.\n";
     const Checked wrong = check(with_clamp(85, 12), with_length(1, 3, lines));

@@ -87,7 +87,7 @@ TEST(UnsafeToolChange, IsTheVerdictOfItsBlock) {
     EXPECT_EQ(free.verdict, "clear");
 }
 
-TEST(UnsafeToolChange, IsToldWhateverTheSetUpSaysIfBodiesOverlap) {
+TEST(UnsafeToolChange, IsReportedDespiteTheSetUpIfBodiesOverlap) {
     const std::string off = "[rules]\ntool-change-unsafe = \"off\"\n";
     EXPECT_EQ(changed_at("30.", off).errors(), "tool-change-unsafe 8, rapid-in-stock 9");
     EXPECT_EQ(changed_at("50.", off).errors(), "");
@@ -95,7 +95,7 @@ TEST(UnsafeToolChange, IsToldWhateverTheSetUpSaysIfBodiesOverlap) {
 
 // Lengths as written in the set-up.
 
-TEST(FluteLength, IsToldAsItIsWritten) {
+TEST(FluteLength, IsReportedAsTheSetUpStatesIt) {
     const SetupWriter setup = SetupWriter().lengths("").tool(
         "number = 1\nshape = \"tslot\"\ndiameter = 20\nflute_length = 5\nneck_diameter = 10\n"
         "neck_length = 20\nstick_out = 45\nholder = [[40, 40, 50]]\n");
@@ -108,7 +108,7 @@ TEST(FluteLength, IsToldAsItIsWritten) {
 
 // The same words with and without --pairs.
 
-TEST(Witness, IsAtTheSameMomentHoweverMuchIsTold) {
+TEST(Witness, IsAtTheSameMomentAtAnyLevelOfDetail) {
     // The holder passes through both walls of a slot that is too deep and through a clamp after it.
     const SetupWriter setup = SetupWriter()
                                   .fixture("clamp-1", "box = [[70, 60, -30], [80, 90, 12]]")

@@ -129,7 +129,7 @@ TEST(Camera, OrbitKeepsItsTarget) {
     }
 }
 
-TEST(Camera, NeverStandsOnItsHead) {
+TEST(Camera, NeverTurnsUpsideDown) {
     Camera camera;
     for (int i = 0; i < 50; ++i) {
         camera = orbited(camera, wide, {3, 90});

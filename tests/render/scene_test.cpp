@@ -54,7 +54,7 @@ TEST(BodyMesh, IsClosedAndHasTheVolumeOfTheBody) {
     check(mesh_of(core::convex_sphere(7.0)), 4.0 / 3.0 * pi * 343);
 }
 
-TEST(BodyMesh, StandsWhereTheBodyStands) {
+TEST(BodyMesh, HasThePositionOfTheBody) {
     const core::ConvexShape cone =
         core::posed(core::convex(core::ProfileElement{0.0, 6.0, 20.0, 2.0, 0.0}),
                     {core::rotation_xyz_deg({90, 0, 0}), {5, 6, 7}});
@@ -108,7 +108,7 @@ TEST(ShadedMesh, HasANormalForEachFaceOfABox) {
     EXPECT_EQ(sizeof(MeshVertex), 16u);
 }
 
-TEST(SetupScene, PlacesTheToolWhereTheAxesStand) {
+TEST(SetupScene, PlacesTheToolAtTheAxisPositions) {
     const core::Setup setup = sample_setup();
     const core::ToolAssembly tool = sample_tool();
     const core::AxisValues values{12.0, -7.0, 100.0};
@@ -244,7 +244,7 @@ TEST(MotionPath, BendsWhereTheTableTurns) {
     EXPECT_NEAR(std::abs(points.back().place.y), 40.0, 1e-4);
 }
 
-TEST(MotionPath, LeavesOutAWayThatNobodyKnows) {
+TEST(MotionPath, OmitsAnUnknownPath) {
     const core::Setup setup = sample_setup();
     std::vector<PathPoint> points;
     core::Leg unknown{.places = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}},

@@ -76,13 +76,13 @@ void expect_same_places(size_t memory_budget, size_t steps, unsigned seed) {
     EXPECT_GT(seen.size(), walked.digests.size() / 3);
 }
 
-TEST(SamePlace, HasTheSameStateHoweverOneGotThere) {
+TEST(SameBlock, HasTheSameStateByAnyRoute) {
     expect_same_places(app::DebugSession::default_memory_budget, 10'000, 1);
 }
 
-TEST(SamePlace, HasTheSameStateWithHardlyAnyKeyframes) { expect_same_places(1 << 20, 1'000, 2); }
+TEST(SameBlock, HasTheSameStateWithFewKeyframes) { expect_same_places(1 << 20, 1'000, 2); }
 
-TEST(SamePlace, IsToldApartFromEveryOther) {
+TEST(SameBlock, DiffersFromEveryOther) {
     const WalkedSession walked(1 << 20);
     const std::set<uint64_t> different(walked.digests.begin(), walked.digests.end());
     EXPECT_EQ(different.size(), walked.digests.size());

@@ -145,7 +145,7 @@ TEST(BreakpointLines, MoveToTheNextLineThatHoldsABlock) {
     EXPECT_FALSE((*session)->line_with_block(70));
 }
 
-TEST_F(Walking, IgnoresABreakpointAsOftenAsAsked) {
+TEST_F(Walking, IgnoresABreakpointAsOftenAsRequested) {
     app::Breakpoint breakpoint;
     breakpoint.line = 13;
     breakpoint.ignore = 17;
@@ -154,7 +154,7 @@ TEST_F(Walking, IgnoresABreakpointAsOftenAsAsked) {
     EXPECT_EQ(session->go_on().reason, app::StopReason::end);
 }
 
-TEST_F(Walking, EndsAtOnceWhenAsked) {
+TEST_F(Walking, EndsAtOnceOnRequest) {
     int asked = 0;
     session->is_interrupted = [&asked] { return ++asked == 2; };
     EXPECT_EQ(session->go_on().reason, app::StopReason::interrupted);
@@ -162,7 +162,7 @@ TEST_F(Walking, EndsAtOnceWhenAsked) {
     EXPECT_FALSE(session->is_recorded());
 }
 
-TEST_F(Walking, RefusesAPlaceBehindTheEndAndStaysWhereItIs) {
+TEST_F(Walking, RefusesABlockAfterTheEndAndStaysAtTheCurrentOne) {
     ASSERT_TRUE(session->go_to(17));
     EXPECT_FALSE(session->go_to(100'000));
     EXPECT_EQ(session->at(), 17U);
@@ -208,7 +208,7 @@ TEST_F(Walking, StaysWhereItIsForNoStepsAtAll) {
     EXPECT_EQ(session->at(), 40U);
 }
 
-TEST_F(Walking, GivesUpAPlaceFarAheadWhenAsked) {
+TEST_F(Walking, GivesUpADistantGoalOnRequest) {
     int asked = 0;
     session->is_interrupted = [&asked] { return ++asked == 10; };
     EXPECT_FALSE(session->reaches(1'000'000));

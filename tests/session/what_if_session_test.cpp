@@ -96,7 +96,7 @@ TEST(WhatIf, MovesTheClampIntoTheWayOrOutOfIt) {
     EXPECT_EQ(session->record().verdict, core::Verdict::clear);
 }
 
-TEST(WhatIf, IsTheSameHoweverOneComesToThePlaceBehindIt) {
+TEST(WhatIf, IsTheSameByAnyRouteToALaterBlock) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
     const auto session = open_session(files);
     ASSERT_TRUE(session->go_to(150));

@@ -57,7 +57,7 @@ TEST(CheckSpeed, WaitsTenSecondsInAllForALockedDatabase) {
     EXPECT_LT(watch.seconds(), 15.0);
 }
 
-TEST(CheckSpeed, WatchSeesAChangeWithinTwentySecondsWhileOthersWriteBesideIt) {
+TEST(CheckSpeed, WatchSeesAChangeWithinTwentySecondsWhileOthersWriteInTheFolder) {
     const ScopedFolder folder;
     folder.write("plate.nc", fine);
     test_support::Terminal terminal(

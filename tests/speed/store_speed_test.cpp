@@ -35,7 +35,7 @@ TEST(StoreSpeed, KeepsAThousandResultsInASecond) {
     EXPECT_LT(watch.seconds(), 1.0);
 }
 
-TEST(StoreSpeed, WritesAResultWithinASecondAlsoIfNobodyWaits) {
+TEST(StoreSpeed, WritesAResultWithinASecondWithoutAFlush) {
     const ScopedFolder folder;
     const auto each = store_life::numbered(folder.write("a.nc", "G0 X1\n"), 1);
     auto store = ResultStore::open(folder / "db", "1");

@@ -88,7 +88,7 @@ TEST(DeviceModel, ForgetsItsAnswersWhenTheProgramIsReadAgain) {
     EXPECT_TRUE(model.device.shown) << "the panel stays open";
 }
 
-TEST(DeviceModel, TakesNoNewsOfRunsThatNobodyWaitsFor) {
+TEST(DeviceModel, IgnoresUpdatesOfEarlierRuns) {
     ViewModel model = model_with({viewer_test::permitted(1.0)});
     const auto before = model.device.study;
     const auto other = study_of(viewer_test::result_of(some_of_each()));
@@ -101,7 +101,7 @@ TEST(DeviceModel, TakesNoNewsOfRunsThatNobodyWaitsFor) {
     EXPECT_FALSE(model.device.shown);
 }
 
-TEST(WindowTitle, TellsWhatTheDeviceSaysWhileItsPanelIsOpen) {
+TEST(WindowTitle, ShowsTheAnswerOfTheDeviceWhileItsPanelIsOpen) {
     ViewModel model = model_with(some_of_each());
     model.cursor.block = 4;
     EXPECT_NE(window_title(model).find(", coprocessor: refused"), std::string::npos);

@@ -28,7 +28,7 @@ std::string value_of(const DeviceSheet& sheet, const std::string& name) {
     return line_named(sheet, name).value_or(DeviceLine()).value;
 }
 
-TEST(DeviceSheet, TellsTheSlackOfWhatIsPermitted) {
+TEST(DeviceSheet, ShowsTheSlackOfAPermittedBlock) {
     const DeviceSheet sheet = sheet_of(viewer_test::permitted(0.125));
     EXPECT_EQ(sheet.number, "125.0 ms");
     EXPECT_EQ(sheet.tone, Tone::plain);
@@ -67,7 +67,7 @@ TEST(DeviceSheet, NamesTheFaultOfADeviceThatHasStopped) {
     EXPECT_EQ(sheet_of(answer).answer, "The coprocessor has stopped: stack-overflow");
 }
 
-TEST(DeviceSheet, SaysWhyABlockCannotBeAsked) {
+TEST(DeviceSheet, SaysWhyABlockCannotBeChecked) {
     const DeviceSheet sheet = sheet_of(viewer_test::not_asked());
     EXPECT_EQ(sheet.number, "not checked");
     EXPECT_EQ(sheet.tone, Tone::bad);
@@ -119,7 +119,7 @@ TEST(DeviceSheet, SaysWhereTheTwoEnginesDiffer) {
               std::string::npos);
 }
 
-TEST(DeviceSheet, LeadsToTheBlockBeforeWhichTheMachineStands) {
+TEST(DeviceSheet, LinksToTheBlockBeforeWhichTheMachineStops) {
     const ViewModel model = model_with({viewer_test::nothing(), viewer_test::permitted(-1.0),
                                         viewer_test::refused(), viewer_test::refused()});
     const auto stands = line_named(sheet_at(model, 0), "stopped before");
@@ -131,7 +131,7 @@ TEST(DeviceSheet, LeadsToTheBlockBeforeWhichTheMachineStands) {
     EXPECT_EQ(sheet_at(model, 3).parts[0].title, "Time, after a refused block");
 }
 
-TEST(DeviceStatus, TellsWhatGoesOn) {
+TEST(DeviceStatus, DescribesTheCurrentState) {
     ViewModel model = model_with({viewer_test::permitted(1.0)});
     EXPECT_EQ(device_status(model), "");
     model.device.is_running = true;

@@ -70,7 +70,7 @@ private:
     }};
 };
 
-TEST(DeviceWorker, TellsTheAnswersFirstAndTheSmallestDeviceThen) {
+TEST(DeviceWorker, PublishesTheAnswersFirstAndThenTheSmallestDevice) {
     DeviceWatcher watcher("clamped_plate_low.nc");
     const DeviceModel& device = watcher.model.device;
     ASSERT_TRUE(watcher.wait_for([&] { return device.study != nullptr; }));

@@ -22,7 +22,7 @@ protected:
     const std::string path_ = folder_ / "watched.nc";
 };
 
-TEST_F(FileWatchTest, TellsOfAChangeOnceAndWhenItRests) {
+TEST_F(FileWatchTest, ReportsAChangeOnceAfterItHasSettled) {
     FileWatch watch;
     watch.set({path_, ""});
     EXPECT_FALSE(watch.has_changed());

@@ -88,7 +88,7 @@ TEST(FindingNotes, OfOtherProgramsStay) {
     EXPECT_EQ(note_on(all, "/b.nc", group_of("collision"), row_in(1, "G0")), "of another window");
 }
 
-TEST(FindingNotes, AreKeptBesideThoseOfOthers) {
+TEST(FindingNotes, AreSavedTogetherWithThoseOfOtherPrograms) {
     const test_support::ScopedFolder folder;
     const std::string path = folder / "new/notes.toml";
     ViewModel model;

@@ -198,7 +198,7 @@ TEST(Navigation, TheWorstBlockIsTheTightestUnlessOneHasAnError) {
     EXPECT_EQ(worst_block(model), 3U);
 }
 
-TEST(SceneOf, ShowsNoWitnessWhileTheToolStandsAtAnotherBlock) {
+TEST(SceneOf, ShowsNoWitnessWhileTheToolIsAtAnotherBlock) {
     ViewModel model = ten_blocks();
     go_to(model, 3);
     EXPECT_TRUE(witness_of(model)) << "there is no tool yet";
@@ -309,7 +309,7 @@ TEST(Playback, SpeedsGoUpAndDownBetweenTheirEnds) {
     EXPECT_EQ(next_speed(3.0, true), 5.0);
 }
 
-TEST(News, ReadingAgainComesBackToTheLine) {
+TEST(SessionUpdates, ReadingAgainReturnsToTheLine) {
     ViewModel model = ten_blocks();
     go_to(model, 6);
     toggle_breakpoint(model, 4);
@@ -324,7 +324,7 @@ TEST(News, ReadingAgainComesBackToTheLine) {
     EXPECT_EQ(model.breakpoints.size(), 1U);
 }
 
-TEST(News, FindingsMarkTheirBlocks) {
+TEST(SessionUpdates, FindingsMarkTheirBlocks) {
     ViewModel model = ten_blocks();
     SessionUpdate news;
     news.opening = 1;

@@ -34,7 +34,7 @@ bool passes(const std::string& text, const BlockRow& row) {
     return !RowFilter(text).passed({row}, {near_miss(0)}).empty();
 }
 
-TEST(RowFilter, AsksWhatBreakpointsAsk) {
+TEST(RowFilter, HasTheLanguageOfBreakpoints) {
     const BlockRow row = rapid_with_t3();
     for (const char* text :
          {"T3", "clearance < 1 and rapid", "clearance = 0.42", "allowance = 1", "margin < -0.5",
@@ -81,7 +81,7 @@ TEST(RowFilter, SaysWhatOnlyTheControlKnows) {
     }
 }
 
-TEST(RowFilter, KnowsNothingOfWhatNobodyHasChecked) {
+TEST(RowFilter, KnowsNothingOfUncheckedBlocks) {
     BlockRow row;
     row.motion = core::BlockMotion::feed;
     for (const char* text : {"clearance < 1000", "clearance > 1", "clear", "verdict = clear",

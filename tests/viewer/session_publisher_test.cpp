@@ -54,7 +54,7 @@ struct Published {
 const std::string opening = "G21 G90 G17 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X0 Y0 Z50\nG0 Z2\n";
 
 /// A motion's time is known when many more have come, however many blocks stand between them.
-TEST(SessionPublisher, TellsOfTimesThatAreSettledLate) {
+TEST(SessionPublisher, PublishesTimesThatAreSettledLate) {
     std::string text = opening + "G1 Z-1 F600\n";
     for (int i = 0; i < 600; ++i) {
         text += i % 2 == 0 ? "X10\n" : "X0\n";

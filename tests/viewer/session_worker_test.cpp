@@ -63,7 +63,7 @@ private:
     }};
 };
 
-TEST(SessionWorker, TellsTheWindowWhatACheckSays) {
+TEST(SessionWorker, PublishesTheResultOfACheck) {
     Watcher watcher;
     watcher.open(clamped_plate());
     ASSERT_TRUE(watcher.record());
@@ -164,7 +164,7 @@ TEST(SessionWorker, StopsAtABreakpoint) {
     EXPECT_EQ(watcher.model.breakpoints[0].hits, 1U);
 }
 
-TEST(SessionWorker, TellsWhatIsFoundOnALongWalk) {
+TEST(SessionWorker, PublishesFindingsDuringALongWalk) {
     Watcher watcher;
     app::CheckJob job = clamped_plate();
     job.program = assets + "programs/PARALLEL.NC";
@@ -239,7 +239,7 @@ TEST(SessionWorker, AWalkThatIsInterruptedBeforeItBeginsGoesNowhere) {
     EXPECT_EQ(other->stop.reason, app::StopReason::end);
 }
 
-TEST(SessionWorker, TheEndOfAWalkThatNobodyWaitsForChangesNothing) {
+TEST(SessionWorker, TheEndOfAnAbandonedWalkChangesNothing) {
     Watcher watcher;
     watcher.open(clamped_plate());
     ASSERT_TRUE(watcher.record());

@@ -93,7 +93,7 @@ TEST(Timeline, ShowsABlockWithoutMovingMoreThanNeeded) {
     EXPECT_EQ(showing(range, 1000, 7), (TimelineRange{7.0, 57.0}));
 }
 
-TEST(Timeline, PlaceAndBlockAreInverse) {
+TEST(Timeline, PositionAndBlockAreInverse) {
     const TimelineRange range{17.0, 92.0};
     for (size_t block = 17; block < 92; ++block)
         EXPECT_EQ(block_at(range, 1000, place_of(range, block)), block);

@@ -44,7 +44,7 @@ TEST(ViewModel, KeepsWhatWasSaidOfAProgramThatIsReadAgain) {
     EXPECT_EQ(model.camera.distance, 77.0);
 }
 
-TEST(ViewModel, KeepsThePlaceWhileAFileCannotBeRead) {
+TEST(ViewModel, KeepsTheCursorWhileAFileCannotBeRead) {
     ViewModel model = looked_at();
     SessionUpdate broken;
     broken.opening = model.opening + 1;
@@ -86,7 +86,7 @@ TEST(ViewModel, MarksABlockByTheWorstOfItsFindings) {
     EXPECT_EQ(model.offending, std::vector<size_t>{5});
 }
 
-TEST(LengthText, RoundsLowerBoundsDownAndWhatMustBeKeptUp) {
+TEST(LengthText, RoundsLowerBoundsDownAndMinimumClearancesUp) {
     ViewModel model;
     EXPECT_EQ(length_at_least(model, 1.9996), "1.99");
     EXPECT_EQ(length_at_least(model, 49.6, 0), "49");
