@@ -31,7 +31,7 @@ core::ColumnFunction columns_at(const core::ProfileElement& element, const core:
 }
 
 bool is_upright_cone(const ConvexShape& shape) {
-    return shape.core == ConvexShape::Core::cone && shape.upright && shape.place_count == 1;
+    return shape.core == ConvexShape::Core::cone && shape.upright && shape.position_count == 1;
 }
 
 core::ProfileElement element_of(const ConvexShape& cone) {
@@ -116,7 +116,7 @@ core::ColumnFunction columns_round(const core::ExactBody& body) {
         return columns_of(core::Solid{*mesh});
     const auto& shape = std::get<ConvexShape>(body);
     if (!is_upright_cone(shape)) return columns_of(core::Solid{core::SolidBox{bounds(shape)}});
-    return columns_at(element_of(shape), shape.places[0].at);
+    return columns_at(element_of(shape), shape.positions[0].at);
 }
 
 } // namespace

@@ -61,7 +61,7 @@ namespace {
 /// The sequence number reported for a fault of the whole device: the first not permitted.
 uint32_t next_to_permit(const CoprocessorState& s) { return s.permits.permit_sequence + 1; }
 
-void watch(CoprocessorState& s, const DeviceConfig& config) {
+void check_watchdog(CoprocessorState& s, const DeviceConfig& config) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
     if (s.host.watchdog != 0 && s.cycle - s.host.heartbeat > s.host.watchdog)
         halt(s, Stop::host_silent, next_to_permit(s));
@@ -187,7 +187,7 @@ void tick(CoprocessorState& s, const DeviceConfig& config) {
     tick(s.memory, config, s.cycle, request);
     retire_first(s);
     dispatch(s);
-    watch(s, config);
+    check_watchdog(s, config);
 }
 
 void halt(CoprocessorState& s, Stop reason, uint32_t sequence, uint32_t line) {
@@ -366,7 +366,7 @@ uint32_t read_of_stop(CoprocessorState& s, Register r) {
 }
 
 /// Restarts the watchdogs of host and memory.
-void watch_from_here(CoprocessorState& s) { s.host.heartbeat = s.memory.watched_from = s.cycle; }
+void restart_watchdog(CoprocessorState& s) { s.host.heartbeat = s.memory.watchdog_since = s.cycle; }
 
 void clear(CoprocessorState& s) {
     if (s.permits.stopped == Stop::none) return;
@@ -374,7 +374,7 @@ void clear(CoprocessorState& s) {
     s.permits.stop_sequence = s.permits.stop_line = 0;
     s.fifo.next_sequence = s.permits.permit_sequence + 1;
     s.slots = {};
-    watch_from_here(s);
+    restart_watchdog(s);
 }
 
 void reset(CoprocessorState& s, const DeviceConfig& config) {
@@ -391,7 +391,7 @@ void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t val
     if ((value & control_reset) != 0) return reset(s, config);
     if ((value & control_clear) != 0) clear(s);
     const bool enable = (value & control_enable) != 0;
-    if (enable && !s.host.enabled) watch_from_here(s);
+    if (enable && !s.host.enabled) restart_watchdog(s);
     s.host.enabled = enable;
 }
 

@@ -14,7 +14,7 @@ namespace hwsim {
 namespace {
 
 /// An emulated device with its observer.
-struct WatchedDevice {
+struct ObservedDevice {
     EmulatedDevice& device;
     std::function<void(const CoprocessorState&)> after_cycle;
 
@@ -69,23 +69,23 @@ core::Result<FunctionalDevice> functional_device(const DeviceConfig& config) {
 
 DevicePort port_of(EmulatedDevice& device,
                    std::function<void(const CoprocessorState&)> after_cycle) {
-    const WatchedDevice watched{device, std::move(after_cycle)};
+    const ObservedDevice observed{device, std::move(after_cycle)};
     return {.read =
-                [watched](Register r) {
-                    watched.access();
-                    return read(watched.device.state, watched.device.config, address_of(r));
+                [observed](Register r) {
+                    observed.access();
+                    return read(observed.device.state, observed.device.config, address_of(r));
                 },
             .write =
-                [watched](uint32_t address, uint32_t value) {
-                    watched.access();
-                    write(watched.device.state, watched.device.config, address, value);
+                [observed](uint32_t address, uint32_t value) {
+                    observed.access();
+                    write(observed.device.state, observed.device.config, address, value);
                 },
             .store =
-                [watched](uint32_t line, const Line& content) {
-                    watched.cycles(1);
-                    return store(watched.device.state, line, content);
+                [observed](uint32_t line, const Line& content) {
+                    observed.cycles(1);
+                    return store(observed.device.state, line, content);
                 },
-            .wait = [watched] { watched.access(); }};
+            .wait = [observed] { observed.access(); }};
 }
 
 DevicePort port_of(FunctionalDevice& device) {
@@ -196,12 +196,12 @@ core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace s
     return number;
 }
 
-core::Result<FixedVec> place_of(const core::Vec3& p) {
-    FixedVec place{};
+core::Result<FixedVec> fixed_position(const core::Vec3& p) {
+    FixedVec position{};
     for (size_t axis = 0; axis < 3; ++axis) {
-        FEELER_TRY(place[axis], fixed(p[static_cast<int>(axis)], Rounding::nearest));
+        FEELER_TRY(position[axis], fixed(p[static_cast<int>(axis)], Rounding::nearest));
     }
-    return place;
+    return position;
 }
 
 /// The entry for one pair, except its number and the `last` flag.
@@ -222,8 +222,8 @@ core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
                   .work_slot = static_cast<uint8_t>(pair.work),
                   .work_epoch = driver.slots[index_of(pair.work)].epoch,
                   .budget = path.budget};
-    FEELER_TRY(entry.start, place_of(path.from));
-    FEELER_TRY(entry.end, place_of(path.to));
+    FEELER_TRY(entry.start, fixed_position(path.from));
+    FEELER_TRY(entry.end, fixed_position(path.to));
     double step = glm::length(path.to - path.from);
     for (; step > path.sample_step && entry.log2_steps < Segment::most_log2_steps; step *= 0.5)
         ++entry.log2_steps;

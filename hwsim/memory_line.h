@@ -128,8 +128,8 @@ constexpr uint32_t leaf_lines(uint32_t count) {
 }
 
 /// The number of a record, from its line and its position in the line.
-constexpr uint32_t record_name(uint32_t line, uint32_t place) {
-    return line * records_per_line + place;
+constexpr uint32_t record_name(uint32_t line, uint32_t index) {
+    return line * records_per_line + index;
 }
 
 /// Node:   words 0-8 the boxes, 24 bits a number (first box, then second; min x y z, max x y z),
@@ -190,14 +190,14 @@ inline uint64_t squared_distance(const std::array<int64_t, 3>& gap, int64_t radi
 /// The squared distance between a record of the tool side, moved by `offset`, and one of the work
 /// side: between an upright cylinder and an upright square post.
 inline uint64_t squared_distance(const Record& tool, const FixedVec& offset, const Record& work) {
-    const auto beside = [&](size_t axis) {
+    const auto sideways = [&](size_t axis) {
         const int64_t apart = int64_t{tool.base[axis]} + offset[axis] - work.base[axis];
         return std::max(std::abs(apart) - work.half, int64_t{0});
     };
     const int64_t foot = int64_t{tool.base[2]} + offset[2];
     const int64_t below = work.base[2] - (foot + tool.run);
     const int64_t above = foot - (int64_t{work.base[2]} + work.run);
-    return squared_distance({beside(0), beside(1), std::max({below, above, int64_t{0}})},
+    return squared_distance({sideways(0), sideways(1), std::max({below, above, int64_t{0}})},
                             tool.half);
 }
 

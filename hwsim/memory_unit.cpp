@@ -62,7 +62,7 @@ void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const Re
 
 bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
     const auto is_late = [&](uint64_t since) {
-        return cycle > std::max(since, unit.watched_from) + config.memory_limit;
+        return cycle > std::max(since, unit.watchdog_since) + config.memory_limit;
     };
     const auto is_read_late = [&](const Ring<MemoryUnit::Pending>& queue) {
         return !queue.empty() && is_late(queue.front().cycle);

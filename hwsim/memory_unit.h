@@ -87,7 +87,7 @@ struct MemoryUnit {
     Ring<Write> writes;
     uint64_t free_at = 0;        // cycle in which the port is free
     bool write_was_last = false; // so a read has priority
-    uint64_t watched_from = 0;   // cycle; earlier waiting does not count
+    uint64_t watchdog_since = 0; // cycle; earlier waiting does not count
     bool stalled = false;        // no responses: injected fault
 
     ReadResponse response;    // output

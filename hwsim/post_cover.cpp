@@ -112,12 +112,13 @@ private:
         square += square % 2; // so that its centre is a whole step
         const int32_t count = std::max((longer + square - 1) / square, 1);
         for (int32_t n = 0; n < count; ++n) {
-            const auto place = [&](int32_t from, int32_t length) {
+            const auto position = [&](int32_t from, int32_t length) {
                 if (length < square || count == 1) return from + length / 2;
                 const int64_t room = length - square; // of the centres, end to end
                 return static_cast<int32_t>(from + square / 2 + room * n / (count - 1));
             };
-            add_stack({place(r.x0, width), place(r.y0, depth), heights.low}, square / 2, heights);
+            add_stack({position(r.x0, width), position(r.y0, depth), heights.low}, square / 2,
+                      heights);
         }
     }
 

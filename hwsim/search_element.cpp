@@ -57,7 +57,7 @@ bool push(SearchThread& thread, const SearchPair& pair, uint32_t stack_depth) {
 
 /// After the last pair of two lines: the next line of the work, or of the tool, or none.
 void next_lines(SearchThread& thread) {
-    thread.tool_place = thread.work_place = 0;
+    thread.tool_record_index = thread.work_record_index = 0;
     if (++thread.work_line < leaf_lines(thread.pair.work.count())) {
         thread.phase = Phase::take_work;
         return;
@@ -114,7 +114,7 @@ void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit) {
         break;
     }
     thread.offset = offset_at(thread.query.segment, thread.pair.first);
-    thread.tool_line = thread.work_line = thread.tool_place = thread.work_place = 0;
+    thread.tool_line = thread.work_line = thread.tool_record_index = thread.work_record_index = 0;
     thread.phase = Phase::take_tool;
 }
 
@@ -175,14 +175,14 @@ PairUnit::Output next_records(SearchThread& thread, uint8_t number) {
     ++thread.in_pair_unit;
     const PairUnit::Output in{.valid = true,
                               .thread = number,
-                              .tool_record = record_name(tool, thread.tool_place),
-                              .work_record = record_name(work, thread.work_place),
-                              .squared =
-                                  squared_distance(thread.tools[thread.tool_place], thread.offset,
-                                                   thread.works[thread.work_place])};
-    if (++thread.work_place == records_in_line(thread.pair.work, thread.work_line)) {
-        thread.work_place = 0;
-        if (++thread.tool_place == records_in_line(thread.pair.tool, thread.tool_line))
+                              .tool_record = record_name(tool, thread.tool_record_index),
+                              .work_record = record_name(work, thread.work_record_index),
+                              .squared = squared_distance(thread.tools[thread.tool_record_index],
+                                                          thread.offset,
+                                                          thread.works[thread.work_record_index])};
+    if (++thread.work_record_index == records_in_line(thread.pair.work, thread.work_line)) {
+        thread.work_record_index = 0;
+        if (++thread.tool_record_index == records_in_line(thread.pair.tool, thread.tool_line))
             next_lines(thread);
     }
     return in;
@@ -242,7 +242,7 @@ void read_line(SearchElement& e, const DeviceConfig& config, SearchThread& threa
     taken = true;
     const uint32_t address = wanted_line(thread);
     if (address >= config.memory_lines) return stop(thread, Stop::bad_address, address);
-    const Line* line = looked_up(is_node ? e.nodes : e.records, address);
+    const Line* line = cached_line(is_node ? e.nodes : e.records, address);
     if (line) {
         ++(is_node ? e.counts.node_hits : e.counts.record_hits);
         return take_line(thread, *line);

@@ -26,7 +26,7 @@ inline LineCache::Entry& entry_of(LineCache& cache, uint32_t address) {
 }
 
 /// The line, or null if it is not in the cache.
-inline const Line* looked_up(LineCache& cache, uint32_t address) {
+inline const Line* cached_line(LineCache& cache, uint32_t address) {
     const LineCache::Entry& entry = entry_of(cache, address);
     return entry.valid && entry.address == address ? &entry.line : nullptr;
 }
@@ -119,7 +119,7 @@ struct SearchThread {
     Phase after_line = Phase::idle; // open, take_tool or take_work: the purpose of reading a line
     uint8_t stack_size = 0;
     uint8_t tool_line = 0, work_line = 0; // of the leaves, from 0
-    uint8_t tool_place = 0, work_place = 0;
+    uint8_t tool_record_index = 0, work_record_index = 0;
     uint8_t in_pair_unit = 0;
     Division division = Division::none;
     uint64_t started = 0; // cycle

@@ -52,7 +52,7 @@ size_t longest_axis(std::span<const Record> records) {
 core::Result<Branch> subtree(ModelWriter& writer, std::span<Record> records, uint32_t leaf_size) {
     if (records.size() <= leaf_size) return writer.add_leaf(records);
     const size_t axis = longest_axis(records);
-    const auto by_place = [axis](const Record& r) {
+    const auto by_position = [axis](const Record& r) {
         return std::tuple(middle(r, axis), middle(r, 0), middle(r, 1), middle(r, 2), r.run, r.half);
     };
     // Whole lines on the left, so that leaves are well filled.
@@ -60,8 +60,9 @@ core::Result<Branch> subtree(ModelWriter& writer, std::span<Record> records, uin
         (records.size() / 2 + records_per_line - 1) / records_per_line * records_per_line;
     const size_t left = records.size() > size_t{2} * records_per_line ? half : records.size() / 2;
     const auto at = static_cast<std::ptrdiff_t>(left);
-    std::nth_element(records.begin(), records.begin() + at, records.end(),
-                     [&](const Record& a, const Record& b) { return by_place(a) < by_place(b); });
+    std::nth_element(
+        records.begin(), records.begin() + at, records.end(),
+        [&](const Record& a, const Record& b) { return by_position(a) < by_position(b); });
     FEELER_TRY(const Branch a, subtree(writer, records.first(left), leaf_size));
     FEELER_TRY(const Branch b, subtree(writer, records.subspan(left), leaf_size));
     return add_above(writer, a, b);

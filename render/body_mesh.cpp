@@ -161,7 +161,7 @@ TriangleMesh mesh_of(const core::RevolvedProfile& profile, double sag) {
 
 TriangleMesh mesh_of(const core::ConvexShape& shape, double sag) {
     TriangleMesh made;
-    const Vec3 at = shape.places[0].at;
+    const Vec3 at = shape.positions[0].at;
     if (shape.core == core::ConvexShape::Core::cone) {
         core::ProfileElement cone = shape.cone;
         cone.margin = std::max(cone.margin, shape.margin);
@@ -170,8 +170,8 @@ TriangleMesh mesh_of(const core::ConvexShape& shape, double sag) {
     }
     const std::vector<Vec3> points(shape.points.begin(), shape.points.begin() + shape.point_count);
     core::ConvexShape still = shape;
-    still.place_count = 1;
-    still.places[0] = {};
+    still.position_count = 1;
+    still.positions[0] = {};
     append(made,
            shape.margin > 0.0 || points.size() < 4 ? supported(still, shape.margin)
                                                    : shaded(hull_of(points)),

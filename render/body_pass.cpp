@@ -21,9 +21,9 @@ void fill(GLenum target, const GlBuffer& buffer, const std::vector<T>& data) {
                  GL_STATIC_DRAW);
 }
 
-void describe(unsigned index, int size, GLenum type, bool share, size_t stride, size_t offset) {
+void describe(unsigned index, int size, GLenum type, bool fraction, size_t stride, size_t offset) {
     glEnableVertexAttribArray(index);
-    glVertexAttribPointer(index, size, type, share ? GL_TRUE : GL_FALSE,
+    glVertexAttribPointer(index, size, type, fraction ? GL_TRUE : GL_FALSE,
                           static_cast<GLsizei>(stride),
                           reinterpret_cast<const void*>(offset)); // NOLINT: as OpenGL wants it
 }
@@ -40,7 +40,7 @@ GpuMesh uploaded(const SharedMesh& mesh) {
     fill(GL_ARRAY_BUFFER, made.vertices, mesh->vertices);
     fill(GL_ELEMENT_ARRAY_BUFFER, made.indices, mesh->triangles);
     constexpr size_t stride = sizeof(MeshVertex);
-    describe(0, 3, GL_FLOAT, false, stride, offsetof(MeshVertex, place));
+    describe(0, 3, GL_FLOAT, false, stride, offsetof(MeshVertex, position));
     describe(1, 3, GL_BYTE, true, stride, offsetof(MeshVertex, normal));
     describe(2, 1, GL_UNSIGNED_BYTE, false, stride, offsetof(MeshVertex, tint));
     if (made.line_count > 0) {
@@ -340,7 +340,7 @@ void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, 
 namespace {
 
 /// Reach of the ambient occlusion, as a fraction of the visible height at the target.
-constexpr double reach_share = 0.055;
+constexpr double reach_fraction = 0.055;
 
 GlTexture texture(const Viewport& size, GLint format, GLenum channels, GLenum type) {
     GlTexture made = GlTexture::make();
@@ -354,11 +354,11 @@ GlTexture texture(const Viewport& size, GLint format, GLenum channels, GLenum ty
     return made;
 }
 
-GlFramebuffer framebuffer(GLenum place, const GlTexture& texture) {
+GlFramebuffer framebuffer(GLenum attachment, const GlTexture& texture) {
     GlFramebuffer made = GlFramebuffer::make();
     glBindFramebuffer(GL_FRAMEBUFFER, made.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, place, GL_TEXTURE_2D, texture.id(), 0);
-    if (place == GL_DEPTH_ATTACHMENT) {
+    glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture.id(), 0);
+    if (attachment == GL_DEPTH_ATTACHMENT) {
         glDrawBuffer(GL_NONE);
         glReadBuffer(GL_NONE);
     }
@@ -411,9 +411,9 @@ unsigned HollowPass::draw(const ViewFrame& frame, BodyPass& bodies) {
     hollows_.set_sampler("depths", 0);
     hollows_.set("clip_from_view", frame.clip_from_view);
     hollows_.set("view_from_clip", glm::inverse(frame.clip_from_view));
-    hollows_.set("reach", static_cast<float>(reach_share * seen));
+    hollows_.set("reach", static_cast<float>(reach_fraction * seen));
     hollows_.set("pixels", static_cast<float>(0.5 * frame.clip_from_view[1][1] * size.height
-                                              * reach_share * seen));
+                                              * reach_fraction * seen));
     glBindTexture(GL_TEXTURE_2D, depths_.id());
     glBindFramebuffer(GL_FRAMEBUFFER, to_rough_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -20,9 +20,10 @@ double half_angle_tangent(const Camera& camera) { return std::tan(0.5 * camera.v
 double half_height(const Camera& camera) { return camera.distance * half_angle_tangent(camera); }
 
 /// The position in the picture in units of half its height from its centre, Y up.
-Vec2 from_middle(const Viewport& viewport, const Vec2& place) {
+Vec2 from_middle(const Viewport& viewport, const Vec2& position) {
     const double unit = 0.5 * viewport.height;
-    return {(place.x - 0.5 * viewport.width) / unit, (0.5 * viewport.height - place.y) / unit};
+    return {(position.x - 0.5 * viewport.width) / unit,
+            (0.5 * viewport.height - position.y) / unit};
 }
 
 double depth_of(const Camera& camera, const Vec3& point) {
@@ -85,9 +86,9 @@ double pixel_size(const Camera& camera, const Viewport& viewport, const Vec3& at
     return 2.0 * depth * half_angle_tangent(camera) / viewport.height;
 }
 
-Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& place) {
+Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& position) {
     const CameraAxes a = axes(camera);
-    const Vec2 at = from_middle(viewport, place);
+    const Vec2 at = from_middle(viewport, position);
     const Vec3 across = at.x * a.right + at.y * a.up;
     if (camera.projection == Projection::perspective)
         return {eye(camera), glm::normalize(half_angle_tangent(camera) * across - a.backward)};
@@ -110,9 +111,9 @@ std::optional<Projected> project(const Camera& camera, const Viewport& viewport,
                      depth};
 }
 
-Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& place,
+Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& position,
                  const Vec3& level) {
-    const Ray ray = ray_through(camera, viewport, place);
+    const Ray ray = ray_through(camera, viewport, position);
     const Vec3 across = axes(camera).backward;
     return ray.origin
            + glm::dot(level - ray.origin, across) / glm::dot(ray.direction, across) * ray.direction;
@@ -137,12 +138,12 @@ Camera panned(const Camera& camera, const Viewport& viewport, const Vec2& from, 
 Camera zoomed(const Camera& camera, const Viewport& viewport, const Vec2& cursor, double factor,
               std::optional<Vec3> at) {
     const double distance = std::clamp(camera.distance * factor, least_distance, most_distance);
-    const double share = distance / camera.distance;
+    const double fraction = distance / camera.distance;
     const Vec3 fixed = at.value_or(point_under(camera, viewport, cursor, camera.target));
     Camera moved = camera;
     moved.distance = distance;
     // The whole view shrinks towards the fixed point, so this keeps its place in the picture.
-    moved.target = fixed + share * (camera.target - fixed);
+    moved.target = fixed + fraction * (camera.target - fixed);
     return moved;
 }
 

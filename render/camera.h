@@ -62,18 +62,18 @@ struct Ray {
 };
 
 /// The ray through a position in the picture.
-Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& place);
+Ray ray_through(const Camera& camera, const Viewport& viewport, const Vec2& position);
 
 /// The position of a point in the picture and its depth along the view, mm; empty if it is behind
 /// the eye.
 struct Projected {
-    Vec2 place;
+    Vec2 position;
     double depth = 0.0;
 };
 std::optional<Projected> project(const Camera& camera, const Viewport& viewport, const Vec3& point);
 
 /// The point under a position in the picture, in the plane across the view through `level`.
-Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& place,
+Vec3 point_under(const Camera& camera, const Viewport& viewport, const Vec2& position,
                  const Vec3& level);
 
 /// Rotates the eye about the target by a drag in pixels; the height of the picture is half a turn.

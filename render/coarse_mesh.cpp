@@ -82,8 +82,8 @@ struct PlaneSum {
     double constant = 0.0;
 
     /// Adds a plane through a point; `normal` has length 1.
-    void add(const core::Vec3& normal, const core::Vec3& place, double weight) {
-        const double height = glm::dot(normal, place);
+    void add(const core::Vec3& normal, const core::Vec3& position, double weight) {
+        const double height = glm::dot(normal, position);
         square += weight * glm::outerProduct(normal, normal);
         toward += weight * height * normal;
         constant += weight * height * height;
@@ -116,12 +116,12 @@ struct ClusterCell {
 
     void add(const ClusterCell& other);
     /// The position that represents all of its corners, in a cell of this width.
-    core::Vec3 place(double width) const;
+    core::Vec3 position(double width) const;
 };
 
 /// The final cells of the corners.
 struct Clusters {
-    std::vector<core::Vec3> places;
+    std::vector<core::Vec3> positions;
     std::vector<uint32_t> of_leaf; // number of the position of each given cell
 };
 
@@ -150,8 +150,8 @@ CellKey parent_of(const CellKey& key) { return {key[0] / 2, key[1] / 2, key[2] /
 void settle(const ClusterNode& node, double width, Clusters& clusters) {
     if (!node.is_one) return;
     for (const uint32_t leaf : node.leaves)
-        clusters.of_leaf[leaf] = static_cast<uint32_t>(clusters.places.size());
-    clusters.places.push_back(node.cell.place(width));
+        clusters.of_leaf[leaf] = static_cast<uint32_t>(clusters.positions.size());
+    clusters.positions.push_back(node.cell.position(width));
 }
 
 /// Merges the cells of one parent if possible; otherwise they are final.
@@ -164,8 +164,8 @@ ClusterNode join(std::span<ClusterNode> children, double width, double tolerance
         parent.cell.add(child.cell);
     }
     if (parent.is_one && children.size() > 1) {
-        const core::Vec3 place = parent.cell.place(2.0 * width);
-        parent.is_one = parent.cell.planes.at(place) <= tolerance;
+        const core::Vec3 position = parent.cell.position(2.0 * width);
+        parent.is_one = parent.cell.planes.at(position) <= tolerance;
     }
     for (ClusterNode& child : children) {
         if (parent.is_one)
@@ -184,7 +184,7 @@ void ClusterCell::add(const ClusterCell& other) {
     corners += other.corners;
 }
 
-core::Vec3 ClusterCell::place(double width) const {
+core::Vec3 ClusterCell::position(double width) const {
     const core::Vec3 mean = sum / static_cast<double>(corners);
     const core::Vec3 met = planes.least(mean), off = glm::abs(met - mean);
     return std::max({off.x, off.y, off.z}) <= width ? met : mean;
@@ -226,8 +226,8 @@ double area_of(std::span<const TriangleMesh* const> parts) {
     double area = 0.0;
     for (const TriangleMesh* part : parts)
         for (const TriangleMesh::Corners& t : part->triangles) {
-            const Vec3 a(part->vertices[t[0]].place), b(part->vertices[t[1]].place),
-                c(part->vertices[t[2]].place);
+            const Vec3 a(part->vertices[t[0]].position), b(part->vertices[t[1]].position),
+                c(part->vertices[t[2]].position);
             area += 0.5 * glm::length(glm::cross(b - a, c - a));
         }
     return area;
@@ -249,10 +249,11 @@ public:
     void add(const TriangleMesh& part) {
         std::vector<uint32_t> leaf_of;
         leaf_of.reserve(part.vertices.size());
-        for (const MeshVertex& vertex : part.vertices) leaf_of.push_back(leaf(Vec3(vertex.place)));
+        for (const MeshVertex& vertex : part.vertices)
+            leaf_of.push_back(leaf(Vec3(vertex.position)));
         for (const TriangleMesh::Corners& t : part.triangles) {
-            const Vec3 a(part.vertices[t[0]].place), b(part.vertices[t[1]].place),
-                c(part.vertices[t[2]].place);
+            const Vec3 a(part.vertices[t[0]].position), b(part.vertices[t[1]].position),
+                c(part.vertices[t[2]].position);
             const Vec3 across = glm::cross(b - a, c - a);
             const double size = glm::length(across);
             const std::array<uint32_t, 3> corners{leaf_of[t[0]], leaf_of[t[1]], leaf_of[t[2]]};
@@ -269,15 +270,16 @@ public:
     TintedMesh mesh(double tolerance) const {
         const Clusters clusters = joined(leaves_, width_, tolerance * tolerance);
         TintedMesh made;
-        for (const Vec3& place : clusters.places) made.mesh.vertices.push_back(origin_ + place);
+        for (const Vec3& position : clusters.positions)
+            made.mesh.vertices.push_back(origin_ + position);
         for (const LeafTriangle& triangle : triangles_) {
             core::Mesh::Corners corners = triangle.leaves;
             for (uint32_t& corner : corners) corner = clusters.of_leaf[corner];
             if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
                 continue;
-            const auto& places = clusters.places;
-            const Vec3 across = glm::cross(places[corners[1]] - places[corners[0]],
-                                           places[corners[2]] - places[corners[0]]);
+            const auto& positions = clusters.positions;
+            const Vec3 across = glm::cross(positions[corners[1]] - positions[corners[0]],
+                                           positions[corners[2]] - positions[corners[0]]);
             // Inverted triangles lie on others that are not inverted.
             if (glm::dot(across, triangle.across) <= 0.0) continue;
             made.mesh.triangles.push_back(corners);
@@ -287,15 +289,15 @@ public:
     }
 
 private:
-    uint32_t leaf(const Vec3& place) {
-        const Vec3 at = (place - origin_) / width_;
+    uint32_t leaf(const Vec3& position) {
+        const Vec3 at = (position - origin_) / width_;
         const CellKey key{uint32_t(at.x), uint32_t(at.y), uint32_t(at.z)};
         const uint64_t hash = uint64_t(key[0]) << 42 | uint64_t(key[1]) << 21 | uint64_t(key[2]);
         const auto [found, is_new] =
             known_.try_emplace(hash, static_cast<uint32_t>(leaves_.size()));
         if (is_new) leaves_.push_back({.key = key});
         ClusterCell& cell = leaves_[found->second];
-        cell.sum += place - origin_;
+        cell.sum += position - origin_;
         ++cell.corners;
         return found->second;
     }
@@ -312,7 +314,7 @@ private:
 TintedMesh clustered(std::span<const TriangleMesh* const> parts, size_t triangles) {
     core::Aabb box;
     for (const TriangleMesh* part : parts)
-        for (const MeshVertex& vertex : part->vertices) box.extend(Vec3(vertex.place));
+        for (const MeshVertex& vertex : part->vertices) box.extend(Vec3(vertex.position));
     const double area = area_of(parts);
     if (box.empty() || area <= 0.0) return {};
     const Vec3 size = box.max - box.min;

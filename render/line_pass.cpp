@@ -16,8 +16,8 @@ using Texel = std::array<uint32_t, 4>;
 
 /// The format of the line shader.
 Texel texel_of(const PathPoint& p) {
-    return {std::bit_cast<uint32_t>(p.place.x), std::bit_cast<uint32_t>(p.place.y),
-            std::bit_cast<uint32_t>(p.place.z),
+    return {std::bit_cast<uint32_t>(p.position.x), std::bit_cast<uint32_t>(p.position.y),
+            std::bit_cast<uint32_t>(p.position.z),
             p.block << 4U | static_cast<uint32_t>(p.state) << 2U | (p.rapid ? 2U : 0U)
                 | (p.begins ? 1U : 0U)};
 }
@@ -71,14 +71,14 @@ bool go_together(const PathPoint& a, const PathPoint& b) {
 double distance_to(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b) {
     const glm::vec3 by = b - a;
     const float size = glm::dot(by, by);
-    const float share = size > 0.0F ? std::clamp(glm::dot(p - a, by) / size, 0.0F, 1.0F) : 0.0F;
-    return glm::distance(p, a + share * by);
+    const float fraction = size > 0.0F ? std::clamp(glm::dot(p - a, by) / size, 0.0F, 1.0F) : 0.0F;
+    return glm::distance(p, a + fraction * by);
 }
 
 /// Whether the piece from one point to another is close enough to all points between.
-bool stands_for(const std::vector<PathPoint>& points, size_t from, size_t to, double tolerance) {
+bool approximates(const std::vector<PathPoint>& points, size_t from, size_t to, double tolerance) {
     for (size_t i = from + 1; i < to; ++i)
-        if (distance_to(points[i].place, points[from].place, points[to].place) > tolerance)
+        if (distance_to(points[i].position, points[from].position, points[to].position) > tolerance)
             return false;
     return true;
 }
@@ -110,7 +110,7 @@ std::vector<PathPoint> simplified(const std::vector<PathPoint>& points, double t
         size_t to = at + 1;
         while (to + 1 < points.size() && to - at < most && !points[at + 1].begins
                && go_together(points[to], points[to + 1])
-               && stands_for(points, at, to + 1, tolerance))
+               && approximates(points, at, to + 1, tolerance))
             ++to;
         kept.push_back(points[to]);
         at = to;
@@ -169,7 +169,7 @@ std::vector<PathPoint> urgent_pieces(const ToolPath& path) {
 /// Paths with fewer points are never simplified.
 constexpr size_t short_path = 5000;
 
-constexpr double path_share = 6e-4, block_share = 9e-4;
+constexpr double path_fraction = 6e-4, block_fraction = 9e-4;
 
 } // namespace
 
@@ -229,7 +229,7 @@ void LinePass::set_inks(const ViewFrame& frame) const {
     lines_.set("wider", 0.0F);
     lines_.set("later", frame.scene.fade_later_blocks ? 0.55F : 1.0F);
     lines_.set("current", frame.scene.current_block.value_or(std::numeric_limits<uint32_t>::max()));
-    lines_.set("nearer", nearer(frame.camera, path_share));
+    lines_.set("nearer", nearer(frame.camera, path_fraction));
     lines_.set_sampler("points", 0);
 }
 
@@ -237,7 +237,7 @@ void LinePass::draw_block(const ViewFrame& frame, uint32_t block, double wider) 
     const auto [first, last] = points_of_block(*shown_, block);
     if (first == last) return;
     const auto scale = static_cast<float>(frame.options.scale);
-    lines_.set("nearer", nearer(frame.camera, block_share));
+    lines_.set("nearer", nearer(frame.camera, block_fraction));
     lines_.set("later", 1.0F);
     // A bright core in the colour of its state.
     lines_.set("wider", static_cast<float>(wider) * scale);
@@ -278,7 +278,7 @@ void LinePass::draw_over(const ViewFrame& frame, const std::vector<Vec3>& points
     if (points.size() < 2) return;
     std::vector<PathPoint> ends;
     ends.reserve(points.size());
-    for (const Vec3& p : points) ends.push_back({.place = glm::vec3(p)});
+    for (const Vec3& p : points) ends.push_back({.position = glm::vec3(p)});
     over_.fill(ends);
     set_inks(frame);
     glDisable(GL_CULL_FACE);

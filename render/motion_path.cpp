@@ -17,8 +17,8 @@ constexpr double joined = 1e-3;
 class PathMaker {
 public:
     PathMaker(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-              const MotionStyle& look)
-        : points_(points), setup_(setup), tool_length_(tool_length), look_(look) {}
+              const MotionStyle& style)
+        : points_(points), setup_(setup), tool_length_(tool_length), style_(style) {}
 
     void straight(const core::AxisValues& from, const core::AxisValues& to) {
         start(from);
@@ -32,33 +32,33 @@ public:
         }
     }
     void start(const core::AxisValues& values) {
-        const glm::vec3 place = place_of(values);
-        if (points_.empty() || !(glm::distance(points_.back().place, place) <= joined))
-            points_.push_back({place, look_.block, look_.state, look_.rapid, true});
+        const glm::vec3 position = tip_of(values);
+        if (points_.empty() || !(glm::distance(points_.back().position, position) <= joined))
+            points_.push_back({position, style_.block, style_.state, style_.rapid, true});
     }
     void go(const core::AxisValues& values) {
-        points_.push_back({place_of(values), look_.block, look_.state, look_.rapid, false});
+        points_.push_back({tip_of(values), style_.block, style_.state, style_.rapid, false});
     }
 
 private:
-    glm::vec3 place_of(const core::AxisValues& values) const {
+    glm::vec3 tip_of(const core::AxisValues& values) const {
         return glm::vec3(tip_in_stock(setup_, tool_length_, values));
     }
 
     std::vector<PathPoint>& points_;
     const core::Setup& setup_;
     double tool_length_;
-    const MotionStyle& look_;
+    const MotionStyle& style_;
 };
 
 } // namespace
 
 void append_motion(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-                   const core::Path& path, const MotionStyle& look) {
-    PathMaker maker(points, setup, tool_length, look);
+                   const core::Path& path, const MotionStyle& style) {
+    PathMaker maker(points, setup, tool_length, style);
     for (const core::Leg& leg : path.legs) {
-        if (leg.straight && leg.start_known && leg.places.size() == 2) {
-            maker.straight(leg.places[0], leg.places[1]);
+        if (leg.straight && leg.start_known && leg.positions.size() == 2) {
+            maker.straight(leg.positions[0], leg.positions[1]);
             continue;
         }
         for (size_t i = 0; i < leg.certain.size(); ++i)

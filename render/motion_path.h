@@ -20,6 +20,6 @@ struct MotionStyle {
 ///          positions are connected. A new path begins where a motion does not start at the end of
 ///          the last one.
 void append_motion(std::vector<PathPoint>& points, const core::Setup& setup, double tool_length,
-                   const core::Path& path, const MotionStyle& look);
+                   const core::Path& path, const MotionStyle& style);
 
 } // namespace render

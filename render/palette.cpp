@@ -29,8 +29,8 @@ constexpr Colors light = {hex(0xF3F5F8), hex(0xFFFFFF), hex(0xE9EDF2),      hex(
                           hex(0xA9B3BF), hex(0x6FAF98), hex(0x2A3442, 200), hex(0x6B7888),
                           hex(0x0A1420), hex(0x1B2430)};
 
-uint8_t mix(uint8_t a, uint8_t b, double share) {
-    return static_cast<uint8_t>(std::lround(a + (b - a) * share));
+uint8_t mix(uint8_t a, uint8_t b, double fraction) {
+    return static_cast<uint8_t>(std::lround(a + (b - a) * fraction));
 }
 
 } // namespace
@@ -40,8 +40,9 @@ Color with_alpha(Color color, double alpha) {
     return color;
 }
 
-Color mixed(Color a, Color b, double share) {
-    return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share), mix(a.a, b.a, share)};
+Color mixed(Color a, Color b, double fraction) {
+    return {mix(a.r, b.r, fraction), mix(a.g, b.g, fraction), mix(a.b, b.b, fraction),
+            mix(a.a, b.a, fraction)};
 }
 
 Color color(ColorScheme theme, Role role) {

@@ -13,7 +13,7 @@ struct Color {
 };
 
 /// The channels as 0..1, for OpenGL and user interfaces.
-constexpr std::array<float, 4> shares(Color c) {
+constexpr std::array<float, 4> fractions(Color c) {
     return {static_cast<float>(c.r) / 255.0F, static_cast<float>(c.g) / 255.0F,
             static_cast<float>(c.b) / 255.0F, static_cast<float>(c.a) / 255.0F};
 }
@@ -22,7 +22,7 @@ constexpr std::array<float, 4> shares(Color c) {
 Color with_alpha(Color color, double alpha);
 
 /// A mixture: `a` at 0, `b` at 1.
-Color mixed(Color a, Color b, double share);
+Color mixed(Color a, Color b, double fraction);
 
 enum class ColorScheme : uint8_t { dark, light };
 

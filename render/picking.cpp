@@ -39,7 +39,7 @@ double distance_along(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& 
     return along >= 0.0 ? along : core::infinity;
 }
 
-bool is_kept(const std::optional<SectionPlane>& section, const Vec3& p) {
+bool is_visible(const std::optional<SectionPlane>& section, const Vec3& p) {
     return !section || glm::dot(section->normal, p) <= section->offset;
 }
 
@@ -58,13 +58,13 @@ std::optional<SurfaceHit> hit_before(const TriangleMesh& mesh, const Ray& ray,
             continue;
         }
         const TriangleMesh::Corners& corners = mesh.triangles[t];
-        const Vec3 a(mesh.vertices[corners[0]].place), b(mesh.vertices[corners[1]].place),
-            c(mesh.vertices[corners[2]].place);
+        const Vec3 a(mesh.vertices[corners[0]].position), b(mesh.vertices[corners[1]].position),
+            c(mesh.vertices[corners[2]].position);
         const double along =
             side == Side::front ? distance_along(ray, a, b, c) : distance_along(ray, a, c, b);
         if (!(along < limit)) continue;
         const Vec3 point = ray.origin + along * ray.direction;
-        if (!is_kept(section, point)) continue;
+        if (!is_visible(section, point)) continue;
         limit = along;
         triangle = t;
         best = {along, point, glm::normalize(glm::cross(b - a, c - a))};
@@ -108,10 +108,10 @@ Rectangle seen(const Aabb& box, const Camera& camera, const Viewport& viewport) 
         const Vec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
                      (corner & 2) != 0 ? box.max.y : box.min.y,
                      (corner & 4) != 0 ? box.max.z : box.min.z);
-        const auto place = project(camera, viewport, p);
-        if (!place) return {Vec2(-core::infinity), Vec2(core::infinity)};
-        all.min = glm::min(all.min, place->place);
-        all.max = glm::max(all.max, place->place);
+        const auto position = project(camera, viewport, p);
+        if (!position) return {Vec2(-core::infinity), Vec2(core::infinity)};
+        all.min = glm::min(all.min, position->position);
+        all.max = glm::max(all.max, position->position);
     }
     return all;
 }
@@ -159,27 +159,27 @@ private:
 };
 
 void PathSearch::try_piece(size_t end) {
-    const Vec3 a(path_.points[end - 1].place), b(path_.points[end].place);
+    const Vec3 a(path_.points[end - 1].position), b(path_.points[end].position);
     const auto from = project(camera_, viewport_, a), to = project(camera_, viewport_, b);
     if (!from || !to) return;
-    const Vec2 by = to->place - from->place;
+    const Vec2 by = to->position - from->position;
     const double size = glm::dot(by, by);
-    const double share =
-        size > 0.0 ? std::clamp(glm::dot(cursor_ - from->place, by) / size, 0.0, 1.0) : 0.0;
-    const double pixels = glm::distance(cursor_, from->place + share * by);
+    const double fraction =
+        size > 0.0 ? std::clamp(glm::dot(cursor_ - from->position, by) / size, 0.0, 1.0) : 0.0;
+    const double pixels = glm::distance(cursor_, from->position + fraction * by);
     // With perspective, a fraction in the picture differs from the fraction in space: farther
     // pieces look shorter.
     const double along =
         camera_.projection == Projection::perspective
-            ? share * from->depth / (share * from->depth + (1.0 - share) * to->depth)
-            : share;
-    const Vec3 place = a + along * (b - a);
+            ? fraction * from->depth / (fraction * from->depth + (1.0 - fraction) * to->depth)
+            : fraction;
+    const Vec3 position = a + along * (b - a);
     const double depth = from->depth + along * (to->depth - from->depth);
     if (pixels > reach_ || depth > depth_) return;
     const bool nearer_to_cursor = !best_ || pixels < best_->pixels - 1.0;
     const bool as_near = best_ && pixels < best_->pixels + 1.0;
     if (!nearer_to_cursor && !(as_near && depth < best_depth_ - 1e-9)) return;
-    best_ = PathHit{path_.points[end].block, end, place, pixels};
+    best_ = PathHit{path_.points[end].block, end, position, pixels};
     best_depth_ = depth;
 }
 
@@ -263,8 +263,8 @@ Pick pick(const Scene& scene, const Camera& camera, const Viewport& viewport, co
     }
     double depth = core::infinity;
     if (const auto surface = found.surface())
-        if (const auto place = project(camera, viewport, surface->point))
-            depth = place->depth + 2.0 * pixel_size(camera, viewport, surface->point) * reach;
+        if (const auto position = project(camera, viewport, surface->point))
+            depth = position->depth + 2.0 * pixel_size(camera, viewport, surface->point) * reach;
     if (scene.path && scene.path_visible)
         found.path = pick_path(*scene.path, camera, viewport, cursor, reach, depth);
     return found;

@@ -27,7 +27,7 @@ struct BodyHit {
 struct PathHit {
     uint32_t block = 0;
     size_t point = 0; // index of the end of the piece
-    Vec3 place = Vec3(0.0);
+    Vec3 position = Vec3(0.0);
     double pixels = 0.0; // from the cursor
 };
 

@@ -20,8 +20,8 @@ void make_storage(const GlRenderbuffer& buffer, GLenum format, const Viewport& s
         glRenderbufferStorage(GL_RENDERBUFFER, format, size.width, size.height);
 }
 
-void attach(GLenum place, const GlRenderbuffer& buffer) {
-    glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer.id());
+void attach(GLenum attachment, const GlRenderbuffer& buffer) {
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer.id());
 }
 
 bool is_complete() { return glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE; }

@@ -52,7 +52,7 @@ constexpr std::array<std::array<Shared, 4>, 3> side_edges = {{{{{4, 5}, {6, 7}, 
 
 /// A piece of the surface in a cell: its vertex and the edges that it passes through.
 struct Piece {
-    Vec3 place;
+    Vec3 position;
     std::array<int32_t, 12> edges{};
     size_t count = 0;
     bool flat = true;               // one normal everywhere
@@ -126,7 +126,7 @@ void BrickContour::vote(int axis) {
             const int u = first_[ua] + n[ua] - 1, v = first_[va] + n[va] - 1;
             if (u < 0 || v < 0 || u >= family.u_count() || v >= family.v_count()) continue;
             for (const core::Interval& matter : family.line(u, v)) {
-                const core::IndexRange all = core::places_within(grid_, axis, matter);
+                const core::IndexRange all = core::lines_within(grid_, axis, matter);
                 const int low = std::max(all.first - start, 0);
                 const int high = std::min(all.last - start, side - 1);
                 if (low > high) continue;
@@ -236,7 +236,7 @@ void BrickContour::make_cell(const GridNode& cell, uint8_t corners) {
             piece.flat = piece.flat && planes[piece.count].normal == planes[0].normal;
             ++piece.count;
         }
-        piece.place = core::feature_point({planes.data(), piece.count}, room);
+        piece.position = core::feature_point({planes.data(), piece.count}, room);
         pieces_.push_back(piece);
     }
 }
@@ -265,7 +265,7 @@ uint32_t BrickContour::corner(Piece& piece, const CrossedEdge& edge_of_quad, uin
         if (made.normal == packed && made.tint == tint) return static_cast<uint32_t>(v);
     }
     const auto vertex = static_cast<int32_t>(result_.mesh.vertices.size());
-    result_.mesh.vertices.push_back({glm::vec3(piece.place), packed, tint});
+    result_.mesh.vertices.push_back({glm::vec3(piece.position), packed, tint});
     next_vertex_.push_back(piece.first_vertex);
     piece.first_vertex = vertex;
     return static_cast<uint32_t>(vertex);
@@ -273,7 +273,7 @@ uint32_t BrickContour::corner(Piece& piece, const CrossedEdge& edge_of_quad, uin
 
 void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed) {
     std::array<uint32_t, 4> corners{};
-    std::array<Vec3, 4> places;
+    std::array<Vec3, 4> positions;
     bool flat = true;
     const uint8_t tint = crossed.sweep ? 1 : 0;
     for (size_t i = 0; i < 4; ++i) {
@@ -283,16 +283,16 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
             if (around.cell[a] < 0) cell -= step_of(a);
         Piece& piece = piece_at(cell, around.edge);
         corners[i] = corner(piece, crossed, tint);
-        places[i] = piece.place;
+        positions[i] = piece.position;
         flat = flat && piece.flat;
     }
     const bool upwards = (room_.inside[node / side] >> (node % side) & 1U) != 0;
     if (!upwards) {
         std::swap(corners[1], corners[3]);
-        std::swap(places[1], places[3]);
+        std::swap(positions[1], positions[3]);
     }
     // All planes coincide: the point is on both triangles for either diagonal.
-    const size_t k = flat ? 0 : core::better_diagonal(places, crossed.plane.place).from;
+    const size_t k = flat ? 0 : core::better_diagonal(positions, crossed.plane.position).from;
     result_.mesh.triangles.push_back({corners[k], corners[k + 1], corners[k + 2]});
     result_.mesh.triangles.push_back({corners[k], corners[k + 2], corners[(k + 3) % 4]});
     result_.blocks.push_back(block_of(crossed));
@@ -300,7 +300,7 @@ void BrickContour::add_quad(size_t axis, size_t node, const CrossedEdge& crossed
     quads_.push_back({static_cast<uint8_t>(axis),
                       {part(node), part(node / side), part(node / (size_t{side} * side))},
                       flat});
-    for (const Vec3& place : places) result_.mesh.bounds.extend(place);
+    for (const Vec3& position : positions) result_.mesh.bounds.extend(position);
 }
 
 /// Quads belong to the brick in which their edge begins; the first nodes of a brick belong to its
@@ -337,7 +337,7 @@ void BrickContour::add_crease(size_t axis, size_t cell) {
             return edge(room_.edges[shared.here / 4U][node]).plane.normal;
         };
         if (glm::dot(normal(passed[0]), normal(passed[1])) < limit)
-            result_.mesh.edges.push_back({glm::vec3(here.place), glm::vec3(there.place)});
+            result_.mesh.edges.push_back({glm::vec3(here.position), glm::vec3(there.position)});
     }
 }
 
@@ -463,7 +463,7 @@ void TouchedBricks::compare(const ScanLines& was, const ScanLines& is) {
 
 void TouchedBricks::touch(int axis, int u, int v, const Interval& range) {
     std::array<core::IndexRange, 3> bricks;
-    const auto place = [&](int along) { return static_cast<size_t>(along); };
+    const auto position = [&](int along) { return static_cast<size_t>(along); };
     const auto node = [&](double x) { // whose line is at or below x
         const double lines = (x - grid_.coordinate(axis, 0)) / grid_.spacing;
         return static_cast<int>(std::floor(
@@ -471,16 +471,16 @@ void TouchedBricks::touch(int axis, int u, int v, const Interval& range) {
                + 1;
     };
     // Two more nodes: an end slightly beyond an edge counts as on the edge.
-    bricks[place(axis)] =
-        bricks_with(node(range.lower) - 1, node(range.upper) + 2, counts_[place(axis)]);
-    bricks[place(core::u_axis(axis))] =
-        bricks_with(u + 1, u + 1, counts_[place(core::u_axis(axis))]);
-    bricks[place(core::v_axis(axis))] =
-        bricks_with(v + 1, v + 1, counts_[place(core::v_axis(axis))]);
+    bricks[position(axis)] =
+        bricks_with(node(range.lower) - 1, node(range.upper) + 2, counts_[position(axis)]);
+    bricks[position(core::u_axis(axis))] =
+        bricks_with(u + 1, u + 1, counts_[position(core::u_axis(axis))]);
+    bricks[position(core::v_axis(axis))] =
+        bricks_with(v + 1, v + 1, counts_[position(core::v_axis(axis))]);
     for (int k = bricks[2].first; k <= bricks[2].last; ++k)
         for (int j = bricks[1].first; j <= bricks[1].last; ++j)
             for (int i = bricks[0].first; i <= bricks[0].last; ++i)
-                touched_[place(i + counts_[0] * (j + counts_[1] * k))] = 1;
+                touched_[position(i + counts_[0] * (j + counts_[1] * k))] = 1;
 }
 
 } // namespace

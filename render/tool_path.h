@@ -13,7 +13,7 @@ namespace render {
 
 /// A corner of the tip's path, with the attributes of the piece that ends here. 20 bytes.
 struct PathPoint {
-    glm::vec3 place = glm::vec3(0.0F); // frame of the stock
+    glm::vec3 position = glm::vec3(0.0F); // frame of the stock
     uint32_t block = 0;
     ClearanceState state = ClearanceState::none;
     bool rapid = false;
@@ -46,9 +46,9 @@ std::pair<size_t, size_t> points_of_block(const ToolPath& path, uint32_t block);
 /// How much of a path is shown near a block: at least this many blocks before and after it, and
 /// more until this length is shown.
 struct PathReach {
-    uint32_t before = 30, behind = 8;             // blocks
-    double way_before = 150.0, way_behind = 40.0; // mm
-    size_t most = 1000;                           // points on either side
+    uint32_t before = 30, after = 8;                   // blocks
+    double length_before = 150.0, length_after = 40.0; // mm
+    size_t most = 1000;                                // points on either side
 };
 
 /// The part of a path near a block, even if the block does not move.

@@ -91,7 +91,7 @@ void make_boxes(TriangleMesh& mesh) {
     for (size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (t % TriangleMesh::stretch == 0) mesh.boxes.emplace_back();
         for (const uint32_t corner : mesh.triangles[t])
-            mesh.boxes.back().extend(Vec3(mesh.vertices[corner].place));
+            mesh.boxes.back().extend(Vec3(mesh.vertices[corner].position));
     }
 }
 
@@ -138,9 +138,10 @@ void append(TriangleMesh& mesh, const TriangleMesh& other, const core::Transform
     const auto base = static_cast<uint32_t>(mesh.vertices.size());
     const auto moved = [&](const glm::vec3& p) { return glm::vec3(mesh_from_other * Vec3(p)); };
     for (const MeshVertex& v : other.vertices) {
-        mesh.vertices.push_back(
-            {moved(v.place), packed_normal(mesh_from_other.rotation * unpacked_normal(v)), v.tint});
-        mesh.bounds.extend(Vec3(mesh.vertices.back().place));
+        mesh.vertices.push_back({moved(v.position),
+                                 packed_normal(mesh_from_other.rotation * unpacked_normal(v)),
+                                 v.tint});
+        mesh.bounds.extend(Vec3(mesh.vertices.back().position));
     }
     for (const TriangleMesh::Corners& t : other.triangles)
         mesh.triangles.push_back({base + t[0], base + t[1], base + t[2]});
@@ -191,7 +192,7 @@ private:
             if ((first.normal[a] == 0) != (a != quads_[quad].axis)) return false;
         for (size_t i = 1; i < 4; ++i) {
             const MeshVertex& other = corner(quad, i);
-            if (other.place[axis] != first.place[axis] || other.normal != first.normal
+            if (other.position[axis] != first.position[axis] || other.normal != first.normal
                 || other.tint != first.tint)
                 return false;
         }
@@ -201,7 +202,7 @@ private:
     bool are_one(uint32_t a, uint32_t b) const {
         const auto axis = static_cast<glm::length_t>(quads_[a].axis);
         const MeshVertex &x = corner(a, 0), &y = corner(b, 0);
-        return x.place[axis] == y.place[axis] && x.normal == y.normal && x.tint == y.tint;
+        return x.position[axis] == y.position[axis] && x.normal == y.normal && x.tint == y.tint;
     }
 
     void keep(uint32_t quad) {
@@ -253,11 +254,11 @@ private:
     void add_rectangle(size_t axis, uint32_t low, uint32_t high) {
         const auto u = static_cast<glm::length_t>((axis + 1) % 3);
         const auto v = static_cast<glm::length_t>((axis + 2) % 3);
-        glm::vec3 min = corner(low, 0).place, max = min, cell_min = min, cell_max = min;
+        glm::vec3 min = corner(low, 0).position, max = min, cell_min = min, cell_max = min;
         for (size_t i = 0; i < 4; ++i) {
-            cell_min = glm::min(cell_min, corner(low, i).place);
-            cell_max = glm::max(cell_max, corner(low, i).place);
-            max = glm::max(max, corner(high, i).place);
+            cell_min = glm::min(cell_min, corner(low, i).position);
+            cell_max = glm::max(cell_max, corner(low, i).position);
+            max = glm::max(max, corner(high, i).position);
         }
         const glm::vec3 out = overlap * (cell_max - cell_min);
         min = cell_min - out;
@@ -266,8 +267,8 @@ private:
         const auto first = static_cast<uint32_t>(made_.vertices.size());
         for (const auto& [at_u, at_v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
             MeshVertex vertex = corner(low, 0);
-            vertex.place[u] = at_u == 0 ? min[u] : max[u];
-            vertex.place[v] = at_v == 0 ? min[v] : max[v];
+            vertex.position[u] = at_u == 0 ? min[u] : max[u];
+            vertex.position[v] = at_v == 0 ? min[v] : max[v];
             made_.vertices.push_back(vertex);
         }
         const uint32_t second = faces_up ? 1 : 3, fourth = 4 - second;

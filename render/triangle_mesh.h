@@ -15,7 +15,7 @@ namespace render {
 
 /// A vertex of a drawn triangle in the format of the graphics card. 16 bytes.
 struct MeshVertex {
-    glm::vec3 place = glm::vec3(0.0F);
+    glm::vec3 position = glm::vec3(0.0F);
     std::array<int8_t, 3> normal{}; // times 127
     uint8_t tint = 0;               // 0: the body's colour; 1: its second colour (cut stock)
 

@@ -31,16 +31,16 @@ void ShaderProgram::set(const char* name, const glm::dmat4& value) const {
     glUniformMatrix4fv(at(name), 1, GL_FALSE, &single[0][0]);
 }
 void ShaderProgram::set_rgb(const char* name, Color color) const {
-    glUniform3fv(at(name), 1, shares(color).data());
+    glUniform3fv(at(name), 1, fractions(color).data());
 }
 void ShaderProgram::set(const char* name, Color color) const {
-    glUniform4fv(at(name), 1, shares(color).data());
+    glUniform4fv(at(name), 1, fractions(color).data());
 }
 
-glm::vec2 nearer(const Camera& camera, double share) {
+glm::vec2 nearer(const Camera& camera, double fraction) {
     if (camera.projection == Projection::perspective)
-        return {static_cast<float>(1.0 - share), 0.0F};
-    return {1.0F, static_cast<float>(share * camera.distance)};
+        return {static_cast<float>(1.0 - fraction), 0.0F};
+    return {1.0F, static_cast<float>(fraction * camera.distance)};
 }
 
 void set_view(const ShaderProgram& program, const ViewFrame& frame,

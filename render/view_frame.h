@@ -43,7 +43,7 @@ struct ViewFrame {
 
 /// Offset of lines towards the eye, in front of the surface on which they are; `share` is a
 /// fraction of the distance.
-glm::vec2 nearer(const Camera& camera, double share);
+glm::vec2 nearer(const Camera& camera, double fraction);
 
 /// Sets the matrices for a body with this pose.
 void set_view(const ShaderProgram& program, const ViewFrame& frame,

@@ -43,13 +43,13 @@ bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_p
     return stamp.is_there && last_change(stamp) > now.time_since_epoch() - tick_of(stamp);
 }
 
-std::filesystem::path place_of(const std::filesystem::path& path) {
+std::filesystem::path resolved_path(const std::filesystem::path& path) {
     constexpr int most_links = 40; // limit of the system
     std::error_code ignored;
-    std::filesystem::path place = std::filesystem::absolute(path, ignored);
-    for (int i = 0; i < most_links && std::filesystem::is_symlink(place, ignored); ++i)
-        place = place.parent_path() / std::filesystem::read_symlink(place, ignored);
-    return std::filesystem::weakly_canonical(place, ignored);
+    std::filesystem::path target = std::filesystem::absolute(path, ignored);
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(target, ignored); ++i)
+        target = target.parent_path() / std::filesystem::read_symlink(target, ignored);
+    return std::filesystem::weakly_canonical(target, ignored);
 }
 
 std::string FileIdentities::of(const std::filesystem::path& path) {

@@ -33,7 +33,7 @@ bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_p
 
 /// The absolute path of a file that exists or will be written, with all links resolved. Empty if it
 /// cannot be determined, as for a loop of links.
-std::filesystem::path place_of(const std::filesystem::path& path);
+std::filesystem::path resolved_path(const std::filesystem::path& path);
 
 /// Identifies files by name, regardless of how their folder is written.
 class FileIdentities {

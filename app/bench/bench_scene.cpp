@@ -26,8 +26,7 @@ BenchScene spheres(const Vec3& direction, const Vec3& angles_deg) {
                      .b = core::Sphere{25.0},
                      .mesh_sizes = paper_mesh_sizes};
     for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0})
-        scene.places.push_back(
-            {gap, translation((50.0 + gap) * direction) * turned_by(angles_deg)});
+        scene.poses.push_back({gap, translation((50.0 + gap) * direction) * turned_by(angles_deg)});
     return scene;
 }
 
@@ -63,9 +62,9 @@ BenchScene linked_tori() {
                      .mesh_sizes = fine_and_coarse};
     for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0, 15.0}) {
         const double offset = 2.0 * (torus.ring - torus.tube) - gap;
-        scene.places.push_back({gap, turned_by({0.0, 0.0, 25.0}) * translation({offset, 0.0, 0.0})
-                                         * turned_by({90.0, 0.0, 0.0})
-                                         * turned_by({0.0, 0.0, 17.0})});
+        scene.poses.push_back({gap, turned_by({0.0, 0.0, 25.0}) * translation({offset, 0.0, 0.0})
+                                        * turned_by({90.0, 0.0, 0.0})
+                                        * turned_by({0.0, 0.0, 17.0})});
     }
     return scene;
 }
@@ -84,9 +83,8 @@ BenchScene pin_in_cup() {
     for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0}) {
         const double off_axis = cup.bore - pin.radius - gap;
         const double lift = floor + 20.0 + 0.5 * pin.height;
-        scene.places.push_back(
-            {gap, turned_by({0.0, 0.0, 25.0}) * translation({off_axis, 0.0, lift})
-                      * turned_by({0.0, 0.0, 17.0})});
+        scene.poses.push_back({gap, turned_by({0.0, 0.0, 25.0}) * translation({off_axis, 0.0, lift})
+                                        * turned_by({0.0, 0.0, 17.0})});
     }
     return scene;
 }
@@ -106,7 +104,7 @@ BenchScene holder_over_stock(double angle_deg) {
     }
     for (const double gap : {1.0, 2.0, 5.0, 10.0, 15.0}) {
         const double lift = 0.5 * (stock.size.z + holder.size.z) + gap;
-        scene.places.push_back(
+        scene.poses.push_back(
             {gap, translation({7.3, -4.6, lift}) * turned_by({0.0, 0.0, angle_deg})});
     }
     return scene;

@@ -36,7 +36,7 @@ core::Aabb bounds(const Cup& cup);
 using BenchBody = std::variant<core::Primitive, Torus, Cup>;
 
 /// The pose of B, and its true distance from A.
-struct BenchPlace {
+struct BenchPose {
     double separation = 0.0; // mm
     core::Transform a_from_b;
 };
@@ -48,7 +48,7 @@ struct BenchScene {
     std::string title;     // description of both
     BenchBody a, b;
     std::vector<double> mesh_sizes; // mm
-    std::vector<BenchPlace> places;
+    std::vector<BenchPose> poses;
 };
 
 /// The paper's case study: two spheres of 50 mm, moved apart along X.

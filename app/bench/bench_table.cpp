@@ -55,11 +55,11 @@ core::Result<BenchTable> measure(const BenchScene& scene, double seconds_each) {
         FEELER_TRY(const auto points_b, points_of(scene.b, mesh_size));
         FEELER_TRY(const Contestant paper, contestant(core::paper_engine(), points_a, points_b));
         FEELER_TRY(const Contestant fast, contestant(core::fast_engine(), points_a, points_b));
-        for (const BenchPlace& place : scene.places) {
-            FEELER_TRY(const BenchAnswer by_paper, answer(paper, place.a_from_b, seconds_each));
-            FEELER_TRY(const BenchAnswer by_fast, answer(fast, place.a_from_b, seconds_each));
+        for (const BenchPose& pose : scene.poses) {
+            FEELER_TRY(const BenchAnswer by_paper, answer(paper, pose.a_from_b, seconds_each));
+            FEELER_TRY(const BenchAnswer by_fast, answer(fast, pose.a_from_b, seconds_each));
             table.rows.push_back(
-                {mesh_size, points_a.size(), points_b.size(), place.separation, by_paper, by_fast});
+                {mesh_size, points_a.size(), points_b.size(), pose.separation, by_paper, by_fast});
         }
     }
     return table;

@@ -108,15 +108,15 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
                     {}}};
     const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
                                      judge ? &*judged : nullptr};
-    watch_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
+    track_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
     if (before_block) before_block(block, state);
     std::swap(state.control, next_);
     state.lowering = lowering;
     step.checked.result = core::run_block(*setup_, of_block, state.machine);
     add_warnings(block, state, step.findings);
     for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
-    watch_offsets(state.offsets, *setup_, state.control, of_block, state.machine);
-    watch_units(state.units, of_block);
+    track_offsets(state.offsets, *setup_, state.control, of_block, state.machine);
+    track_units(state.units, of_block);
     core::add_block(state.clock, of_block, step.timed);
     return step;
 }

@@ -45,7 +45,7 @@ struct CheckJob {
 };
 
 /// Uses the set-up next to the program if the job names none.
-void look_beside(CheckJob& job);
+void find_setup_next_to(CheckJob& job);
 
 /// Checks a program against its set-up, or against one inferred from the program if `setup` is
 /// empty.

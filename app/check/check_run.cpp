@@ -46,9 +46,9 @@ const CheckedBlock* nearest_block(const CheckRun& run) {
     return nearest;
 }
 
-void look_beside(CheckJob& job) {
+void find_setup_next_to(CheckJob& job) {
     if (!job.setup.empty() || job.program.empty()) return;
-    job.setup = setup_beside(job.program);
+    job.setup = setup_next_to(job.program);
     job.setup_was_found = !job.setup.empty();
 }
 

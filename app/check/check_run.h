@@ -92,7 +92,7 @@ struct CheckRun : CheckInput, CheckRecord, CheckReport {
 /// Progress of a check.
 struct CheckProgress {
     size_t blocks = 0;
-    double share = 0.0; // of the program's lines, 0 to 1; loops make it decrease
+    double fraction = 0.0; // of the program's lines, 0 to 1; loops make it decrease
     size_t findings = 0;
 };
 

@@ -25,7 +25,7 @@ namespace app {
 namespace {
 
 /// Reports a program of which no motion could be judged: it has not been checked.
-void look_for_judged_motions(CheckRecord& record) {
+void require_judged_motion(CheckRecord& record) {
     const CheckedBlock* first = nullptr;
     for (const CheckedBlock& block : record.blocks) {
         if (block.result.motion == core::BlockMotion::none) continue;
@@ -80,7 +80,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     run.lines = core::line_count(end.stock.lines);
     run.later_assumptions.insert(run.later_assumptions.end(), end.assumptions.begin(),
                                  end.assumptions.end());
-    look_for_judged_motions(run);
+    require_judged_motion(run);
     // A program that was checked only in part must not count as clear.
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
@@ -89,7 +89,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
     check_part(run, run, run);
-    look_at_both_switch_positions(run, run, *check.program, check.file.environment);
+    check_both_switch_positions(run, run, *check.program, check.file.environment);
     apply_allowed_rules(run, run, check.file.allow_comments);
     combine_consequences(run, run, mismatches);
 }
@@ -175,11 +175,11 @@ void say_doubtful_comments(const CheckInput& input, CheckRecord& record, bool co
         if (const auto set = input.setup.rules.find(finding.rule); set != input.setup.rules.end())
             finding.severity = set->second;
         if (finding.severity == core::Severity::off) continue;
-        const auto behind = std::find_if(record.findings.begin(), record.findings.end(),
-                                         [&](const core::Finding& other) {
-                                             return !other.block || *other.block > *finding.block;
-                                         });
-        record.findings.insert(behind, std::move(finding));
+        const auto after = std::find_if(record.findings.begin(), record.findings.end(),
+                                        [&](const core::Finding& other) {
+                                            return !other.block || *other.block > *finding.block;
+                                        });
+        record.findings.insert(after, std::move(finding));
     }
 }
 
@@ -252,8 +252,8 @@ uint64_t digest_of(const core::Motion& motion) {
         digest = (digest ^ std::hash<double>{}(value)) * 1099511628211U;
     };
     add(static_cast<double>(motion.kind));
-    for (const auto& place : {motion.from, motion.to})
-        for (const auto& axis : place) add(axis.value_or(1e300));
+    for (const auto& position : {motion.from, motion.to})
+        for (const auto& axis : position) add(axis.value_or(1e300));
     if (motion.arc) add(motion.arc->angle);
     return digest;
 }
@@ -277,9 +277,9 @@ std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment env
 
 } // namespace
 
-void look_at_both_switch_positions(const CheckInput& input, CheckRecord& record,
-                                   const gcode::Program& program,
-                                   const gcode::Environment& environment) {
+void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
+                                 const gcode::Program& program,
+                                 const gcode::Environment& environment) {
     const auto note =
         std::find_if(record.findings.begin(), record.findings.end(),
                      [](const auto& f) { return f.rule == core::rule_id("block-delete"); });
@@ -313,7 +313,7 @@ core::Finding finding_of(const core::DeviationRegion& region) {
     if (region.block) finding.block = core::BlockIndex{*region.block};
     const std::string where =
         fmt::format("at X {:.3f} Y {:.3f} Z {:.3f} of the stock, over about {:.1f} mm2",
-                    region.place.x, region.place.y, region.place.z, region.area);
+                    region.position.x, region.position.y, region.position.z, region.area);
     finding.message =
         fmt::format("{} mm {} {}.", core::at_most(region.amount),
                     gouge ? "of the part is missing" : "of excess material is left", where);
@@ -333,10 +333,10 @@ void add(const CheckInput& input, CheckRecord& record, core::Finding finding) {
 
 void add_findings(const CheckInput& input, CheckRecord& record,
                   const core::PartComparison& comparison, core::Deviation kind) {
-    size_t told = 0, more = 0;
+    size_t reported = 0, more = 0;
     for (const core::DeviationRegion& region : comparison.regions) {
         if (region.kind != kind) continue;
-        if (told++ < most_findings)
+        if (reported++ < most_findings)
             add(input, record, finding_of(region));
         else
             ++more;
@@ -354,8 +354,8 @@ void add_findings(const CheckInput& input, CheckRecord& record,
 core::Colour colour_of(double deviation, double tolerance) {
     const double off = std::abs(deviation);
     if (off <= tolerance) return {80, 170, 80};
-    const double share = std::clamp((off - tolerance) / (4.0 * tolerance), 0.0, 1.0);
-    const auto fading = static_cast<uint8_t>(220.0 * (1.0 - share));
+    const double fraction = std::clamp((off - tolerance) / (4.0 * tolerance), 0.0, 1.0);
+    const auto fading = static_cast<uint8_t>(220.0 * (1.0 - fraction));
     if (deviation < 0.0) return {230, fading, 0};
     return {0, fading, 230};
 }

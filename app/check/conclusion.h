@@ -47,9 +47,9 @@ void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comm
 
 /// If the record has a note about blocks with `/`, checks whether the path differs when block
 /// delete is on. If so, raises the note to the severity of its rule.
-void look_at_both_switch_positions(const CheckInput& input, CheckRecord& record,
-                                   const gcode::Program& program,
-                                   const gcode::Environment& environment);
+void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
+                                 const gcode::Program& program,
+                                 const gcode::Environment& environment);
 
 /// Compares the remaining stock with the part of the set-up, if there is one: fills
 /// `report.comparison`, and adds a finding `gouge` or `rest-material` for each of the worst

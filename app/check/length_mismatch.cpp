@@ -157,38 +157,38 @@ void add_sentence(CheckRecord& record, const core::Finding& cause, const Consequ
 
 } // namespace
 
-void watch_length(LengthWatch& watch, const core::Setup& setup, const core::BlockEvents& block,
+void track_length(LengthTracker& tracker, const core::Setup& setup, const core::BlockEvents& block,
                   std::span<const gcode::Warning> warnings, core::SimulatorState& state) {
     Counted counted{state.tool, state.length_offset};
     for (const core::Event& event : block.events)
         std::visit([&](const auto& one) { counted.take(one); }, event);
-    if (counted.is_new) watch.is_open = state.watch.length_in_doubt = false;
-    if (watch.is_open) watch.mismatches.back().last = block.block;
+    if (counted.is_new) tracker.is_open = state.rules.length_in_doubt = false;
+    if (tracker.is_open) tracker.mismatches.back().last = block.block;
     const bool has_finding = has_cause(warnings);
     if (!has_finding && !(counted.is_new && counted.offset.number)) return;
     const auto tool = counted.tool ? setup.tools.find(*counted.tool) : setup.tools.end();
     if (tool == setup.tools.end()) return;
     const double too_low = tool->second.length - counted.offset.length;
     if (too_low <= wear) return;
-    state.watch.length_in_doubt = true;
+    state.rules.length_in_doubt = true;
     if (!has_finding) return;
-    watch.mismatches.push_back({.first = block.block,
-                                .last = block.block,
-                                .too_low = too_low,
-                                .length = tool->second.length,
-                                .number = counted.offset.number,
-                                .corrected_to = {},
-                                .remaining = {}});
-    watch.is_open = true;
+    tracker.mismatches.push_back({.first = block.block,
+                                  .last = block.block,
+                                  .too_low = too_low,
+                                  .length = tool->second.length,
+                                  .number = counted.offset.number,
+                                  .corrected_to = {},
+                                  .remaining = {}});
+    tracker.is_open = true;
 }
 
-void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
+void track_changed_length(LengthTracker& tracker, const core::Setup& setup,
                           core::SimulatorState& state) {
     const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
     if (tool == setup.tools.end()) return;
     const bool is_short = tool->second.length - state.length_offset.length > wear;
-    watch.is_open = watch.is_open && is_short;
-    state.watch.length_in_doubt = is_short && (state.length_offset.number || watch.is_open);
+    tracker.is_open = tracker.is_open && is_short;
+    state.rules.length_in_doubt = is_short && (state.length_offset.number || tracker.is_open);
 }
 
 void combine_consequences(CheckRecord& record, CheckReport& report,

@@ -34,17 +34,17 @@ struct LengthMismatch {
 };
 
 /// The length mismatches of a program so far. A plain value.
-struct LengthWatch {
+struct LengthTracker {
     std::vector<LengthMismatch> mismatches;
     bool is_open = false; // the last of them continues
 };
 
 /// Updates the watch before a block is run, and sets `length_in_doubt` of the state.
-void watch_length(LengthWatch& watch, const core::Setup& setup, const core::BlockEvents& block,
+void track_length(LengthTracker& tracker, const core::Setup& setup, const core::BlockEvents& block,
                   std::span<const gcode::Warning> warnings, core::SimulatorState& state);
 
 /// Updates the watch after the user changed the tool's length or its offset between two blocks.
-void watch_changed_length(LengthWatch& watch, const core::Setup& setup,
+void track_changed_length(LengthTracker& tracker, const core::Setup& setup,
                           core::SimulatorState& state);
 
 /// Combines the findings that a wrong length causes into one: collisions and near misses until the

@@ -61,7 +61,7 @@ core::Error stopped_before(const CheckJob& job) {
 /// Memory of a check in addition to the model of its stock, bytes. Measured with programs of 1,000
 /// to 400,000 blocks, including their text, results and findings. Loops execute a line several
 /// times and need more.
-double memory_beside_model(const gcode::Program& program) {
+double memory_besides_model(const gcode::Program& program) {
     constexpr double of_any = 16e6, of_line = 600.0;
     return of_any + of_line * static_cast<double>(program.line_starts.size());
 }
@@ -89,9 +89,9 @@ void take_tool_at_start(PreparedCheck& check) {
 
 /// Reads a program, with the digest of the same bytes: a pipe can be read only once.
 core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
-    const core::FileAccessObserver listening([&](const core::FileAccess& look) {
-        if (look.question == core::FileQuestion::content && look.answer)
-            sha256 = sha256_of(*look.answer);
+    const core::FileAccessObserver listening([&](const core::FileAccess& access) {
+        if (access.question == core::FileQuestion::content && access.answer)
+            sha256 = sha256_of(*access.answer);
     });
     return gcode::read_program(path);
 }
@@ -151,7 +151,7 @@ core::Result<void> place_check(const CheckJob& job, PreparedCheck& check) {
     CheckRun& run = check.run;
     run.memory = core::memory_estimate(core::bounds(run.setup.stock), run.setup.mesh_size);
     const bool may_begin = !job.before_model || run.memory > run.setup.memory_limit
-                           || job.before_model(run.memory + memory_beside_model(*check.program));
+                           || job.before_model(run.memory + memory_besides_model(*check.program));
     if (!may_begin) return tl::unexpected(stopped_before(job));
     auto state = core::start_of_run(run.setup, check.file.environment.start);
     if (!state) return tl::unexpected(core::in_file(state.error(), job.setup));

@@ -48,7 +48,7 @@ private:
     gcode::InterpreterState control_;
     gcode::Lowering lowering_;
     core::SimulatorState machine_;
-    OffsetWatch offsets_;
+    OffsetUses offsets_;
     bool is_lost_ = false;
     std::optional<core::BlockIndex> last_; // last block that was run
     std::vector<core::Finding> found_;
@@ -94,14 +94,14 @@ void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& s
     is_lost_ = !result.checked;
     if (is_lost_) return;
     for (core::Finding& finding : result.findings) found_.push_back(std::move(finding));
-    watch_offsets(offsets_, setup_, control_, of_block, machine_);
+    track_offsets(offsets_, setup_, control_, of_block, machine_);
     last_ = block.block;
 }
 
 LengthMismatch CorrectedRun::end() {
     const auto tool = machine_.tool ? setup_.tools.find(*machine_.tool) : setup_.tools.end();
     if (tool != setup_.tools.end())
-        if (auto air = core::end_air(machine_.watch.air, tool->second.description.diameter))
+        if (auto air = core::end_air(machine_.rules.air, tool->second.description.diameter))
             found_.push_back(*std::move(air));
     for (core::Finding& finding : implausible_offsets(offsets_, setup_))
         found_.push_back(std::move(finding));
@@ -123,14 +123,14 @@ void drop_unreported(core::BlockResult& result) {
         shown =
             static_cast<size_t>(std::min_element(result.pairs.begin(), result.pairs.end(), nearer)
                                 - result.pairs.begin());
-    std::vector<core::PairClearance> kept;
+    std::vector<core::PairClearance> remaining_pairs;
     for (size_t i = 0; i < result.pairs.size(); ++i) {
         if (i != shown && result.pairs[i].verdict == core::Verdict::clear) continue;
-        if (result.deciding == i) result.deciding = kept.size();
-        kept.push_back(result.pairs[i]);
+        if (result.deciding == i) result.deciding = remaining_pairs.size();
+        remaining_pairs.push_back(result.pairs[i]);
     }
-    kept.shrink_to_fit();
-    result.pairs = std::move(kept);
+    remaining_pairs.shrink_to_fit();
+    result.pairs = std::move(remaining_pairs);
     result.findings.clear();
     result.findings.shrink_to_fit();
 }
@@ -240,7 +240,7 @@ void ProgramRunner::stop(core::Error error) {
 }
 
 void ProgramRunner::follow_correction(const gcode::BlockCommands& block, const RunState& before) {
-    const LengthWatch& lengths = before.lengths;
+    const LengthTracker& lengths = before.lengths;
     const bool is_first = lengths.is_open && lengths.mismatches.back().first == block.block;
     if (!lengths.is_open || is_first) end_correction();
     if (is_first)

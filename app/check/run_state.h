@@ -3,7 +3,7 @@
 #include <set>
 
 #include "app/check/length_mismatch.h"
-#include "app/check/offset_watch.h"
+#include "app/check/offset_use.h"
 #include "core/sim/run/block_clock.h"
 #include "core/sim/run/simulator.h"
 #include "gcode/exec/interpreter.h"
@@ -25,9 +25,9 @@ struct RunState {
     gcode::Lowering lowering;
     core::SimulatorState machine;
     core::BlockClock clock;
-    LengthWatch lengths = {};
-    OffsetWatch offsets = {};
-    UnitsWatch units = {};
+    LengthTracker lengths = {};
+    OffsetUses offsets = {};
+    UnitsTracker units = {};
     std::set<size_t> moves_made = {}; // indices of the set-up's fixture moves
 };
 

@@ -168,8 +168,8 @@ ToolDescription reshaped(ToolDescription tool, ToolShape shape) {
     tool.shape = shape;
     for (const ToolSize& size : fields_of(shape)) size.put(tool, size.of(before));
     FoundTool found{.tool = tool, .has_shape = true};
-    const ToolDescription kept = complete(found).tool;
-    if (core::assemble(kept)) return kept;
+    const ToolDescription completed = complete(found).tool;
+    if (core::assemble(completed)) return completed;
     // Lengths of the old shape do not suit the new one.
     found.tool.flute_length = 0.0;
     found.tool.stick_out.reset();

@@ -54,7 +54,7 @@ struct Checked {
 
 std::string report_text(const ReportTarget& target, const Checked& checked) {
     ProgramReport report = checked.report;
-    if (!target.path.empty()) report.told.clear(); // a file lists all assumptions
+    if (!target.path.empty()) report.shown_assumptions.clear(); // a file lists all assumptions
     return report_format(target.format).of_program(report);
 }
 
@@ -106,7 +106,7 @@ bool say_memory(double bytes) {
 
 /// Whether a report must not replace a file because the run was incomplete: it would look like a
 /// report of the whole program.
-bool is_kept_back(const CheckOptions& options, const ReportTarget& target, const CheckRun& run) {
+bool is_held_back(const CheckOptions& options, const ReportTarget& target, const CheckRun& run) {
     if (!run.stopped || target.path.empty()) return false;
     const UnfinishedReport unfinished = report_format(target.format).unfinished;
     return unfinished == UnfinishedReport::never
@@ -119,7 +119,7 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
                    const std::vector<ReportTarget>& targets) {
     std::vector<ReportTarget> written;
     for (const ReportTarget& target : targets)
-        if (!is_kept_back(options, target, checked.report.run)) written.push_back(target);
+        if (!is_held_back(options, target, checked.report.run)) written.push_back(target);
     const bool is_on_screen = std::any_of(written.begin(), written.end(),
                                           [](const auto& target) { return target.path.empty(); });
     if (written.size() < targets.size() && !is_on_screen) written.push_back({"text", {}});
@@ -162,7 +162,7 @@ core::Result<CheckJob> one_job(const CheckOptions& options) {
 void say_project(const CheckJob& job) {
     std::error_code ignored;
     if (!job.setup.empty() || !std::filesystem::is_regular_file(job.program, ignored)) return;
-    const std::string project = ProjectOwners().of(place_of(job.program).parent_path(), "/");
+    const std::string project = ProjectOwners().of(resolved_path(job.program).parent_path(), "/");
     if (!project.empty())
         print_note(fmt::format("feeler: {} does not apply to a program that is named directly: "
                                "to use it, check the folder\n",
@@ -171,7 +171,7 @@ void say_project(const CheckJob& job) {
 
 /// `told`: the assumptions already shown on the terminal; replaced by those of this check.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
-                   std::vector<std::string>& told) {
+                   std::vector<std::string>& shown_assumptions) {
     ReadFiles read;
     auto job = one_job(options);
     if (!job) return failed(job.error());
@@ -202,29 +202,29 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
                                              .views = views,
                                              .blocks = options.blocks,
                                              .pairs = options.pairs,
-                                             .told = told},
+                                             .shown_assumptions = shown_assumptions},
                                             read},
                                            targets);
-    told = run->all_assumptions();
+    shown_assumptions = run->all_assumptions();
     if (!all_written || run->stopped || !saved) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 
-core::Result<void> check_share(const CheckOptions& options) {
+core::Result<void> check_shard_option(const CheckOptions& options) {
     const bool is_written = std::count(options.formats.begin(), options.formats.end(), "shard") > 0;
-    if (options.share || !is_written) return {};
+    if (options.shard || !is_written) return {};
     return core::fail(core::ErrorCode::invalid_value,
                       "--format shard needs --shard I/N: the shard that this computer checks");
 }
 
 bool is_batch(const CheckOptions& options) {
-    return options.share || !is_one_program(options.programs);
+    return options.shard || !is_one_program(options.programs);
 }
 
 ExitCode check(const CheckOptions& options) {
     const auto targets = targets_of(options.formats, options.outputs);
     if (!targets) return failed(targets.error());
-    if (auto fits = check_share(options); !fits) return failed(fits.error());
+    if (auto fits = check_shard_option(options); !fits) return failed(fits.error());
     BatchPass many; // set once needed: while watching, a path may become a folder
     const auto prepare = [&](bool is_many) -> core::Result<void> {
         if (!is_many || many) return {};
@@ -232,11 +232,11 @@ ExitCode check(const CheckOptions& options) {
         return {};
     };
     if (auto ready = prepare(is_batch(options)); !ready) return failed(ready.error());
-    std::vector<std::string> told;
+    std::vector<std::string> shown_assumptions;
     const auto pass = [&](WatchedFiles* files) {
         const bool is_many = is_batch(options);
         if (auto ready = prepare(is_many); !ready) return failed(ready.error());
-        return is_many ? many(files) : check_one(options, *targets, told);
+        return is_many ? many(files) : check_one(options, *targets, shown_assumptions);
     };
     if (!options.watch) return pass(nullptr);
     std::vector<std::string> outputs = paths_of(*targets);
@@ -279,12 +279,12 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
         ->excludes(cache);
     command
         .add_option_function<std::string>(
-            "--shard", [&options](const std::string& name) { options.share = *share_named(name); },
+            "--shard", [&options](const std::string& name) { options.shard = *shard_named(name); },
             "Several computers: check only shard I of N; use --format shard and feeler merge")
         ->check(CLI::Validator(
             [](const std::string& name) {
-                const auto share = share_named(name);
-                return share ? std::string() : share.error().message;
+                const auto shard = shard_named(name);
+                return shard ? std::string() : shard.error().message;
             },
             "I/N"));
     command
@@ -355,13 +355,13 @@ std::vector<std::string> wait_for_change(WatchedFiles& files) {
         wait(pace.pause());
         if (is_interrupted()) return {};
         const Clock::time_point begin = Clock::now();
-        WatchedFiles::Change change = files.look_again();
+        WatchedFiles::Change change = files.poll();
         if (pace.is_time(change, begin, Clock::now() - begin)) return std::move(change.paths);
     }
 }
 
-std::string name_of(const std::string& place) {
-    const std::filesystem::path path(place);
+std::string name_of(const std::string& path_text) {
+    const std::filesystem::path path(path_text);
     return (path.has_filename() ? path.filename() : path).string();
 }
 
@@ -398,7 +398,7 @@ ExitCode watch(const std::vector<std::string>& outputs,
         ExitCode code{};
         {
             const core::FileAccessObserver listening(
-                [&files](const core::FileAccess& look) { files.note(look); });
+                [&files](const core::FileAccess& access) { files.note(access); });
             code = pass(files);
         }
         written.end_pass(files);

@@ -57,9 +57,9 @@ private:
     std::optional<ProgramResult> find(const CheckJob& job);
 
     std::unique_ptr<ResultStore> store_;
-    std::unique_ptr<SiblingStores> beside_; // null if --cache names a database
+    std::unique_ptr<SiblingStores> siblings_; // null if --cache names a database
     std::mutex guard_;
-    bool is_told_ = false;
+    bool is_announced_ = false;
     std::atomic<bool> is_lost_ = false; // the database cannot be read in this run
     size_t found_ = 0;
     std::string path_;
@@ -68,16 +68,16 @@ private:
 namespace {
 
 /// Path of the database; empty if results are not stored.
-std::string place_of_store(const CheckOptions& options) {
+std::string path_of_store(const CheckOptions& options) {
     if (options.no_cache) return {};
     if (!options.cache.empty()) return options.cache;
     std::error_code ignored;
     for (const std::string& word : options.programs) {
         if (std::filesystem::is_directory(word, ignored))
-            return default_store_path(word, options.share);
+            return default_store_path(word, options.shard);
         const std::filesystem::path path(word);
         if (path.extension() == ".toml")
-            return default_store_path(path.parent_path().string(), options.share);
+            return default_store_path(path.parent_path().string(), options.shard);
     }
     return {};
 }
@@ -85,23 +85,23 @@ std::string place_of_store(const CheckOptions& options) {
 } // namespace
 
 BatchStore::BatchStore(const CheckOptions& options) {
-    path_ = place_of_store(options);
-    const std::string place = path_.empty() && options.watch ? Database::in_memory : path_;
-    if (place.empty()) return;
-    auto store =
-        ResultStore::open(place, build_version(), std::make_shared<RetryBudget>(is_interrupted));
+    path_ = path_of_store(options);
+    const std::string store_path = path_.empty() && options.watch ? Database::in_memory : path_;
+    if (store_path.empty()) return;
+    auto store = ResultStore::open(store_path, build_version(),
+                                   std::make_shared<RetryBudget>(is_interrupted));
     if (!store) {
         give_up(store.error());
         return;
     }
     store_ = std::make_unique<ResultStore>(*std::move(store));
     if (options.cache.empty() && !path_.empty())
-        beside_ = std::make_unique<SiblingStores>(place, *store_);
+        siblings_ = std::make_unique<SiblingStores>(store_path, *store_);
 }
 
 void BatchStore::give_up(const core::Error& error) {
     const std::scoped_lock lock(guard_);
-    if (std::exchange(is_told_, true)) return;
+    if (std::exchange(is_announced_, true)) return;
     print_error(error);
     print_note("feeler: results are not stored; the check continues\n");
 }
@@ -113,14 +113,14 @@ void BatchStore::begin_again() {
 }
 
 std::optional<ProgramResult> BatchStore::find(const CheckJob& job) {
-    if (is_lost_) return beside_ ? beside_->find(job) : std::nullopt;
+    if (is_lost_) return siblings_ ? siblings_->find(job) : std::nullopt;
     auto found = store_->find(job);
     if (!found) {
         is_lost_ = true;
         give_up(found.error());
     }
     if (found && *found) return *std::move(found);
-    return beside_ ? beside_->find(job) : std::nullopt;
+    return siblings_ ? siblings_->find(job) : std::nullopt;
 }
 
 void BatchStore::flush() {
@@ -137,7 +137,7 @@ void BatchStore::serve(BatchHooks& hooks) {
         return found;
     };
     hooks.keep = [this](const CheckJob& job, const CheckRun& run, const ProgramResult& result) {
-        if (auto kept = store_->keep(job, run, result); !kept) give_up(kept.error());
+        if (auto stored = store_->keep(job, run, result); !stored) give_up(stored.error());
     };
 }
 
@@ -175,45 +175,45 @@ BatchLimits limits_of(const CheckOptions& options) {
 struct SharedWork {
     BatchPlan plan;
     std::vector<PlannedProgram> programs; // of the whole batch
-    std::vector<size_t> places;           // indices of the plan's programs in `programs`
+    std::vector<size_t> indices;          // indices of the plan's programs in `programs`
 };
 
 SharedWork work_of(const CheckOptions& options, BatchPlan whole) {
-    if (!options.share) return {.plan = std::move(whole), .programs = {}, .places = {}};
-    SharedWork work{.plan = {}, .programs = planned_programs(whole), .places = {}};
-    work.places = places_of(work.programs, *options.share);
-    work.plan = plan_of_places(whole, work.places);
+    if (!options.shard) return {.plan = std::move(whole), .programs = {}, .indices = {}};
+    SharedWork work{.plan = {}, .programs = planned_programs(whole), .indices = {}};
+    work.indices = indices_of(work.programs, *options.shard);
+    work.plan = part_of_plan(whole, work.indices);
     return work;
 }
 
 /// Deletes the shard file of an earlier run, so that it is not mistaken for the result of a run
 /// that was killed or could not start. Any other file stays here: writing the output decides
 /// whether it may be replaced.
-core::Result<void> forget_old_share(const std::vector<ReportTarget>& targets) {
+core::Result<void> remove_old_shard(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets) {
         if (target.format != "shard" || !is_shard_file(target.path)) continue;
         std::error_code failure;
-        if (!std::filesystem::remove(place_of(target.path), failure))
+        if (!std::filesystem::remove(resolved_path(target.path), failure))
             return tl::unexpected<core::Error>(
                 {core::ErrorCode::io, {}, "cannot be replaced: " + failure.message(), target.path});
     }
     return {};
 }
 
-std::string share_text(const CheckOptions& options, const SharedWork& work) {
-    if (!options.share) return {};
-    return fmt::format("shard {}: {} of {} programs", text_of(*options.share), work.places.size(),
+std::string shard_text(const CheckOptions& options, const SharedWork& work) {
+    if (!options.shard) return {};
+    return fmt::format("shard {}: {} of {} programs", text_of(*options.shard), work.indices.size(),
                        work.programs.size());
 }
 
-Shard shard_of(const ShardId& share, const SharedWork& work, const BatchResult& batch,
+Shard shard_of(const ShardId& shard_id, const SharedWork& work, const BatchResult& batch,
                double seconds) {
     Shard shard;
     shard.version = build_version();
-    shard.share = share;
+    shard.id = shard_id;
     shard.programs = work.programs;
     shard.seconds = seconds;
-    return shard_of(std::move(shard), work.places, batch);
+    return shard_of(std::move(shard), work.indices, batch);
 }
 
 /// State that lasts from pass to pass of --watch.
@@ -225,11 +225,11 @@ struct WatchState {
 };
 
 /// Records the result; whether it differs from the one last printed for the program.
-bool note_said(WatchState& watch, ProgramResult result) {
+bool is_changed_result(WatchState& watch, ProgramResult result) {
     result.seconds = 0.0;
-    const auto [place, is_first] = watch.said.try_emplace(result.program, result);
-    if (!is_first && place->second == result) return false;
-    place->second = std::move(result);
+    const auto [entry, is_first] = watch.said.try_emplace(result.program, result);
+    if (!is_first && entry->second == result) return false;
+    entry->second = std::move(result);
     return true;
 }
 
@@ -251,15 +251,15 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
             if (found) known.insert(found->program);
             return found;
         };
-    hooks.looked = [&](const core::FileAccess& look) {
-        read.note(look);
-        if (watch.files) watch.files->note(look);
+    hooks.file_accessed = [&](const core::FileAccess& access) {
+        read.note(access);
+        if (watch.files) watch.files->note(access);
     };
     hooks.is_stopped = is_interrupted;
     hooks.waiting = [&line](const BatchProgress& progress) { line.show(progress); };
     hooks.ended = [&](const ProgramResult& result) {
         const std::scoped_lock lock(guard);
-        const bool is_new = watch.files && note_said(watch, result);
+        const bool is_new = watch.files && is_changed_result(watch, result);
         if (known.contains(result.program) && !is_new) return;
         const std::string text = program_text(result, talk.style);
         if (text.empty()) return;
@@ -284,7 +284,7 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     const Stopwatch time;
     ReadFiles read;
     read.add(store.path());
-    for (const std::string& path : stores_beside(store.path())) read.add(path);
+    for (const std::string& path : sibling_stores(store.path())) read.add(path);
     auto plan = plan_batch(options.programs, asked);
     if (!plan) return failed(plan.error());
     for (const CheckJob& job : plan->jobs) {
@@ -296,7 +296,7 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     const SharedWork work = work_of(options, *std::move(plan));
     const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
     BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);
-    batch.share = share_text(options, work);
+    batch.shard = shard_text(options, work);
     talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));
     if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results come from earlier checks: nothing has changed\n",
@@ -305,8 +305,8 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
         print_note(fmt::format("feeler: interrupted; {} of {} programs were checked\n",
                                batch.programs.size(),
                                batch.programs.size() + batch.unchecked.size()));
-    if (!options.share) return end_batch(batch, nullptr, targets, talk, read);
-    const Shard shard = shard_of(*options.share, work, batch, time.seconds());
+    if (!options.shard) return end_batch(batch, nullptr, targets, talk, read);
+    const Shard shard = shard_of(*options.shard, work, batch, time.seconds());
     return end_batch(batch, &shard, targets, talk, read);
 }
 
@@ -314,7 +314,7 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
 
 core::Result<BatchPass> batch_pass(const CheckOptions& options,
                                    const std::vector<ReportTarget>& targets) {
-    if (auto ready = forget_old_share(targets); !ready) return tl::unexpected(ready.error());
+    if (auto ready = remove_old_shard(targets); !ready) return tl::unexpected(ready.error());
     if (const auto allowed = refuse_single_options(options); !allowed)
         return tl::unexpected(allowed.error());
     FEELER_TRY(const CheckJob asked, job_of(options));
@@ -324,7 +324,7 @@ core::Result<BatchPass> batch_pass(const CheckOptions& options,
         if (files) files->add_own(store->path());
         store->begin_again();
         state.files = files;
-        if (const auto ready = forget_old_share(targets); !ready) return failed(ready.error());
+        if (const auto ready = remove_old_shard(targets); !ready) return failed(ready.error());
         const ExitCode code = pass(options, asked, targets, *store, state);
         state.is_again = true;
         return code;

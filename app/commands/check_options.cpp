@@ -28,8 +28,8 @@ core::Result<std::vector<ReportTarget>> targets_of(const std::vector<std::string
     for (size_t i = 0; i < outputs.size(); ++i) {
         targets[i].path = outputs[i];
         for (size_t k = 0; k < i; ++k)
-            if (const auto place = place_of(targets[i].path);
-                !place.empty() && place == place_of(targets[k].path))
+            if (const auto target_path = resolved_path(targets[i].path);
+                !target_path.empty() && target_path == resolved_path(targets[k].path))
                 return refused(fmt::format("two reports would go to {}", targets[i].path));
     }
     return targets;

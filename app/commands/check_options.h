@@ -32,7 +32,7 @@ struct CheckOptions {
     bool watch = false;
     std::optional<unsigned> jobs;
     std::optional<double> memory; // MB
-    std::optional<ShardId> share; // of the programs; empty: all
+    std::optional<ShardId> shard; // of the programs; empty: all
 };
 
 /// A report to write.

@@ -54,7 +54,7 @@ core::Result<CoprocessorResult> run(const CoprocOptions& options, Trace& trace) 
             trace.note(blocks, state);
         };
     }
-    FEELER_TRY(CoprocessorRun run, run_beside_coprocessor(job));
+    FEELER_TRY(CoprocessorRun run, run_with_coprocessor(job));
     return in_time(std::move(run), file, options.past_refusals);
 }
 

@@ -243,7 +243,7 @@ public:
     explicit Console(DebugSession& session) : session_(session), prompt_(session) {
         session.is_interrupted = [this] {
             const CheckRun& record = session_.record();
-            line_.show(CheckProgress{record.blocks.size(), session_.recorded_share(),
+            line_.show(CheckProgress{record.blocks.size(), session_.recorded_fraction(),
                                      record.findings.size()});
             return was_interrupted();
         };

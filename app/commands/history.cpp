@@ -19,7 +19,7 @@ struct HistoryOptions {
     std::string program, cache, output, format = "text";
 };
 
-core::Result<std::vector<std::string>> places_of_stores(const HistoryOptions& options) {
+core::Result<std::vector<std::string>> paths_of_stores(const HistoryOptions& options) {
     std::error_code failure;
     if (!options.cache.empty()) {
         if (std::filesystem::exists(options.cache, failure))
@@ -38,10 +38,10 @@ core::Result<std::vector<std::string>> places_of_stores(const HistoryOptions& op
 /// among machines. The merged version was first checked and last seen at the extremes of its
 /// copies.
 std::vector<StoredVersion> joined(std::vector<StoredVersion> all) {
-    std::map<std::vector<std::string>, size_t> places;
+    std::map<std::vector<std::string>, size_t> paths;
     std::vector<StoredVersion> versions;
     for (StoredVersion& each : all) {
-        const auto [at, is_new] = places.try_emplace(
+        const auto [at, is_new] = paths.try_emplace(
             {each.version, each.setup, each.options, each.inputs}, versions.size());
         if (is_new) {
             versions.push_back(std::move(each));
@@ -55,12 +55,12 @@ std::vector<StoredVersion> joined(std::vector<StoredVersion> all) {
 }
 
 /// All versions, the last seen at the end.
-core::Result<std::vector<StoredVersion>> versions_in(const std::vector<std::string>& places,
+core::Result<std::vector<StoredVersion>> versions_in(const std::vector<std::string>& paths,
                                                      const std::string& program) {
     std::vector<ResultStore> stores;
     std::vector<StoredVersion> all;
-    for (const std::string& place : places) {
-        FEELER_TRY(ResultStore store, ResultStore::open(place, build_version()));
+    for (const std::string& path : paths) {
+        FEELER_TRY(ResultStore store, ResultStore::open(path, build_version()));
         FEELER_TRY(std::vector<StoredVersion> versions, store.history(program));
         std::move(versions.begin(), versions.end(), std::back_inserter(all));
         stores.push_back(std::move(store));
@@ -79,14 +79,14 @@ core::Result<std::vector<StoredVersion>> versions_in(const std::vector<std::stri
 }
 
 core::Result<void> write_history(const HistoryOptions& options) {
-    FEELER_TRY(const std::vector<std::string> places, places_of_stores(options));
+    FEELER_TRY(const std::vector<std::string> paths, paths_of_stores(options));
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
-    for (const std::string& place : places)
-        if (auto safe = check_output(options.output, {place}); !safe) return safe;
-    FEELER_TRY(const std::vector<StoredVersion> versions, versions_in(places, options.program));
+    for (const std::string& path : paths)
+        if (auto safe = check_output(options.output, {path}); !safe) return safe;
+    FEELER_TRY(const std::vector<StoredVersion> versions, versions_in(paths, options.program));
     if (versions.empty())
         return core::fail(core::ErrorCode::missing_value,
-                          fmt::format("{} has no results for {}", places[0], options.program));
+                          fmt::format("{} has no results for {}", paths[0], options.program));
     return write_output(options.output, options.format == "json"
                                             ? history_json(options.program, versions)
                                             : history_text(options.program, versions));

@@ -76,7 +76,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
     for (const Shard& shard : shards)
         if (!shard.unchecked.empty())
             print_note(fmt::format("feeler: {}: shard {} was interrupted: run it again\n",
-                                   shard.file, text_of(shard.share)));
+                                   shard.file, text_of(shard.id)));
 }
 
 core::Result<ExitCode> merge(const MergeOptions& options) {

@@ -68,7 +68,7 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     state->path = path;
     std::error_code failure;
     const auto kind = std::filesystem::status(path, failure).type();
-    const std::filesystem::path target = place_of(path);
+    const std::filesystem::path target = resolved_path(path);
     if (kind == std::filesystem::file_type::none || target.empty())
         return refused(path,
                        "cannot be written: "

@@ -126,7 +126,7 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     CheckJob job;
     job.program = arguments.program;
     job.setup = arguments.setup;
-    look_beside(job);
+    find_setup_next_to(job);
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;
     if (arguments.memory_limit) job.memory_limit = *arguments.memory_limit * 1e6;

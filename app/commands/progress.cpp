@@ -36,15 +36,15 @@ extern "C" void note_interrupt(int signal) {
     std::raise(signal);
 }
 
-std::string bar_text(double share, const std::string& what, double seconds) {
+std::string bar_text(double fraction, const std::string& what, double seconds) {
     constexpr int width = 20;
-    const int filled = static_cast<int>(share * width);
+    const int filled = static_cast<int>(fraction * width);
     std::string text =
         fmt::format("[{}{}] {:3.0f} %  {}", std::string(static_cast<size_t>(filled), '#'),
-                    std::string(static_cast<size_t>(width - filled), '.'), 100.0 * share, what);
+                    std::string(static_cast<size_t>(width - filled), '.'), 100.0 * fraction, what);
     // Early estimates are unreliable.
-    if (share > 0.02 && seconds > 1.0)
-        text += fmt::format(", {} left", duration_text(seconds * (1.0 - share) / share));
+    if (fraction > 0.02 && seconds > 1.0)
+        text += fmt::format(", {} left", duration_text(seconds * (1.0 - fraction) / fraction));
     return text.substr(0, 79);
 }
 
@@ -63,13 +63,13 @@ bool is_interrupted() { return interrupted_at != 0; }
 
 std::string progress_text(const CheckProgress& progress, double seconds) {
     return bar_text(
-        progress.share,
+        progress.fraction,
         fmt::format("{} blocks, {}", progress.blocks, counted(progress.findings, "finding")),
         seconds);
 }
 
 std::string progress_text(const BatchProgress& progress, double seconds) {
-    return bar_text(progress.share,
+    return bar_text(progress.fraction,
                     fmt::format("{} of {} programs, {} with errors", progress.done,
                                 progress.programs, progress.with_errors),
                     seconds);

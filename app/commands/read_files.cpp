@@ -20,10 +20,10 @@ FileNumber number_of(const std::string& path) {
 
 } // namespace
 
-ReadFiles::ReadFiles() : listening_([this](const core::FileAccess& look) { note(look); }) {}
+ReadFiles::ReadFiles() : listening_([this](const core::FileAccess& access) { note(access); }) {}
 
-void ReadFiles::note(const core::FileAccess& look) {
-    if (look.question == core::FileQuestion::content) add(look.path);
+void ReadFiles::note(const core::FileAccess& access) {
+    if (access.question == core::FileQuestion::content) add(access.path);
 }
 
 void ReadFiles::add(const std::string& path) {

@@ -18,7 +18,7 @@ public:
     ReadFiles();
 
     /// Records an access by another thread.
-    void note(const core::FileAccess& look);
+    void note(const core::FileAccess& access);
     void add(const std::string& path); // an empty path is ignored
 
     /// Refuses an output file that was read, also under another name or link.

@@ -29,8 +29,8 @@ std::string sarif_of(const BatchResult& batch) {
 constexpr ReportFormat formats[] = {
     {"text", "",
      [](const ProgramReport& report) {
-         return text_report(report.run,
-                            {.blocks = report.blocks || report.pairs, .told = report.told});
+         return text_report(report.run, {.blocks = report.blocks || report.pairs,
+                                         .shown_assumptions = report.shown_assumptions});
      },
      [](const BatchResult& batch, const BatchStyle& style) {
          return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});

@@ -16,9 +16,9 @@ struct ProgramReport {
     const CheckRun& run;
     const std::string& setup; // path; empty: inferred
     const ReportViews& views;
-    bool blocks = false;                // text: add the table of all blocks that move
-    bool pairs = false;                 // JSON: list every pair of bodies in every block
-    std::vector<std::string> told = {}; // assumptions already shown on the terminal
+    bool blocks = false; // text: add the table of all blocks that move
+    bool pairs = false;  // JSON: list every pair of bodies in every block
+    std::vector<std::string> shown_assumptions = {}; // assumptions already shown on the terminal
 };
 
 /// When a report of an incomplete check may replace a file.

@@ -221,7 +221,7 @@ core::Result<void> shoot_block(const ShotOptions& options, const render::Viewpor
     else
         viewer::go_to_witness(offscreen.model, block);
     offscreen.settle();
-    offscreen.look(view_named(options.view), size);
+    offscreen.set_view(view_named(options.view), size);
     FEELER_TRY(const render::Image image, offscreen.picture(size, !options.no_ui));
     return render::write_png(image, options.output);
 }
@@ -257,7 +257,7 @@ core::Result<void> shoot_sheet(const ShotOptions& options, OffscreenViewer& offs
         if (prints.size() == most_prints) break;
         viewer::go_to_witness(offscreen.model, block);
         offscreen.settle();
-        offscreen.look(viewer::ShotView::witness, size);
+        offscreen.set_view(viewer::ShotView::witness, size);
         FEELER_TRY(render::Image image, offscreen.picture(size, false));
         prints.push_back({std::move(image), caption_of(offscreen.model, block, findings)});
     }
@@ -289,7 +289,7 @@ core::Result<void> shoot_film(const ShotOptions& options, const render::Viewport
     FEELER_TRY(const auto film, FilmWriter::open(options.output));
     for (size_t i = 0; i < count; ++i) {
         offscreen.settle();
-        if (i == 0) offscreen.look(view_named(options.view), size);
+        if (i == 0) offscreen.set_view(view_named(options.view), size);
         FEELER_TRY(const render::Image image, offscreen.picture(size, !options.no_ui));
         if (const auto written = film->add(image); !written) return written;
         viewer::play(model, length / static_cast<double>(count - 1));
@@ -357,7 +357,7 @@ void add_subject(CLI::App& command, ShotOptions& options) {
             if (one != other) one->excludes(other);
 }
 
-void add_looks(CLI::App& command, ShotOptions& options) {
+void add_view_options(CLI::App& command, ShotOptions& options) {
     command.add_option("--size", options.size, "Width and height in pixels")->capture_default_str();
     command.add_option("--view", options.view, "Direction of view")
         ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
@@ -380,7 +380,7 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
                     "Picture (.png), or film (.mp4 or another type that ffmpeg writes; without "
                     "ffmpeg, numbered pictures)")
         ->required();
-    add_looks(command, *options);
+    add_view_options(command, *options);
     add_device_arguments(command, options->device);
     command.callback([options, &exit_code] {
         const auto done = shoot(*options);

@@ -27,7 +27,7 @@ struct BlockPermit {
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // the refused pair
     std::string not_asked;          // why a motion could not be checked; it is then not permitted
-    bool is_told = false;           // a finding of the run gives the same reason
+    bool is_reported = false;       // a finding of the run gives the same reason
     std::vector<AskedPair> pairs;   // every pair once
     hwsim::DeviceReport report;     // of the device, before a stop is cleared
 };

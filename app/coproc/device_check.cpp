@@ -17,7 +17,7 @@ constexpr double cylinder_tolerance = 0.02; // mm
 
 /// Whether the model of a body fits this orientation: a body of revolution only needs an upright
 /// axis, others must not be rotated.
-bool stands_upright(const core::MovingBody& body, const core::Mat3& orientation) {
+bool is_upright_on(const core::MovingBody& body, const core::Mat3& orientation) {
     return body.profile ? orientation[2] == core::Vec3(0.0, 0.0, 1.0)
                         : orientation == core::Mat3(1.0);
 }
@@ -39,7 +39,7 @@ double cube_side(const core::ExactBody& body, double mesh_size) {
 } // namespace
 
 double DeviceModels::excess(const core::MovingBody& body, const core::Mat3& orientation) const {
-    const bool is_upright = stands_upright(body, orientation);
+    const bool is_upright = is_upright_on(body, orientation);
     // The diagonal of a cell; half of it by which a part is enlarged, plus the excess of the
     // cylinder around a post; the diagonal of a cube.
     if (body.profile)
@@ -52,7 +52,7 @@ double DeviceModels::excess(const core::MovingBody& body, const core::Mat3& orie
 Result<std::vector<hwsim::Record>> DeviceModels::records_of(const core::MovingBody& body,
                                                             double shrink,
                                                             const core::Mat3& orientation) {
-    const bool is_upright = stands_upright(body, orientation);
+    const bool is_upright = is_upright_on(body, orientation);
     std::vector<hwsim::Record> posts;
     if (body.profile) {
         const core::RevolvedProfile part =
@@ -79,9 +79,9 @@ Result<SlotNumber> DeviceModels::of_body(hwsim::Driver& driver, const core::Movi
     const Key key{body.kind, body.carried, shrink};
     const auto known = bodies_.find(key);
     if (known != bodies_.end()) {
-        const bool is_same = known->second.orientation == orientation
-                             || (stands_upright(body, orientation)
-                                 && stands_upright(body, known->second.orientation));
+        const bool is_same =
+            known->second.orientation == orientation
+            || (is_upright_on(body, orientation) && is_upright_on(body, known->second.orientation));
         if (is_same) return known->second.slot;
         hwsim::unload(driver, known->second.slot);
         bodies_.erase(known);
@@ -121,13 +121,15 @@ namespace {
 enum class Teller : uint8_t { permit, run };
 
 void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {
-    permit.is_told = teller == Teller::run && (permit.not_asked.empty() || permit.is_told);
+    permit.is_reported = teller == Teller::run && (permit.not_asked.empty() || permit.is_reported);
     permit.not_asked = std::move(why);
 }
 
 hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, SlotNumber work,
                               double distance) {
-    return {.from = way.places.front(), .to = way.places.back(), .pairs = {{tool, work, distance}}};
+    return {.from = way.positions.front(),
+            .to = way.positions.back(),
+            .pairs = {{tool, work, distance}}};
 }
 
 /// The entry of a pair in a block's permit; added if it is missing.
@@ -238,7 +240,7 @@ void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at)
 Result<void> CoprocessorCheck::ask_rest(At& at, PushedBlock& block) {
     const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return {};
-    return ask_leg({.places = {path.legs[0].places[0]}}, false, at, block);
+    return ask_leg({.positions = {path.legs[0].positions[0]}}, false, at, block);
 }
 
 Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, PushedBlock& block) {
@@ -297,8 +299,8 @@ Result<void> CoprocessorCheck::walk(const core::Leg& leg, bool cutting, At& at, 
 }
 
 bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
-    if (!leg.straight || leg.places.size() != 2
-        || turn_of(setup_->machine, leg.places[0], leg.places[1]) == 0.0)
+    if (!leg.straight || leg.positions.size() != 2
+        || turn_of(setup_->machine, leg.positions[0], leg.positions[1]) == 0.0)
         return false;
     const double fine = std::max(0.25, setup_->mesh_size); // mm
     static const core::ToolAssembly nothing;
@@ -398,8 +400,8 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
         return; // omits the cut: the stock is then too large, which is safe
     at.to_cut.push_back({.cutter = std::make_shared<const core::Cutter>(
                              make_cutter(at.tool->parts[0].profile, way.error)),
-                         .from = way.places.front(),
-                         .to = way.places.back(),
+                         .from = way.positions.front(),
+                         .to = way.positions.back(),
                          .orientation = way.orientation});
 }
 
@@ -444,8 +446,8 @@ Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
 bool CoprocessorCheck::is_in_own_cut(const Question& q, const At& at) const {
     if (q.body.kind != core::PartKind::flutes || q.way.turns || !q.may_touch) return false;
     return runs_in_own_cut(at.stock, {.flutes = *q.body.profile,
-                                      .from = q.way.places.front(),
-                                      .to = q.way.places.back(),
+                                      .from = q.way.positions.front(),
+                                      .to = q.way.positions.back(),
                                       .sideways = 0.5 * contact_depth(q.allowance) - q.way.error,
                                       .orientation = q.way.orientation});
 }

@@ -104,7 +104,7 @@ private:
         double off_motion = 0.0; // deviation of the motion by rounded corners, mm
         core::AxisPosition position;
         std::vector<bool> fixtures_there;
-        core::CentreWatch centre;               // for a tool that does not cut at its centre
+        core::CentreTracker centre;             // for a tool that does not cut at its centre
         std::optional<core::ToolNumber> called; // tool in the spindle, described or not
         bool tool_known = false;
         bool is_cycle = false; // the block has several motions

@@ -113,7 +113,7 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
     if (permit.permitted) return judgement;
     judgement.verdict = Verdict::undecided;
     judgement.checked = permit.not_asked.empty() || worst_of(permit);
-    if (!permit.is_told || permit.stop != hwsim::Stop::none)
+    if (!permit.is_reported || permit.stop != hwsim::Stop::none)
         judgement.finding = refusal(state_->setup, permit);
     return judgement;
 }

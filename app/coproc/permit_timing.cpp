@@ -23,7 +23,7 @@ public:
     }
 
     PermitTiming run() {
-        while (!machine_.is_done() && !stands_for_good()) {
+        while (!machine_.is_done() && !is_stopped_for_good()) {
             ask_ahead();
             permit();
             core::step(machine_, permitted_);
@@ -36,7 +36,7 @@ public:
 
 private:
     bool is_refused(size_t block) const { return !past_refusals_ && services_[block].refused; }
-    bool stands_for_good() const {
+    bool is_stopped_for_good() const {
         return machine_.is_held() && permitted_ < asked_ && is_refused(permitted_)
                && made_.blocks[permitted_].permitted <= machine_.time();
     }

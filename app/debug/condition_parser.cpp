@@ -215,7 +215,7 @@ bool is_in(const auto& list, std::string_view name) {
 }
 
 /// The number after a letter, as in t3; empty if the name has another form.
-std::optional<double> number_behind(char letter, const std::string& name) {
+std::optional<double> number_after(char letter, const std::string& name) {
     int number = 0;
     if (name.size() < 2 || name[0] != letter) return std::nullopt;
     const char* end = name.data() + name.size();
@@ -239,7 +239,7 @@ std::optional<Node> value_named(const std::string& name) {
     for (const NamedFact& fact : facts)
         if (fact.name == name)
             return Node{.kind = NodeKind::fact, .type = fact.type, .fact = fact.fact};
-    if (const auto tool = number_behind('t', name))
+    if (const auto tool = number_after('t', name))
         return Node{.kind = NodeKind::number, .number = *tool};
     if (!names_value(name)) return std::nullopt;
     return Node{.kind = NodeKind::control,
@@ -257,9 +257,9 @@ std::optional<Node> truth_named(const std::string& name) {
     if (name == "finding") return Node{.kind = NodeKind::severity, .type = truth};
     if (core::default_severity(name))
         return Node{.kind = NodeKind::rule, .type = truth, .text = name};
-    if (const auto tool = number_behind('t', name))
+    if (const auto tool = number_after('t', name))
         return Node{.kind = NodeKind::has_tool, .type = truth, .number = *tool};
-    if (number_behind('n', name))
+    if (number_after('n', name))
         return Node{.kind = NodeKind::numbered, .type = truth, .text = name};
     return std::nullopt;
 }
@@ -441,9 +441,9 @@ private:
         size_t at = at_;
         while (tokens_[at].kind == Kind::sign && tokens_[at].text == "-") ++at;
         if (tokens_[at].kind != Kind::name) return false;
-        const ConditionToken& behind = tokens_[at + 1];
-        return is_comparison(behind)
-               || (behind.kind == Kind::sign && std::string_view("+-*/").find(behind.text) < 4);
+        const ConditionToken& after = tokens_[at + 1];
+        return is_comparison(after)
+               || (after.kind == Kind::sign && std::string_view("+-*/").find(after.text) < 4);
     }
 
     /// A comparison with `rule`. A block may have findings of several rules.

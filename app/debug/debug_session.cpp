@@ -27,9 +27,9 @@ namespace app {
 class ControlWalk {
 public:
     /// Starts at a position. The run must outlive the walk and must not change meanwhile.
-    ControlWalk(RecordedRun& run, size_t place);
+    ControlWalk(RecordedRun& run, size_t next_block);
 
-    size_t place() const { return place_; }
+    size_t next_block() const { return next_block_; }
     const gcode::InterpreterState& control() const { return control_; }
 
     /// Advances by one block. The record must contain it.
@@ -37,25 +37,25 @@ public:
 
 private:
     RecordedRun& run_;
-    size_t place_;
+    size_t next_block_;
     gcode::Interpreter interpreter_;
     gcode::InterpreterState control_;
 };
 
-ControlWalk::ControlWalk(RecordedRun& run, size_t place)
+ControlWalk::ControlWalk(RecordedRun& run, size_t next_block)
     : run_(run),
-      place_(place),
+      next_block_(next_block),
       interpreter_(run.library(), run.check().file.environment),
-      control_(run.place_at(place)->control) {}
+      control_(run.state_at(next_block)->control) {}
 
 void ControlWalk::advance() {
     [[maybe_unused]] const auto block = interpreter_.next(control_);
     assert(block && *block);
-    ++place_;
+    ++next_block_;
     const auto& changes = run_.changes();
     if (std::any_of(changes.begin(), changes.end(),
-                    [this](const MadeChange& made) { return made.block == place_; }))
-        control_ = run_.place_at(place_)->control;
+                    [this](const MadeChange& made) { return made.block == next_block_; }))
+        control_ = run_.state_at(next_block_)->control;
 }
 
 /// One walk of a session, forwards or back, to the first position that has a reason to stop.
@@ -88,9 +88,9 @@ private:
 
     bool asks_control(const Goal& goal) const;
     bool is_interrupted() const;
-    Stop stop_at(size_t place, Stop stop);
+    Stop stop_at(size_t next_block, Stop stop);
     /// Stops after the last block that can be run.
-    Stop stop_at_end(size_t place);
+    Stop stop_at_end(size_t next_block);
     /// The first breakpoint whose criteria a block meets; ignore counts are not considered.
     Breakpoint* breakpoint_at(size_t block, const gcode::InterpreterState* control);
     /// As breakpoint_at, for a walk forwards: applies and decrements ignore counts.
@@ -123,7 +123,7 @@ size_t SessionWalk::depth(size_t block) const {
 
 bool SessionWalk::changes_tool(size_t block) const {
     const CheckRun& record = session_.record();
-    if (block >= session_.run_->last_place()) return false; // the block is not run
+    if (block >= session_.run_->last_position()) return false; // the block is not run
     const auto before =
         block == 0 ? record.setup.tool_at_start : record.blocks[block - 1].result.tool;
     return record.blocks[block].result.tool != before;
@@ -137,11 +137,11 @@ const SessionWalk::Findings* SessionWalk::findings_of(size_t block) {
         findings_read_ = 0;
         read_complete_ = session_.is_recorded();
     }
-    const auto read = [&](const core::Finding& finding, bool is_told) {
+    const auto read = [&](const core::Finding& finding, bool is_reported) {
         if (!finding.block) return;
         Findings& of_block = findings_[core::value_of(*finding.block)];
         of_block.rules.push_back(finding.rule);
-        of_block.has_error |= is_told && finding.severity == core::Severity::error;
+        of_block.has_error |= is_reported && finding.severity == core::Severity::error;
     };
     if (findings_read_ == 0)
         for (const core::Finding& finding : record.taken_in) read(finding, false);
@@ -230,8 +230,8 @@ std::optional<Stop> SessionWalk::changed_watch(const std::vector<InspectedValue>
     return std::nullopt;
 }
 
-Stop SessionWalk::stop_at(size_t place, Stop stop) {
-    [[maybe_unused]] const auto gone = session_.go_to(place);
+Stop SessionWalk::stop_at(size_t next_block, Stop stop) {
+    [[maybe_unused]] const auto gone = session_.go_to(next_block);
     if (stop.reason == StopReason::watch)
         for (Watch& watch : session_.watches_)
             if (watch.id == stop.id) ++watch.hits;
@@ -244,30 +244,30 @@ Stop SessionWalk::stop_at(size_t place, Stop stop) {
     return stop;
 }
 
-Stop SessionWalk::stop_at_end(size_t place) {
-    return stop_at(place, {session_.record().stopped ? StopReason::error : StopReason::end});
+Stop SessionWalk::stop_at_end(size_t next_block) {
+    return stop_at(next_block, {session_.record().stopped ? StopReason::error : StopReason::end});
 }
 
 Stop SessionWalk::forwards(const Goal& goal) {
     std::optional<ControlWalk> walk;
     if (asks_control(goal)) walk.emplace(*session_.run_, session_.at_);
     std::vector<InspectedValue> before = values(walk ? &walk->control() : nullptr);
-    for (size_t place = session_.at_ + 1;; ++place) {
-        if (!session_.knows(place - 1)) return stop_at_end(place - 1);
+    for (size_t next_block = session_.at_ + 1;; ++next_block) {
+        if (!session_.knows(next_block - 1)) return stop_at_end(next_block - 1);
         if (walk) walk->advance();
         const gcode::InterpreterState* control = walk ? &walk->control() : nullptr;
         std::vector<InspectedValue> after = values(control);
-        if (const auto changed = changed_watch(before, after)) return stop_at(place, *changed);
+        if (const auto changed = changed_watch(before, after)) return stop_at(next_block, *changed);
         before = std::move(after);
         // The block of an alarm is not run, but it may be the goal of the walk.
-        const bool is_run = session_.knows(place);
-        if (place == session_.record().blocks.size()) return stop_at_end(place);
-        if (const Breakpoint* breakpoint = breakpoint_reached(place, control))
-            return stop_at(place, {StopReason::breakpoint, breakpoint->id});
-        if (goal.is_reached && goal.is_reached(place, control))
-            return stop_at(place, {goal.reason});
-        if (!is_run) return stop_at_end(place);
-        if (is_interrupted()) return stop_at(place, {StopReason::interrupted});
+        const bool is_run = session_.knows(next_block);
+        if (next_block == session_.record().blocks.size()) return stop_at_end(next_block);
+        if (const Breakpoint* breakpoint = breakpoint_reached(next_block, control))
+            return stop_at(next_block, {StopReason::breakpoint, breakpoint->id});
+        if (goal.is_reached && goal.is_reached(next_block, control))
+            return stop_at(next_block, {goal.reason});
+        if (!is_run) return stop_at_end(next_block);
+        if (is_interrupted()) return stop_at(next_block, {StopReason::interrupted});
     }
 }
 
@@ -284,22 +284,22 @@ std::optional<std::pair<size_t, Stop>> SessionWalk::last_stop(size_t first, size
                                                               const Goal& goal) {
     std::optional<std::pair<size_t, Stop>> found;
     ControlWalk walk(*session_.run_, first);
-    for (size_t place = first; place <= last; ++place) {
-        if (const auto stop = found_going_back(place, &walk.control(), goal))
-            found.emplace(place, *stop);
+    for (size_t next_block = first; next_block <= last; ++next_block) {
+        if (const auto stop = found_going_back(next_block, &walk.control(), goal))
+            found.emplace(next_block, *stop);
         const std::vector<InspectedValue> before = values(&walk.control());
         walk.advance();
         if (const auto changed = changed_watch(before, values(&walk.control())))
-            found.emplace(place, *changed);
+            found.emplace(next_block, *changed);
     }
     return found;
 }
 
 Stop SessionWalk::backwards(const Goal& goal) {
     const bool with_control = asks_control(goal);
-    size_t behind = session_.at_; // positions from here on have been examined
-    while (behind > 0) {
-        const size_t last = behind - 1;
+    size_t unexamined = session_.at_; // positions from here on have been examined
+    while (unexamined > 0) {
+        const size_t last = unexamined - 1;
         // The control can only be followed forwards, so start at the previous keyframe.
         const size_t first = with_control ? session_.run_->keyframe_before(last) : last;
         if (with_control) {
@@ -308,8 +308,8 @@ Stop SessionWalk::backwards(const Goal& goal) {
         } else if (const auto stop = found_going_back(last, nullptr, goal)) {
             return stop_at(last, *stop);
         }
-        behind = first;
-        if (is_interrupted()) return stop_at(behind, {StopReason::interrupted});
+        unexamined = first;
+        if (is_interrupted()) return stop_at(unexamined, {StopReason::interrupted});
     }
     return stop_at(0, {StopReason::beginning});
 }
@@ -327,7 +327,7 @@ DebugSession::open(const CheckJob& job, PreparedCheck check, size_t memory_budge
 }
 
 DebugSession::DebugSession(std::unique_ptr<RecordedRun> run)
-    : run_(std::move(run)), state_(std::make_unique<RunState>(*run_->place_at(0))) {}
+    : run_(std::move(run)), state_(std::make_unique<RunState>(*run_->state_at(0))) {}
 
 DebugSession::~DebugSession() = default;
 
@@ -335,7 +335,7 @@ const CheckRun& DebugSession::record() const { return run_->record(); }
 
 bool DebugSession::is_recorded() const { return run_->is_complete(); }
 
-double DebugSession::recorded_share() const { return run_->share(); }
+double DebugSession::recorded_fraction() const { return run_->fraction(); }
 
 const gcode::Program& DebugSession::program() const { return *run_->check().program; }
 
@@ -374,30 +374,31 @@ bool DebugSession::record_for(double seconds) {
 }
 
 bool DebugSession::knows(size_t block) {
-    while (run_->last_place() <= block && run_->advance()) {
+    while (run_->last_position() <= block && run_->advance()) {
     }
-    return block < run_->last_place();
+    return block < run_->last_position();
 }
 
 core::Result<bool> DebugSession::reaches(size_t block) {
-    while (run_->last_place() <= block && run_->advance())
+    while (run_->last_position() <= block && run_->advance())
         if (is_interrupted && is_interrupted())
             return core::fail(core::ErrorCode::invalid_value, "interrupted");
-    return block < run_->last_place();
+    return block < run_->last_position();
 }
 
-core::Result<void> DebugSession::go_to(size_t place) {
-    if (place == at_) return {};
-    const bool was_known = place <= run_->last_place();
-    if (place > 0 && !knows(place - 1)) return tl::unexpected(run_->place_at(place).error());
-    run_->look_at(place); // so that keyframes are stored near the position on the way
+core::Result<void> DebugSession::go_to(size_t next_block) {
+    if (next_block == at_) return {};
+    const bool was_known = next_block <= run_->last_position();
+    if (next_block > 0 && !knows(next_block - 1))
+        return tl::unexpected(run_->state_at(next_block).error());
+    run_->focus_on(next_block); // so that keyframes are stored near the position on the way
     // What has just been recorded need not be run again.
-    if (place > at_ && (was_known || place == at_ + 1)) {
-        run_->take_to(*state_, at_, place);
+    if (next_block > at_ && (was_known || next_block == at_ + 1)) {
+        run_->advance_to(*state_, at_, next_block);
     } else {
-        FEELER_TRY(*state_, run_->place_at(place));
+        FEELER_TRY(*state_, run_->state_at(next_block));
     }
-    at_ = place;
+    at_ = next_block;
     return {};
 }
 
@@ -493,7 +494,7 @@ core::Result<int> DebugSession::watch(std::string expression) {
 }
 
 bool DebugSession::remove(int id) {
-    const auto has_id = [id](const auto& kept) { return kept.id == id; };
+    const auto has_id = [id](const auto& stop_point) { return stop_point.id == id; };
     return std::erase_if(breakpoints_, has_id) + std::erase_if(watches_, has_id) > 0;
 }
 
@@ -526,14 +527,14 @@ core::Result<size_t> DebugSession::find_line(const std::string& line) {
 
 core::Result<void> DebugSession::change(const WhatIf& change) {
     if (const auto done = run_->change(at_, change); !done) return done;
-    FEELER_TRY(*state_, run_->place_at(at_));
+    FEELER_TRY(*state_, run_->state_at(at_));
     return {};
 }
 
 core::Result<void> DebugSession::take_back() {
-    FEELER_TRY(const size_t place, run_->take_back());
-    FEELER_TRY(*state_, run_->place_at(place));
-    at_ = place;
+    FEELER_TRY(const size_t next_block, run_->take_back());
+    FEELER_TRY(*state_, run_->state_at(next_block));
+    at_ = next_block;
     return {};
 }
 

@@ -65,7 +65,7 @@ public:
     /// Errors: interrupted.
     core::Result<bool> reaches(size_t block);
     /// Progress of the record by program lines, 0..1.
-    double recorded_share() const;
+    double recorded_fraction() const;
 
     const gcode::Program& program() const;
     const gcode::Environment& environment() const;
@@ -99,7 +99,7 @@ public:
     ///
     /// Errors: the program has fewer blocks; then the position does not change.
     /// Cost:   some 10 ms near recent positions, under a second anywhere in the record.
-    core::Result<void> go_to(size_t place);
+    core::Result<void> go_to(size_t next_block);
 
     // --- walking: each returns why it stopped ---
 

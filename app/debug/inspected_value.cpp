@@ -270,7 +270,7 @@ std::vector<NamedValue> axis_values(const gcode::InterpreterState& control) {
     const gcode::Position machine = gcode::machine_from_program(offsets, work);
     std::vector<NamedValue> values;
     for (const bool of_machine : {false, true}) {
-        const gcode::Position& place = of_machine ? machine : work;
+        const gcode::Position& position = of_machine ? machine : work;
         for (size_t axis = 0; axis < gcode::axis_count; ++axis) {
             // Axes that the machine lacks always have the value 0.
             const bool tells = axis < 3 || work[axis].value_or(0.0) != 0.0
@@ -279,7 +279,7 @@ std::vector<NamedValue> axis_values(const gcode::InterpreterState& control) {
             const std::string letter = core::lower_case(std::string(1, axis_letters[axis]));
             if (tells)
                 add(values, (of_machine ? "machine." : "") + letter,
-                    axis_quantity(axis, place[axis]));
+                    axis_quantity(axis, position[axis]));
         }
     }
     return values;
@@ -295,7 +295,7 @@ std::vector<NamedValue> parameter_values(const gcode::InterpreterState& control,
                                   static_cast<size_t>(dialect.local_count) + 1);
     for (size_t number = 1; number < numbers; ++number) {
         const bool is_local = static_cast<int>(number) <= dialect.local_count;
-        const gcode::Value value = parameters.kept(static_cast<double>(number));
+        const gcode::Value value = parameters.stored_value(static_cast<double>(number));
         // In LinuxCNC, local parameters are initially 0.
         if (!value || (is_local && !dialect.unset_is_vacant && *value == 0.0)) continue;
         const bool is_zero =

@@ -78,15 +78,15 @@ struct SavedBoxes {
 };
 
 /// Stores boxes; shares pieces with `like`.
-SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like);
+SavedBoxes saved(core::TileBoxes boxes, const SavedBoxes& like);
 
-core::TileBoxes restored(const SavedBoxes& kept);
+core::TileBoxes restored(const SavedBoxes& saved);
 
 /// A stored run state. Shares equal data with the previous keyframe.
 struct Keyframe {
     size_t blocks = 0;    // run before it
     double seconds = 0.0; // of work from the beginning to here
-    RunState place;       // without the boxes of its scan lines and columns
+    RunState state;       // without the boxes of its scan lines and columns
     std::array<SavedBoxes, 4> boxes;
     size_t bytes = 0; // not shared with the previous keyframe
 
@@ -100,13 +100,13 @@ public:
     explicit Keyframes(size_t memory_budget) : budget_(memory_budget) {}
 
     /// Stores a keyframe if it is far enough from the one before it.
-    void note(size_t blocks, double seconds, const RunState& place);
+    void note(size_t blocks, double seconds, const RunState& state);
 
     /// The last keyframe at or before a position. Exists once the first position was added.
     const Keyframe& before(size_t blocks) const;
 
     /// Sets the position in focus, in seconds of work.
-    void look_at(double seconds) { focus_ = seconds; }
+    void focus_on(double seconds) { focus_ = seconds; }
 
     /// Drops the keyframes after a position.
     void drop_after(size_t blocks);
@@ -141,22 +141,22 @@ size_t SavedBoxes::bytes_apart(const SavedBoxes& other) const {
     return bytes;
 }
 
-SavedBoxes kept(core::TileBoxes boxes, const SavedBoxes& like) {
-    SavedBoxes kept;
-    kept.boxes = {std::exchange(boxes.boxes, {}), like.boxes};
-    kept.blocks = {std::exchange(boxes.blocks, {}), like.blocks};
-    kept.gaps = {std::exchange(boxes.gaps, {}), like.gaps};
-    kept.block_gaps = {std::exchange(boxes.block_gaps, {}), like.block_gaps};
-    kept.rest = std::move(boxes);
-    return kept;
+SavedBoxes saved(core::TileBoxes boxes, const SavedBoxes& like) {
+    SavedBoxes saved;
+    saved.boxes = {std::exchange(boxes.boxes, {}), like.boxes};
+    saved.blocks = {std::exchange(boxes.blocks, {}), like.blocks};
+    saved.gaps = {std::exchange(boxes.gaps, {}), like.gaps};
+    saved.block_gaps = {std::exchange(boxes.block_gaps, {}), like.block_gaps};
+    saved.rest = std::move(boxes);
+    return saved;
 }
 
-core::TileBoxes restored(const SavedBoxes& kept) {
-    core::TileBoxes boxes = kept.rest;
-    boxes.boxes = kept.boxes.whole();
-    boxes.blocks = kept.blocks.whole();
-    boxes.gaps = kept.gaps.whole();
-    boxes.block_gaps = kept.block_gaps.whole();
+core::TileBoxes restored(const SavedBoxes& saved) {
+    core::TileBoxes boxes = saved.rest;
+    boxes.boxes = saved.boxes.whole();
+    boxes.blocks = saved.blocks.whole();
+    boxes.gaps = saved.gaps.whole();
+    boxes.block_gaps = saved.block_gaps.whole();
     return boxes;
 }
 
@@ -198,8 +198,8 @@ core::TileBoxes& boxes_of(core::CutModel& stock, size_t i) {
 /// The number of bytes of a keyframe that it does not share with `other`.
 size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
     constexpr size_t of_the_rest = 16384; // control, clock and rules, roughly
-    const core::CutModel& stock = frame.place.machine.stock;
-    const core::CutModel& other_stock = other.place.machine.stock;
+    const core::CutModel& stock = frame.state.machine.stock;
+    const core::CutModel& other_stock = other.state.machine.stock;
     size_t bytes =
         of_the_rest + bytes_of_logs(stock) + bytes_apart(stock.columns, other_stock.columns);
     for (size_t axis = 0; axis < 3; ++axis)
@@ -212,7 +212,7 @@ size_t bytes_apart(const Keyframe& frame, const Keyframe& other) {
 } // namespace
 
 RunState Keyframe::restored() const {
-    RunState whole = place;
+    RunState whole = state;
     for (size_t i = 0; i < boxes.size(); ++i)
         boxes_of(whole.machine.stock, i) = app::restored(boxes[i]);
     return whole;
@@ -240,15 +240,15 @@ const Keyframe& Keyframes::before(size_t blocks) const {
     return frames_[after - 1];
 }
 
-void Keyframes::note(size_t blocks, double seconds, const RunState& place) {
+void Keyframes::note(size_t blocks, double seconds, const RunState& state) {
     if (!wants(blocks, seconds)) return;
     const size_t after = index_after(blocks);
     static const Keyframe nothing;
     const Keyframe& before = after == 0 ? nothing : frames_[after - 1];
-    Keyframe frame{blocks, seconds, place, {}, 0};
+    Keyframe frame{blocks, seconds, state, {}, 0};
     for (size_t i = 0; i < frame.boxes.size(); ++i)
         frame.boxes[i] =
-            kept(std::exchange(boxes_of(frame.place.machine.stock, i), {}), before.boxes[i]);
+            saved(std::exchange(boxes_of(frame.state.machine.stock, i), {}), before.boxes[i]);
     frame.bytes = bytes_apart(frame, before);
     memory_ += frame.bytes;
     frames_.insert(frames_.begin() + static_cast<std::ptrdiff_t>(after), std::move(frame));
@@ -297,7 +297,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
             return tl::unexpected(core::in_file(begun.error(), job.program));
     run->marks_[0].findings = run->record().findings.size();
     run->keyframes_->note(0, 0.0, run->runner_->state());
-    run->told_.assumptions = run->record().later_assumptions;
+    run->reported_.assumptions = run->record().later_assumptions;
     return run;
 }
 
@@ -311,18 +311,20 @@ RecordedRun::~RecordedRun() = default;
 
 const CheckRun& RecordedRun::record() const { return check_->run; }
 
-double RecordedRun::share() const { return is_complete_ ? 1.0 : runner_->progress().share; }
+double RecordedRun::fraction() const { return is_complete_ ? 1.0 : runner_->progress().fraction; }
 
 gcode::ProgramLibrary& RecordedRun::library() const { return *check_->library; }
 
-void RecordedRun::visit_ahead(size_t place, const RunState& state, const BlockVisit& visit) {
-    replayer_->use(setup_at(place));
+void RecordedRun::visit_ahead(size_t position, const RunState& state, const BlockVisit& visit) {
+    replayer_->use(setup_at(position));
     replayer_->visit_ahead(state.control, state.lowering, visit);
 }
 
-void RecordedRun::look_at(size_t place) { keyframes_->look_at(marks_[place].seconds); }
+void RecordedRun::focus_on(size_t position) { keyframes_->focus_on(marks_[position].seconds); }
 
-size_t RecordedRun::keyframe_before(size_t place) const { return keyframes_->before(place).blocks; }
+size_t RecordedRun::keyframe_before(size_t position) const {
+    return keyframes_->before(position).blocks;
+}
 
 size_t RecordedRun::keyframe_count() const { return keyframes_->size(); }
 
@@ -337,7 +339,7 @@ bool RecordedRun::advance() {
     }
     const double seconds = marks_.back().seconds + work.seconds();
     marks_.push_back({seconds, record().findings.size()});
-    keyframes_->note(last_place(), seconds, runner_->state());
+    keyframes_->note(last_position(), seconds, runner_->state());
     if (!after_block_ || after_block_(runner_->progress())) return true;
     runner_->stop_here();
     finish();
@@ -346,7 +348,7 @@ bool RecordedRun::advance() {
 
 void RecordedRun::finish() {
     is_complete_ = true;
-    told_.findings = record().findings;
+    reported_.findings = record().findings;
     for (const MadeChange& made : changes_)
         check_->run.later_assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
@@ -360,9 +362,9 @@ const core::Setup& RecordedRun::setup_at(size_t block) const {
     return check_->run.setup;
 }
 
-void RecordedRun::change_at(size_t place, RunState& state) {
+void RecordedRun::change_at(size_t position, RunState& state) {
     for (size_t i = 0; i < changes_.size(); ++i) {
-        if (changes_[i].block != place) continue;
+        if (changes_[i].block != position) continue;
         core::Setup scratch = i == 0
                                   ? check_->run.setup
                                   : *setups_[i - 1]; // the set-up to which this change was applied
@@ -371,32 +373,32 @@ void RecordedRun::change_at(size_t place, RunState& state) {
     }
 }
 
-core::Result<RunState> RecordedRun::place_at(size_t place) {
-    while (last_place() < place && advance()) {
+core::Result<RunState> RecordedRun::state_at(size_t position) {
+    while (last_position() < position && advance()) {
     }
-    if (place > last_place())
+    if (position > last_position())
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("the program ends after {} blocks", last_place()));
+                          fmt::format("the program ends after {} blocks", last_position()));
     // At the end, the runner has already closed what was open, so its state cannot be used.
-    if (place == last_place() && !is_complete_) return runner_->state();
-    return replayed(place);
+    if (position == last_position() && !is_complete_) return runner_->state();
+    return replayed(position);
 }
 
-RunState RecordedRun::replayed(size_t place) {
-    const Keyframe& frame = keyframes_->before(place);
+RunState RecordedRun::replayed(size_t position) {
+    const Keyframe& frame = keyframes_->before(position);
     RunState state = frame.restored();
     if (frame.blocks == 0) change_at(0, state); // the first keyframe has no changes applied
-    take_to(state, frame.blocks, place);
+    advance_to(state, frame.blocks, position);
     return state;
 }
 
-void RecordedRun::take_to(RunState& state, size_t from, size_t place) {
-    assert(from <= place && place <= last_place());
-    if (const Keyframe& frame = keyframes_->before(place); frame.blocks > from) {
+void RecordedRun::advance_to(RunState& state, size_t from, size_t position) {
+    assert(from <= position && position <= last_position());
+    if (const Keyframe& frame = keyframes_->before(position); frame.blocks > from) {
         state = frame.restored();
         from = frame.blocks;
     }
-    while (from < place) {
+    while (from < position) {
         replayer_->use(setup_at(from));
         [[maybe_unused]] const auto step = replayer_->step(state);
         assert(step && *step);
@@ -406,27 +408,27 @@ void RecordedRun::take_to(RunState& state, size_t from, size_t place) {
     }
 }
 
-size_t RecordedRun::restart_place(size_t place) {
+size_t RecordedRun::restart_position(size_t position) {
     // Start before blocks whose time was still open, and before an open length mismatch.
     while (true) {
-        const RunState state = replayed(place);
-        size_t first = std::min<size_t>(place, state.clock.first_open);
+        const RunState state = replayed(position);
+        size_t first = std::min<size_t>(position, state.clock.first_open);
         if (state.lengths.is_open)
             first = std::min<size_t>(first, core::value_of(state.lengths.mismatches.back().first));
-        const bool is_open = first < place && replayed(first).lengths.is_open;
+        const bool is_open = first < position && replayed(first).lengths.is_open;
         if (!is_open) return first;
-        place = first;
+        position = first;
     }
 }
 
-void RecordedRun::record_again_from(size_t place) {
-    const size_t first = restart_place(place);
+void RecordedRun::record_again_from(size_t position) {
+    const size_t first = restart_position(position);
     const RunState state =
         replayed(first); // the runner's own state may contain what is being undone
     CheckRun& run = check_->run;
     if (is_complete_) {
-        run.findings = told_.findings;
-        run.later_assumptions = told_.assumptions;
+        run.findings = reported_.findings;
+        run.later_assumptions = reported_.assumptions;
         run.taken_in.clear();
         run.comparison.reset();
         run.surface.reset();
@@ -434,32 +436,32 @@ void RecordedRun::record_again_from(size_t place) {
     }
     is_complete_ = false;
     runner_->go_back(state, first, marks_[first].findings);
-    for (size_t block = first; block < place; ++block) {
+    for (size_t block = first; block < position; ++block) {
         runner_->use(setup_at(block));
         if (block > first) change_at(block, runner_->mutable_state());
         [[maybe_unused]] const bool done = runner_->advance();
         assert(done);
     }
-    if (first < place) change_at(place, runner_->mutable_state());
-    runner_->use(setup_at(place));
-    marks_.resize(place + 1);
+    if (first < position) change_at(position, runner_->mutable_state());
+    runner_->use(setup_at(position));
+    marks_.resize(position + 1);
 }
 
-void RecordedRun::forget_from(size_t place) {
-    keyframes_->drop_after(place == 0 ? 0 : place - 1);
-    while (!changes_.empty() && changes_.back().block > place) {
+void RecordedRun::forget_from(size_t position) {
+    keyframes_->drop_after(position == 0 ? 0 : position - 1);
+    while (!changes_.empty() && changes_.back().block > position) {
         changes_.pop_back();
         setups_.pop_back();
     }
 }
 
-core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
-    FEELER_TRY(RunState state, place_at(place));
-    auto setup = std::make_unique<core::Setup>(setup_at(place));
+core::Result<void> RecordedRun::change(size_t position, const WhatIf& change) {
+    FEELER_TRY(RunState state, state_at(position));
+    auto setup = std::make_unique<core::Setup>(setup_at(position));
     if (const auto done = apply(change, *setup, state); !done) return done;
-    forget_from(place);
-    record_again_from(place);
-    changes_.push_back({place, change});
+    forget_from(position);
+    record_again_from(position);
+    changes_.push_back({position, change});
     setups_.push_back(std::move(setup));
     runner_->mutable_state() = std::move(state);
     runner_->use(*setups_.back());
@@ -469,13 +471,13 @@ core::Result<void> RecordedRun::change(size_t place, const WhatIf& change) {
 core::Result<size_t> RecordedRun::take_back() {
     if (changes_.empty())
         return core::fail(core::ErrorCode::invalid_value, "there is no change to undo");
-    const size_t place = changes_.back().block;
+    const size_t position = changes_.back().block;
     const auto setup = std::move(setups_.back()); // the runner refers to it until it has gone back
     changes_.pop_back();
     setups_.pop_back();
-    forget_from(place);
-    record_again_from(place);
-    return place;
+    forget_from(position);
+    record_again_from(position);
+    return position;
 }
 
 } // namespace app

@@ -42,9 +42,9 @@ public:
     const CheckRun& record() const;
     bool is_complete() const { return is_complete_; }
     /// The last position of the record.
-    size_t last_place() const { return marks_.size() - 1; }
+    size_t last_position() const { return marks_.size() - 1; }
     /// Progress by program lines, 0..1.
-    double share() const;
+    double fraction() const;
 
     /// Runs the next block. False at the end of the program.
     bool advance();
@@ -58,20 +58,20 @@ public:
     /// A copy of the state at a position.
     ///
     /// Errors: the program has fewer blocks.
-    /// Cost:   as take_to, from the nearest keyframe.
-    core::Result<RunState> place_at(size_t place);
+    /// Cost:   as advance_to, from the nearest keyframe.
+    core::Result<RunState> state_at(size_t position);
     /// Moves a copy of the state at position `from` on to a later position of the record.
     ///
     /// Cost: runs the blocks after the nearest keyframe before `place` again.
-    void take_to(RunState& state, size_t from, size_t place);
+    void advance_to(RunState& state, size_t from, size_t position);
 
     /// As BlockRunner::visit_ahead, from a copy of the state at a position.
-    void visit_ahead(size_t place, const RunState& state, const BlockVisit& visit);
+    void visit_ahead(size_t position, const RunState& state, const BlockVisit& visit);
 
     /// Keeps keyframes densest near this position.
-    void look_at(size_t place);
+    void focus_on(size_t position);
     /// The position of the last keyframe at or before a position.
-    size_t keyframe_before(size_t place) const;
+    size_t keyframe_before(size_t position) const;
     // How much the keyframes take, to verify that they stay within the budget.
     size_t keyframe_count() const;
     size_t keyframe_memory() const; // bytes
@@ -80,7 +80,7 @@ public:
     /// included.
     ///
     /// Errors: as apply; the program has fewer blocks. Then nothing changes.
-    core::Result<void> change(size_t place, const WhatIf& change);
+    core::Result<void> change(size_t position, const WhatIf& change);
     /// Undoes the last change. Returns the position where it was made.
     ///
     /// Errors: invalid_value if there is none.
@@ -94,7 +94,7 @@ private:
         size_t findings = 0;
     };
     /// Findings and assumptions without those added at the end of the run.
-    struct Told {
+    struct Reported {
         std::vector<core::Finding> findings;
         std::vector<std::string> assumptions;
     };
@@ -103,15 +103,15 @@ private:
     void finish();
     /// A copy of the state at a recorded position, rebuilt from the nearest keyframe, with the
     /// changes made there.
-    RunState replayed(size_t place);
+    RunState replayed(size_t position);
     /// Drops the keyframes from a position on, and the changes after it.
-    void forget_from(size_t place);
+    void forget_from(size_t position);
     /// Makes the record again up to a position, to continue from there.
-    void record_again_from(size_t place);
+    void record_again_from(size_t position);
     /// Applies the changes made at a position to a copy of its state.
-    void change_at(size_t place, RunState& state);
+    void change_at(size_t position, RunState& state);
     /// The position from which to run blocks again to rebuild the record up to `place`.
-    size_t restart_place(size_t place);
+    size_t restart_position(size_t position);
 
     std::unique_ptr<PreparedCheck> check_;
     bool needs_surface_ = false;
@@ -122,7 +122,7 @@ private:
     std::vector<Mark> marks_ = std::vector<Mark>(1); // by position
     std::vector<MadeChange> changes_ = {};
     std::vector<std::unique_ptr<core::Setup>> setups_ = {}; // after each change
-    Told told_ = {};
+    Reported reported_ = {};
     bool is_complete_ = false;
 };
 

@@ -42,7 +42,7 @@ core::Result<void> check_number(double value, const std::string& of) {
     return core::fail(ErrorCode::invalid_value, fmt::format("{}: the value is not a number", of));
 }
 
-core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunState& place) {
+core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunState& state) {
     const auto found = setup.tools.find(change.tool);
     if (found == setup.tools.end())
         return core::fail(ErrorCode::invalid_value,
@@ -52,26 +52,26 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
     FEELER_TRY(core::ToolAssembly tool, stretched(found->second, change.length));
     found->second = std::move(tool);
     // The required height of its holder was computed for the old tool.
-    place.machine.watch.reaches.erase(change.tool);
-    forget_bounds(place.machine);
-    if (place.machine.tool == change.tool)
-        watch_changed_length(place.lengths, setup, place.machine);
+    state.machine.rules.reaches.erase(change.tool);
+    forget_bounds(state.machine);
+    if (state.machine.tool == change.tool)
+        track_changed_length(state.lengths, setup, state.machine);
     return {};
 }
 
 /// Fails if the control has read ahead, so that its position differs from that of the machine.
-core::Result<void> check_that_nothing_waits(const RunState& place) {
-    if (!holds_blocks_back(place.control)) return {};
+core::Result<void> check_that_nothing_waits(const RunState& state) {
+    if (!holds_blocks_back(state.control)) return {};
     return core::fail(ErrorCode::unsupported,
                       "the control reads ahead here, for cutter radius compensation or a "
                       "corner: change the offset before G41 or G42, or after G40");
 }
 
 /// Activates other offsets. The machine does not move.
-void use(const gcode::Offsets& offsets, RunState& place) {
-    gcode::change_offsets(place.control.modal, offsets);
-    place.lowering.offsets.work = offsets.work;
-    place.lowering.offsets.tool = offsets.tool;
+void use(const gcode::Offsets& offsets, RunState& state) {
+    gcode::change_offsets(state.control.modal, offsets);
+    state.lowering.offsets.work = offsets.work;
+    state.lowering.offsets.tool = offsets.tool;
 }
 
 /// The axis along which the active length acts: Z after G43, else the tool axis at the tool call.
@@ -91,30 +91,30 @@ gcode::Offsets with_length(const gcode::ModalState& modal, double before, double
     return offsets;
 }
 
-core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunState& place) {
+core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunState& state) {
     const int number = core::value_of(change.number);
     if (number <= 0)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("there is no length offset H{}: they count from 1", number));
     if (auto wrong = check_number(change.length, fmt::format("H{}", number)); !wrong) return wrong;
-    const gcode::ModalState& modal = place.control.modal;
+    const gcode::ModalState& modal = state.control.modal;
     const bool is_on = modal.length_number == change.number;
     if (is_on)
-        if (auto waits = check_that_nothing_waits(place); !waits) return waits;
-    const double before = gcode::length_under(*place.control.tables, number).value_or(0.0);
-    gcode::LengthOffset& entry = place.control.tables.write().lengths[change.number];
+        if (auto waits = check_that_nothing_waits(state); !waits) return waits;
+    const double before = gcode::length_under(*state.control.tables, number).value_or(0.0);
+    gcode::LengthOffset& entry = state.control.tables.write().lengths[change.number];
     entry.length = change.length;
     entry.wear = 0.0;
     if (!is_on) return {};
     const gcode::Offsets offsets = with_length(modal, before, change.length);
-    core::LengthOffsetChange& counted = place.machine.length_offset;
+    core::LengthOffsetChange& counted = state.machine.length_offset;
     if (counted.number == change.number) counted.length += change.length - before;
-    use(offsets, place);
-    watch_changed_length(place.lengths, setup, place.machine);
+    use(offsets, state);
+    track_changed_length(state.lengths, setup, state.machine);
     return {};
 }
 
-core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunState& place) {
+core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunState& state) {
     if (change.index >= gcode::work_offset_count)
         return core::fail(ErrorCode::invalid_value, "there is no such work offset");
     if (change.axis >= gcode::axis_count || !setup.machine.axes[change.axis].present)
@@ -124,21 +124,21 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
                                           ? std::string(1, gcode::axis_letters[change.axis])
                                           : fmt::format("axis {}", change.axis)));
     if (auto wrong = check_number(change.origin, offset_name(change.index)); !wrong) return wrong;
-    const bool is_on = place.control.modal.offsets.active == change.index;
+    const bool is_on = state.control.modal.offsets.active == change.index;
     if (is_on)
-        if (auto waits = check_that_nothing_waits(place); !waits) return waits;
-    gcode::Tables& tables = place.control.tables.write();
+        if (auto waits = check_that_nothing_waits(state); !waits) return waits;
+    gcode::Tables& tables = state.control.tables.write();
     gcode::writable_work_offset(tables, change.index).origin[change.axis] = change.origin;
     // The heights of feed moves were relative to the old origin.
-    place.offsets.erase(change.index);
+    state.offsets.erase(change.index);
     if (!is_on) return {};
-    gcode::Offsets offsets = place.control.modal.offsets;
+    gcode::Offsets offsets = state.control.modal.offsets;
     offsets.work.origin[change.axis] = change.origin + tables.external[change.axis];
-    use(offsets, place);
+    use(offsets, state);
     return {};
 }
 
-core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& place) {
+core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& state) {
     if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
         return core::fail(
             ErrorCode::invalid_value,
@@ -146,7 +146,7 @@ core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunS
                         number_text(*change.distance)));
     setup.allowance = change.distance;
     setup.search_limit = core::search_limit_of(setup);
-    forget_bounds(place.machine);
+    forget_bounds(state.machine);
     return {};
 }
 
@@ -172,16 +172,16 @@ core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<b
                                         names.size() == 1 ? "is" : "are", fmt::join(names, ", ")));
 }
 
-core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunState& place) {
-    FEELER_TRY(const size_t index, fixture_named(setup, place.machine.fixtures_there, change.name));
+core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunState& state) {
+    FEELER_TRY(const size_t index, fixture_named(setup, state.machine.fixtures_there, change.name));
     for (int axis = 0; axis < 3; ++axis)
         if (auto wrong = check_number(change.by[axis], change.name); !wrong) return wrong;
     core::Transform& link_from_body = setup.fixtures[index].mount.link_from_body;
     link_from_body =
         core::translation(setup.stock_mount.link_from_body.rotation * change.by) * link_from_body;
     // Cuts into the fixture were made at its old position.
-    place.machine.memory.cuts.erase(index);
-    forget_bounds(place.machine);
+    state.machine.memory.cuts.erase(index);
+    forget_bounds(state.machine);
     return {};
 }
 
@@ -219,8 +219,8 @@ std::string text_of(const WhatIf& change) {
     return std::visit([](const auto& one) { return text(one); }, change);
 }
 
-core::Result<void> apply(const WhatIf& what, core::Setup& setup, RunState& place) {
-    return std::visit([&](const auto& one) { return change(one, setup, place); }, what);
+core::Result<void> apply(const WhatIf& what, core::Setup& setup, RunState& state) {
+    return std::visit([&](const auto& one) { return change(one, setup, state); }, what);
 }
 
 namespace {

@@ -69,7 +69,7 @@ std::string text_of(const WhatIf& change);
 ///
 /// Errors: no such tool, fixture, offset or axis; a length that gives no valid tool; an active
 ///         offset while the control reads ahead (G41, G42). Then nothing changes.
-core::Result<void> apply(const WhatIf& change, core::Setup& setup, RunState& place);
+core::Result<void> apply(const WhatIf& change, core::Setup& setup, RunState& state);
 
 /// A tool pulled out of its holder or pushed into it so that its gauge length is `length`. A longer
 /// shank continues with its upper diameter. Without a holder, only a stated gauge length changes.

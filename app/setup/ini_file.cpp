@@ -160,21 +160,21 @@ bool take_above_zero(std::optional<double>& value, std::optional<double> stated,
 } // namespace
 
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
-                             bool places) {
-    std::string taken, without_place;
+                             bool with_positions) {
+    std::string taken, without_position;
     size_t joint = 0;
     for (size_t i = 0; i < core::axis_count; ++i) {
         const AxisNumbers numbers(environment, i, joint);
         const bool named = AxisNumbers(environment, i, core::axis_count).is_there();
         core::MachineAxis& axis = machine.axes[i];
         if (!axis.present) {
-            if (named) without_place += core::axis_letters[i];
+            if (named) without_position += core::axis_letters[i];
             joint += named ? 1 : 0;
             continue;
         }
-        bool some = places && take(axis.min, numbers.number("min_limit"));
-        some = (places && take(axis.max, numbers.number("max_limit"))) || some;
-        some = (places && take(axis.home, numbers.number("home"))) || some;
+        bool some = with_positions && take(axis.min, numbers.number("min_limit"));
+        some = (with_positions && take(axis.max, numbers.number("max_limit"))) || some;
+        some = (with_positions && take(axis.home, numbers.number("home"))) || some;
         some = take_above_zero(axis.rapid, numbers.number("max_velocity"), core::seconds_per_minute)
                || some;
         some = take_above_zero(axis.acceleration, numbers.number("max_acceleration"), 1.0) || some;
@@ -184,11 +184,11 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
     std::string note;
     if (!taken.empty())
         note = fmt::format("{} of {} are from the ini file",
-                           places ? "limits, speeds and homes" : "speeds", taken);
-    if (!without_place.empty())
+                           with_positions ? "limits, speeds and homes" : "speeds", taken);
+    if (!without_position.empty())
         note += fmt::format("{}the ini file has axis {} but not the position of its rotation axis: "
                             "add it as [[machine.axis]] if the program moves it",
-                            note.empty() ? "" : "; ", without_place);
+                            note.empty() ? "" : "; ", without_position);
     return note;
 }
 

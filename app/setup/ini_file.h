@@ -38,11 +38,12 @@ core::Result<IniFile> read_ini(const std::string& path);
 /// lack them: from [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a machine whose joints
 /// are its axes, in the order X Y Z A B C U V W.
 ///
-/// `places`: also take limits and homes, which are meaningless if the work offsets are assumed.
+/// `with_positions`: also take limits and homes, which are meaningless if the work offsets are
+/// assumed.
 ///
 /// Result: a note for the user; empty if nothing was taken.
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
-                             bool places);
+                             bool with_positions);
 
 /// Splits a list of folders at ':'.
 std::vector<std::string> split_search_path(const std::string& text);

@@ -25,27 +25,27 @@ void replace(T& value, const T& over) {
 }
 
 /// Moves nine numbers, from parameter `first` on, out of the parameters; empty if none is set.
-std::optional<gcode::AxisValues> take_place(gcode::Environment& environment, int first) {
-    std::optional<gcode::AxisValues> place;
+std::optional<gcode::AxisValues> take_position(gcode::Environment& environment, int first) {
+    std::optional<gcode::AxisValues> position;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis) {
         const auto found = environment.parameters.find(first + static_cast<int>(axis));
         if (found == environment.parameters.end()) continue;
-        if (!place) place.emplace();
-        (*place)[axis] = gcode::is_rotary(axis)
-                             ? found->second
-                             : gcode::to_mm(found->second, environment.machine_unit);
+        if (!position) position.emplace();
+        (*position)[axis] = gcode::is_rotary(axis)
+                                ? found->second
+                                : gcode::to_mm(found->second, environment.machine_unit);
         environment.parameters.erase(found);
     }
-    return place;
+    return position;
 }
 
 /// LinuxCNC stores the reference points from #5161 and #5181 and the work offsets from #5221, with
 /// 20 numbers for each.
-void take_places(gcode::Environment& environment) {
-    if (const auto home = take_place(environment, 5161)) environment.home = *home;
-    if (const auto second = take_place(environment, 5181)) environment.second_home = *second;
+void take_positions(gcode::Environment& environment) {
+    if (const auto home = take_position(environment, 5161)) environment.home = *home;
+    if (const auto second = take_position(environment, 5181)) environment.second_home = *second;
     for (size_t i = 0; i < gcode::plain_offset_count; ++i)
-        if (const auto offset = take_place(environment, 5221 + 20 * static_cast<int>(i)))
+        if (const auto offset = take_position(environment, 5221 + 20 * static_cast<int>(i)))
             environment.work_offsets[i] = *offset;
 }
 
@@ -117,7 +117,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
     replace(environment.known_m_codes, settings.machine_codes);
     if (!settings.parameters.empty()) {
         FEELER_TRY(environment.parameters, read_variables(settings.parameters));
-        take_places(environment);
+        take_positions(environment);
     }
     if (!settings.tool_table.empty()) {
         FEELER_TRY(environment.length_offsets,
@@ -141,10 +141,10 @@ std::optional<gcode::Position> position_in(const std::string& text) {
         at = skip(at + 1, " \t=");
         if (at != end && *at == '+') ++at;
         double value = 0.0;
-        const auto [behind, failure] = std::from_chars(at, end, value);
+        const auto [rest, failure] = std::from_chars(at, end, value);
         if (failure != std::errc() || !std::isfinite(value)) return std::nullopt;
         position[axis] = value;
-        at = behind;
+        at = rest;
         any = true;
     }
     return any ? std::optional(position) : std::nullopt;

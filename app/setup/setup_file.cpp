@@ -340,7 +340,7 @@ void place_offsets(BodyContext& context) {
         for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = set[axis];
         context.frames.machine_from[offset_names[i]] =
             core::machine_from_link(machine, machine.table, rotary).inverse()
-            * core::translation(machine.place(set));
+            * core::translation(machine.linear_position(set));
     }
 }
 
@@ -426,7 +426,7 @@ core::Result<SetupFile> read_setup(const std::string& path, const ProgramSetting
     return tl::unexpected(*error);
 }
 
-std::string setup_beside(const std::string& program) {
+std::string setup_next_to(const std::string& program) {
     const std::filesystem::path setup = std::filesystem::path(program).replace_extension(".toml");
     const bool is_one =
         setup.filename() != project_file_name && setup != program && core::is_there(setup);

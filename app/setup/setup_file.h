@@ -48,7 +48,7 @@ constexpr const char* project_file_name = "feeler.toml";
 
 /// The set-up next to a program, `plate.toml` for `plate.nc`; empty if there is none. A project
 /// file is not a set-up. A folder or a broken link of that name is returned and fails when read.
-std::string setup_beside(const std::string& program);
+std::string setup_next_to(const std::string& program);
 
 /// The severities in a table `[rules]`, by rule. The key `but`, if any, is left to the caller. An
 /// unknown rule is an error that suggests the nearest name.

@@ -41,7 +41,7 @@ void rotate(Matrix& a, Matrix& frame, size_t p, size_t q) {
 
 Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
     Vec3 middle(0.0);
-    for (const TangentPlane& point : points) middle += point.place;
+    for (const TangentPlane& point : points) middle += point.position;
     middle /= static_cast<double>(points.size());
     const bool flat = std::all_of(points.begin(), points.end(), [&](const TangentPlane& point) {
         return point.normal == points.front().normal;
@@ -54,7 +54,7 @@ Vec3 feature_point(std::span<const TangentPlane> points, const Aabb& room) {
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
                 a[static_cast<size_t>(i)][static_cast<size_t>(j)] += n[i] * n[j];
-        right += glm::dot(n, point.place - middle) * n;
+        right += glm::dot(n, point.position - middle) * n;
     }
     for (int sweep = 0; sweep < 12; ++sweep)
         for (const auto& [p, q] : {std::pair{0, 1}, std::pair{0, 2}, std::pair{1, 2}})
@@ -149,8 +149,8 @@ Vec3 normal_at_end(const CutterSweep& sweep, const Vec3& point, const Vec3& outw
     constexpr double off = 1e-4, along = 1e-6;
     const Vec3 normal = normal_of_cut(sweep, point);
     if (glm::dot(normal, outward) >= along) return normal;
-    const Vec3 beside = normal_of_cut(sweep, point + off * normal);
-    return glm::dot(beside, outward) >= along ? beside : normal;
+    const Vec3 normal_near = normal_of_cut(sweep, point + off * normal);
+    return glm::dot(normal_near, outward) >= along ? normal_near : normal;
 }
 
 Vec3 normal_of_cylinder(const SolidCylinder& c, const Vec3& point, int axis, const Vec3& outward) {
@@ -210,7 +210,7 @@ constexpr double contour_slack = 1e-6;
 
 } // namespace
 
-IndexRange places_within(const ScanGrid& grid, int axis, const Interval& matter) {
+IndexRange lines_within(const ScanGrid& grid, int axis, const Interval& matter) {
     const double start = grid.coordinate(axis, 0);
     const int last = grid.count(axis) - 1;
     const auto clipped = [&](double index, int low, int high) {
@@ -264,7 +264,7 @@ CrossedEdge crossed_edge(const CutModel& model, const Crossing& crossing) {
         edge.plane.normal = Vec3(0.0);
         edge.plane.normal[end.axis] = outward;
     }
-    edge.plane.place = point_on_line(model.lines.grid, end.axis, end.u, end.v, crossing.along);
+    edge.plane.position = point_on_line(model.lines.grid, end.axis, end.u, end.v, crossing.along);
     return edge;
 }
 

@@ -18,7 +18,7 @@ struct Triangle;
 
 /// The tangent plane of a surface near one of its points; normals point out of the body.
 struct TangentPlane {
-    Vec3 place = Vec3(0.0);
+    Vec3 position = Vec3(0.0);
     Vec3 normal = Vec3(0.0); // length 1
 };
 
@@ -60,7 +60,7 @@ struct IndexRange {
 };
 
 /// The lines across `axis` whose positions are within an interval along it, ends included.
-IndexRange places_within(const ScanGrid& grid, int axis, const Interval& matter);
+IndexRange lines_within(const ScanGrid& grid, int axis, const Interval& matter);
 
 /// Where a line crosses the surface between a node and the next along `axis`.
 struct Crossing {

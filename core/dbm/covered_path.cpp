@@ -98,9 +98,9 @@ Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb
     Aabb all = path;
     all.extend(stock);
     const Vec3 far = glm::length(all.size()) * up;
-    for (const Vec3& place : {from, to}) {
-        path.extend(place + far);
-        path.extend(place - far);
+    for (const Vec3& position : {from, to}) {
+        path.extend(position + far);
+        path.extend(position - far);
     }
     return path;
 }

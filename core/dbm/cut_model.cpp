@@ -10,17 +10,17 @@ void SweepLog::push_back(const CutterSweep& sweep) {
     if (!same_attitude)
         attitudes_.push_back({sweep.cutter, sweep.orientation,
                               bounds(CutterSweep{sweep.cutter, {}, {}, sweep.orientation})});
-    if (places_.empty() || places_.back() != sweep.from) places_.push_back(sweep.from);
-    places_.push_back(sweep.to);
-    entries_.push_back({static_cast<uint32_t>(places_.size() - 1),
+    if (positions_.empty() || positions_.back() != sweep.from) positions_.push_back(sweep.from);
+    positions_.push_back(sweep.to);
+    entries_.push_back({static_cast<uint32_t>(positions_.size() - 1),
                         static_cast<uint32_t>(attitudes_.size() - 1), sweep.block});
 }
 
 Aabb SweepLog::box(size_t i) const {
     const Entry& entry = entries_[i];
     Aabb path;
-    path.extend(places_[entry.end - 1]);
-    path.extend(places_[entry.end]);
+    path.extend(positions_[entry.end - 1]);
+    path.extend(positions_[entry.end]);
     const Aabb& body = attitudes_[entry.attitude].body;
     return {path.min + body.min, path.max + body.max};
 }
@@ -28,8 +28,8 @@ Aabb SweepLog::box(size_t i) const {
 LoggedSweep SweepLog::operator[](size_t i) const {
     const Entry& entry = entries_[i];
     const Attitude& attitude = attitudes_[entry.attitude];
-    return {{attitude.cutter, places_[entry.end - 1], places_[entry.end], attitude.orientation,
-             entry.block},
+    return {{attitude.cutter, positions_[entry.end - 1], positions_[entry.end],
+             attitude.orientation, entry.block},
             box(i)};
 }
 
@@ -56,11 +56,11 @@ void for_sweeps_over(const CutModel& model, int i, int j, const Square& square, 
 }
 
 /// Positions of the lines, padded to fill the last tile.
-std::vector<double> places_along(const ScanGrid& grid, int axis) {
-    std::vector<double> places;
+std::vector<double> line_coordinates(const ScanGrid& grid, int axis) {
+    std::vector<double> positions;
     for (int i = 0; i < grid.count(axis) + ScanLines::tile_side; ++i)
-        places.push_back(grid.coordinate(axis, i));
-    return places;
+        positions.push_back(grid.coordinate(axis, i));
+    return positions;
 }
 
 /// Positions of the cell corners; entries beyond the last one have no meaning.
@@ -96,7 +96,7 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
     model.solid = std::move(solid);
     model.lines = std::move(lines);
     for (int axis = 0; axis < 3; ++axis)
-        model.places[static_cast<size_t>(axis)] = places_along(model.lines.grid, axis);
+        model.positions[static_cast<size_t>(axis)] = line_coordinates(model.lines.grid, axis);
     for (int axis = 0; axis < 2; ++axis)
         model.corners[static_cast<size_t>(axis)] = corners_along(model, axis);
     if (with_columns == WithColumns::yes) add_columns(model);

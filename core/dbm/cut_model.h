@@ -77,7 +77,7 @@ private:
         uint32_t block;
     };
     SharedLog<Attitude> attitudes_;
-    SharedLog<Vec3> places_;
+    SharedLog<Vec3> positions_;
     SharedLog<Entry> entries_;
 };
 
@@ -109,7 +109,7 @@ struct CutModel {
     size_t loose_tests = 0;                   // box tests by searches since all boxes were fitted
 
     // Positions of the lines and of the corners of cells, along X, Y, Z.
-    std::array<std::vector<double>, 3> places;
+    std::array<std::vector<double>, 3> positions;
     std::array<std::vector<double>, 2> corners;
 };
 

@@ -33,17 +33,17 @@ IntervalList::~IntervalList() {
 
 void IntervalList::swap(IntervalList& other) noexcept {
     const bool mine = on_heap(), others = other.on_heap();
-    const Interval kept_one = mine ? Interval{} : one;
+    const Interval own_one = mine ? Interval{} : one;
     const Interval given_one = others ? Interval{} : other.one;
-    Interval* const kept_many = mine ? many : nullptr;
+    Interval* const own_many = mine ? many : nullptr;
     if (others)
         many = other.many;
     else
         one = given_one;
     if (mine)
-        other.many = kept_many;
+        other.many = own_many;
     else
-        other.one = kept_one;
+        other.one = own_one;
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
 }
@@ -59,8 +59,8 @@ void IntervalList::reserve(uint32_t capacity) {
 }
 
 void IntervalList::replace(size_t first, size_t last, std::span<const Interval> with) {
-    const size_t kept_after = size_ - last;
-    const auto new_size = static_cast<uint32_t>(first + with.size() + kept_after);
+    const size_t count_after = size_ - last;
+    const auto new_size = static_cast<uint32_t>(first + with.size() + count_after);
     reserve(new_size);
     Interval* const all = data();
     if (first + with.size() > last)

@@ -29,17 +29,17 @@ HWY_ATTR void stretches(const LanePlan& plan, const double* u, double v, uint32_
 }
 
 /// Layer k of a row.
-HWY_INLINE Stretch matter_of(const ScanTile& tile, size_t k, size_t place) {
-    return {load(&tile.layers[k].lower[place]), load(&tile.layers[k].upper[place])};
+HWY_INLINE Stretch matter_of(const ScanTile& tile, size_t k, size_t slot) {
+    return {load(&tile.layers[k].lower[slot]), load(&tile.layers[k].upper[slot])};
 }
 
 /// The layers, as bits, that have material on any of the lines within a segment; all layers from
 /// the 32nd on share one bit.
-HWY_INLINE uint32_t layers_with_matter(const ScanTile& tile, size_t place, const Stretch& where,
+HWY_INLINE uint32_t layers_with_matter(const ScanTile& tile, size_t slot, const Stretch& where,
                                        const RowMask& wanted) {
     uint32_t layers = 0;
     for (size_t k = 0; k < tile.layers.size(); ++k)
-        if (any(overlap(matter_of(tile, k, place), where) & wanted))
+        if (any(overlap(matter_of(tile, k, slot), where) & wanted))
             layers |= 1U << std::min(k, size_t{31});
     return layers;
 }
@@ -54,12 +54,12 @@ HWY_INLINE void for_layers(const ScanTile& tile, uint32_t layers, const Act& act
 }
 
 /// The lines of a chunk on which the plan may sweep material of these layers.
-HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t place,
+HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t slot,
                                    uint32_t layers, const double* u, double v) {
     return bits_of(in_reach(plan, u, v, [&](const auto& may_hold) HWY_ATTR {
         RowMask found = below(row_of(1.0), row_of(0.0));
         for_layers(tile, layers,
-                   [&](size_t k) HWY_ATTR { found = found | may_hold(matter_of(tile, k, place)); });
+                   [&](size_t k) HWY_ATTR { found = found | may_hold(matter_of(tile, k, slot)); });
         return found;
     }));
 }
@@ -123,7 +123,7 @@ HWY_INLINE void set_marks(uint32_t* marks, uint32_t which, uint32_t mark) {
 }
 
 /// Counts what is removed when the intervals of a layer are shortened.
-HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t place,
+HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t slot,
                       const Stretch& old, const Swept& gone, const RowMask& wanted,
                       const RowMask& from_below, const RowMask& from_above, TileCut& done) {
     const Row low = row_of(1.0) - tilt_of(gone.low_facing) * (1.0 / ScanTile::steepest);
@@ -133,44 +133,44 @@ HWY_INLINE void count(const TileTask& task, const ScanTile::Marks& marks, size_t
     const Counted upper = counted(task, choose(from_above, old.upper, gone.ends.upper), from_above);
     const Counted lower =
         counted(task, choose(from_below, old.lower, gone.ends.lower), but_not(wanted, from_below));
-    const Row upper_facing = choose(from_above, facing_of(&marks.upper_tilt[place]), high);
-    const Row lower_facing = choose(from_below, facing_of(&marks.lower_tilt[place]), low);
-    const size_t lane = place % ScanTile::side;
+    const Row upper_facing = choose(from_above, facing_of(&marks.upper_tilt[slot]), high);
+    const Row lower_facing = choose(from_below, facing_of(&marks.lower_tilt[slot]), low);
+    const size_t lane = slot % ScanTile::side;
     add_to(&done.beyond[lane], wanted, upper.beyond * upper_facing - lower.beyond * lower_facing);
     if (task.axis == 2) add_to(&done.points[lane], wanted, upper.points - lower.points);
 }
 
 /// Shortens the intervals of a layer; those in `wanted` keep one end or are removed.
-HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t place,
-                     const Swept& gone, const RowMask& wanted, TileCut& done) {
-    const Stretch old = matter_of(tile, k, place);
+HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t slot, const Swept& gone,
+                     const RowMask& wanted, TileCut& done) {
+    const Stretch old = matter_of(tile, k, slot);
     const RowMask from_below = wanted & at_most(gone.ends.lower, old.lower);
     const RowMask from_above = wanted & at_most(old.upper, gone.ends.upper);
     const RowMask whole = from_below & from_above;
     store(choose(whole, row_of(infinity), choose(from_below, gone.ends.upper, old.lower)),
-          &tile.layers[k].lower[place]);
+          &tile.layers[k].lower[slot]);
     store(choose(whole, row_of(-infinity), choose(from_above, gone.ends.lower, old.upper)),
-          &tile.layers[k].upper[place]);
+          &tile.layers[k].upper[slot]);
     if (tile.marks.empty()) return;
     ScanTile::Marks& marks = tile.marks[k];
-    count(task, marks, place, old, gone, wanted, from_below, from_above, done);
+    count(task, marks, slot, old, gone, wanted, from_below, from_above, done);
     if (any(from_below)) {
-        set_marks(&marks.lower[place], bits_of(from_below), task.mark);
-        keep_tilts(&marks.lower_tilt[place], from_below, tilt_of(gone.high_facing));
+        set_marks(&marks.lower[slot], bits_of(from_below), task.mark);
+        keep_tilts(&marks.lower_tilt[slot], from_below, tilt_of(gone.high_facing));
     }
     if (any(from_above)) {
-        set_marks(&marks.upper[place], bits_of(from_above), task.mark);
-        keep_tilts(&marks.upper_tilt[place], from_above, tilt_of(gone.low_facing));
+        set_marks(&marks.upper[slot], bits_of(from_above), task.mark);
+        keep_tilts(&marks.upper_tilt[slot], from_above, tilt_of(gone.low_facing));
     }
 }
 
-void note_blocks(TileCut& done, size_t place, uint32_t changed) {
-    const size_t row = place / ScanTile::side, first = place % ScanTile::side / 4;
+void note_blocks(TileCut& done, size_t slot, uint32_t changed) {
+    const size_t row = slot / ScanTile::side, first = slot % ScanTile::side / 4;
     for (size_t group = first; changed != 0; changed >>= 4U, ++group)
         if ((changed & 15U) != 0) done.blocks |= 1U << (row / 4 * 4 + group);
 }
 
-void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone) {
+void note_by_hand(TileCut& done, size_t slot, uint32_t hard, const Swept& gone) {
     std::array<double, chunk> lower, upper, low_tilts, high_tilts;
     store(gone.ends.lower, lower.data());
     store(gone.ends.upper, upper.data());
@@ -178,20 +178,20 @@ void note_by_hand(TileCut& done, size_t place, uint32_t hard, const Swept& gone)
     store(tilt_of(gone.high_facing), high_tilts.data());
     for (; hard != 0; hard &= hard - 1) {
         const auto i = static_cast<size_t>(std::countr_zero(hard));
-        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(place + i), lower[i], upper[i],
+        done.by_hand[done.by_hand_count++] = {static_cast<uint32_t>(slot + i), lower[i], upper[i],
                                               static_cast<uint8_t>(low_tilts[i]),
                                               static_cast<uint8_t>(high_tilts[i])};
     }
 }
 
 /// Removes segments from a chunk of lines in the layers that hold material.
-HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, uint32_t layers,
+HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t slot, uint32_t layers,
                            const Swept& gone, TileCut& done) {
     RowMask hard = below(row_of(1.0), row_of(0.0));
     RowMask met = hard;
     const bool many = tile.layers.size() > 1;
     for_layers(tile, layers, [&](size_t k) HWY_ATTR {
-        const Stretch old = matter_of(tile, k, place);
+        const Stretch old = matter_of(tile, k, slot);
         const RowMask over = overlap(old, gone.ends);
         const RowMask from_below = at_most(gone.ends.lower, old.lower);
         const RowMask from_above = at_most(old.upper, gone.ends.upper);
@@ -201,11 +201,11 @@ HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, u
     });
     if (!any(met)) return;
     for_layers(tile, layers, [&](size_t k) HWY_ATTR {
-        const RowMask wanted = but_not(overlap(matter_of(tile, k, place), gone.ends), hard);
-        if (any(wanted)) trim(task, tile, k, place, gone, wanted, done);
+        const RowMask wanted = but_not(overlap(matter_of(tile, k, slot), gone.ends), hard);
+        if (any(wanted)) trim(task, tile, k, slot, gone, wanted, done);
     });
-    if (any(hard)) note_by_hand(done, place, bits_of(hard), gone);
-    note_blocks(done, place, bits_of(met));
+    if (any(hard)) note_by_hand(done, slot, bits_of(hard), gone);
+    note_blocks(done, slot, bits_of(met));
 }
 
 /// Calls `act(row, first lane, place, layers, lines)` for the chunks that the plan may affect, with
@@ -213,17 +213,17 @@ HWY_INLINE void take_chunk(const TileTask& task, ScanTile& tile, size_t place, u
 template <typename Act>
 HWY_INLINE void for_chunks_in_reach(const LanePlan& plan, const TileTask& task,
                                     const ScanTile& tile, const Act& act) {
-    const Stretch looked_at{row_of(task.low), row_of(task.high)};
+    const Stretch range{row_of(task.low), row_of(task.high)};
     for (int row = task.row_first; row < task.row_last; ++row) {
         const double v = task.v[static_cast<size_t>(row)];
         for (size_t first = 0; first < ScanTile::side; first += chunk) {
             const uint32_t asked = (task.lanes >> first) & 0xffU;
             if (asked == 0) continue;
-            const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
-            const uint32_t layers = layers_with_matter(tile, place, looked_at, mask_of(asked));
+            const size_t slot = static_cast<size_t>(row) * ScanTile::side + first;
+            const uint32_t layers = layers_with_matter(tile, slot, range, mask_of(asked));
             if (layers == 0) continue;
-            const uint32_t lines = lines_in_reach(plan, tile, place, layers, task.u + first, v);
-            if (lines != 0) act(row, first, place, layers, lines);
+            const uint32_t lines = lines_in_reach(plan, tile, slot, layers, task.u + first, v);
+            if (lines != 0) act(row, first, slot, layers, lines);
         }
     }
 }
@@ -240,23 +240,22 @@ HWY_ATTR void in_reach_of_tile(const LanePlan& plan, const TileTask& task, const
 HWY_ATTR bool changes(const LanePlan& plan, const TileTask& task, const ScanTile& tile) {
     bool found = false;
     for_chunks_in_reach(plan, task, tile,
-                        [&](int row, size_t first, size_t place, uint32_t, uint32_t lines)
-                            HWY_ATTR {
-                                if (found) return;
-                                const double v = task.v[static_cast<size_t>(row)];
-                                const Stretch gone = swept_of(plan, task.u + first, v, lines).ends;
-                                for (size_t k = 0; k < tile.layers.size(); ++k)
-                                    found = found || any(overlap(matter_of(tile, k, place), gone));
-                            });
+                        [&](int row, size_t first, size_t slot, uint32_t, uint32_t lines) HWY_ATTR {
+                            if (found) return;
+                            const double v = task.v[static_cast<size_t>(row)];
+                            const Stretch gone = swept_of(plan, task.u + first, v, lines).ends;
+                            for (size_t k = 0; k < tile.layers.size(); ++k)
+                                found = found || any(overlap(matter_of(tile, k, slot), gone));
+                        });
     return found;
 }
 
 HWY_ATTR void cut(const LanePlan& plan, const TileTask& task, ScanTile& tile, TileCut& done) {
     for_chunks_in_reach(
         plan, task, tile,
-        [&](int row, size_t first, size_t place, uint32_t layers, uint32_t lines) HWY_ATTR {
+        [&](int row, size_t first, size_t slot, uint32_t layers, uint32_t lines) HWY_ATTR {
             const double v = task.v[static_cast<size_t>(row)];
-            take_chunk(task, tile, place, layers, swept_of(plan, task.u + first, v, lines), done);
+            take_chunk(task, tile, slot, layers, swept_of(plan, task.u + first, v, lines), done);
         });
 }
 
@@ -282,10 +281,10 @@ HWY_ATTR void take_shared(const TileTask& task, int row, const CornerStretches& 
         if (!any(some)) continue;
         const Stretch here{choose(some, gone.lower, row_of(infinity)),
                            choose(some, gone.upper, row_of(-infinity))};
-        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
-        const uint32_t layers = layers_with_matter(tile, place, here, some);
+        const size_t slot = static_cast<size_t>(row) * ScanTile::side + first;
+        const uint32_t layers = layers_with_matter(tile, slot, here, some);
         if (layers != 0)
-            take_chunk(task, tile, place, layers, {here, row_of(1.0), row_of(1.0)}, done);
+            take_chunk(task, tile, slot, layers, {here, row_of(1.0), row_of(1.0)}, done);
     }
 }
 
@@ -295,8 +294,8 @@ HWY_ATTR bool meets_shared(const ScanTile& tile, int row, const CornerStretches&
         if ((cells & 0xffU) == 0) continue;
         const Stretch gone = shared(front, back, first);
         const RowMask some = below(gone.lower, gone.upper) & mask_of(cells & 0xffU);
-        const size_t place = static_cast<size_t>(row) * ScanTile::side + first;
-        if (layers_with_matter(tile, place, gone, some) != 0) return true;
+        const size_t slot = static_cast<size_t>(row) * ScanTile::side + first;
+        if (layers_with_matter(tile, slot, gone, some) != 0) return true;
     }
     return false;
 }

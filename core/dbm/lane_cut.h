@@ -22,7 +22,7 @@ struct TileTask {
 /// A segment that the lanes cannot remove from a line, because it divides an interval or removes
 /// one.
 struct HandCut {
-    uint32_t place;
+    uint32_t slot;
     double lower, upper;
     uint8_t low_tilt, high_tilt; // of these ends, see ScanTile::Marks
 };

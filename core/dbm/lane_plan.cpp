@@ -160,7 +160,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             c = upright_lanes(sweep, e);
             open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
-            plan.beside[plan.across++] = across_lanes(sweep, axis, e);
+            plan.sideways[plan.across++] = across_lanes(sweep, axis, e);
         } else if ((level || upright || sloped) && plan.elements < LanePlan::most
                    && (e.margin > 0.0 || (e.z0 < e.z1 && e.r0 != e.r1))) {
             plan.element[plan.elements++] = element_lanes(sweep, axis, e, sloped);

@@ -57,7 +57,7 @@ struct LanePlan {
     bool by_lanes = false; // else line by line, using `piece` and `sweep`
     size_t balls = 0, uprights = 0, across = 0, elements = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
-    std::array<AcrossLanes, most> beside;         // cylinders met by lines along X and Y
+    std::array<AcrossLanes, most> sideways;       // cylinders met by lines along X and Y
     std::array<ElementLanes, most> element;
     const RevolvedProfile* piece = nullptr;
     const CutterSweep* sweep = nullptr;

@@ -161,13 +161,13 @@ HWY_INLINE void unite_high(Swept& all, const RowMask& valid, const Row& at, cons
 }
 
 /// Positions of lines, seen along them, relative to the path of a capsule.
-struct Beside {
+struct Sideways {
     Row g, beyond; // along the path; w^2
     Row past;      // distance before the start or beyond the end of the path
     RowMask met;
 };
 
-HWY_INLINE Beside beside(const CapsuleLanes& c, const Row& u, double v) {
+HWY_INLINE Sideways sideways(const CapsuleLanes& c, const Row& u, double v) {
     const Row ou = u - c.from_u;
     const double ov = v - c.from_v;
     const Row g = ou * c.cos_u + ov * c.cos_v;
@@ -177,13 +177,13 @@ HWY_INLINE Beside beside(const CapsuleLanes& c, const Row& u, double v) {
     return {g, beyond, past, at_most(past * past, beyond)};
 }
 
-HWY_INLINE Row moment(const CapsuleLanes& c, const Beside& at, const Row& half, double by_half,
+HWY_INLINE Row moment(const CapsuleLanes& c, const Sideways& at, const Row& half, double by_half,
                       double offset) {
     return within_move(at.g * c.per_length + half * by_half + offset);
 }
 
 HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Swept& all) {
-    const Beside at = beside(c, u, v);
+    const Sideways at = sideways(c, u, v);
     const auto deep = [&](const Row& t) HWY_ATTR {
         const Row past = at.g - t * c.length;
         return root(at.beyond - past * past);
@@ -205,7 +205,7 @@ HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Swept& a
 }
 
 HWY_INLINE void add_upright(const CapsuleLanes& c, const Row& u, double v, Swept& all) {
-    const Beside at = beside(c, u, v);
+    const Sideways at = sideways(c, u, v);
     const Row half = root(at.beyond);
     const Row low = moment(c, at, half, c.low_by_half, c.low_at) * c.by_a + (c.from_a + c.low_end);
     unite_low(all, at.met, low, row_of(1.0));

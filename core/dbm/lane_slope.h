@@ -55,10 +55,10 @@ HWY_INLINE void add_circles(const AcrossLanes& c, const Row& s, const Row& radiu
     const Row touching = s * c.per_side, shift = radius * c.by_radius;
     const Row low = least(most(touching + c.low_at - shift, at.first), at.last);
     const Row high = least(most(touching + c.high_at + shift, at.first), at.last);
-    const Row before = half(low), behind = half(high);
+    const Row before = half(low), far_half = half(high);
     const Row per_square = flatness / most(radius * radius, row_of(1e-300));
     unite_low(all, met, low * c.by_a + c.from_a - before, before * before * per_square);
-    unite_high(all, met, high * c.by_a + c.from_a + behind, behind * behind * per_square);
+    unite_high(all, met, high * c.by_a + c.from_a + far_half, far_half * far_half * per_square);
 }
 
 HWY_INLINE void add_across(const AcrossLanes& c, const Row& u, double v, Swept& all) {

@@ -90,7 +90,7 @@ HWY_ATTR Swept swept_of(const LanePlan& plan, const double* u, double v, uint32_
         if (u[0] <= c.u_most && v <= c.v_most) add_ball(c, at_u, v, all);
     }
     for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
-    for (size_t i = 0; i < plan.across; ++i) add_across(plan.beside[i], at_u, v, all);
+    for (size_t i = 0; i < plan.across; ++i) add_across(plan.sideways[i], at_u, v, all);
     for (size_t i = 0; i < plan.elements; ++i)
         add_element(plan, plan.element[i], false, at_u, v, all);
     all.ends = {on_lattice(all.ends.lower), on_lattice(all.ends.upper)};
@@ -114,12 +114,12 @@ HWY_INLINE RowMask may_hold(const Reach& reach, const Stretch& matter) {
 }
 
 HWY_INLINE Reach reach_of_ball(const CapsuleLanes& c, const Row& u, double v) {
-    const Beside at = beside(c, u, v);
+    const Sideways at = sideways(c, u, v);
     return {at.beyond - at.past * at.past, c.reach_low, c.reach_high, at.met};
 }
 
 HWY_INLINE Reach reach_of_upright(const CapsuleLanes& c, const Row& u, double v) {
-    return {row_of(0.0), c.reach_low, c.reach_high, beside(c, u, v).met};
+    return {row_of(0.0), c.reach_low, c.reach_high, sideways(c, u, v).met};
 }
 
 HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) {
@@ -148,7 +148,7 @@ HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, con
         if (u[0] <= c.u_most && v <= c.v_most) add(reach_of_ball(c, at_u, v));
     }
     for (size_t i = 0; i < plan.uprights; ++i) add(reach_of_upright(plan.upright[i], at_u, v));
-    for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.beside[i], at_u, v));
+    for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.sideways[i], at_u, v));
     if (plan.elements == 0) return found;
     Swept loose = nothing_swept();
     for (size_t i = 0; i < plan.elements; ++i)

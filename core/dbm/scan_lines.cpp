@@ -11,22 +11,22 @@ struct Marked {
     EndMarks marks;
 };
 
-Marked at(const ScanTile& tile, size_t place, size_t k) {
-    return {{tile.layers[k].lower[place], tile.layers[k].upper[place]}, tile.marks_of(place, k)};
+Marked at(const ScanTile& tile, size_t slot, size_t k) {
+    return {{tile.layers[k].lower[slot], tile.layers[k].upper[slot]}, tile.marks_of(slot, k)};
 }
 
-void put(ScanTile& tile, size_t place, size_t k, const Marked& what) {
+void put(ScanTile& tile, size_t slot, size_t k, const Marked& what) {
     if (k == tile.layers.size()) {
         tile.layers.emplace_back();
         if (!tile.marks.empty()) tile.keep_marks();
     }
-    tile.layers[k].lower[place] = what.interval.lower;
-    tile.layers[k].upper[place] = what.interval.upper;
+    tile.layers[k].lower[slot] = what.interval.lower;
+    tile.layers[k].upper[slot] = what.interval.upper;
     if (tile.marks.empty()) return;
-    tile.marks[k].lower[place] = what.marks.lower;
-    tile.marks[k].upper[place] = what.marks.upper;
-    tile.marks[k].lower_tilt[place] = what.marks.lower_tilt;
-    tile.marks[k].upper_tilt[place] = what.marks.upper_tilt;
+    tile.marks[k].lower[slot] = what.marks.lower;
+    tile.marks[k].upper[slot] = what.marks.upper;
+    tile.marks[k].lower_tilt[slot] = what.marks.lower_tilt;
+    tile.marks[k].upper_tilt[slot] = what.marks.upper_tilt;
 }
 
 constexpr Marked no_matter{{infinity, -infinity}, {}};
@@ -38,18 +38,18 @@ ScanTile::Layer::Layer() {
     upper.fill(-infinity);
 }
 
-void set_line(ScanTile& tile, size_t place, const LineView& matter) {
-    const size_t before = tile.line(place).size();
-    for (size_t k = 0; k < matter.size(); ++k) put(tile, place, k, {matter[k], {}});
-    for (size_t k = matter.size(); k < before; ++k) put(tile, place, k, no_matter);
+void set_line(ScanTile& tile, size_t slot, const LineView& matter) {
+    const size_t before = tile.line(slot).size();
+    for (size_t k = 0; k < matter.size(); ++k) put(tile, slot, k, {matter[k], {}});
+    for (size_t k = matter.size(); k < before; ++k) put(tile, slot, k, no_matter);
 }
 
-double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made) {
-    const size_t size = tile.line(place).size();
+double subtract(ScanTile& tile, size_t slot, const Interval& cut, const EndMarks& made) {
+    const size_t size = tile.line(slot).size();
     double removed = 0.0;
     std::vector<Marked> kept;
     for (size_t k = 0; k < size; ++k) {
-        const Marked old = at(tile, place, k);
+        const Marked old = at(tile, slot, k);
         const auto& [lower, upper] = old.interval;
         if (!(lower < cut.upper && upper > cut.lower)) {
             kept.push_back(old);
@@ -64,8 +64,8 @@ double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMark
                             {made.lower, old.marks.upper, made.lower_tilt, old.marks.upper_tilt}});
     }
     if (removed == 0.0) return 0.0;
-    for (size_t k = 0; k < kept.size(); ++k) put(tile, place, k, kept[k]);
-    for (size_t k = kept.size(); k < size; ++k) put(tile, place, k, no_matter);
+    for (size_t k = 0; k < kept.size(); ++k) put(tile, slot, k, kept[k]);
+    for (size_t k = kept.size(); k < size; ++k) put(tile, slot, k, no_matter);
     return removed;
 }
 
@@ -87,14 +87,14 @@ ScanLines::ScanLines(int axis, int u_count, int v_count)
 }
 
 ScanLines::Edit& ScanLines::Edit::operator=(const LineView& matter) {
-    set_line(tile_, place_, matter);
+    set_line(tile_, slot_, matter);
     return *this;
 }
 
 void ScanLines::Edit::add(const Interval& interval) {
-    IntervalList list = tile_.line(place_).list();
+    IntervalList list = tile_.line(slot_).list();
     list.add(interval);
-    set_line(tile_, place_, list);
+    set_line(tile_, slot_, list);
 }
 
 ScanTile& ScanLines::edit_tile(size_t index) {

@@ -43,29 +43,28 @@ struct ScanTile {
     std::vector<Layer> layers = std::vector<Layer>(1);
     std::vector<Marks> marks; // one per layer, or none while all are 0
 
-    LineView line(size_t place) const {
+    LineView line(size_t slot) const {
         size_t size = 0;
-        while (size < layers.size() && layers[size].lower[place] < layers[size].upper[place])
-            ++size;
+        while (size < layers.size() && layers[size].lower[slot] < layers[size].upper[slot]) ++size;
         constexpr std::ptrdiff_t stride = sizeof(Layer) / sizeof(double);
-        return {&layers[0].lower[place], &layers[0].upper[place], stride, size};
+        return {&layers[0].lower[slot], &layers[0].upper[slot], stride, size};
     }
-    EndMarks marks_of(size_t place, size_t interval) const {
+    EndMarks marks_of(size_t slot, size_t interval) const {
         if (marks.empty()) return {};
         const Marks& m = marks[interval];
-        return {m.lower[place], m.upper[place], m.lower_tilt[place], m.upper_tilt[place]};
+        return {m.lower[slot], m.upper[slot], m.lower_tilt[slot], m.upper_tilt[slot]};
     }
     /// Allocates marks; from now on they are stored for every end.
     void keep_marks() { marks.resize(layers.size()); }
 };
 
 /// Replaces the material of a line; all its ends count as raw stock.
-void set_line(ScanTile& tile, size_t place, const LineView& matter);
+void set_line(ScanTile& tile, size_t slot, const LineView& matter);
 
 /// Removes `cut` from a line and returns the removed length. If the tile keeps marks, the new ends
 /// get those in `made`: the lower end of the remaining material, at the upper end of `cut`, gets
 /// the lower mark.
-double subtract(ScanTile& tile, size_t place, const Interval& cut, const EndMarks& made);
+double subtract(ScanTile& tile, size_t slot, const Interval& cut, const EndMarks& made);
 
 /// The axes along which the first (u) and second (v) index of a family of lines count: (Y, Z) for
 /// X, (Z, X) for Y, (X, Y) for Z.
@@ -83,15 +82,15 @@ public:
     /// Write access to a line.
     class Edit {
     public:
-        Edit(ScanTile& tile, size_t place) : tile_(tile), place_(place) {}
+        Edit(ScanTile& tile, size_t slot) : tile_(tile), slot_(slot) {}
         Edit& operator=(const LineView& matter);
         /// As for IntervalList; new ends count as raw stock.
         void add(const Interval& interval);
-        double subtract(const Interval& cut) { return core::subtract(tile_, place_, cut, {}); }
+        double subtract(const Interval& cut) { return core::subtract(tile_, slot_, cut, {}); }
 
     private:
         ScanTile& tile_;
-        size_t place_;
+        size_t slot_;
     };
 
     ScanLines() = default;
@@ -103,16 +102,16 @@ public:
 
     LineView line(int u, int v) const {
         const auto& tile = tiles_[tile_of(u, v)];
-        return tile ? tile->line(place_in_tile(u, v)) : LineView();
+        return tile ? tile->line(slot_of(u, v)) : LineView();
     }
     /// The marks of the ends of interval `i` of a line.
     EndMarks marks(int u, int v, size_t i) const {
         const auto& tile = tiles_[tile_of(u, v)];
-        return tile ? tile->marks_of(place_in_tile(u, v), i) : EndMarks();
+        return tile ? tile->marks_of(slot_of(u, v), i) : EndMarks();
     }
 
     /// Write access to a line. Its tile is cloned first if another snapshot shares it.
-    Edit edit(int u, int v) { return {edit_tile(tile_of(u, v)), place_in_tile(u, v)}; }
+    Edit edit(int u, int v) { return {edit_tile(tile_of(u, v)), slot_of(u, v)}; }
 
     /// Tiles are numbered u fastest; null if all lines of the tile are empty.
     size_t tile_count() const { return tiles_.size(); }
@@ -133,7 +132,7 @@ public:
     bool operator==(const ScanLines& other) const;
 
 private:
-    static constexpr size_t place_in_tile(int u, int v) {
+    static constexpr size_t slot_of(int u, int v) {
         return static_cast<size_t>(u % tile_side)
                + static_cast<size_t>(v % tile_side) * static_cast<size_t>(tile_side);
     }

@@ -85,7 +85,7 @@ NodeLayer Contouring::nodes(int k) {
     if (row < 0 || row >= grid_.count(2)) return layer;
     const auto mark_inside = [&](int axis, const LineView& line, const auto& mark) {
         for (const Interval& matter : line) {
-            const IndexRange range = places_within(grid_, axis, matter);
+            const IndexRange range = lines_within(grid_, axis, matter);
             for (int i = range.first; i <= range.last; ++i) mark(i);
         }
     };
@@ -135,15 +135,15 @@ CellLayer Contouring::cells(const NodeLayer& below, const NodeLayer& above, int 
 
 EdgePoints Contouring::points_of(const CellLayer& layer, const NodeLayer& below,
                                  const NodeLayer& above, int i, int j) const {
-    const size_t here = at(i, j), right = at(i + 1, j), behind = at(i, j + 1);
+    const size_t here = at(i, j), right = at(i + 1, j), beyond = at(i, j + 1);
     const auto flat = [](const NodeLayer& nodes, size_t axis, size_t node) {
         return point_of(nodes.points, nodes.edges[axis][node]);
     };
     const auto upright = [&](size_t node) { return point_of(layer.points, layer.z_edges[node]); };
-    return {flat(below, 0, here),   flat(below, 0, behind), flat(above, 0, here),
-            flat(above, 0, behind), flat(below, 1, here),   flat(below, 1, right),
+    return {flat(below, 0, here),   flat(below, 0, beyond), flat(above, 0, here),
+            flat(above, 0, beyond), flat(below, 1, here),   flat(below, 1, right),
             flat(above, 1, here),   flat(above, 1, right),  upright(here),
-            upright(right),         upright(behind),        upright(at(i + 1, j + 1))};
+            upright(right),         upright(beyond),        upright(at(i + 1, j + 1))};
 }
 
 void Contouring::make_vertices(CellLayer& layer, const NodeLayer& below, const NodeLayer& above,
@@ -206,9 +206,9 @@ void Contouring::add_upright_quads(const CellLayer& layer) {
 void Contouring::add_quad(std::array<int32_t, 4> corners, const CrossedEdge& edge, bool upwards) {
     if (!upwards) std::swap(corners[1], corners[3]);
     const auto id = [&](size_t i) { return static_cast<uint32_t>(corners[i]); };
-    const auto place = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
-    const Vec3& point = edge.plane.place;
-    const auto [k, away] = better_diagonal({place(0), place(1), place(2), place(3)}, point);
+    const auto corner = [&](size_t i) { return result_.mesh.vertices[id(i)]; };
+    const Vec3& point = edge.plane.position;
+    const auto [k, away] = better_diagonal({corner(0), corner(1), corner(2), corner(3)}, point);
     result_.mesh.triangles.push_back({id(k), id(k + 1), id(k + 2)});
     result_.mesh.triangles.push_back({id(k), id(k + 2), id((k + 3) % 4)});
     result_.samples.push_back({point, edge.sweep});
@@ -252,7 +252,7 @@ void Contouring::measure_error() {
                 for (uint32_t i = near.first[corner]; i < near.first[corner + 1]; ++i)
                     for (const uint32_t other : {2 * near.quads[i], 2 * near.quads[i] + 1})
                         away = std::min(
-                            away, distance_to(mesh.triangle(other), result_.samples[k].place));
+                            away, distance_to(mesh.triangle(other), result_.samples[k].position));
         result_.error = std::max(result_.error, away);
     }
 }

@@ -11,7 +11,7 @@ struct CutModel;
 
 /// A point where a scan line crosses the surface of a stock.
 struct SurfaceSample {
-    Vec3 place = Vec3(0.0);
+    Vec3 position = Vec3(0.0);
     std::optional<uint32_t> sweep; // number in the log of the cut that made it; empty: raw stock
 };
 

@@ -85,7 +85,7 @@ private:
         return {tu * tile_side, std::min((tu + 1) * tile_side, z_.u_count()), tv * tile_side,
                 std::min((tv + 1) * tile_side, z_.v_count())};
     }
-    static size_t place(const LineRange& range, int u, int v) {
+    static size_t line_index(const LineRange& range, int u, int v) {
         return static_cast<size_t>((u - range.u_first)
                                    + (v - range.v_first) * (range.u_last - range.u_first));
     }
@@ -121,8 +121,8 @@ std::shared_ptr<PieceMap::Tile> PieceWork::tile_parts(int tu, int tv) const {
                     for (size_t b = 0; b < next.size(); ++b)
                         if (hang_together(model_, u, v, towards, line[a], next[b]))
                             groups.join(
-                                static_cast<uint32_t>(tile->first[place(range, u, v)] + a),
-                                static_cast<uint32_t>(tile->first[place(range, u2, v2)] + b));
+                                static_cast<uint32_t>(tile->first[line_index(range, u, v)] + a),
+                                static_cast<uint32_t>(tile->first[line_index(range, u2, v2)] + b));
             }
     number_parts(*tile, range, groups);
     return tile;
@@ -170,8 +170,8 @@ void PieceWork::link(int tu, int tv, int towards) {
         for (size_t a = 0; a < line.size(); ++a)
             for (size_t b = 0; b < other.size(); ++b)
                 if (hang_together(model_, u, v, towards, line[a], other[b]))
-                    links.emplace_back(tile->part[tile->first[place(range, u, v)] + a],
-                                       next.part[next.first[place(beyond, u2, v2)] + b]);
+                    links.emplace_back(tile->part[tile->first[line_index(range, u, v)] + a],
+                                       next.part[next.first[line_index(beyond, u2, v2)] + b]);
     }
     std::sort(links.begin(), links.end());
     links.erase(std::unique(links.begin(), links.end()), links.end());
@@ -215,7 +215,7 @@ std::vector<StockPiece> PieceWork::put_together() {
             const StockPiece& part = map_.tiles_[t]->parts[p];
             const auto number = first[t] + static_cast<uint32_t>(p);
             StockPiece& piece = whole[groups.root(number)];
-            if (groups.root(number) == number) piece.place = part.place;
+            if (groups.root(number) == number) piece.position = part.position;
             piece.volume += part.volume;
             piece.box.extend(part.box);
         }

@@ -11,9 +11,9 @@ struct CutModel;
 
 /// A connected piece of the stock, as far as the scan lines show.
 struct StockPiece {
-    double volume = 0.0;    // mm3
-    Aabb box;               // around its lines along Z
-    Vec3 place = Vec3(0.0); // one of its points
+    double volume = 0.0;       // mm3
+    Aabb box;                  // around its lines along Z
+    Vec3 position = Vec3(0.0); // one of its points
 };
 
 /// Connectivity of the material of a model, tile by tile of its lines along Z. A plain value;

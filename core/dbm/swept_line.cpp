@@ -289,7 +289,7 @@ struct Cone {
         : z0(e.z0), z1(e.z1), r0(e.r0), slope((e.r1 - e.r0) / (e.z1 - e.z0)) {}
 
     /// A point or a direction as (x, y, radius); for a direction, z0 has no effect.
-    Vec3 place(const Vec3& q) const { return {q.x, q.y, r0 + slope * (q.z - z0)}; }
+    Vec3 position(const Vec3& q) const { return {q.x, q.y, r0 + slope * (q.z - z0)}; }
     Vec3 direction(const Vec3& d) const { return {d.x, d.y, slope * d.z}; }
 };
 
@@ -322,14 +322,14 @@ Range flank_crossings(const Vec3& at, const Vec3& by) {
 
 /// The range of s in the cone at one time of the motion.
 Range chord_at(const LineAndMotion& line, const Cone& cone, double t) {
-    const Vec3 place = line.at(t);
+    const Vec3 position = line.at(t);
     // Counted from the foot of the perpendicular, so that distances along the line do not spoil the
     // square's accuracy.
-    const double shift = -glm::dot(place, line.d);
-    const Vec3 q = place + shift * line.d;
+    const double shift = -glm::dot(position, line.d);
+    const Vec3 q = position + shift * line.d;
     Range range = where_not_negative({q.z - cone.z0 + slack, line.d.z}, everywhere);
     range = where_not_negative({cone.z1 - q.z + slack, -line.d.z}, range);
-    const Vec3 at = cone.place(q), by = cone.direction(line.d);
+    const Vec3 at = cone.position(q), by = cone.direction(line.d);
     const Range flanks = flank_crossings(at, by);
     if (form(by, by) >= 0.0)
         range = {std::max(range.first, flanks.first), std::min(range.last, flanks.last)};
@@ -374,7 +374,7 @@ bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
     constexpr double most = 5e-10;
     const Vec3 q = line.at(t) + s * line.d;
     if (!(q.z >= cone.z0 - most && q.z <= cone.z1 + most)) return false;
-    return std::hypot(q.x, q.y) - cone.place(q).z <= most * std::hypot(1.0, cone.slope);
+    return std::hypot(q.x, q.y) - cone.position(q).z <= most * std::hypot(1.0, cone.slope);
 }
 
 /// Adds the points at which the line meets the envelope of the moving flank: the least and greatest
@@ -386,7 +386,7 @@ bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
 ///         whose discriminant is F(M, M). Everything scales with h, so there is no cancellation
 ///         however near the line is to the apex.
 void offer_touches(const LineAndMotion& line, const Cone& cone, Extent& extent) {
-    const Vec3 p = cone.place(line.p), d = cone.direction(line.d), m = cone.direction(line.m);
+    const Vec3 p = cone.position(line.p), d = cone.direction(line.d), m = cone.direction(line.m);
     const double c = form(m, m);
     const Vec3 w = glm::cross(d, m);
     const double across = glm::length(w);

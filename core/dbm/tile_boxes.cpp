@@ -7,26 +7,26 @@
 namespace core {
 namespace {
 
-Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places,
+Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions,
                   size_t tile, size_t block) {
     const LineRange range = lines_of_block(lines, tiles, tile, block);
     const int axis = lines.axis(), ua = u_axis(axis), va = v_axis(axis);
-    const int wide = places.cells ? 1 : 0;
+    const int wide = positions.cells ? 1 : 0;
     Aabb box;
     if (lines.tile(tile) == nullptr) return box;
     const std::vector<ScanTile::Layer>& layers = lines.tile(tile)->layers;
     for (int v = range.v_first; v < range.v_last; ++v) {
         for (int u = range.u_first; u < range.u_last; ++u) {
-            const auto place =
+            const auto slot =
                 static_cast<size_t>(v % ScanTile::side * ScanTile::side + u % ScanTile::side);
-            if (!(layers[0].lower[place] < layers[0].upper[place])) continue;
-            box.min[axis] = std::min(box.min[axis], layers[0].lower[place]);
+            if (!(layers[0].lower[slot] < layers[0].upper[slot])) continue;
+            box.min[axis] = std::min(box.min[axis], layers[0].lower[slot]);
             for (const ScanTile::Layer& layer : layers)
-                box.max[axis] = std::max(box.max[axis], layer.upper[place]);
-            box.min[ua] = std::min(box.min[ua], places.u[u]);
-            box.max[ua] = std::max(box.max[ua], places.u[u + wide]);
-            box.min[va] = std::min(box.min[va], places.v[v]);
-            box.max[va] = std::max(box.max[va], places.v[v + wide]);
+                box.max[axis] = std::max(box.max[axis], layer.upper[slot]);
+            box.min[ua] = std::min(box.min[ua], positions.u[u]);
+            box.max[ua] = std::max(box.max[ua], positions.u[u + wide]);
+            box.min[va] = std::min(box.min[va], positions.v[v]);
+            box.max[va] = std::max(box.max[va], positions.v[v + wide]);
         }
     }
     return box;
@@ -170,13 +170,13 @@ TileBoxes unfitted_boxes(const ScanLines& lines) {
     return tiles;
 }
 
-void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places) {
+void fit(TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions) {
     for (const uint32_t tile : tiles.stale_tiles) {
         Aabb whole;
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
             if ((tiles.stale[tile] >> block) & 1U) {
-                box = box_of_block(tiles, lines, places, tile, block);
+                box = box_of_block(tiles, lines, positions, tile, block);
                 tiles.block_gaps[tile * TileBoxes::blocks_per_tile + block] =
                     gap_of_block(tiles, lines, tile, block);
             }

@@ -74,12 +74,12 @@ TileBoxes unfitted_boxes(const ScanLines& lines);
 
 /// Positions of the lines: line i is at u[i], or, for columns (`cells`), cell i spans u[i] .. u[i +
 /// 1].
-struct LinePlaces {
+struct LinePositions {
     const double* u = nullptr;
     const double* v = nullptr;
     bool cells = false;
 };
 /// Refits all outdated boxes.
-void fit(TileBoxes& tiles, const ScanLines& lines, const LinePlaces& places);
+void fit(TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions);
 
 } // namespace core

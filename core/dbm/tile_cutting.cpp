@@ -8,7 +8,7 @@ namespace {
 constexpr int side = ScanLines::tile_side;
 
 /// The lines first .. last - 1 of the grid whose positions are within lower .. upper.
-std::pair<int, int> places_between(const ScanGrid& grid, int axis, double lower, double upper) {
+std::pair<int, int> lines_between(const ScanGrid& grid, int axis, double lower, double upper) {
     const double first = grid.coordinate(axis, 0);
     const double count = grid.count(axis);
     const double from = std::ceil((lower - first) / grid.spacing);
@@ -32,7 +32,7 @@ double points_below(const ScanGrid& grid, int axis, double x, bool itself) {
 }
 
 /// The contribution of a line's material to the sums.
-LineSums counted(const TileTask& task, const ScanTile& tile, size_t place) {
+LineSums counted(const TileTask& task, const ScanTile& tile, size_t slot) {
     const double half = task.grid->half_count[static_cast<size_t>(task.axis)];
     const auto end = [&](double x, bool is_upper, uint8_t tilt) {
         const double points = points_below(*task.grid, task.axis, x, !is_upper);
@@ -40,9 +40,9 @@ LineSums counted(const TileTask& task, const ScanTile& tile, size_t place) {
         return LineSums{(x - border) * (1.0 - tilt * (1.0 / ScanTile::steepest)), points};
     };
     LineSums sums;
-    const LineView matter = tile.line(place);
+    const LineView matter = tile.line(slot);
     for (size_t k = 0; k < matter.size(); ++k) {
-        const EndMarks marks = tile.marks_of(place, k);
+        const EndMarks marks = tile.marks_of(slot, k);
         const LineSums upper = end(matter[k].upper, true, marks.upper_tilt);
         const LineSums lower = end(matter[k].lower, false, marks.lower_tilt);
         sums.beyond += upper.beyond - lower.beyond;
@@ -64,21 +64,21 @@ LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
     LineSums sums{sum_of(done.beyond), sum_of(done.points)};
     for (size_t i = 0; i < done.by_hand_count; ++i) {
         const HandCut& hand = done.by_hand[i];
-        const LineSums before = task.grid ? counted(task, tile, hand.place) : LineSums{};
-        subtract(tile, hand.place, {hand.lower, hand.upper},
+        const LineSums before = task.grid ? counted(task, tile, hand.slot) : LineSums{};
+        subtract(tile, hand.slot, {hand.lower, hand.upper},
                  {task.mark, task.mark, hand.high_tilt, hand.low_tilt});
-        const LineSums after = task.grid ? counted(task, tile, hand.place) : LineSums{};
+        const LineSums after = task.grid ? counted(task, tile, hand.slot) : LineSums{};
         sums.beyond += before.beyond - after.beyond;
         if (task.axis == 2) sums.points += before.points - after.points;
     }
     return sums;
 }
 
-struct TilePlace {
+struct TileIndex {
     int u, v; // of its first line
 };
 
-TilePlace place_of(const TileBoxes& boxes, size_t tile) {
+TileIndex index_of(const TileBoxes& boxes, size_t tile) {
     return {static_cast<int>(tile % static_cast<size_t>(boxes.u_tiles)) * side,
             static_cast<int>(tile / static_cast<size_t>(boxes.u_tiles)) * side};
 }
@@ -125,8 +125,8 @@ void fit_boxes(CutModel& model) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto family = static_cast<size_t>(axis);
         fit(model.line_boxes[family], model.lines.families[family],
-            {model.places[static_cast<size_t>(u_axis(axis))].data(),
-             model.places[static_cast<size_t>(v_axis(axis))].data(), false});
+            {model.positions[static_cast<size_t>(u_axis(axis))].data(),
+             model.positions[static_cast<size_t>(v_axis(axis))].data(), false});
     }
     fit(model.column_boxes, model.columns,
         {model.corners[0].data(), model.corners[1].data(), true});
@@ -135,8 +135,8 @@ void fit_boxes(CutModel& model) {
 LineRange lines_in(const CutModel& model, int axis, const Aabb& box) {
     const int ua = u_axis(axis), va = v_axis(axis);
     const ScanGrid& grid = model.lines.grid;
-    const auto [u0, u1] = places_between(grid, ua, box.min[ua], box.max[ua]);
-    const auto [v0, v1] = places_between(grid, va, box.min[va], box.max[va]);
+    const auto [u0, u1] = lines_between(grid, ua, box.min[ua], box.max[ua]);
+    const auto [v0, v1] = lines_between(grid, va, box.min[va], box.max[va]);
     return {u0, u1, v0, v1};
 }
 
@@ -153,10 +153,10 @@ TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, cons
     ScanLines& family = model.lines.families[static_cast<size_t>(axis)];
     const TileBoxes& boxes = model.line_boxes[static_cast<size_t>(axis)];
     if (family.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
-    const auto [u, v] = place_of(boxes, tile);
+    const auto [u, v] = index_of(boxes, tile);
     const TileTask task{
-        .u = &model.places[static_cast<size_t>(u_axis(axis))][static_cast<size_t>(u)],
-        .v = &model.places[static_cast<size_t>(v_axis(axis))][static_cast<size_t>(v)],
+        .u = &model.positions[static_cast<size_t>(u_axis(axis))][static_cast<size_t>(u)],
+        .v = &model.positions[static_cast<size_t>(v_axis(axis))][static_cast<size_t>(v)],
         .row_first = std::max(range.v_first - v, 0),
         .row_last = std::min(range.v_last - v, side),
         .lanes = lanes_of(u, range.u_first, range.u_last),
@@ -179,7 +179,7 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
                         const ReadySweep& ready) {
     const TileBoxes& boxes = model.column_boxes;
     if (model.columns.tile(tile) == nullptr || !overlaps(boxes.boxes[tile], ready.front)) return {};
-    const auto [u, v] = place_of(boxes, tile);
+    const auto [u, v] = index_of(boxes, tile);
     const TileTask task{.u = &model.corners[0][static_cast<size_t>(u)],
                         .v = &model.corners[1][static_cast<size_t>(v)],
                         .row_first = std::max(range.v_first - v, 0),

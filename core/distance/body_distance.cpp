@@ -12,15 +12,15 @@ Separation overlapping_at(const Vec3& point) {
 
 /// A point of the shape at its first position.
 Vec3 inner_point(const ConvexShape& shape) {
-    const Vec3 place = shape.places[0].at;
-    if (shape.core == ConvexShape::Core::points) return place + shape.points[0];
-    return place + shape.orientation * Vec3(0.0, 0.0, 0.5 * (shape.cone.z0 + shape.cone.z1));
+    const Vec3 position = shape.positions[0].at;
+    if (shape.core == ConvexShape::Core::points) return position + shape.points[0];
+    return position + shape.orientation * Vec3(0.0, 0.0, 0.5 * (shape.cone.z0 + shape.cone.z1));
 }
 
 /// The shape of B, moving in the frame of A.
 ConvexShape moved(const ConvexShape& shape, const Transform& a_from_b, const Vec3& sweep) {
-    const Vec3 places[] = {Vec3(0.0), sweep};
-    return swept(posed(shape, a_from_b), places);
+    const Vec3 positions[] = {Vec3(0.0), sweep};
+    return swept(posed(shape, a_from_b), positions);
 }
 
 Separation turned_round(Separation found) {

@@ -62,9 +62,9 @@ HWY_ATTR void project_boxes(const PointTree::Node& node, const FrameView& view, 
 HWY_ATTR void project_points(const PointTree::Leaf& leaf, const FrameView& view, PointLanes& out) {
     const PointTag d;
     for (size_t i = 0; i < leaf_size; i += hn::Lanes(d)) {
-        const auto x = hn::Load(d, &leaf.place[0][i]);
-        const auto y = hn::Load(d, &leaf.place[1][i]);
-        const auto z = hn::Load(d, &leaf.place[2][i]);
+        const auto x = hn::Load(d, &leaf.position[0][i]);
+        const auto y = hn::Load(d, &leaf.position[1][i]);
+        const auto z = hn::Load(d, &leaf.position[2][i]);
         for (size_t k = 0; k < 3; ++k) {
             const auto along =
                 dot(d, x, y, z, hn::Set(d, view.direction[k][0]), hn::Set(d, view.direction[k][1]),
@@ -134,8 +134,8 @@ HWY_INLINE HWY_ATTR uint16_t near_path(const PointLanes& a, const Float3& from, 
         auto y = hn::Sub(hn::Load(d, &a.at[1][i]), hn::Set(d, from[1]));
         auto z = hn::Sub(hn::Load(d, &a.at[2][i]), hn::Set(d, from[2]));
         if (per_length > 0.0F) {
-            const auto share = hn::Mul(dot(d, x, y, z, sx, sy, sz), hn::Set(d, per_length));
-            const auto t = hn::Min(hn::Max(share, hn::Zero(d)), hn::Set(d, 1.0F));
+            const auto fraction = hn::Mul(dot(d, x, y, z, sx, sy, sz), hn::Set(d, per_length));
+            const auto t = hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0F));
             x = hn::Sub(x, hn::Mul(t, sx));
             y = hn::Sub(y, hn::Mul(t, sy));
             z = hn::Sub(z, hn::Mul(t, sz));

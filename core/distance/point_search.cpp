@@ -37,7 +37,7 @@ public:
         return !(glm::dot(apart, apart) < near_squared_);
     }
 
-    void compare(const PointPlace& a, const PointPlace& b) {
+    void compare(const PointLocation& a, const PointLocation& b) {
         if (a.tree == nullptr || b.tree == nullptr) return; // no first pair
         const Vec3& p = a.position();
         const Vec3 q = motion_.start * b.position();
@@ -66,7 +66,7 @@ protected:
     // The nearest pair compared so far, even if beyond the limit.
     double near_squared_ = infinity;
     Vec3 near_apart_ = Vec3(0.0);
-    PointPlace near_a_, near_b_;
+    PointLocation near_a_, near_b_;
 };
 
 namespace {
@@ -117,7 +117,7 @@ public:
 
     ClosestPair run() {
         if (goal_.first)
-            compare(place_of(body_a_, goal_.first->a), place_of(body_b_, goal_.first->b));
+            compare(location_of(body_a_, goal_.first->a), location_of(body_b_, goal_.first->b));
         if (near_squared_ == infinity) {
             if (is_beyond_limit()) return finished();
             follow_the_middles();
@@ -185,9 +185,9 @@ private:
 
     Vec3 across(const Vec3& between) const {
         constexpr float curved = 0.3F, flat = 1e-3F; // thickness of a patch
-        const auto normal = [&](const PointPlace& place, const Vec3& n) {
+        const auto normal = [&](const PointLocation& point, const Vec3& n) {
             const double facing = glm::dot(n, between);
-            if (place.leaf->thickness > curved || std::abs(facing) < 0.5) return Vec3(0.0);
+            if (point.leaf->thickness > curved || std::abs(facing) < 0.5) return Vec3(0.0);
             return facing > 0.0 ? n : -n;
         };
         const Vec3 of_a = normal(near_a_, wide(near_a_.leaf->normal));
@@ -300,7 +300,7 @@ private:
         });
     }
 
-    static PointPlace place_in(const VisitedLeaf& leaf, uint32_t i) {
+    static PointLocation place_in(const VisitedLeaf& leaf, uint32_t i) {
         return {leaf.tree, leaf.leaf, leaf.leaf->first + i};
     }
 

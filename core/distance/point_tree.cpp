@@ -94,7 +94,7 @@ public:
         }
         tree_.points.resize(points.size());
         tree_.index.resize(points.size());
-        tree_.place.resize(points.size());
+        tree_.position.resize(points.size());
         tree_.leaves.reserve(leaves_for(points.size()));
     }
 
@@ -153,7 +153,7 @@ private:
             const uint32_t given = loose_[i].index;
             tree_.points[i] = given_[given];
             tree_.index[i] = given;
-            tree_.place[given] = static_cast<uint32_t>(i);
+            tree_.position[given] = static_cast<uint32_t>(i);
             box.extend(given_[given]);
         }
         leaf.origin = box.center();
@@ -161,7 +161,7 @@ private:
         for (size_t i = 0; i < PointTree::leaf_size; ++i) {
             const Vec3 p = tree_.points[std::min(first + i, last - 1)] - leaf.origin;
             for (int k = 0; k < 3; ++k)
-                leaf.place[static_cast<size_t>(k)][i] = static_cast<float>(p[k]);
+                leaf.position[static_cast<size_t>(k)][i] = static_cast<float>(p[k]);
         }
         tree_.leaves.push_back(leaf);
         return static_cast<uint32_t>(tree_.leaves.size() - 1) | PointTree::leaf_flag;

@@ -37,7 +37,7 @@ struct PointTree {
     /// Points in single precision, relative to `origin`; entries beyond `count` repeat the last
     /// one.
     struct alignas(64) Leaf {
-        std::array<std::array<float, leaf_size>, 3> place{};
+        std::array<std::array<float, leaf_size>, 3> position{};
         Vec3 origin = Vec3(0.0);
         float reach = 0.0F;
         uint32_t first = 0; // index in `points`
@@ -49,10 +49,10 @@ struct PointTree {
 
     std::vector<Node> nodes; // the root first
     std::vector<Leaf> leaves;
-    std::vector<Vec3> points;    // in the order of the leaves
-    std::vector<uint64_t> index; // of each of `points` in the input
-    std::vector<uint32_t> place; // the inverse of `index`
-    Aabb box;                    // of the points
+    std::vector<Vec3> points;       // in the order of the leaves
+    std::vector<uint64_t> index;    // of each of `points` in the input
+    std::vector<uint32_t> position; // the inverse of `index`
+    Aabb box;                       // of the points
 };
 
 /// An oriented box around points, in single precision: every point p has |axis[k] . (p - origin -

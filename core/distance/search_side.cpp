@@ -9,7 +9,7 @@ namespace core {
 namespace {
 
 /// The component of `v` orthogonal to the unit vector `u`, normalised; zero if it is tiny.
-Vec3 beside(const Vec3& v, const Vec3& u) {
+Vec3 perpendicular(const Vec3& v, const Vec3& u) {
     const double length = glm::length(v);
     if (!(length > 0.0)) return Vec3(0.0);
     const Vec3 part = v / length - glm::dot(v / length, u) * u;
@@ -17,12 +17,12 @@ Vec3 beside(const Vec3& v, const Vec3& u) {
 }
 
 /// Any direction orthogonal to `u`.
-Vec3 any_beside(const Vec3& u) {
+Vec3 any_perpendicular(const Vec3& u) {
     const Vec3 a = glm::abs(u);
     const int least = a.x <= a.y && a.x <= a.z ? 0 : a.y <= a.z ? 1 : 2;
     Vec3 axis(0.0);
     axis[least] = 1.0;
-    return beside(axis, u);
+    return perpendicular(axis, u);
 }
 
 } // namespace
@@ -31,9 +31,9 @@ SearchFrame search_frame(const Vec3& across, const Vec3& along, const Vec3& orig
                          const Vec3& sweep) {
     const double length = glm::length(across);
     const Vec3 u = length > 0.0 ? across / length : Vec3(1.0, 0.0, 0.0);
-    Vec3 v = beside(sweep, u);
-    if (v == Vec3(0.0)) v = beside(along, u);
-    if (v == Vec3(0.0)) v = any_beside(u);
+    Vec3 v = perpendicular(sweep, u);
+    if (v == Vec3(0.0)) v = perpendicular(along, u);
+    if (v == Vec3(0.0)) v = any_perpendicular(u);
     return {{u, v, glm::cross(u, v)}, origin};
 }
 
@@ -58,9 +58,9 @@ float coarse(const PointTree& tree, const Vec3& origin, const StraightMotion* mo
 
 } // namespace
 
-PointPlace place_of(const PointTree& tree, uint64_t index) {
-    if (index >= tree.place.size()) return {};
-    const uint32_t point = tree.place[index];
+PointLocation location_of(const PointTree& tree, uint64_t index) {
+    if (index >= tree.position.size()) return {};
+    const uint32_t point = tree.position[index];
     const auto after =
         std::upper_bound(tree.leaves.begin(), tree.leaves.end(), point,
                          [](uint32_t p, const PointTree::Leaf& leaf) { return p < leaf.first; });
@@ -140,11 +140,11 @@ const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
     VisitedLeaf& leaf = leaves[id];
     leaf.tree = tree_;
     leaf.leaf = &tree_->leaves[parent.node->child[lane] & ~PointTree::leaf_flag];
-    look_at(leaf);
+    project(leaf);
     return leaf;
 }
 
-void SearchSide::look_at(VisitedLeaf& leaf) const {
+void SearchSide::project(VisitedLeaf& leaf) const {
     Sight seen = sight(leaf.leaf->origin, leaf.leaf->reach);
     seen.view.lower = seen.base;
     leaf.margin = *std::max_element(seen.margin.begin(), seen.margin.end());

@@ -44,7 +44,7 @@ struct VisitedLeaf {
 };
 
 /// Where a point is stored.
-struct PointPlace {
+struct PointLocation {
     const PointTree* tree = nullptr;
     const PointTree::Leaf* leaf = nullptr;
     uint32_t point = 0; // in the tree's order
@@ -54,7 +54,7 @@ struct PointPlace {
 };
 
 /// Where the point with this index is stored.
-PointPlace place_of(const PointTree& tree, uint64_t index);
+PointLocation location_of(const PointTree& tree, uint64_t index);
 
 /// One body in a search: its visited nodes and leaves in the frame of the search.
 class SearchSide {
@@ -87,7 +87,7 @@ private:
     static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
     Sight sight(const Vec3& origin, float reach) const;
     uint32_t visit(uint32_t number);
-    void look_at(VisitedLeaf& leaf) const;
+    void project(VisitedLeaf& leaf) const;
 
     const LaneKernels* kernels_ = nullptr;
     const PointTree* tree_ = nullptr;

@@ -123,8 +123,8 @@ public:
             return found;
         }
         const Vec3 here = sweep_.from + m.time * sweep_.by;
-        const double share = m.near.box.r > 0.0 ? m.near.piece.r / m.near.box.r : 0.0;
-        found.point_a = {here.x + share * (m.x - here.x), here.y + share * (m.y - here.y),
+        const double fraction = m.near.box.r > 0.0 ? m.near.piece.r / m.near.box.r : 0.0;
+        found.point_a = {here.x + fraction * (m.x - here.x), here.y + fraction * (m.y - here.y),
                          m.near.piece.z};
         found.point_a += (margin / m.distance) * (found.point_b - found.point_a);
         return found;
@@ -194,10 +194,10 @@ ProfileElement cylinder_round(std::span<const Vec3> points, double margin) {
 
 ShapeOutline outline(const ConvexShape& shape) {
     ShapeOutline result{.box = bounds(shape)};
-    result.straight = shape.place_count <= 2 && shape.upright;
+    result.straight = shape.position_count <= 2 && shape.upright;
     if (!result.straight) return result;
-    result.sweep.from = shape.places[0].at;
-    result.sweep.by = shape.places[shape.place_count - 1U].at - shape.places[0].at;
+    result.sweep.from = shape.positions[0].at;
+    result.sweep.by = shape.positions[shape.position_count - 1U].at - shape.positions[0].at;
     result.exact = shape.core == ConvexShape::Core::cone;
     result.sweep.element =
         result.exact ? shape.cone

@@ -86,36 +86,37 @@ ConvexShape convex_sphere(double radius) {
 }
 
 ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape) {
-    assert(shape.place_count == 1);
+    assert(shape.position_count == 1);
     ConvexShape result = shape;
     for (size_t i = 0; i < shape.point_count; ++i)
         result.points[i] = target_from_shape.rotation * shape.points[i];
     result.orientation = target_from_shape.rotation * shape.orientation;
     result.upright = result.orientation == Mat3(1.0);
-    result.places[0].at = target_from_shape * shape.places[0].at;
+    result.positions[0].at = target_from_shape * shape.positions[0].at;
     return result;
 }
 
-ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> places) {
-    assert(!places.empty() && places.size() <= ConvexShape::max_places && shape.place_count == 1);
+ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> positions) {
+    assert(!positions.empty() && positions.size() <= ConvexShape::max_positions
+           && shape.position_count == 1);
     ConvexShape result = shape;
-    result.place_count = static_cast<uint8_t>(places.size());
-    const double last = std::max<double>(1.0, static_cast<double>(places.size()) - 1.0);
-    for (size_t i = 0; i < places.size(); ++i)
-        result.places[i] = {shape.places[0].at + places[i], static_cast<double>(i) / last};
+    result.position_count = static_cast<uint8_t>(positions.size());
+    const double last = std::max<double>(1.0, static_cast<double>(positions.size()) - 1.0);
+    for (size_t i = 0; i < positions.size(); ++i)
+        result.positions[i] = {shape.positions[0].at + positions[i], static_cast<double>(i) / last};
     return result;
 }
 
 SupportPoint support(const ConvexShape& shape, const Vec3& direction) {
     size_t best = 0;
-    double farthest = glm::dot(shape.places[0].at, direction);
-    for (size_t i = 1; i < shape.place_count; ++i) {
-        const double along = glm::dot(shape.places[i].at, direction);
+    double farthest = glm::dot(shape.positions[0].at, direction);
+    for (size_t i = 1; i < shape.position_count; ++i) {
+        const double along = glm::dot(shape.positions[i].at, direction);
         if (along <= farthest) continue;
         farthest = along;
         best = i;
     }
-    return {core_support(shape, direction) + shape.places[best].at, shape.places[best].time};
+    return {core_support(shape, direction) + shape.positions[best].at, shape.positions[best].time};
 }
 
 Aabb bounds(const ConvexShape& shape) {
@@ -187,8 +188,8 @@ void set_witness(Separation& found, const Simplex& simplex, const Vec3& v, doubl
     found.time_a = std::clamp(nearest.time_a, 0.0, 1.0); // the weights sum to 1 but for rounding
     const double length = glm::length(v);
     if (length <= margin_a + margin_b) { // overlap: any point between the cores is in both
-        const double share = margin_a + margin_b > 0.0 ? margin_a / (margin_a + margin_b) : 0.0;
-        found.point_a = found.point_b = found.point_a + share * (found.point_b - found.point_a);
+        const double fraction = margin_a + margin_b > 0.0 ? margin_a / (margin_a + margin_b) : 0.0;
+        found.point_a = found.point_b = found.point_a + fraction * (found.point_b - found.point_a);
         return;
     }
     found.point_a -= (margin_a / length) * v;
@@ -201,7 +202,8 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
     found.lower = 0.0;
 
     Simplex simplex;
-    simplex.vertices[0] = support_pair(a, b, a.places[0].at - b.places[0].at + Vec3(0.1, 0.2, 0.3));
+    simplex.vertices[0] =
+        support_pair(a, b, a.positions[0].at - b.positions[0].at + Vec3(0.1, 0.2, 0.3));
     simplex.count = 1;
     Vec3 v = reduce_to_nearest(simplex);
 
@@ -239,7 +241,7 @@ void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal&
     Vec3 n = (found.point_a - found.point_b) / found.upper;
     for (int round = 0; round < 30 && found.upper - found.lower > goal.tolerance; ++round) {
         ConvexShape back = b;
-        for (size_t i = 0; i < back.place_count; ++i) back.places[i].at -= step * n;
+        for (size_t i = 0; i < back.position_count; ++i) back.positions[i].at -= step * n;
         Separation seen = search(a, back, {0.0, infinity});
         if (seen.upper == 0.0) return;
         const Vec3 from = n;

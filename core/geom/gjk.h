@@ -12,28 +12,28 @@ namespace core {
 struct Triangle;
 
 /// A convex body given by its support function: a hull of up to eight points or a truncated cone,
-/// grown by `margin` on all sides and swept over the hull of its `places`.
+/// grown by `margin` on all sides and swept over the hull of its `positions`.
 ///
 /// A place is a position of the body's origin with a time. The hull of two places is a straight
 /// motion, the hull of eight a box within which the path is unknown.
 struct ConvexShape {
     enum class Core : uint8_t { points, cone };
-    struct Place {
+    struct Position {
         Vec3 at = Vec3(0.0);
         double time = 0.0; // 0..1 of the motion
     };
     static constexpr size_t max_points = 8;
-    static constexpr size_t max_places = 9;
+    static constexpr size_t max_positions = 9;
 
     Core core = Core::points;
     uint8_t point_count = 0;
-    uint8_t place_count = 1;
+    uint8_t position_count = 1;
     std::array<Vec3, max_points> points{}; // when core is points
     ProfileElement cone;                   // when core is cone: axis along the local Z
     Mat3 orientation = Mat3(1.0);          // of the cone
     bool upright = true;                   // orientation is the identity
     double margin = 0.0;
-    std::array<Place, max_places> places{};
+    std::array<Position, max_positions> positions{};
 };
 
 ConvexShape convex(const Triangle& triangle);
@@ -45,9 +45,9 @@ ConvexShape convex_sphere(double radius);
 /// The shape rotated about its origin, then translated. It must have a single place.
 ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape);
 
-/// The shape moved over the hull of `places`; times are spread evenly from 0 at the first to 1 at
-/// the last.
-ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> places);
+/// The shape moved over the hull of `positions`; times are spread evenly from 0 at the first to 1
+/// at the last.
+ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> positions);
 
 /// The farthest point of the shape in a direction, without the margin.
 struct SupportPoint {

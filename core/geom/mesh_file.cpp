@@ -262,7 +262,7 @@ namespace {
 
 constexpr double farthest_coordinate = 1e6; // mm; no workpiece is a kilometre long
 
-std::string place_of(const Vec3& p) {
+std::string position_text(const Vec3& p) {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
 }
 
@@ -282,7 +282,7 @@ Result<bool> check_coordinates(const Mesh& mesh) {
             if (glm::any(glm::greaterThan(glm::abs(p), Vec3(farthest_coordinate))))
                 return fail(ErrorCode::invalid_value,
                             fmt::format("triangle {} is at {} mm, more than a kilometre away",
-                                        i + 1, place_of(p)));
+                                        i + 1, position_text(p)));
         }
     return true;
 }
@@ -303,10 +303,10 @@ Mesh welded(const Mesh& mesh) {
             i > 0 && key(order[i]) == key(order[i - 1]) ? same[order[i - 1]] : order[i];
 
     Mesh out;
-    std::vector<uint32_t> place(mesh.vertices.size(), UINT32_MAX);
+    std::vector<uint32_t> index_of(mesh.vertices.size(), UINT32_MAX);
     for (Mesh::Corners triangle : mesh.triangles) {
         for (uint32_t& corner : triangle) {
-            uint32_t& kept = place[same[corner]];
+            uint32_t& kept = index_of[same[corner]];
             if (kept == UINT32_MAX) {
                 kept = static_cast<uint32_t>(out.vertices.size());
                 out.vertices.push_back(mesh.vertices[same[corner]] + Vec3(0.0)); // no -0
@@ -350,7 +350,8 @@ tl::unexpected<Error> fail_at_edge(const Mesh& mesh, size_t edges, const char* w
                                    const EdgeUse& at) {
     return fail(ErrorCode::invalid_value,
                 fmt::format("the mesh is not closed: {} {}, one of them from {} to {}", edges, what,
-                            place_of(mesh.vertices[at.low]), place_of(mesh.vertices[at.high])));
+                            position_text(mesh.vertices[at.low]),
+                            position_text(mesh.vertices[at.high])));
 }
 
 /// Errors unless every edge is used equally often in both directions; flips triangles if that

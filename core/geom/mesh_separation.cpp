@@ -166,8 +166,8 @@ private:
     Separation separation_of(const Triangle& a, const Triangle& b) const {
         const SeparationGoal goal{goal_.tolerance, enough()};
         if (sweep_ == Vec3(0.0)) return separation(a, b, goal);
-        const Vec3 places[] = {Vec3(0.0), sweep_};
-        Separation found = separation(swept(convex(b), places), convex(a), goal);
+        const Vec3 positions[] = {Vec3(0.0), sweep_};
+        Separation found = separation(swept(convex(b), positions), convex(a), goal);
         std::swap(found.point_a, found.point_b);
         return found;
     }

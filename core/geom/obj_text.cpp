@@ -114,8 +114,9 @@ private:
         return true;
     }
 
-    Result<size_t> read_count(size_t place) const {
-        const auto count = place < words_.size() ? integer_of(words_[place]) : std::nullopt;
+    Result<size_t> read_count(size_t word_index) const {
+        const auto count =
+            word_index < words_.size() ? integer_of(words_[word_index]) : std::nullopt;
         if (!count || *count < 0 || *count > most_)
             return fail_in_line(lines_.line(), "the counts of vertices and faces are missing");
         return static_cast<size_t>(*count);

@@ -261,9 +261,9 @@ NearestSurface nearest_surface(const TriangleBvh& mesh, const Vec3& point, doubl
 
 NearestSurface SurfaceTracker::at(const Vec3& point) {
     // The point found last is at most this far from here, so the nearest one is, too.
-    const double limit = last_distance_ + glm::distance(point, last_place_);
+    const double limit = last_distance_ + glm::distance(point, last_point_);
     const NearestSurface found = nearest_surface(mesh_, point, limit * (1.0 + 1e-9) + 1e-9);
-    last_place_ = point;
+    last_point_ = point;
     last_distance_ = found.distance;
     return found;
 }

@@ -41,7 +41,7 @@ public:
 
 private:
     const TriangleBvh& mesh_;
-    Vec3 last_place_ = Vec3(0.0);
+    Vec3 last_point_ = Vec3(0.0);
     double last_distance_ = infinity;
 };
 

@@ -171,9 +171,9 @@ double chain_reach(const Machine& machine, LinkId link, const Vec3& point) {
 }
 
 AxisValues half_way(const Leg& leg) {
-    AxisValues values = leg.places[0];
+    AxisValues values = leg.positions[0];
     for (size_t i = 0; i < axis_count; ++i)
-        if (leg.places[1][i] != values[i]) values[i] = 0.5 * (values[i] + leg.places[1][i]);
+        if (leg.positions[1][i] != values[i]) values[i] = 0.5 * (values[i] + leg.positions[1][i]);
     return values;
 }
 
@@ -204,15 +204,15 @@ RelativeLeg without_turning(const Machine& machine, const Mount& target, const M
                             const Leg& leg) {
     RelativeLeg relative;
     relative.error = leg.path_error + mover.form_error;
-    for (const AxisValues& place : leg.places) {
+    for (const AxisValues& position : leg.positions) {
         const Transform pose = machine.has_rotary()
-                                   ? target_from_mover(machine, target, mover.mount, place)
-                                   : shifted_pose(machine, target, mover.mount, place);
+                                   ? target_from_mover(machine, target, mover.mount, position)
+                                   : shifted_pose(machine, target, mover.mount, position);
         relative.orientation = pose.rotation;
-        relative.places.push_back(pose.translation);
+        relative.positions.push_back(pose.translation);
     }
     relative.travel =
-        glm::distance(relative.places.front(), relative.places.back()) + leg.path_error;
+        glm::distance(relative.positions.front(), relative.positions.back()) + leg.path_error;
     return relative;
 }
 
@@ -245,7 +245,7 @@ Transform target_from_mover(const Machine& machine, const Mount& target, const M
     return machine_from_target.inverse() * machine_from_mover;
 }
 
-Vec3 tip_place(const Machine& machine, const AxisValues& values, double tool_length) {
+Vec3 tip_position(const Machine& machine, const AxisValues& values, double tool_length) {
     const Transform table = machine_from_link(machine, machine.table, values);
     const Transform spindle = machine_from_link(machine, machine.spindle, values);
     return table.inverse() * (spindle * Vec3(0.0, 0.0, -tool_length));
@@ -256,12 +256,12 @@ std::optional<AxisValues> reach_tip(const Machine& machine, const AxisValues& va
     AxisValues base = values;
     base[0] = base[1] = base[2] = 0.0;
     // With the rotary axes held, the tip is an affine function of X, Y and Z.
-    const Vec3 origin = tip_place(machine, base, tool_length);
+    const Vec3 origin = tip_position(machine, base, tool_length);
     Mat3 by_axis(0.0);
     for (int i = 0; i < 3; ++i) {
         AxisValues unit = base;
         unit[static_cast<size_t>(i)] = 1.0;
-        by_axis[i] = tip_place(machine, unit, tool_length) - origin;
+        by_axis[i] = tip_position(machine, unit, tool_length) - origin;
     }
     if (std::abs(glm::determinant(by_axis)) < 1e-9) return std::nullopt;
     const Vec3 linear = glm::inverse(by_axis) * (tip - origin);
@@ -286,9 +286,9 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     if (!machine.has_rotary()) return without_turning(machine, target, mover, leg);
     const std::vector<size_t> axes = axes_between(machine, target.link, mover.mount.link);
     double turn = 0.0, travel = 0.0;
-    if (leg.places.size() == 2) {
+    if (leg.positions.size() == 2) {
         for (const size_t i : axes) {
-            const double by = std::abs(leg.places[1][i] - leg.places[0][i]);
+            const double by = std::abs(leg.positions[1][i] - leg.positions[0][i]);
             (is_rotary(i) ? turn : travel) += is_rotary(i) ? by / degrees_per_radian : by;
         }
     }
@@ -299,8 +299,9 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     };
     const AxisValues middle = half_way(leg);
     RelativeLeg relative{.orientation = pose(middle).rotation, .turns = true};
-    for (const AxisValues& place : leg.places)
-        relative.places.push_back(pose(place) * mover.centre - relative.orientation * mover.centre);
+    for (const AxisValues& position : leg.positions)
+        relative.positions.push_back(pose(position) * mover.centre
+                                     - relative.orientation * mover.centre);
     const Vec3 centre = machine_from_link(machine, mover.mount.link, middle)
                         * (mover.mount.link_from_body * mover.centre);
     const double bound = 1.0 - 0.5 * turn;

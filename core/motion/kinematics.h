@@ -32,7 +32,7 @@ std::optional<AxisValues> reach_tip(const Machine& machine, const AxisValues& va
                                     const Vec3& tip, double tool_length);
 
 /// The position of the tool tip. Frame: the table link.
-Vec3 tip_place(const Machine& machine, const AxisValues& values, double tool_length);
+Vec3 tip_position(const Machine& machine, const AxisValues& values, double tool_length);
 
 /// The sum of the rotations of all rotary axes between two positions, radians.
 double turn_of(const Machine& machine, const AxisValues& from, const AxisValues& to);
@@ -46,10 +46,10 @@ double tip_reach(const Machine& machine, const Vec3& tip, double tool_length);
 /// away from that motion. Frame: the target's.
 struct RelativeLeg {
     Mat3 orientation = Mat3(1.0);
-    std::vector<Vec3> places; // of the mover's origin
-    double error = 0.0;       // of the path and of rotation, mm; infinite beyond half a radian
-    double travel = 0.0;      // upper bound of the travel of any point, mm
-    bool turns = false;       // the orientation is that of the middle of the leg
+    std::vector<Vec3> positions; // of the mover's origin
+    double error = 0.0;          // of the path and of rotation, mm; infinite beyond half a radian
+    double travel = 0.0;         // upper bound of the travel of any point, mm
+    bool turns = false;          // the orientation is that of the middle of the leg
 };
 
 /// A mounted body. No point of it is farther from `centre` (in its own frame) than `reach`.

@@ -55,7 +55,7 @@ struct Machine {
 
     /// Position of the gauge line relative to the work from the linear axes alone. Frame: the
     /// machine's.
-    Vec3 place(const AxisValues& values) const {
+    Vec3 linear_position(const AxisValues& values) const {
         Vec3 p(0.0);
         for (size_t i = 0; i < axis_count; ++i)
             if (axes[i].present && !is_rotary(i)) p += values[i] * axes[i].direction;

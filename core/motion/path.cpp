@@ -47,11 +47,11 @@ double longest_time(const AxisValues& times) {
     return *std::max_element(times.begin(), times.end());
 }
 
-AxisValues between(const AxisValues& from, const AxisValues& to, double share) {
+AxisValues between(const AxisValues& from, const AxisValues& to, double fraction) {
     AxisValues values = from;
     for (size_t i = 0; i < axis_count; ++i)
         if (to[i] != from[i])
-            values[i] = share == 1.0 ? to[i] : from[i] + share * (to[i] - from[i]);
+            values[i] = fraction == 1.0 ? to[i] : from[i] + fraction * (to[i] - from[i]);
     return values;
 }
 
@@ -92,7 +92,7 @@ void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, cons
     bool only_linear = true;
     for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
     if (path.assumed_speed && only_linear) {
-        path.legs.push_back({.places = box_corners(from, to),
+        path.legs.push_back({.positions = box_corners(from, to),
                              .end = total,
                              .straight = false,
                              .certain = {from, to}});
@@ -116,7 +116,7 @@ void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, cons
 
 /// The axis values on an arc at a fraction of its angle.
 AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues& to,
-                  double share) {
+                  double fraction) {
     const ArcPath& arc = *motion.arc;
     const auto a = static_cast<size_t>((arc.normal + 1) % 3);
     const auto b = static_cast<size_t>((arc.normal + 2) % 3);
@@ -125,9 +125,9 @@ AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues
     const double end_radius = std::hypot(to[a] - centre[0], to[b] - centre[1]);
     const double radius = std::hypot(u, v);
     // A small difference of the radii is spread evenly over the angle, as controls do.
-    const double scale = radius > 0.0 ? 1.0 + share * (end_radius / radius - 1.0) : 1.0;
-    const double angle = share * arc.angle;
-    AxisValues p = between(from, to, share);
+    const double scale = radius > 0.0 ? 1.0 + fraction * (end_radius / radius - 1.0) : 1.0;
+    const double angle = fraction * arc.angle;
+    AxisValues p = between(from, to, fraction);
     p[a] = centre[0] + scale * (u * std::cos(angle) - v * std::sin(angle));
     p[b] = centre[1] + scale * (u * std::sin(angle) + v * std::cos(angle));
     return p;
@@ -137,9 +137,9 @@ AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues
 std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
                                     const AxisValues& to) {
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
-    const auto radius = [&](const AxisValues& place) {
-        return std::hypot(place[static_cast<size_t>(a)] - arc.centre[a],
-                          place[static_cast<size_t>(b)] - arc.centre[b]);
+    const auto radius = [&](const AxisValues& position) {
+        return std::hypot(position[static_cast<size_t>(a)] - arc.centre[a],
+                          position[static_cast<size_t>(b)] - arc.centre[b]);
     };
     return {radius(from), radius(to)};
 }
@@ -174,13 +174,14 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     AxisValues here = from;
     double before = 0.0;
     for (int i = 1; i <= count; ++i) {
-        const double share = static_cast<double>(i) / count;
-        const AxisValues next = i == count ? to : on_arc(motion, from, to, share);
-        Leg chord{{here, next}, path.duration * (i - 1) / count, path.duration * share, max_error};
-        chord.arc = {whole, before, share};
+        const double fraction = static_cast<double>(i) / count;
+        const AxisValues next = i == count ? to : on_arc(motion, from, to, fraction);
+        Leg chord{
+            {here, next}, path.duration * (i - 1) / count, path.duration * fraction, max_error};
+        chord.arc = {whole, before, fraction};
         path.legs.push_back(std::move(chord));
         here = next;
-        before = share;
+        before = fraction;
     }
 }
 
@@ -193,9 +194,10 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
 void add_tip_path(Path& path, const Machine& machine, const Motion& motion, const AxisValues& from,
                   const AxisValues& to, double max_error) {
     const TipPath& tip = *motion.tip;
-    const auto at = [&](double share) {
-        const AxisValues rotary = between(from, to, share);
-        return reach_tip(machine, rotary, tip.from + share * (tip.to - tip.from), tip.tool_length)
+    const auto at = [&](double fraction) {
+        const AxisValues rotary = between(from, to, fraction);
+        return reach_tip(machine, rotary, tip.from + fraction * (tip.to - tip.from),
+                         tip.tool_length)
             .value_or(rotary);
     };
     const double travel = glm::distance(tip.from, tip.to);
@@ -211,11 +213,11 @@ void add_tip_path(Path& path, const Machine& machine, const Motion& motion, cons
                                       : longest_time(axis_times(from, to, machine, path));
     AxisValues here = from;
     for (int i = 1; i <= count; ++i) {
-        const double share = static_cast<double>(i) / count;
-        const AxisValues next = i == count ? to : at(share);
+        const double fraction = static_cast<double>(i) / count;
+        const AxisValues next = i == count ? to : at(fraction);
         path.legs.push_back({{here, next},
                              path.duration * (i - 1) / count,
-                             path.duration * share,
+                             path.duration * fraction,
                              turn > 0.0 ? max_error : 0.0});
         here = next;
     }
@@ -235,24 +237,25 @@ void add_from_unknown(Path& path, const Machine& machine, const Motion& motion) 
         ends[0][i] = motion.to[i].value_or(axis.min.value_or(0.0));
         ends[1][i] = motion.to[i].value_or(axis.max.value_or(0.0));
     }
-    Leg leg{.places = box_corners(starts[0], starts[1]), .straight = false, .start_known = false};
+    Leg leg{
+        .positions = box_corners(starts[0], starts[1]), .straight = false, .start_known = false};
     if (const auto to = known(motion.to, machine)) {
         leg.certain = {*to};
-        leg.places.push_back(*to);
+        leg.positions.push_back(*to);
     } else { // an axis that was never commanded: unknown position throughout
         for (size_t i = 0; i < 3; ++i) {
             starts[0][i] = std::min(starts[0][i], ends[0][i]);
             starts[1][i] = std::max(starts[1][i], ends[1][i]);
         }
-        leg.places = box_corners(starts[0], starts[1]);
+        leg.positions = box_corners(starts[0], starts[1]);
     }
     path.legs.push_back(std::move(leg));
 }
 
-void extend(AxisRange& range, const AxisValues& place, double by = 0.0) {
+void extend(AxisRange& range, const AxisValues& position, double by = 0.0) {
     for (size_t i = 0; i < axis_count; ++i) {
-        range.min[i] = std::min(range.min[i], place[i] - by);
-        range.max[i] = std::max(range.max[i], place[i] + by);
+        range.min[i] = std::min(range.min[i], position[i] - by);
+        range.max[i] = std::max(range.max[i], position[i] + by);
     }
 }
 
@@ -261,12 +264,12 @@ void extend(AxisRange& range, const AxisValues& place, double by = 0.0) {
 double chord_error(double mesh_size) { return std::clamp(mesh_size / 200.0, 1e-4, 0.0025); }
 
 Leg stretch(const Leg& leg, double first, double last) {
-    const auto time = [&](double share) { return leg.begin + share * (leg.end - leg.begin); };
-    return {
-        {between(leg.places[0], leg.places[1], first), between(leg.places[0], leg.places[1], last)},
-        time(first),
-        time(last),
-        leg.path_error};
+    const auto time = [&](double fraction) { return leg.begin + fraction * (leg.end - leg.begin); };
+    return {{between(leg.positions[0], leg.positions[1], first),
+             between(leg.positions[0], leg.positions[1], last)},
+            time(first),
+            time(last),
+            leg.path_error};
 }
 
 std::array<Leg, 2> halves(const Leg& leg) {
@@ -276,7 +279,7 @@ std::array<Leg, 2> halves(const Leg& leg) {
     const AxisValues from = values_of(motion.from), to = values_of(motion.to);
     const double middle = 0.5 * (leg.arc.first + leg.arc.last);
     const double step = (leg.arc.last - middle) * motion.arc->angle;
-    parts[0].places[1] = parts[1].places[0] = on_arc(motion, from, to, middle);
+    parts[0].positions[1] = parts[1].positions[0] = on_arc(motion, from, to, middle);
     parts[0].arc = {leg.arc.motion, leg.arc.first, middle};
     parts[1].arc = {leg.arc.motion, middle, leg.arc.last};
     for (Leg& part : parts)
@@ -287,7 +290,7 @@ std::array<Leg, 2> halves(const Leg& leg) {
 Leg still_half_way(const Leg& leg) {
     const Leg first_half = halves(leg)[0];
     Leg still = first_half;
-    still.places = {first_half.places[1]};
+    still.positions = {first_half.positions[1]};
     still.begin = first_half.end;
     if (leg.arc.motion) still.path_error = 0.0;
     still.arc = {};
@@ -325,7 +328,7 @@ AxisRange axis_range(const Motion& motion, const Machine& machine, double max_er
     if (motion.tip) {
         const Path path = path_of(motion, machine, max_error);
         for (const Leg& leg : path.legs)
-            if (&leg != &path.legs.back()) extend(range, leg.places[1], leg.path_error);
+            if (&leg != &path.legs.back()) extend(range, leg.positions[1], leg.path_error);
         return range;
     }
     if (!motion.arc) return range;
@@ -337,8 +340,8 @@ AxisRange axis_range(const Motion& motion, const Machine& machine, double max_er
     const double quarter = std::numbers::pi / 2.0;
     const double first = std::min(start, start + arc.angle), last = first + std::abs(arc.angle);
     for (double k = std::ceil(first / quarter); k * quarter <= last; ++k) {
-        const double share = (k * quarter - start) / arc.angle;
-        extend(range, on_arc(motion, from, to, std::clamp(share, 0.0, 1.0)));
+        const double fraction = (k * quarter - start) / arc.angle;
+        extend(range, on_arc(motion, from, to, std::clamp(fraction, 0.0, 1.0)));
     }
     return range;
 }

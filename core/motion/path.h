@@ -20,10 +20,10 @@ struct ArcPiece {
 /// A piece of a motion that is checked as a whole.
 ///
 /// `straight`: all axes move at constant rates from the first to the second of two positions.
-/// Otherwise the linear axes take an unknown path within the hull of `places`, and only the
+/// Otherwise the linear axes take an unknown path within the hull of `positions`, and only the
 /// `certain` positions are known to be passed; the rotary axes do not move.
 struct Leg {
-    std::vector<AxisValues> places;
+    std::vector<AxisValues> positions;
     double begin = 0.0; // seconds from the motion's start
     double end = 0.0;
     double path_error = 0.0; // bound on the distance of the tool from its real position, mm

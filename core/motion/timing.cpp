@@ -19,7 +19,7 @@ bool bends(const PathMotion& motion) {
 }
 
 /// The limit along the path from the limit of an axis; an axis at rest imposes none.
-double share(double limit, double rate) { return rate > 0.0 ? limit / rate : infinity; }
+double fraction(double limit, double rate) { return rate > 0.0 ? limit / rate : infinity; }
 
 /// Accelerates and decelerates between two speeds, given as squares, within a length.
 MotionTime trapezoid(const WaitingMotion& motion, double enter_squared, double leave_squared) {
@@ -53,7 +53,7 @@ void settle_first(TimePlan& plan, std::vector<MotionTime>& done) {
 
 /// Updates the entry speeds for the new end. Speeds only rise as more motions become known, so the
 /// loop ends at the first that does not change.
-void look_back(TimePlan& plan) {
+void limit_backwards(TimePlan& plan) {
     double after = 0.0;
     for (size_t i = plan.waiting.size(); i-- > 0;) {
         WaitingMotion& motion = plan.waiting[i];
@@ -67,7 +67,7 @@ void look_back(TimePlan& plan) {
 double bend_speed(const MachineLimits& limits, const PathMotion& motion, double part) {
     double squared = infinity;
     for (size_t i = 0; i < limits.size(); ++i)
-        squared = std::min(squared, share(part * limits[i].acceleration, motion.bend[i]));
+        squared = std::min(squared, fraction(part * limits[i].acceleration, motion.bend[i]));
     return std::sqrt(squared);
 }
 
@@ -90,7 +90,7 @@ double MotionTime::moment(double travelled) const {
 double cruise_speed(const MachineLimits& limits, const PathMotion& motion) {
     double speed = std::min(motion.speed, bend_speed(limits, motion, half_root_of_three));
     for (size_t i = 0; i < limits.size(); ++i)
-        speed = std::min(speed, share(limits[i].speed, motion.fastest[i]));
+        speed = std::min(speed, fraction(limits[i].speed, motion.fastest[i]));
     return speed;
 }
 
@@ -99,7 +99,7 @@ double path_acceleration(const MachineLimits& limits, const PathMotion& motion) 
     for (size_t i = 0; i < limits.size(); ++i) {
         const double part = motion.bend[i] > 0.0 ? 0.5 : 1.0;
         acceleration =
-            std::min(acceleration, share(part * limits[i].acceleration, motion.fastest[i]));
+            std::min(acceleration, fraction(part * limits[i].acceleration, motion.fastest[i]));
     }
     return acceleration;
 }
@@ -144,7 +144,7 @@ void add_motion(TimePlan& plan, const PathMotion& motion, uint32_t tag,
     }
     plan.waiting.push_back(next);
     plan.last = motion;
-    look_back(plan);
+    limit_backwards(plan);
     if (plan.waiting.size() > look_ahead) settle_first(plan, done);
 }
 
@@ -244,11 +244,11 @@ PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisVal
     const TipPath& tip = *motion.tip;
     std::array<AxisValues, steps + 1> at;
     for (int k = 0; k <= steps; ++k) {
-        const double share = static_cast<double>(k) / steps;
+        const double fraction = static_cast<double>(k) / steps;
         for (size_t i = 0; i < by.size(); ++i)
-            at[static_cast<size_t>(k)][i] = motion.from[i].value_or(0.0) + share * by[i];
+            at[static_cast<size_t>(k)][i] = motion.from[i].value_or(0.0) + fraction * by[i];
         const auto reached = reach_tip(machine, at[static_cast<size_t>(k)],
-                                       tip.from + share * (tip.to - tip.from), tip.tool_length);
+                                       tip.from + fraction * (tip.to - tip.from), tip.tool_length);
         if (!reached) return along_line(by, length);
         at[static_cast<size_t>(k)] = *reached;
     }

@@ -30,8 +30,8 @@ MovingBody moving_machine_body(const Setup& setup, size_t index) {
 }
 
 ConvexShape moved(const ConvexShape& shape, const RelativeLeg& leg) {
-    if (leg.orientation == Mat3(1.0)) return swept(shape, leg.places);
-    return swept(posed(shape, {leg.orientation, Vec3(0.0)}), leg.places);
+    if (leg.orientation == Mat3(1.0)) return swept(shape, leg.positions);
+    return swept(posed(shape, {leg.orientation, Vec3(0.0)}), leg.positions);
 }
 
 Separation between(const std::vector<ConvexShape>& shapes, const ExactBody& fixture, double limit,
@@ -82,8 +82,8 @@ Aabb bounds(const MovingBody& body, const RelativeLeg& leg) {
     for (int axis = 0; axis < 3; ++axis)
         half += 0.5 * box.size()[axis] * glm::abs(leg.orientation[axis]);
     Aabb swept;
-    for (const Vec3& place : leg.places)
-        swept.extend(Aabb{centre + place - half, centre + place + half});
+    for (const Vec3& position : leg.positions)
+        swept.extend(Aabb{centre + position - half, centre + position + half});
     return swept.grown(leg.error);
 }
 
@@ -111,11 +111,11 @@ Separation distance_over(const RelativeLeg& leg, const RevolvedProfile& profile,
 Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,
                          double limit, size_t& shape_tests) {
     if (body.profile) return distance_over(leg, *body.profile, fixture, limit, shape_tests);
-    if (std::holds_alternative<ConvexShape>(*body.body) || leg.places.size() > 2)
+    if (std::holds_alternative<ConvexShape>(*body.body) || leg.positions.size() > 2)
         return between(shapes_of(*body.body, leg), fixture, limit, shape_tests);
     ++shape_tests;
-    Separation found = separation(fixture, *body.body, {leg.orientation, leg.places.front()},
-                                  leg.places.back() - leg.places.front(), {.limit = limit});
+    Separation found = separation(fixture, *body.body, {leg.orientation, leg.positions.front()},
+                                  leg.positions.back() - leg.positions.front(), {.limit = limit});
     std::swap(found.point_a, found.point_b);
     return found;
 }

@@ -20,7 +20,7 @@ constexpr double most_samples = 4e6;
 
 struct Worst {
     double amount = 0.0;
-    Vec3 place = Vec3(0.0);
+    Vec3 position = Vec3(0.0);
 
     void offer(double found, const Vec3& where) {
         if (found > amount) *this = {found, where};
@@ -59,9 +59,9 @@ private:
     void measure_stock();
     void measure_part();
     void measure_within(const Triangle& whole, double spacing, SurfaceTracker& tracker);
-    void measure_part_at(const Vec3& place, SurfaceTracker& tracker);
+    void measure_part_at(const Vec3& position, SurfaceTracker& tracker);
     double spacing_of_samples() const;
-    bool has_matter_near(const Vec3& place) const;
+    bool has_matter_near(const Vec3& position) const;
     void add_regions(Deviation kind);
     void colour_vertices();
     double area(size_t sample) const;
@@ -87,7 +87,7 @@ void Comparison::add_whole_part() {
     const Aabb box = part_.solid.mesh->bounds();
     DeviationRegion region;
     region.amount = result_.largest_gouge = glm::length(box.size());
-    region.place = box.center();
+    region.position = box.center();
     if (stock_.log.size() > 0) region.block = block_of(stock_.log.size() - 1);
     result_.regions.push_back(region);
 }
@@ -95,15 +95,16 @@ void Comparison::add_whole_part() {
 void Comparison::measure_stock() {
     SurfaceTracker tracker(*part_.solid.bvh);
     for (size_t k = 0; k < surface_.samples.size(); ++k) {
-        const Vec3& place = surface_.samples[k].place;
-        const double away = tracker.at(place).distance;
+        const Vec3& position = surface_.samples[k].position;
+        const double away = tracker.at(position).distance;
         for (size_t half = 0; half < 2; ++half)
             for (const uint32_t corner : triangle(k, half))
-                result_.between_samples = std::max(
-                    result_.between_samples, glm::distance(place, surface_.mesh.vertices[corner]));
+                result_.between_samples =
+                    std::max(result_.between_samples,
+                             glm::distance(position, surface_.mesh.vertices[corner]));
         if (away <= resolution) continue;
-        const Deviation kind = holds(part_.solid, place) ? Deviation::gouge : Deviation::excess;
-        worst(kind)[k].offer(away, place);
+        const Deviation kind = holds(part_.solid, position) ? Deviation::gouge : Deviation::excess;
+        worst(kind)[k].offer(away, position);
     }
     result_.samples += surface_.samples.size();
 }
@@ -161,17 +162,17 @@ void Comparison::measure_within(const Triangle& whole, double spacing, SurfaceTr
     }
 }
 
-void Comparison::measure_part_at(const Vec3& place, SurfaceTracker& tracker) {
+void Comparison::measure_part_at(const Vec3& position, SurfaceTracker& tracker) {
     ++result_.samples;
-    const NearestSurface nearest = tracker.at(place);
-    if (nearest.distance <= part_.tolerance || holds(stock_solid_, place)) return;
+    const NearestSurface nearest = tracker.at(position);
+    if (nearest.distance <= part_.tolerance || holds(stock_solid_, position)) return;
     // Between scan lines the mesh of the stock deviates from the true surface; the cuts are exact.
-    if (has_matter_near(place)) return;
-    worst(Deviation::gouge)[nearest.triangle / 2].offer(nearest.distance, place);
+    if (has_matter_near(position)) return;
+    worst(Deviation::gouge)[nearest.triangle / 2].offer(nearest.distance, position);
 }
 
 /// Whether there is material within the tolerance of a point, on nine lines along Z around it.
-bool Comparison::has_matter_near(const Vec3& place) const {
+bool Comparison::has_matter_near(const Vec3& position) const {
     const ScanGrid& grid = stock_.lines.grid;
     const auto cell = [&](const Vec3& at, int axis) {
         const double line = (at[axis] - grid.coordinate(axis, 0)) / grid.spacing;
@@ -181,7 +182,7 @@ bool Comparison::has_matter_near(const Vec3& place) const {
     for (const double x : {0.0, -0.6, 0.6})
         for (const double y : {0.0, -0.6, 0.6}) {
             const double up = part_.tolerance * std::sqrt(1.0 - x * x - y * y);
-            const Vec3 at = place + part_.tolerance * Vec3(x, y, 0.0);
+            const Vec3 at = position + part_.tolerance * Vec3(x, y, 0.0);
             for (const Interval& matter : fresh_line(stock_, cell(at, 0), cell(at, 1), at.x, at.y))
                 if (matter.lower <= at.z + up && matter.upper >= at.z - up) return true;
         }
@@ -219,7 +220,7 @@ void Comparison::add_regions(Deviation kind) {
         region.area += area(k);
         if (worst(kind)[k].amount <= region.amount) continue;
         region.amount = worst(kind)[k].amount;
-        region.place = worst(kind)[k].place;
+        region.position = worst(kind)[k].position;
     }
     // Of points with about the same deviation, a cut one is more informative than raw stock, and a
     // later cut more than an earlier one.

@@ -22,7 +22,7 @@ const char* name_of(Deviation deviation);
 struct DeviationRegion {
     Deviation kind = Deviation::gouge;
     double amount = 0.0;           // largest deviation in the region, mm
-    Vec3 place = Vec3(0.0);        // of the largest deviation, in the stock's frame
+    Vec3 position = Vec3(0.0);     // of the largest deviation, in the stock's frame
     double area = 0.0;             // mm2
     std::optional<uint32_t> block; // that cut the surface there; empty: raw stock
 };

@@ -214,12 +214,13 @@ Result<ToolHead> lollipop(const ToolDescription& tool) {
     const Rounding round{0.0, r};
     if (flutes >= ball_end) {
         head.flutes.elements.push_back(round.whole());
-        if (flutes > ball_end) head.behind.elements.push_back(upright(ball_end, flutes, neck));
+        if (flutes > ball_end)
+            head.above_flutes.elements.push_back(upright(ball_end, flutes, neck));
     } else {
         const double end = std::acos(std::clamp(1.0 - flutes / r, -1.0, 1.0));
         add_cones(head.flutes, round, 0.0, right_angle);
         if (end > right_angle) add_cones(head.flutes, round, right_angle, end);
-        add_cones(head.behind, round, end, std::numbers::pi - std::asin(neck / r));
+        add_cones(head.above_flutes, round, end, std::numbers::pi - std::asin(neck / r));
     }
     return head;
 }
@@ -267,12 +268,12 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
 
 /// Adds a piece of an outline: up to `flutes_end` to the flutes, the rest to the part above them.
 void add_piece(ToolHead& head, const ProfileElement& piece, double flutes_end) {
-    if (piece.z0 >= flutes_end) return head.behind.elements.push_back(piece);
+    if (piece.z0 >= flutes_end) return head.above_flutes.elements.push_back(piece);
     if (piece.z1 <= flutes_end) return head.flutes.elements.push_back(piece);
-    const double share = (flutes_end - piece.z0) / (piece.z1 - piece.z0);
-    const double r = piece.r0 + share * (piece.r1 - piece.r0);
+    const double fraction = (flutes_end - piece.z0) / (piece.z1 - piece.z0);
+    const double r = piece.r0 + fraction * (piece.r1 - piece.r0);
     head.flutes.elements.push_back({piece.z0, piece.r0, flutes_end, r, 0.0});
-    head.behind.elements.push_back({flutes_end, r, piece.z1, piece.r1, 0.0});
+    head.above_flutes.elements.push_back({flutes_end, r, piece.z1, piece.r1, 0.0});
 }
 
 Result<ToolHead> outlined(const ToolDescription& tool) {
@@ -343,7 +344,7 @@ Result<void> add_neck(const ToolDescription& tool, ToolHead& head) {
                                             "{:g}",
                                             *tool.neck_diameter, head.top_diameter));
     if (!tool.neck_length) return {};
-    head.behind.elements.push_back(
+    head.above_flutes.elements.push_back(
         upright(head.length, head.length + *tool.neck_length, 0.5 * *tool.neck_diameter));
     head.length += *tool.neck_length;
     head.top_diameter = *tool.neck_diameter;
@@ -492,7 +493,7 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
     FEELER_TRY(RevolvedProfile holder, stack(description, description.holder, "holder", z));
     if (auto wrong = check_lengths(description, to_holder, z); !wrong)
         return tl::unexpected(wrong.error());
-    RevolvedProfile shank = std::move(head.behind);
+    RevolvedProfile shank = std::move(head.above_flutes);
     shank.elements.insert(shank.elements.end(), steps.elements.begin(), steps.elements.end());
     if (cuts_undercuts(description.shape))
         bare_upper_face(description, shank.empty() ? holder : shank, head.flutes);

@@ -12,9 +12,9 @@ namespace core {
 /// The end of a tool that its shape describes. Frame: the tip is the origin, the axis is Z.
 struct ToolHead {
     RevolvedProfile flutes;
-    RevolvedProfile behind;    // non-cutting part of the shape above the flutes
-    double length = 0.0;       // from the tip to the lower end of the shank, mm
-    double top_diameter = 0.0; // at that height, mm
+    RevolvedProfile above_flutes; // non-cutting part of the shape above the flutes
+    double length = 0.0;          // from the tip to the lower end of the shank, mm
+    double top_diameter = 0.0;    // at that height, mm
 };
 
 /// Largest distance between a rounded edge and the cones that approximate it, mm.

@@ -50,17 +50,17 @@ std::optional<CornerSide> side_of(const CanonicalCommand& command, const Positio
     return side;
 }
 
-Position moved_in_plane(Position place, Plane plane, FlatPoint to) {
+Position moved_in_plane(Position position, Plane plane, FlatPoint to) {
     const PlaneAxes axes = axes_of(plane);
-    place[axes.first] = to.u;
-    place[axes.second] = to.v;
-    return place;
+    position[axes.first] = to.u;
+    position[axes.second] = to.v;
+    return position;
 }
 
 /// The motion of a block that follows a corner; empty when the block has none and the corner must
 /// wait for a later one.
-core::Result<std::optional<CornerSide>> motion_behind(const Corners& corners,
-                                                      const ExecutedBlock& block) {
+core::Result<std::optional<CornerSide>> motion_after(const Corners& corners,
+                                                     const ExecutedBlock& block) {
     const CornerWord& word = *corners.word;
     const ModalState& first = corners.waiting.front().after;
     for (const CanonicalCommand& command : block.result.commands) {
@@ -138,7 +138,7 @@ void add_corner(ExecutedBlock& block, const CornerWord& word, const CornerCut& c
 }
 
 /// Moves the start of the block's first motion to the end of the corner.
-void begin_behind_corner(ExecutedBlock& block, const CornerCut& cut) {
+void begin_after_corner(ExecutedBlock& block, const CornerCut& cut) {
     block.before.position = moved_in_plane(block.before.position, block.after.plane, cut.to);
     if (!cut.takes_second) return;
     for (CanonicalCommand& command : block.result.commands)
@@ -169,7 +169,7 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
     const std::optional<CornerWord> asked = std::exchange(corners.asked, std::nullopt);
     std::vector<ExecutedBlock> ready;
     if (corners.word) {
-        FEELER_TRY(const auto second, motion_behind(corners, block));
+        FEELER_TRY(const auto second, motion_after(corners, block));
         if (!second) {
             if (corners.waiting.size() >= most_waiting)
                 return tl::unexpected(
@@ -180,7 +180,7 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
         FEELER_TRY(const CornerCut cut, cut_between(*corners.word, corners.first, *second));
         if (cut.fit == CornerFit::fits) {
             add_corner(corners.waiting.front(), *corners.word, cut);
-            begin_behind_corner(block, cut);
+            begin_after_corner(block, cut);
         }
         ready = give_up_corners(corners);
     }
@@ -228,10 +228,10 @@ const Position* end_of(const CanonicalCommand& command) {
     return nullptr;
 }
 
-std::optional<FlatPoint> flat(const Position& place, Plane plane) {
+std::optional<FlatPoint> flat(const Position& position, Plane plane) {
     const PlaneAxes axes = axes_of(plane);
-    if (!place[axes.first] || !place[axes.second]) return std::nullopt;
-    return FlatPoint{*place[axes.first], *place[axes.second]};
+    if (!position[axes.first] || !position[axes.second]) return std::nullopt;
+    return FlatPoint{*position[axes.first], *position[axes.second]};
 }
 
 double feed_of(const CanonicalCommand& command) {
@@ -375,17 +375,17 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
 core::Result<void> take_commands(Contour& contour, const BlockCommands& block,
                                  const ModalState& before) {
     contour.pending.push_back({block, std::vector<PendingBlock::Slot>(block.commands.size())});
-    Position place = before.position;
+    Position position = before.position;
     for (size_t i = 0; i < block.commands.size(); ++i) {
         PendingBlock::Slot& slot = contour.pending.back().slots[i];
-        slot.start = place;
+        slot.start = position;
         if (std::holds_alternative<ProgramEnd>(block.commands[i]))
             if (auto ended = end_path(contour); !ended) return ended;
         const Position* end = end_of(block.commands[i]);
         if (!end) continue;
         if (contour.path)
             if (auto taken = take_motion(contour, i); !taken) return taken;
-        place = *end;
+        position = *end;
     }
     return {};
 }

@@ -48,7 +48,7 @@ FlatPoint nearest_on(const CornerSide& side, FlatPoint to) {
 }
 
 /// The parameter of a point along the motion: 0 at its start, 1 at its end.
-double share_of(const CornerSide& side, FlatPoint at) {
+double indices_of_shard(const CornerSide& side, FlatPoint at) {
     if (!side.arc) {
         const FlatPoint way = side.end - side.start;
         return dot(at - side.start, way) / dot(way, way);
@@ -65,14 +65,14 @@ double share_of(const CornerSide& side, FlatPoint at) {
 
 /// A line or circle parallel to a motion, offset to the left; to the right if the distance is
 /// negative.
-struct Beside {
+struct OffsetSide {
     bool is_line;
     FlatPoint point; // of the line, or the centre
     FlatPoint along; // of the line
     double radius;
 };
 
-Beside beside(const CornerSide& side, double distance) {
+OffsetSide offset_side(const CornerSide& side, double distance) {
     if (!side.arc) {
         const FlatPoint along = heading_at(side, side.start);
         return {true, side.start + distance * left_of(along), along, 0.0};
@@ -88,7 +88,7 @@ FlatPoint nearer(const Crossings& crossings, FlatPoint to) {
 }
 
 /// The intersection of two offset curves that is nearest to the corner.
-std::optional<FlatPoint> meeting_point(const Beside& a, const Beside& b, FlatPoint corner) {
+std::optional<FlatPoint> meeting_point(const OffsetSide& a, const OffsetSide& b, FlatPoint corner) {
     if (a.is_line && b.is_line) {
         const double sine = cross(a.along, b.along);
         if (std::abs(sine) < fuzz) return std::nullopt;
@@ -106,8 +106,8 @@ bool round_off(const CornerSide& first, const CornerSide& second, double radius,
     const double sine = cross(heading_at(first, first.end), heading_at(second, second.start));
     if (std::abs(sine) < fuzz) return false;
     const int turn = sine > 0.0 ? 1 : -1;
-    const auto centre =
-        meeting_point(beside(first, turn * radius), beside(second, turn * radius), first.end);
+    const auto centre = meeting_point(offset_side(first, turn * radius),
+                                      offset_side(second, turn * radius), first.end);
     if (!centre) return false;
     cut.from = nearest_on(first, *centre);
     cut.to = nearest_on(second, *centre);
@@ -163,8 +163,11 @@ CornerCut cut_corner(const CornerSide& first, const CornerSide& second, CornerKi
             straight && kind == CornerKind::rounding ? CornerFit::straight_on : CornerFit::none;
         return cut;
     }
-    const double left = share_of(first, cut.from), reached = share_of(second, cut.to);
-    const auto is_inside = [](double share) { return share > -fuzz && share < 1.0 + fuzz; };
+    const double left = indices_of_shard(first, cut.from),
+                 reached = indices_of_shard(second, cut.to);
+    const auto is_inside = [](double fraction) {
+        return fraction > -fuzz && fraction < 1.0 + fuzz;
+    };
     cut.fit = is_inside(left) && is_inside(reached) ? CornerFit::fits : CornerFit::too_large;
     cut.heading = heading_at(second, cut.to);
     cut.takes_first = left < fuzz;

@@ -20,7 +20,7 @@ tl::unexpected<core::Error> refusal(const core::SourceSpan& where, std::string m
 }
 
 /// The displacement from a point of the contour to the tool centre, normal to the heading.
-FlatPoint beside(const RadiusCompensation& compensation, FlatPoint heading) {
+FlatPoint offset_from(const RadiusCompensation& compensation, FlatPoint heading) {
     const FlatPoint left = compensation.radius * left_of(heading);
     return compensation.side == ContourSide::left ? left : -1.0 * left;
 }
@@ -50,7 +50,7 @@ Corner corner_before(const RadiusCompensation& compensation, const ContourMove& 
     const FlatPoint turned = left_of(to_tool);
     const FlatPoint arriving = compensation.side == ContourSide::left ? -1.0 * turned : turned;
     const FlatPoint leaving = move.arc ? tangent(*move.arc, at) : direction(move.end - at);
-    return {at, arriving, leaving, compensation.tool, at + beside(compensation, leaving)};
+    return {at, arriving, leaving, compensation.tool, at + offset_from(compensation, leaving)};
 }
 
 enum class Bend { inside, straight_on, outside };
@@ -181,7 +181,7 @@ core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
                        "the first move with cutter radius compensation must be a straight line; "
                        "the control stops with an alarm (PS0034 on Fanuc)");
     const FlatPoint heading = direction(move.end - compensation.programmed);
-    wait_with(compensation, move, move.end + beside(compensation, heading), {});
+    wait_with(compensation, move, move.end + offset_from(compensation, heading), {});
     compensation.entered = compensation.entering = true;
     return CompensatedMoves{};
 }
@@ -199,7 +199,7 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
     const FlatPoint heading =
         move.arc ? tangent(*move.arc, move.end) : direction(move.end - compensation.programmed);
-    const FlatPoint end = move.end + beside(compensation, heading);
+    const FlatPoint end = move.end + offset_from(compensation, heading);
     std::optional<FlatArc> arc;
     if (move.arc) {
         arc = entry_arc(compensation.programmed, end, *move.arc);
@@ -238,7 +238,8 @@ core::Result<CompensatedMoves> pass_straight(RadiusCompensation& compensation, c
     const FlatPoint back = corner.tool_leaving - beyond * corner.leaving;
     const bool after_arc = compensation.waiting.front().arc.has_value();
     const FlatPoint end = after_arc ? corner.tool_arriving : out;
-    if (auto kept = check_direction(compensation, end); !kept) return tl::unexpected(kept.error());
+    if (auto checked = check_direction(compensation, end); !checked)
+        return tl::unexpected(checked.error());
     CompensatedMoves moves = end_waiting(compensation, end);
     if (after_arc) add_straight(moves, move, out);
     if (sharp) add_straight(moves, move, back);
@@ -273,8 +274,8 @@ core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, con
         met = *both;
     }
     if (bend == Bend::inside || compensation.extends_corners)
-        if (auto kept = check_direction(compensation, met); !kept)
-            return tl::unexpected(kept.error());
+        if (auto checked = check_direction(compensation, met); !checked)
+            return tl::unexpected(checked.error());
     return end_waiting(compensation, met);
 }
 
@@ -290,8 +291,8 @@ core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corn
     if (bend != Bend::outside) return stay_inside(compensation, corner, bend, move);
     if (compensation.extends_corners) return pass_straight(compensation, corner, move);
     if (!move.arc)
-        if (auto kept = check_direction(compensation, corner.tool_arriving); !kept)
-            return tl::unexpected(kept.error());
+        if (auto checked = check_direction(compensation, corner.tool_arriving); !checked)
+            return tl::unexpected(checked.error());
     return pass_round(compensation, corner, move);
 }
 
@@ -300,7 +301,7 @@ core::Result<CompensatedMoves> go_on(RadiusCompensation& compensation, const Con
     const Corner corner = corner_before(compensation, move);
     FEELER_TRY(const CompensatedMoves moves, join(compensation, corner, move));
     const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : corner.leaving;
-    wait_with(compensation, move, move.end + beside(compensation, heading), move.arc);
+    wait_with(compensation, move, move.end + offset_from(compensation, heading), move.arc);
     compensation.entering = false;
     return moves;
 }
@@ -331,8 +332,8 @@ core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const 
 }
 
 core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation) {
-    if (auto kept = check_direction(compensation, compensation.tool); !kept)
-        return tl::unexpected(kept.error());
+    if (auto checked = check_direction(compensation, compensation.tool); !checked)
+        return tl::unexpected(checked.error());
     return end_waiting(compensation, compensation.tool);
 }
 

@@ -181,7 +181,7 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
 
 constexpr double chord_tolerance = 0.001; // mm
 
-double& along(Position& place, size_t axis) { return *place[axis]; }
+double& along(Position& position, size_t axis) { return *position[axis]; }
 
 /// Moves along an R arc whose axes G51 scales unequally. On the machine it is an arc between the
 /// scaled ends with the larger of the scale factors. It is emitted as chords, because the frame
@@ -218,13 +218,13 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
     const double from = std::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
     const Position start = execution.modal().position;
     for (int chord = 1; chord < chords; ++chord) {
-        const double share = double(chord) / chords, at = from + share * angle;
-        Position place = end;
-        along(place, axes.first) = (centre[0] + std::abs(size) * std::cos(at)) / scale[0];
-        along(place, axes.second) = (centre[1] + std::abs(size) * std::sin(at)) / scale[1];
+        const double fraction = double(chord) / chords, at = from + fraction * angle;
+        Position position = end;
+        along(position, axes.first) = (centre[0] + std::abs(size) * std::cos(at)) / scale[0];
+        along(position, axes.second) = (centre[1] + std::abs(size) * std::sin(at)) / scale[1];
         if (const size_t axis = axes.normal; start[axis] && end[axis])
-            along(place, axis) = *start[axis] + share * (*end[axis] - *start[axis]);
-        execution.feed(place, rate);
+            along(position, axis) = *start[axis] + fraction * (*end[axis] - *start[axis]);
+        execution.feed(position, rate);
     }
     execution.feed(end, rate);
     return {};

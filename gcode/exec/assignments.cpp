@@ -40,7 +40,7 @@ core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) 
 /// Evaluates the words and removes those whose value is vacant (Fanuc).
 core::Result<void> work_out_words(const Assigning& assigning) {
     std::vector<Word>& words = assigning.block.words;
-    size_t kept = 0;
+    size_t stored_value = 0;
     for (size_t i = 0; i < words.size(); ++i) {
         Word& word = words[i];
         if (word.expression) {
@@ -48,10 +48,10 @@ core::Result<void> work_out_words(const Assigning& assigning) {
             if (!value) continue;
             word.value = *value;
         }
-        if (kept != i) words[kept] = word;
-        ++kept;
+        if (stored_value != i) words[stored_value] = word;
+        ++stored_value;
     }
-    words.resize(kept);
+    words.resize(stored_value);
     return {};
 }
 
@@ -77,7 +77,7 @@ core::Result<void> set(const Assigning& assigning, const Assignment& entry, doub
         assigning.undos.push_back({true, 0.0, name, *old});
         return {};
     }
-    const Value old = parameters.kept(number);
+    const Value old = parameters.stored_value(number);
     if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
     assigning.undos.push_back({false, number, {}, old});
     return heed_alarm(assigning.block, assigning.dialect, number, value, entry.span,

@@ -43,18 +43,18 @@ Value block_end(const InterpreterState& state, int index) {
     return shown(state, axis, state.modal.position[axis]);
 }
 
-Value machine_place(const InterpreterState& state, int index) {
+Value machine_position(const InterpreterState& state, int index) {
     const auto axis = static_cast<size_t>(index);
     return shown(state, axis,
                  machine_from_program(state.modal.offsets, state.modal.position)[axis]);
 }
 
 /// The position of the gauge line in program coordinates: includes the tool offset.
-Value work_place(const InterpreterState& state, int index) {
+Value work_position(const InterpreterState& state, int index) {
     const auto axis = static_cast<size_t>(index);
-    std::optional<double> place = state.modal.position[axis];
-    if (place) *place += state.modal.offsets.tool[axis];
-    return shown(state, axis, place);
+    std::optional<double> position = state.modal.position[axis];
+    if (position) *position += state.modal.offsets.tool[axis];
+    return shown(state, axis, position);
 }
 
 Value tool_compensation(const InterpreterState& state, int index) {
@@ -196,7 +196,7 @@ constexpr Range common_ranges[] = {
     {4101, 4126, said_word, nullptr},
     {4130, 4130, number_of_extended_offset, nullptr},
     {5001, 5009, block_end, nullptr},
-    {5021, 5029, machine_place, nullptr},
+    {5021, 5029, machine_position, nullptr},
     {5081, 5089, tool_compensation, nullptr},
     {5201, 5209, external_offset, set_external_offset},
     {5221, 5329, plain_offset, set_plain_offset},
@@ -206,7 +206,7 @@ constexpr Range common_ranges[] = {
 constexpr Range fanuc_ranges[] = {
     {2001, 2200, tool_part<length_wear>, set_tool_part<length_wear>},
     {2201, 2400, tool_part<length>, set_tool_part<length>},
-    {5041, 5049, work_place, nullptr},
+    {5041, 5049, work_position, nullptr},
     {7401, 7960, [](const InterpreterState& s, int i) { return extended_offset(s, i + 400); },
      [](InterpreterState& s, int i, double v) { set_extended_offset(s, i + 400, v); }},
     {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>},
@@ -260,7 +260,7 @@ std::optional<Value> fanuc_parameter(const InterpreterState& state, const Enviro
     if (is_zero_at_first(number)) return Value(state.parameters->numbered(number).value_or(0.0));
     // The position at which the last G31 made contact; if there was none, the current position.
     if (number >= 5061 && number <= 5069 && !state.parameters->numbered(number))
-        return work_place(state, number - 5061);
+        return work_position(state, number - 5061);
     return std::nullopt;
 }
 

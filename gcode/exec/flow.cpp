@@ -71,20 +71,20 @@ void leave_to(InterpreterState& state, uint32_t line) {
     state.frames.pop_back();
 }
 
-core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from) {
+core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from) {
     constexpr uint64_t interval = 16; // jumps between two checks
     const bool back = state.next.source != from.source || state.next.line <= from.line;
-    LoopWatch& watch = state.watch;
-    if (!back || ++watch.jumps % interval != 0) return {};
+    LoopDetector& loops = state.loops;
+    if (!back || ++loops.jumps % interval != 0) return {};
     const uint64_t now = digest_of(state);
-    if (now == watch.noted && watch.next_note > 1)
+    if (now == loops.noted && loops.next_note > 1)
         return core::fail(
             ErrorCode::invalid_value,
             "the program never ends: it returns here in exactly the same state again and again",
             {.line = from.line, .column = 1});
-    if (watch.jumps / interval < watch.next_note) return {};
-    watch.noted = now;
-    watch.next_note *= 2;
+    if (loops.jumps / interval < loops.next_note) return {};
+    loops.noted = now;
+    loops.next_note *= 2;
     return {};
 }
 

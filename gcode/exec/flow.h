@@ -49,6 +49,6 @@ std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, 
 /// Checks whether a backward jump has led to a state that the program was in before.
 ///
 /// Errors: invalid_value if so: the program would never end.
-core::Result<void> watch_for_endless_loop(InterpreterState& state, Place from);
+core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from);
 
 } // namespace gcode

@@ -23,8 +23,7 @@ bool is_plain(const std::string& name) {
            && name != ".." && name.find('\0') == std::string::npos;
 }
 
-std::optional<std::string> looked_up_in_any_case(const std::string& folder,
-                                                 const std::string& name) {
+std::optional<std::string> found_in_any_case(const std::string& folder, const std::string& name) {
     const std::optional<std::string> actual = name_in_any_case(names_in(folder), name);
     core::notify_file_access({core::FileQuestion::any_case, folder, name, actual});
     return actual;
@@ -78,7 +77,7 @@ core::Result<std::optional<uint32_t>>
 ProgramLibrary::find_in_any_case(const std::vector<std::string>& file_names) {
     for (const std::string& folder : search_path_)
         for (const std::string& name : file_names)
-            if (const auto actual = looked_up_in_any_case(folder, name)) return find({*actual});
+            if (const auto actual = found_in_any_case(folder, name)) return find({*actual});
     return std::nullopt;
 }
 

@@ -21,17 +21,17 @@ struct Program;
 enum class VariableType : uint8_t { real, whole, truth, text };
 
 /// A line of one of the programs that were read; source 0 is the main program.
-struct Place {
+struct ProgramLine {
     uint32_t source = 0;
     uint32_t line = 1;
 
-    auto operator<=>(const Place&) const = default;
+    auto operator<=>(const ProgramLine&) const = default;
 };
 
 /// A macro that is called after each motion (G66) or for each block (G66.1).
 struct ModalMacro {
     std::string name;
-    Place begin;                 // its first line
+    ProgramLine begin;           // its first line
     LocalParameters arguments{}; // as left by the last call
     int64_t rounds = 1;
     bool each_block = false; // G66.1: every block is a list of its arguments
@@ -41,9 +41,9 @@ struct ModalMacro {
 
 /// One call level; the first is the main program.
 struct Frame {
-    Place called_from;  // the line of the call
-    Place begin;        // the first line of what was called
-    std::string name{}; // of the subprogram; empty for the main program
+    ProgramLine called_from; // the line of the call
+    ProgramLine begin;       // the first line of what was called
+    std::string name{};      // of the subprogram; empty for the main program
     LocalParameters locals{};
     bool shares_locals = false; // M98: uses #1 to #33 of the caller
     NamedValues named{};

@@ -18,7 +18,7 @@ using core::ErrorCode;
 core::Result<double> centre_along(const Execution& execution, const CodeWord& entry, size_t axis) {
     if (const Word* word = execution.statement.word(axis_letters[axis]))
         return axis_value(execution, axis, *word);
-    if (const auto& place = execution.modal().position[axis]) return *place;
+    if (const auto& position = execution.modal().position[axis]) return *position;
     return core::fail(
         ErrorCode::missing_value,
         fmt::format(
@@ -74,7 +74,7 @@ void set_mirror(Execution& execution) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
         mirror.axes[axis] = true;
-        mirror.place[static_cast<int>(axis)] = axis_value(execution, axis, *word);
+        mirror.position[static_cast<int>(axis)] = axis_value(execution, axis, *word);
     }
 }
 
@@ -85,7 +85,7 @@ void cancel_mirror(Execution& execution) {
     for (size_t axis = 0; axis < 3; ++axis)
         if (all || execution.statement.word(axis_letters[axis])) {
             mirror.axes[axis] = false;
-            mirror.place[static_cast<int>(axis)] = 0.0;
+            mirror.position[static_cast<int>(axis)] = 0.0;
         }
 }
 
@@ -132,7 +132,7 @@ core::Result<void> set_rotation(Execution& execution, const CodeWord& entry) {
     modal.transforms.before_rotation = modal.position;
     modal.transforms.rotation =
         PlaneRotation{.normal = static_cast<int>(axes.normal),
-                      .centre = scaled_place(modal.transforms, centre),
+                      .centre = scaled_point(modal.transforms, centre),
                       .degrees = degrees,
                       .is_reversed = mirrored[axes.first] != mirrored[axes.second]};
     return {};
@@ -292,17 +292,17 @@ double rotary_offset(const Offsets& offsets, size_t axis) {
 core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
                                  const core::Vec3& direction) {
     const Offsets& offsets = execution.modal().offsets;
-    const Position place = machine_from_program(offsets, execution.modal().position);
+    const Position position = machine_from_program(offsets, execution.modal().position);
     AxisValues values{};
     for (size_t axis = 0; axis < axis_count; ++axis) {
-        if (is_rotary(axis) && offsets.machine->axes[axis].present && !place[axis])
+        if (is_rotary(axis) && offsets.machine->axes[axis].present && !position[axis])
             return core::fail(
                 ErrorCode::missing_value,
                 fmt::format("{}: this tilts the tool, but the position of axis {} is unknown: set "
                             "[program] start or the machine's home in the set-up",
                             written(word), axis_letters[axis]),
                 word.span);
-        values[axis] = place[axis].value_or(0.0);
+        values[axis] = position[axis].value_or(0.0);
     }
     const core::Vec3 in_work =
         turned_about(2, offsets.work.rotation_deg) * (offsets.frame.linear * direction);

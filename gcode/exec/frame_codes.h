@@ -47,6 +47,6 @@ std::optional<size_t> axis_left_out_of_rotation(const Execution& execution);
 void warn_of_axis_left_out(Execution& execution);
 
 /// To be called after a move in the plane: program and machine agree on the position again.
-void forget_place_before_rotation(Execution& execution);
+void forget_position_before_rotation(Execution& execution);
 
 } // namespace gcode

@@ -56,11 +56,11 @@ core::Result<void> go_home(Execution& execution) {
     // In a rotated frame, a motion of one machine axis changes all three coordinates. With a
     // rotated work offset, LinuxCNC moves along the axes of the program instead.
     const bool turned = modal.offsets.has_frame || is_fixed_to_work(modal.offsets);
-    const Position place =
+    const Position position =
         program_from_machine(without_rotary_tool(modal.offsets), turned ? machine : home);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (moves[axis] || (turned && axis < 3)) end[axis] = place[axis];
+        if (moves[axis] || (turned && axis < 3)) end[axis] = position[axis];
     execution.traverse(end);
     return {};
 }

@@ -26,13 +26,13 @@ namespace gcode {
 /// The parts of the state that a block may change, saved until the block has succeeded.
 struct BeforeBlock {
     ModalState modal;
-    Place next;
+    ProgramLine next;
     uint32_t next_block;
     bool tape_open, said_unit, said_home;
     Ending ending;
     bool said_time;
     DecimalPoints points;
-    RuleWatch rules;
+    RuleState rules;
     Shared<Tables> tables;
     Shared<SplineState> spline;
     SharedLanguageState language;
@@ -101,14 +101,14 @@ struct Interpreter::Scratch {
     void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
     void take_back(InterpreterState& state);
-    void begin_result(const InterpreterState& state, Place place);
+    void begin_result(const InterpreterState& state, ProgramLine here);
     core::Result<bool> try_next(InterpreterState& state);
     bool try_quick_move(InterpreterState& state);
     bool asks_for_stop(const InterpreterState& state) const {
         return state.next_block % 1024 == 0 && environment.limits.is_stopped;
     }
-    core::SourceSpan place_of(core::SourceSpan where) const;
-    void place_in_lines();
+    core::SourceSpan span_in_file(core::SourceSpan where) const;
+    void position_in_lines();
 };
 
 /// The scratch data for the active language. Siemens controls have two languages.
@@ -144,8 +144,9 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         }
         if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
-        if (block.kept_words && environment.block_delete)
-            block.words.erase(block.words.begin() + static_cast<std::ptrdiff_t>(*block.kept_words),
+        if (block.words_before_slash && environment.block_delete)
+            block.words.erase(block.words.begin()
+                                  + static_cast<std::ptrdiff_t>(*block.words_before_slash),
                               block.words.end());
         if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
         return true;
@@ -184,12 +185,12 @@ core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
     return false;
 }
 
-void Interpreter::Scratch::begin_result(const InterpreterState& state, Place place) {
+void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLine here) {
     result.block = core::BlockIndex(state.next_block);
     result.line = block.line;
     result.text = block.text;
     result.own_text.reset();
-    result.file = place.source == 0 ? std::string_view() : library.program(place.source).file;
+    result.file = here.source == 0 ? std::string_view() : library.program(here.source).file;
     result.calls.clear();
     for (size_t level = 1; level < state.frames.size(); ++level)
         result.calls.push_back(state.frames[level].called_from.line);
@@ -233,10 +234,10 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         else
             note_points(block, state, result);
     }
-    if (auto looked_up =
+    if (auto cached_line =
             look_up(block, dialect, environment, statement, blocks_are_arguments(state));
-        !looked_up)
-        return looked_up;
+        !cached_line)
+        return cached_line;
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
         || !state.modal_macros.empty()
         || (language.changes_level && language.changes_level(statement, state)))
@@ -255,8 +256,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
         if (!goes_on) return false;
         FEELER_TRY(found, read_line(state));
     }
-    const Place place{state.next.source, block.line};
-    begin_result(state, place);
+    const ProgramLine here{state.next.source, block.line};
+    begin_result(state, here);
     if (state.next_block >= environment.limits.blocks)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("the program was stopped after {} blocks; if it really is "
@@ -267,8 +268,8 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
         return core::fail(ErrorCode::io, "the program was stopped", {.line = block.line});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    if (auto watched = watch_for_endless_loop(state, place); !watched)
-        return tl::unexpected(std::move(watched).error());
+    if (auto checked = detect_endless_loop(state, here); !checked)
+        return tl::unexpected(std::move(checked).error());
     return true;
 }
 
@@ -295,13 +296,13 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
 }
 
 /// Position in the file of a position in the block, which may have several lines.
-core::SourceSpan Interpreter::Scratch::place_of(core::SourceSpan where) const {
+core::SourceSpan Interpreter::Scratch::span_in_file(core::SourceSpan where) const {
     const bool several = language.position_in_file && where.line == block.line;
     return several ? language.position_in_file(block.text, where) : where;
 }
 
-void Interpreter::Scratch::place_in_lines() {
-    for (Warning& warning : result.warnings) warning.where = place_of(warning.where);
+void Interpreter::Scratch::position_in_lines() {
+    for (Warning& warning : result.warnings) warning.where = span_in_file(warning.where);
 }
 namespace {
 
@@ -335,9 +336,9 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
         const uint32_t source = state.next.source;
         auto found = scratch.try_next(state);
         if (found)
-            scratch.place_in_lines();
+            scratch.position_in_lines();
         else
-            found.error().where = scratch.place_of(found.error().where);
+            found.error().where = scratch.span_in_file(found.error().where);
         const bool is_block = found && *found;
         const bool straight_out =
             state.contour->is_idle() && state.modal.compensation == Side::none;
@@ -356,7 +357,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
         if (found && taken) continue;
         core::Error error = found ? std::move(taken).error() : std::move(found).error();
         scratch.take_back(state);
-        error.where = scratch.place_of(error.where);
+        error.where = scratch.span_in_file(error.where);
         if (error.file.empty()) error.file = scratch.library.program(source).file;
         if (state.contour->is_idle()) return tl::unexpected(std::move(error));
         // Earlier blocks are complete except for moves that waited for this one.
@@ -388,7 +389,7 @@ InterpreterState initial_state(const Environment& environment) {
     modal.offsets.work = tables.work[0];
     if (environment.machine && environment.machine->has_rotary())
         modal.offsets.machine = environment.machine.get();
-    begin_with_kept_offsets(state, environment);
+    restore_offsets(state, environment);
     Position start = environment.start;
     // Axes beyond X, Y and Z without a given position are at zero, or absent.
     for (size_t axis = 3; axis < axis_count; ++axis)

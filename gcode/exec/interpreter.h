@@ -83,7 +83,7 @@ private:
 /// state is found however long the loop is.
 ///
 /// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
-struct LoopWatch {
+struct LoopDetector {
     uint64_t jumps = 0, next_note = 1, noted = 0;
 };
 
@@ -100,7 +100,7 @@ struct InterpreterState {
     InterpreterState();
 
     ModalState modal;
-    Place next; // the line to be read next
+    ProgramLine next; // the line to be read next
     uint32_t next_block = 0;
     bool tape_open = false; // after a %
     bool said_unit = false; // the note about assumed units was issued
@@ -117,8 +117,8 @@ struct InterpreterState {
     Shared<SplineState> spline;
     SharedLanguageState language;
     bool speaks_iso = false; // Siemens: ISO mode since G291
-    LoopWatch watch;
-    RuleWatch rules;
+    LoopDetector loops;
+    RuleState rules;
 };
 
 /// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.

@@ -14,7 +14,7 @@ constexpr int first_home = 5161, second_home = 5181, g92_is_on = 5210, first_g92
 constexpr int active_offset = 5220, first_offset = 5221, offset_step = 20, rotation_at = 9;
 constexpr int tool_number = 5400, first_tool_offset = 5401, tool_diameter = 5410;
 constexpr int tool_front = 5411, tool_back = 5412, tool_orientation = 5413;
-constexpr int first_place = 5420;
+constexpr int first_position = 5420;
 
 bool is_axis_of(int number, int first) {
     return number >= first && number < first + static_cast<int>(axis_count);
@@ -34,17 +34,17 @@ Value of_position(const Position& position, int number, int first, LengthUnit un
 }
 
 /// The work offset of a parameter number, and which of its values.
-struct OffsetPlace {
+struct OffsetParameter {
     size_t offset;
     int value; // 0 to 8: an axis; 9: the rotation
 };
 
-std::optional<OffsetPlace> offset_place(int number) {
+std::optional<OffsetParameter> offset_parameter(int number) {
     if (number < first_offset) return std::nullopt;
     const int offset = (number - first_offset) / offset_step;
     const int value = (number - first_offset) % offset_step;
     if (offset >= static_cast<int>(plain_offset_count) || value > rotation_at) return std::nullopt;
-    return OffsetPlace{static_cast<size_t>(offset), value};
+    return OffsetParameter{static_cast<size_t>(offset), value};
 }
 
 Value of_tool(const InterpreterState& state, const Environment& environment, int number) {
@@ -176,7 +176,7 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
                                         const Environment& environment, int number) {
     const ModalState& modal = state.modal;
     const LengthUnit unit = environment.machine_unit;
-    if (number < first_home || number >= first_place + static_cast<int>(axis_count))
+    if (number < first_home || number >= first_position + static_cast<int>(axis_count))
         return std::nullopt;
     if (is_axis_of(number, first_home)) return of_position(modal.home, number, first_home, unit);
     if (is_axis_of(number, second_home))
@@ -185,16 +185,16 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     if (is_axis_of(number, first_g92))
         return of_position(modal.suspended_axis, number, first_g92, unit);
     if (number == active_offset) return static_cast<double>(modal.offsets.active + 1);
-    if (const auto place = offset_place(number)) {
-        const WorkOffset offset = work_offset(*state.tables, place->offset);
-        if (place->value == rotation_at) return offset.rotation_deg;
-        const auto axis = static_cast<size_t>(place->value);
+    if (const auto parameter = offset_parameter(number)) {
+        const WorkOffset offset = work_offset(*state.tables, parameter->offset);
+        if (parameter->value == rotation_at) return offset.rotation_deg;
+        const auto axis = static_cast<size_t>(parameter->value);
         return shown(offset.origin[axis], axis, unit);
     }
     if (number >= tool_number && number <= tool_orientation)
         return of_tool(state, environment, number);
-    if (is_axis_of(number, first_place))
-        return of_position(modal.position, number, first_place, modal.unit);
+    if (is_axis_of(number, first_position))
+        return of_position(modal.position, number, first_position, modal.unit);
     return std::nullopt;
 }
 
@@ -210,10 +210,10 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
         const size_t axis = axis_letters.find(upper(name.back()));
         if (axis != std::string_view::npos && (name.size() == 2 || name.size() == 6)) {
             const ModalState& modal = state.modal;
-            const Position place = name.size() == 2
-                                       ? modal.position
-                                       : machine_from_program(modal.offsets, modal.position);
-            return shown(place[axis].value_or(0.0), axis, modal.unit);
+            const Position parameter = name.size() == 2
+                                           ? modal.position
+                                           : machine_from_program(modal.offsets, modal.position);
+            return shown(parameter[axis].value_or(0.0), axis, modal.unit);
         }
     }
     for (const Named& entry : named_values)
@@ -227,7 +227,7 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
                                           int number, Value value, core::SourceSpan where) {
     const LengthUnit unit = environment.machine_unit;
     const double given = value.value_or(0.0);
-    if ((number >= tool_number && number <= tool_orientation) || is_axis_of(number, first_place))
+    if ((number >= tool_number && number <= tool_orientation) || is_axis_of(number, first_position))
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("#{} is read-only and cannot be set", number), where);
     const auto take = [&](Position& position, int first) {
@@ -240,10 +240,10 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
         take(state.modal.second_home, second_home);
     } else if (is_axis_of(number, first_g92)) {
         take(state.modal.suspended_axis, first_g92);
-    } else if (const auto place = offset_place(number)) {
-        WorkOffset& offset = writable_work_offset(state.tables.write(), place->offset);
-        const auto axis = static_cast<size_t>(place->value);
-        if (place->value == rotation_at)
+    } else if (const auto parameter = offset_parameter(number)) {
+        WorkOffset& offset = writable_work_offset(state.tables.write(), parameter->offset);
+        const auto axis = static_cast<size_t>(parameter->value);
+        if (parameter->value == rotation_at)
             offset.rotation_deg = given;
         else
             offset.origin[axis] = taken(given, axis, unit);
@@ -253,18 +253,18 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
     return true;
 }
 
-void begin_with_kept_offsets(InterpreterState& state, const Environment& environment) {
+void restore_offsets(InterpreterState& state, const Environment& environment) {
     if (dialect(environment.dialect).system_parameters != SystemParameters::rs274) return;
-    const auto kept = [&](int number) {
+    const auto stored = [&](int number) {
         const auto found = environment.parameters.find(number);
         return found != environment.parameters.end() ? found->second : 0.0;
     };
     ModalState& modal = state.modal;
-    const double active = kept(active_offset);
+    const double active = stored(active_offset);
     if (active >= 1.0 && active <= static_cast<double>(plain_offset_count))
         modal.offsets.active = static_cast<size_t>(active) - 1;
     modal.offsets.work = work_offset(*state.tables, modal.offsets.active);
-    if (kept(g92_is_on) == 0.0) return;
+    if (stored(g92_is_on) == 0.0) return;
     modal.axis_offset_on = true;
     modal.offsets.axis = modal.suspended_axis;
 }

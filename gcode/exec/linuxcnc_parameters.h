@@ -28,6 +28,6 @@ core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environ
 /// Activates what the variables file marks as active: the work offset (5220) and G92 (5210).
 ///
 /// The other parameters must already be in `state`.
-void begin_with_kept_offsets(InterpreterState& state, const Environment& environment);
+void restore_offsets(InterpreterState& state, const Environment& environment);
 
 } // namespace gcode

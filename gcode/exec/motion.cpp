@@ -84,17 +84,17 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
                 fmt::format("{}: use either @ and ^ or X and Y, not both", written(*word)),
                 word->span);
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
-    const bool needs_place = incremental || !statement.polar_radius || !statement.polar_angle;
-    if (needs_place && !(target[0] && target[1]))
+    const bool needs_position = incremental || !statement.polar_radius || !statement.polar_angle;
+    if (needs_position && !(target[0] && target[1]))
         return core::fail(
             ErrorCode::missing_value,
             fmt::format(
                 "{}: this is relative to the current position, which is unknown; give both @ and ^",
                 written(first)),
             first.span);
-    double radius = needs_place ? std::hypot(*target[0], *target[1]) : 0.0;
+    double radius = needs_position ? std::hypot(*target[0], *target[1]) : 0.0;
     double angle =
-        needs_place ? std::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
+        needs_position ? std::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
     if (!statement.polar_angle && radius < 1e-9)
         return core::fail(
             ErrorCode::missing_value,
@@ -123,11 +123,11 @@ core::Result<Position> target_of(const Execution& execution) {
                     axis_value(execution, axis, *word)
                     + (execution.dialect.machine_places_are_of_tip ? modal.offsets.tool[axis]
                                                                    : 0.0);
-        const Position place = program_from_machine(without_rotary_tool(modal.offsets), machine);
+        const Position position = program_from_machine(without_rotary_tool(modal.offsets), machine);
         const bool turned = mixes_axes(modal.offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
-                target[axis] = place[axis];
+                target[axis] = position[axis];
         return target;
     }
     if (execution.statement.polar_radius || execution.statement.polar_angle)
@@ -160,7 +160,7 @@ core::Result<Position> target_of(const Execution& execution) {
 
 namespace {
 
-tl::unexpected<core::Error> unknown_place(const Execution& execution, size_t axis) {
+tl::unexpected<core::Error> unknown_position(const Execution& execution, size_t axis) {
     const Word& mover = moving_word(execution);
     return core::fail(
         ErrorCode::missing_value,
@@ -182,7 +182,7 @@ core::Result<void> take_polar_words(Execution& execution) {
         for (const size_t i : {size_t{0}, size_t{1}}) {
             const size_t axis = i == 0 ? axes.first : axes.second;
             if (!incremental) continue;
-            if (!modal.position[axis]) return unknown_place(execution, axis);
+            if (!modal.position[axis]) return unknown_position(execution, axis);
             polar.origin[i] = *modal.position[axis];
         }
         polar.radius = length_of(execution, *word);
@@ -227,7 +227,7 @@ void warn_of_axis_left_out(Execution& execution) {
                                    axis_letters[*axis]));
 }
 
-void forget_place_before_rotation(Execution& execution) {
+void forget_position_before_rotation(Execution& execution) {
     ProgramTransforms& transforms = execution.modal().transforms;
     if (!transforms.before_rotation || !transforms.rotation) return;
     const auto normal = static_cast<size_t>(transforms.rotation->normal);

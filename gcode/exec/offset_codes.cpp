@@ -276,12 +276,12 @@ core::Result<void> set_axis_offset(Execution& execution) {
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const Word* word = execution.statement.word(axis_letters[axis]);
             if (!word) continue;
-            const std::optional<double> place = modal.position[axis];
+            const std::optional<double> position = modal.position[axis];
             const double wanted = axis_value(execution, axis, *word);
             // The machine does not move; its position gets the given coordinate. From an unknown
             // position only that coordinate is known, not the offset.
-            if (place && offsets.axis[axis])
-                *offsets.axis[axis] += *place - wanted;
+            if (position && offsets.axis[axis])
+                *offsets.axis[axis] += *position - wanted;
             else
                 offsets.axis[axis].reset();
         }
@@ -302,10 +302,10 @@ namespace {
 using core::OffsetNumber;
 
 /// Adds with G91, replaces with G90.
-void write(const Execution& execution, double value, double& place) {
+void write(const Execution& execution, double value, double& position) {
     const bool adds = execution.dialect.offset_writes_follow_g91
                       && execution.modal().distance == DistanceMode::incremental;
-    place = (adds ? place : 0.0) + value;
+    position = (adds ? position : 0.0) + value;
 }
 
 } // namespace

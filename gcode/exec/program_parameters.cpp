@@ -109,7 +109,7 @@ core::Result<void> ProgramParameters::set_numbered(double number, Value value,
     return {};
 }
 
-Value ProgramParameters::kept(double number) const {
+Value ProgramParameters::stored_value(double number) const {
     const auto index = parameter_number(number, 1, dialect_, {});
     if (!index) return {};
     const bool is_local = *index <= dialect_.local_count;
@@ -117,13 +117,13 @@ Value ProgramParameters::kept(double number) const {
                     : state_.parameters->numbered(*index);
 }
 
-void ProgramParameters::restore_numbered(double number, Value kept) {
+void ProgramParameters::restore_numbered(double number, Value stored_value) {
     const auto index = parameter_number(number, 1, dialect_, {});
     if (!index) return;
     if (*index <= dialect_.local_count)
-        locals().locals[static_cast<size_t>(*index)] = kept;
-    else if (state_.parameters->numbered(*index) != kept)
-        state_.parameters.write().set_numbered(*index, kept);
+        locals().locals[static_cast<size_t>(*index)] = stored_value;
+    else if (state_.parameters->numbered(*index) != stored_value)
+        state_.parameters.write().set_numbered(*index, stored_value);
 }
 
 void ProgramParameters::restore_named(std::string_view name, Value value) {

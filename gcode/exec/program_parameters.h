@@ -21,11 +21,11 @@ public:
     core::Result<void> set_named(std::string_view name, Value value, core::SourceSpan where);
 
     /// The stored value of a number, ignoring system variables; empty if there is none.
-    Value kept(double number) const;
+    Value stored_value(double number) const;
 
     /// Restores the stored value of a parameter, or removes it. Offsets and modes set through a
     /// system variable are not changed.
-    void restore_numbered(double number, Value kept);
+    void restore_numbered(double number, Value stored_value);
     void restore_named(std::string_view name, Value value);
 
 private:

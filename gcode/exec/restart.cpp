@@ -68,7 +68,7 @@ public:
         add_frame();
         add_spindle();
         add_feed();
-        add_place();
+        add_position();
         return std::move(needs_);
     }
 
@@ -137,18 +137,18 @@ private:
             need("the cycle " + written(modal.cycle->code));
     }
 
-    void add_place() {
+    void add_position() {
         const ModalState& modal = at_.after;
-        std::string place;
+        std::string position;
         for (size_t axis = 0; axis < 3; ++axis) {
             if (!modal.position[axis]) continue;
             const std::optional<double>& alone = at_.alone.position[axis];
             if (alone && std::abs(*alone - *modal.position[axis]) < 1e-6) continue;
             if (at_.alone_failed && at_.before.position[axis] != modal.position[axis]) continue;
-            place += fmt::format("{}{}{:g}", place.empty() ? "" : " ", axis_letters[axis],
-                                 from_mm(*modal.position[axis], modal.unit));
+            position += fmt::format("{}{}{:g}", position.empty() ? "" : " ", axis_letters[axis],
+                                    from_mm(*modal.position[axis], modal.unit));
         }
-        if (!place.empty()) need("the tool at " + place);
+        if (!position.empty()) need("the tool at " + position);
     }
 
     const Meeting& at_;

@@ -31,7 +31,7 @@ bool has_code(const Execution& execution, ModalGroup group, CodeNumber number) {
 }
 
 /// G28, G30, G53: targets in machine coordinates. G53.1 moves only rotary axes.
-bool goes_to_machine_place(const Execution& execution) {
+bool moves_in_machine_coordinates(const Execution& execution) {
     if (has_g53_1(execution)) return true;
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action) return false;
@@ -62,15 +62,16 @@ std::string left_over(const ModalState& modal, bool at_end) {
     return found;
 }
 
-void look_at_tool_change(Execution& execution, const ModalState& before) {
+void check_tool_change(Execution& execution, const ModalState& before) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
     if (!entry || entry->code->number != m_code(6)) return;
-    RuleWatch& watch = execution.state.rules;
+    RuleState& memory = execution.state.rules;
     const ModalState& modal = execution.modal();
     const bool has_tool = modal.tool && core::value_of(*modal.tool) != 0;
-    watch.lacks_length = has_tool && execution.dialect.length_needs_g43 && !modal.length_is_tools();
-    watch.length_cancelled = false;
-    watch.increments_stay =
+    memory.lacks_length =
+        has_tool && execution.dialect.length_needs_g43 && !modal.length_is_tools();
+    memory.length_cancelled = false;
+    memory.increments_stay =
         before.distance == DistanceMode::incremental && modal.distance == DistanceMode::incremental;
     if (const std::string on = left_over(before, false); !on.empty())
         advise(execution, entry->word->span, core::rule_id("state-left-over"),
@@ -78,33 +79,33 @@ void look_at_tool_change(Execution& execution, const ModalState& before) {
                "Cancel it before the tool change.");
 }
 
-void look_at_length_codes(Execution& execution) {
+void check_length_codes(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_length);
     if (!entry) return;
-    RuleWatch& watch = execution.state.rules;
+    RuleState& memory = execution.state.rules;
     const bool cancels = entry->code->number == g_code(49);
-    watch.length_cancelled = cancels && !watch.lacks_length && execution.dialect.length_needs_g43
-                             && execution.modal().tool.has_value();
-    if (!cancels) watch.lacks_length = false;
+    memory.length_cancelled = cancels && !memory.lacks_length && execution.dialect.length_needs_g43
+                              && execution.modal().tool.has_value();
+    if (!cancels) memory.lacks_length = false;
 }
 
 /// The first Z move in work coordinates shows whether the program handles the tool length.
-void look_at_length(Execution& execution, const ModalState& before) {
-    RuleWatch& watch = execution.state.rules;
-    if (!watch.lacks_length && !watch.length_cancelled) return;
+void check_length(Execution& execution, const ModalState& before) {
+    RuleState& memory = execution.state.rules;
+    if (!memory.lacks_length && !memory.length_cancelled) return;
     const ModalState& modal = execution.modal();
-    if (goes_to_machine_place(execution) || modal.position[2] == before.position[2]) return;
+    if (moves_in_machine_coordinates(execution) || modal.position[2] == before.position[2]) return;
     if (!moves(execution)) return; // a frame changed the coordinates, not the position
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
     const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
-    if (watch.lacks_length && modal.length_sign != 0.0 && modal.length_number)
+    if (memory.lacks_length && modal.length_sign != 0.0 && modal.length_number)
         advise(execution, where, core::rule_id("missing-length-offset"),
                fmt::format("tool {} is in the spindle, but H{}, the length offset of another tool, "
                            "is still active",
                            tool, core::value_of(*modal.length_number)),
                cure);
-    else if (watch.lacks_length)
+    else if (memory.lacks_length)
         advise(execution, where, core::rule_id("missing-length-offset"),
                fmt::format("tool {} moves in Z without a length offset: Z refers to the gauge "
                            "line, not to the tip",
@@ -115,14 +116,15 @@ void look_at_length(Execution& execution, const ModalState& before) {
                fmt::format("tool {} moves down after G49 cancelled its length offset", tool), cure);
     else
         return; // moves up after G49
-    watch.lacks_length = watch.length_cancelled = false;
+    memory.lacks_length = memory.length_cancelled = false;
 }
 
-void look_at_work_offset(Execution& execution) {
-    RuleWatch& watch = execution.state.rules;
-    if (execution.statement.of(ModalGroup::work_offset)) watch.offset_is_fresh = true;
-    if (!watch.offset_is_fresh || !moves(execution) || goes_to_machine_place(execution)) return;
-    watch.offset_is_fresh = false;
+void check_work_offset(Execution& execution) {
+    RuleState& memory = execution.state.rules;
+    if (execution.statement.of(ModalGroup::work_offset)) memory.offset_is_fresh = true;
+    if (!memory.offset_is_fresh || !moves(execution) || moves_in_machine_coordinates(execution))
+        return;
+    memory.offset_is_fresh = false;
     const Tables& tables = *execution.state.tables;
     const size_t active = execution.modal().offsets.active;
     const WorkOffset unset{};
@@ -140,19 +142,20 @@ void look_at_work_offset(Execution& execution) {
     }
 }
 
-void look_at_increments(Execution& execution) {
-    RuleWatch& watch = execution.state.rules;
-    if (!watch.increments_stay) return;
-    if (execution.modal().distance == DistanceMode::absolute) watch.increments_stay = false;
-    if (!watch.increments_stay || !moves(execution) || goes_to_machine_place(execution)) return;
-    watch.increments_stay = false;
+void check_increments(Execution& execution) {
+    RuleState& memory = execution.state.rules;
+    if (!memory.increments_stay) return;
+    if (execution.modal().distance == DistanceMode::absolute) memory.increments_stay = false;
+    if (!memory.increments_stay || !moves(execution) || moves_in_machine_coordinates(execution))
+        return;
+    memory.increments_stay = false;
     advise(execution, moving_word(execution).span, core::rule_id("incremental-left-on"),
            "the first move of this tool is incremental: G91 has been active since before the tool "
            "change",
            "Add G90 after the tool change.");
 }
 
-void look_at_machine_moves(Execution& execution, const ModalState& before) {
+void check_machine_moves(Execution& execution, const ModalState& before) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action || !moves(execution)) return;
     const ModalState& modal = execution.modal();
@@ -181,7 +184,7 @@ void look_at_machine_moves(Execution& execution, const ModalState& before) {
            "Use G91 G28 Z0, or G53 with a position in machine coordinates.");
 }
 
-void look_at_units(Execution& execution, const ModalState& before) {
+void check_units(Execution& execution, const ModalState& before) {
     const CodeWord* entry = execution.statement.of(ModalGroup::units);
     if (!entry || !execution.state.rules.has_moved || execution.modal().unit == before.unit) return;
     advise(execution, entry->word->span, core::rule_id("units-jump"),
@@ -192,7 +195,7 @@ void look_at_units(Execution& execution, const ModalState& before) {
            "Use one unit throughout the program.");
 }
 
-void look_at_end(Execution& execution) {
+void check_end(Execution& execution) {
     if (!has_code(execution, ModalGroup::stopping, m_code(2))
         && !has_code(execution, ModalGroup::stopping, m_code(30)))
         return;
@@ -206,11 +209,11 @@ void look_at_end(Execution& execution) {
         "Cancel it before the end.");
 }
 
-void look_at_block_delete(Execution& execution) {
-    RuleWatch& watch = execution.state.rules;
-    const bool switched = execution.block.block_delete || execution.block.kept_words;
-    if (!switched || watch.said_block_delete) return;
-    watch.said_block_delete = true;
+void check_block_delete(Execution& execution) {
+    RuleState& memory = execution.state.rules;
+    const bool switched = execution.block.block_delete || execution.block.words_before_slash;
+    if (!switched || memory.said_block_delete) return;
+    memory.said_block_delete = true;
     advise(
         execution, {.line = execution.block.line, .column = 1}, core::rule_id("block-delete"),
         "blocks with '/' are run here; with block delete on at the machine, the path is different",
@@ -220,21 +223,21 @@ void look_at_block_delete(Execution& execution) {
 } // namespace
 
 void check_modal_rules(Execution& execution, const ModalState& before) {
-    RuleWatch& watch = execution.state.rules;
-    look_at_block_delete(execution);
+    RuleState& memory = execution.state.rules;
+    check_block_delete(execution);
     if (execution.statement.code_count > 0) {
-        look_at_tool_change(execution, before);
-        look_at_length_codes(execution);
-        look_at_machine_moves(execution, before);
-        look_at_units(execution, before);
-        look_at_end(execution);
+        check_tool_change(execution, before);
+        check_length_codes(execution);
+        check_machine_moves(execution, before);
+        check_units(execution, before);
+        check_end(execution);
     }
-    if (watch.waits() || execution.statement.of(ModalGroup::work_offset)) {
-        look_at_length(execution, before);
-        look_at_work_offset(execution);
-        look_at_increments(execution);
+    if (memory.waits() || execution.statement.of(ModalGroup::work_offset)) {
+        check_length(execution, before);
+        check_work_offset(execution);
+        check_increments(execution);
     }
-    watch.has_moved = watch.has_moved || moves(execution);
+    memory.has_moved = memory.has_moved || moves(execution);
 }
 
 } // namespace gcode

@@ -9,7 +9,7 @@ struct ModalState;
 
 /// The memory of the modal rules: what they wait for, and what they have already reported. It does
 /// not influence how the program continues.
-struct RuleWatch {
+struct RuleState {
     bool lacks_length = false;     // a tool was changed in, without a length offset since
     bool length_cancelled = false; // G49 with a tool in the spindle, without a length offset since
     bool offset_is_fresh = true;   // no motion yet with the active work offset

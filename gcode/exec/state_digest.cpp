@@ -42,7 +42,7 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
         add(digest, transforms.scaling->centre);
     }
     for (const bool axis : transforms.mirror.axes) digest.add(uint64_t{axis});
-    add(digest, transforms.mirror.place);
+    add(digest, transforms.mirror.position);
     digest.add(uint64_t{transforms.rotation.has_value()});
     if (const auto& rotation = transforms.rotation) {
         digest.add(number_of(2 * rotation->normal + int(rotation->is_reversed)));
@@ -113,9 +113,9 @@ void add_modes(Digest& digest, const ModalState& modal) {
 
 void add(Digest& digest, const ModalState& modal) {
     add_modes(digest, modal);
-    for (const Position* place :
+    for (const Position* position :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
-        add_all(digest, *place);
+        add_all(digest, *position);
     digest.add(uint64_t{modal.axis_offset_on});
     digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
@@ -131,9 +131,9 @@ void add(Digest& digest, const ModalState& modal) {
     add_all(digest, modal.direction);
 }
 
-void add(Digest& digest, const Place& place) {
-    digest.add(number_of(place.source));
-    digest.add(number_of(place.line));
+void add(Digest& digest, const ProgramLine& position) {
+    digest.add(number_of(position.source));
+    digest.add(number_of(position.line));
 }
 
 } // namespace

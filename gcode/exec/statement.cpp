@@ -144,13 +144,13 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
             statement.letters |= letter_bit(word.letter);
         } else {
-            const Word*& place = word.letter == 'a' ? statement.angle : statement.corner;
-            if (place)
+            const Word*& slot = word.letter == 'a' ? statement.angle : statement.corner;
+            if (slot)
                 return core::fail(ErrorCode::syntax,
                                   fmt::format("{} and {} in one block: only one corner is allowed",
-                                              written(*place), written(word)),
+                                              written(*slot), written(word)),
                                   word.span);
-            place = &word;
+            slot = &word;
             if (word.letter != 'a') statement.letters |= corner_bit;
         }
     }

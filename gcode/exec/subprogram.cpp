@@ -48,35 +48,35 @@ uint32_t first_line(const Program& program, const FlowIndex& index) {
     return mark && mark->kind == FlowKind::program_number ? line + 1 : line;
 }
 
-std::optional<Place> place_in(ProgramLibrary& library, uint32_t source, int number) {
+std::optional<ProgramLine> start_in(ProgramLibrary& library, uint32_t source, int number) {
     const FlowMark* mark = library.index(source).first(FlowKind::program_number, label_of(number));
     if (!mark) return std::nullopt;
-    return Place{source, mark->line + 1};
+    return ProgramLine{source, mark->line + 1};
 }
 
-std::optional<Place> place_in_programs(ProgramLibrary& library, uint32_t source, int number) {
-    if (const auto own = place_in(library, source, number)) return own;
-    return source == 0 ? std::nullopt : place_in(library, 0, number);
+std::optional<ProgramLine> start_in_programs(ProgramLibrary& library, uint32_t source, int number) {
+    if (const auto own = start_in(library, source, number)) return own;
+    return source == 0 ? std::nullopt : start_in(library, 0, number);
 }
 
 /// A file named for the program need not contain its number, on controls without O words.
-core::Result<std::optional<Place>> place_in_files(ProgramLibrary& library, int number) {
+core::Result<std::optional<ProgramLine>> start_in_files(ProgramLibrary& library, int number) {
     FEELER_TRY(const std::optional<uint32_t> source, library.find(file_names(number)));
     if (!source) return std::nullopt;
-    if (const auto numbered = place_in(library, *source, number)) return numbered;
+    if (const auto numbered = start_in(library, *source, number)) return numbered;
     if (library.dialect().has_o_words) return std::nullopt;
-    return Place{*source, first_line(library.program(*source), library.index(*source))};
+    return ProgramLine{*source, first_line(library.program(*source), library.index(*source))};
 }
 
 } // namespace
 
-core::Result<std::optional<Place>> find_program(ProgramLibrary& library, uint32_t source,
-                                                int number, bool files_first) {
+core::Result<std::optional<ProgramLine>> find_program(ProgramLibrary& library, uint32_t source,
+                                                      int number, bool files_first) {
     if (!files_first)
-        if (const auto place = place_in_programs(library, source, number)) return place;
-    FEELER_TRY(const std::optional<Place> place, place_in_files(library, number));
-    if (place || !files_first) return place;
-    return place_in_programs(library, source, number);
+        if (const auto start = start_in_programs(library, source, number)) return start;
+    FEELER_TRY(const std::optional<ProgramLine> start, start_in_files(library, number));
+    if (start || !files_first) return start;
+    return start_in_programs(library, source, number);
 }
 
 std::string missing_program(ProgramLibrary& library, uint32_t source, int number) {
@@ -106,7 +106,7 @@ namespace {
 using core::ErrorCode;
 
 /// The line of the block that a word refers to, in a program of the library.
-core::Result<uint32_t> block_named(Execution& execution, const Word& word, Place from,
+core::Result<uint32_t> block_named(Execution& execution, const Word& word, ProgramLine from,
                                    std::string_view where) {
     FEELER_TRY(const int number, whole_number(word));
     const auto line = line_of_block(execution.library, from.source, number, from.line);
@@ -125,7 +125,8 @@ core::Result<int> rounds_of(Execution& execution) {
     return rounds;
 }
 
-core::Result<void> enter_rounds(Execution& execution, Place begin, std::string name, int rounds) {
+core::Result<void> enter_rounds(Execution& execution, ProgramLine begin, std::string name,
+                                int rounds) {
     if (rounds == 0) return {};
     Frame frame{.called_from = {execution.state.next.source, execution.block.line},
                 .begin = begin,
@@ -148,7 +149,7 @@ core::Result<void> call_block(Execution& execution, const Word& word) {
 struct Called {
     int number;
     int rounds;
-    Place begin;
+    ProgramLine begin;
 };
 
 /// The program that M98 calls. Without L, digits before the last four of P may be the repetitions.
@@ -156,7 +157,7 @@ core::Result<Called> called_by(Execution& execution, const Word& word, bool file
     FEELER_TRY(int number, whole_number(word));
     FEELER_TRY(int rounds, rounds_of(execution));
     const uint32_t source = execution.state.next.source;
-    FEELER_TRY(std::optional<Place> begin,
+    FEELER_TRY(std::optional<ProgramLine> begin,
                find_program(execution.library, source, number, files_first));
     const bool may_hold_rounds = execution.dialect.repeats_in_program_number && number > 9999
                                  && !execution.statement.word('L');
@@ -212,8 +213,8 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
                           "O word and must end with endsub or return",
                           entry.word->span);
     if (target) {
-        const Place from =
-            inside ? frame.called_from : Place{state.next.source, execution.block.line};
+        const ProgramLine from =
+            inside ? frame.called_from : ProgramLine{state.next.source, execution.block.line};
         FEELER_TRY(
             const uint32_t line,
             block_named(execution, *target, from, inside ? "the calling program" : "this program"));
@@ -239,7 +240,7 @@ core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
     if (!target)
         return core::fail(ErrorCode::missing_value, "M96 needs a P word, the block to jump to",
                           entry.word->span);
-    const Place here{execution.state.next.source, execution.block.line};
+    const ProgramLine here{execution.state.next.source, execution.block.line};
     FEELER_TRY(const uint32_t line, block_named(execution, *target, here, "this program"));
     const Word* input = execution.statement.word('Q');
     const std::string name = input ? written(*input) : "its input";
@@ -326,7 +327,8 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
                           entry.word->span);
     FEELER_TRY(const int number, whole_number(*program));
     const uint32_t source = execution.state.next.source;
-    FEELER_TRY(const std::optional<Place> begin, find_program(execution.library, source, number));
+    FEELER_TRY(const std::optional<ProgramLine> begin,
+               find_program(execution.library, source, number));
     if (!begin)
         return core::fail(ErrorCode::syntax,
                           fmt::format("{}: {}", written(*program),

@@ -14,8 +14,8 @@ namespace gcode {
 /// first. Empty when there is none.
 ///
 /// Errors: as ProgramLibrary::find.
-core::Result<std::optional<Place>> find_program(ProgramLibrary& library, uint32_t source,
-                                                int number, bool files_first = false);
+core::Result<std::optional<ProgramLine>> find_program(ProgramLibrary& library, uint32_t source,
+                                                      int number, bool files_first = false);
 
 /// The message for a missing program: where it was searched, and which programs exist.
 std::string missing_program(ProgramLibrary& library, uint32_t source, int number);

@@ -28,24 +28,24 @@ const Code* going_on(const Execution& execution) {
 /// Whether the block has G30 P2, which is the same as G30.
 bool names_second_home(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
-    const Word* place = execution.statement.word('P');
+    const Word* p_word = execution.statement.word('P');
     return execution.dialect.p_names_more_places && action && action->code->number == g_code(30)
-           && place && place->value == 2.0;
+           && p_word && p_word->value == 2.0;
 }
 
 /// Reports a P that selects a reference position of G30 that is not supported.
 core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Statement& statement = execution.statement;
-    const Word* place = statement.word('P');
-    if (!place || !execution.dialect.p_names_more_places) return {};
+    const Word* p_word = statement.word('P');
+    if (!p_word || !execution.dialect.p_names_more_places) return {};
     const CodeWord* action = statement.of(ModalGroup::action);
     if (action && action->code->number == g_code(30) && !names_second_home(execution))
         return core::fail(
             ErrorCode::unsupported,
             fmt::format(
                 "{}: G30 supports the second reference position only: go to others with G53",
-                written(*place)),
-            place->span);
+                written(*p_word)),
+            p_word->span);
     return {};
 }
 

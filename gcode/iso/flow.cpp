@@ -43,7 +43,7 @@ private:
             word));
     }
     void set_line(uint32_t line) { step_.state.next = {source_, line}; }
-    void go_behind(uint32_t line) { set_line(line + 1); }
+    void go_after(uint32_t line) { set_line(line + 1); }
     Frame& frame() { return step_.state.frames.back(); }
     const std::string& name() const { return name_; }
 
@@ -70,8 +70,8 @@ private:
     core::Result<void> leave_loop();
     core::Result<void> continue_loop_early();
     core::Result<void> jump();
-    core::Result<void> go_behind_partner(std::initializer_list<FlowKind> kinds, bool ahead,
-                                         std::string_view wanted);
+    core::Result<void> go_after_partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                        std::string_view wanted);
 
     const FlowStep& step_;
     ProgramParameters parameters_;
@@ -104,10 +104,10 @@ core::Result<const FlowMark*> Flowing::partner(std::initializer_list<FlowKind> k
                               ahead ? "after" : "before"));
 }
 
-core::Result<void> Flowing::go_behind_partner(std::initializer_list<FlowKind> kinds, bool ahead,
-                                              std::string_view wanted) {
+core::Result<void> Flowing::go_after_partner(std::initializer_list<FlowKind> kinds, bool ahead,
+                                             std::string_view wanted) {
     FEELER_TRY(const FlowMark* const mark, partner(kinds, ahead, wanted));
-    go_behind(mark->line);
+    go_after(mark->line);
     return {};
 }
 
@@ -133,7 +133,7 @@ core::Result<void> Flowing::skip_sub() {
     }
     if (!end) return refuse(fmt::format("subprogram {} has no endsub", name_));
     if (auto read = check_skipped(end->line); !read) return read;
-    go_behind(end->line);
+    go_after(end->line);
     return {};
 }
 
@@ -232,7 +232,7 @@ core::Result<void> Flowing::take_branch() {
             FEELER_TRY(taken, holds(block));
             if (!taken) continue;
         }
-        go_behind(line);
+        go_after(line);
         return {};
     }
 }
@@ -247,7 +247,7 @@ core::Result<void> Flowing::end_if_statement() {
         FEELER_TRY(const bool unused, holds(step_.block));
         (void)unused;
     }
-    return go_behind_partner({end_if}, true, "endif");
+    return go_after_partner({end_if}, true, "endif");
 }
 
 /// The head of a while loop, or the end of a do loop.
@@ -255,15 +255,15 @@ core::Result<void> Flowing::while_statement() {
     FEELER_TRY(const bool goes_on, holds(step_.block));
     const FlowMark* self = index_.at(line_);
     if (self && self->closes_do_loop)
-        return goes_on ? go_behind_partner({do_loop}, false, "do") : core::Result<void>{};
-    return goes_on ? core::Result<void>{} : go_behind_partner({end_while}, true, "endwhile");
+        return goes_on ? go_after_partner({do_loop}, false, "do") : core::Result<void>{};
+    return goes_on ? core::Result<void>{} : go_after_partner({end_while}, true, "endwhile");
 }
 
 core::Result<void> Flowing::repeat_statement() {
     FEELER_TRY(const Value count, evaluate(step_.block.pool, step_.block.flow.condition, line_,
                                            parameters_, step_.dialect.arithmetic));
     const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
-    if (rounds < 1) return go_behind_partner({end_repeat}, true, "endrepeat");
+    if (rounds < 1) return go_after_partner({end_repeat}, true, "endrepeat");
     frame().repeats[line_] = rounds;
     return {};
 }
@@ -273,7 +273,7 @@ core::Result<void> Flowing::end_repeat_statement() {
     const auto left = frame().repeats.find(head->line);
     if (left == frame().repeats.end()) return {};
     if (--left->second > 0)
-        go_behind(head->line);
+        go_after(head->line);
     else
         frame().repeats.erase(left);
     return {};
@@ -288,7 +288,7 @@ core::Result<const FlowMark*> Flowing::end_of_loop(std::string_view word) {
 
 core::Result<void> Flowing::leave_loop() {
     FEELER_TRY(const FlowMark* const end, end_of_loop("break"));
-    go_behind(end->line);
+    go_after(end->line);
     return {};
 }
 
@@ -355,7 +355,7 @@ core::Result<void> Flowing::run() {
     case while_do: {
         if (!step_.block.flow.has_condition) return {};
         FEELER_TRY(const bool goes_on, holds(step_.block));
-        return goes_on ? core::Result<void>{} : go_behind_partner({end_do}, true, "END");
+        return goes_on ? core::Result<void>{} : go_after_partner({end_do}, true, "END");
     }
     case end_do: {
         FEELER_TRY(const FlowMark* const head, partner({while_do}, false, "DO"));

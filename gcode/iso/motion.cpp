@@ -166,7 +166,7 @@ core::Result<void> move_without_mode(Execution& execution) {
 
 /// RS274/NGC 3.5.14: G53 applies to its block only, with G0 or G1. On Fanuc controls it is a rapid
 /// whatever the motion code; with G91 it is ignored.
-core::Result<void> move_to_machine_place(Execution& execution) {
+core::Result<void> move_to_machine_position(Execution& execution) {
     ModalState& modal = execution.modal();
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const bool incremental = modal.distance == DistanceMode::incremental;
@@ -181,7 +181,7 @@ core::Result<void> move_to_machine_place(Execution& execution) {
 }
 
 /// Reports G53 in a block without a move as an error.
-core::Result<void> refuse_lone_machine_place(const Execution& execution) {
+core::Result<void> refuse_lone_machine_position(const Execution& execution) {
     if (!execution.dialect.machine_move_needs_motion || !in_machine_coordinates(execution))
         return {};
     return core::fail(ErrorCode::missing_value,
@@ -221,12 +221,13 @@ core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
     if (auto checked = refuse_lone_arc(execution); !checked) return checked;
     const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
-    if (!has_motion_words(execution) && !cycle_words) return refuse_lone_machine_place(execution);
-    if (in_machine_coordinates(execution)) return move_to_machine_place(execution);
+    if (!has_motion_words(execution) && !cycle_words)
+        return refuse_lone_machine_position(execution);
+    if (in_machine_coordinates(execution)) return move_to_machine_position(execution);
     if (auto taken = take_polar_words(execution); !taken) return taken;
     warn_of_axis_left_out(execution);
     if (auto moved = move_as_modes_say(execution); !moved) return moved;
-    forget_place_before_rotation(execution);
+    forget_position_before_rotation(execution);
     return {};
 }
 

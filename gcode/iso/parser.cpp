@@ -111,7 +111,7 @@ private:
         const bool within = dialect_.deletes_within_blocks && block_.assignments.empty()
                             && block_.flow.kind == FlowKind::none;
         if (!in_place && within) {
-            if (!block_.kept_words) block_.kept_words = block_.words.size();
+            if (!block_.words_before_slash) block_.words_before_slash = block_.words.size();
             return {};
         }
         if (!in_place || block_.block_delete)

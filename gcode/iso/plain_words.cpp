@@ -15,7 +15,7 @@ uint32_t repeatable_letters(const Dialect& dialect) {
 }
 
 /// O words are flow statements, and words after a macro call are arguments.
-bool needs_a_closer_look(char letter, double value, const Dialect& dialect) {
+bool needs_full_parser(char letter, double value, const Dialect& dialect) {
     if (letter == 'O') return true;
     return letter == 'G' && dialect.has_fanuc_flow && value >= 65.0 && value < 67.0;
 }
@@ -36,7 +36,7 @@ bool read_plain_words(std::string_view text, uint32_t line, const Dialect& diale
         Number number;
         if (!read_short_number(text, at, number)) return false;
         const uint32_t bit = bit_of(letter);
-        if ((seen & bit & ~repeatable) || needs_a_closer_look(letter, number.value, dialect))
+        if ((seen & bit & ~repeatable) || needs_full_parser(letter, number.value, dialect))
             return false;
         seen |= bit;
         block.words.push_back(

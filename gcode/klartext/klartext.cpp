@@ -277,16 +277,16 @@ core::Result<void> read_system_datum(Execution& execution) {
                                       group, item, index),
                           klartext_of(execution.block).span);
     const ModalState& modal = execution.modal();
-    const Position place =
+    const Position position =
         machine ? machine_from_program(modal.offsets, modal.position) : modal.position;
     const auto axis = static_cast<size_t>(index - 1);
-    if (!place[axis])
+    if (!position[axis])
         execution.warn(klartext_of(execution.block).span,
                        fmt::format("FN 18: the {} position is unknown and assumed to be 0; set "
                                    "[program] start in the set-up",
                                    axis_letters[axis]));
     execution.state.parameters.write().set_numbered(static_cast<int>(statement.word('Q')->value),
-                                                    place[axis].value_or(0.0));
+                                                    position[axis].value_or(0.0));
     return {};
 }
 
@@ -320,8 +320,8 @@ void add(Digest& digest, const KlartextState& klartext) {
     if (klartext.direction) add_all(digest, *klartext.direction);
     digest.add(uint64_t{klartext.corner.has_value()});
     if (klartext.corner) {
-        for (const Position* place : {&klartext.corner->point, &klartext.corner->end})
-            add_all(digest, *place);
+        for (const Position* position : {&klartext.corner->point, &klartext.corner->end})
+            add_all(digest, *position);
         add_all(digest, klartext.corner->centre);
         digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
     }
@@ -346,6 +346,6 @@ const LanguageFunctions klartext_language = {.parse = parse_klartext,
                                              .begin = begin_klartext,
                                              .block_at = klartext_block,
                                              .lines_of = lines_of,
-                                             .position_in_file = place_in_lines};
+                                             .position_in_file = position_in_lines};
 
 } // namespace gcode

@@ -171,24 +171,24 @@ core::Result<void> mill_bore(KlartextHole& hole) {
         hole.rapid(hole.above);
         return {};
     }
-    Position place = centre;
-    place[hole.axes.first] = *x + radius;
-    place[hole.axes.normal] = hole.above;
-    execution.feed(place, hole.cycle.feed);
+    Position position = centre;
+    position[hole.axes.first] = *x + radius;
+    position[hole.axes.normal] = hole.above;
+    execution.feed(position, hole.cycle.feed);
     const auto circle = [&](double height) {
-        place[hole.axes.normal] = height;
-        execution.modal().position = place;
-        execution.emit(ArcFeed{.end = place,
+        position[hole.axes.normal] = height;
+        execution.modal().position = position;
+        execution.emit(ArcFeed{.end = position,
                                .plane = execution.modal().plane,
                                .centre = {*x, *y},
                                .turns = 1,
                                .feed = hole.cycle.feed});
     };
-    for (double level = hole.above; level > hole.bottom + 1e-9; level = *place[hole.axes.normal])
+    for (double level = hole.above; level > hole.bottom + 1e-9; level = *position[hole.axes.normal])
         circle(std::max(hole.bottom, level - hole.cycle.infeed));
     circle(hole.bottom);
-    place[hole.axes.first] = *x;
-    execution.feed(place, hole.cycle.feed);
+    position[hole.axes.first] = *x;
+    execution.feed(position, hole.cycle.feed);
     hole.rapid(hole.above);
     return {};
 }
@@ -365,16 +365,16 @@ core::Result<void> call_defined_cycle(Execution& execution) {
 
 namespace {
 
-constexpr double most_places = 10000.0;
+constexpr double most_locations = 10000.0;
 
 /// The holes of a full circle or arc (220), or of rows rotated about the first hole (221).
-core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
+core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };
-    std::vector<PlanePoint> places;
+    std::vector<PlanePoint> positions;
     if (klartext_of(execution.block).number == 220) {
         const double count = plain(241);
-        if (!(count >= 1.0 && count <= most_places))
+        if (!(count >= 1.0 && count <= most_locations))
             return refuse_statement(execution, "Q241, the number of holes, must be at least 1");
         double step = plain(247);
         // Q246 is used if no step is given. On a full circle the first hole is not repeated.
@@ -383,13 +383,13 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
         if (step == 0.0 && count > 1.0) step = sweep / (full ? count : count - 1.0);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             const double angle = (plain(245) + i * step) * core::radians_per_degree;
-            places.push_back({length(216) + 0.5 * length(244) * std::cos(angle),
-                              length(217) + 0.5 * length(244) * std::sin(angle)});
+            positions.push_back({length(216) + 0.5 * length(244) * std::cos(angle),
+                                 length(217) + 0.5 * length(244) * std::sin(angle)});
         }
-        return places;
+        return positions;
     }
     const double columns = plain(242), rows = plain(243);
-    if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_places))
+    if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_locations))
         return refuse_statement(
             execution, "Q242 and Q243, the numbers of columns and rows, must be at least 1");
     const double turn = plain(224) * core::radians_per_degree;
@@ -398,10 +398,10 @@ core::Result<std::vector<PlanePoint>> places_of(const Execution& execution) {
             // Every other row is drilled backwards.
             const int column = row % 2 == 0 ? i : static_cast<int>(columns) - 1 - i;
             const double along = column * length(237), across = row * length(238);
-            places.push_back({length(225) + along * std::cos(turn) - across * std::sin(turn),
-                              length(226) + along * std::sin(turn) + across * std::cos(turn)});
+            positions.push_back({length(225) + along * std::cos(turn) - across * std::sin(turn),
+                                 length(226) + along * std::sin(turn) + across * std::cos(turn)});
         }
-    return places;
+    return positions;
 }
 
 } // namespace
@@ -414,23 +414,23 @@ core::Result<void> run_pattern(Execution& execution) {
     cycle.clearance = std::abs(q_length(execution, 200));
     cycle.surface = q_length(execution, 203);
     cycle.second_clearance = std::abs(q_length(execution, 204));
-    FEELER_TRY(const std::vector<PlanePoint> places, places_of(execution));
+    FEELER_TRY(const std::vector<PlanePoint> positions, positions_of(execution));
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const bool high = q_number(execution, 301) != 0.0;
     const double above = cycle.surface + cycle.clearance;
     const double between = std::max(above, cycle.surface + cycle.second_clearance);
-    for (size_t i = 0; i < places.size(); ++i) {
+    for (size_t i = 0; i < positions.size(); ++i) {
         Position over = execution.modal().position;
         if (i == 0 || high) {
             over[axes.normal] = between;
             if (over != execution.modal().position) execution.traverse(over);
         }
-        over[axes.first] = places[i][0];
-        over[axes.second] = places[i][1];
+        over[axes.first] = positions[i][0];
+        over[axes.second] = positions[i][1];
         execution.traverse(over);
         DefinedCycle& called = writable_klartext(execution.state).cycle;
         called = cycle;
-        if (!high && i + 1 < places.size()) called.second_clearance = 0.0;
+        if (!high && i + 1 < positions.size()) called.second_clearance = 0.0;
         if (auto done = call_defined_cycle(execution); !done) return done;
     }
     return {};

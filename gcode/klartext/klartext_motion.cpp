@@ -33,15 +33,15 @@ Position base_of(const Execution& execution) {
     return corner ? corner->point : execution.modal().position;
 }
 
-core::Result<PlanePoint> known_point(const Execution& execution, const Position& place) {
+core::Result<PlanePoint> known_point(const Execution& execution, const Position& position) {
     const PlaneAxes axes = plane_of(execution);
     for (const size_t axis : {axes.first, axes.second})
-        if (!place[axis])
+        if (!position[axis])
             return refuse_statement(execution,
                                     fmt::format("the {} position is unknown: move there first, or "
                                                 "set [program] start in the set-up",
                                                 axis_letters[axis]));
-    return PlanePoint{*place[axes.first], *place[axes.second]};
+    return PlanePoint{*position[axes.first], *position[axes.second]};
 }
 
 core::Result<PlanePoint> known_pole(const Execution& execution) {
@@ -223,8 +223,8 @@ void remember_direction(Execution& execution, const Position& start, const PathE
                         const Position& end) {
     const PlaneAxes axes = plane_of(execution);
     KlartextState& klartext = writable_klartext(execution.state);
-    const auto known = [&](const Position& place) {
-        return place[axes.first] && place[axes.second];
+    const auto known = [&](const Position& position) {
+        return position[axes.first] && position[axes.second];
     };
     if (!known(end) || (contour.turn == 0 && !known(start))) {
         klartext.direction.reset();
@@ -319,7 +319,7 @@ using core::ErrorCode;
 constexpr int most_blocks_ahead = 1000;
 
 /// The next block, if it is a rounding or chamfer.
-core::Result<std::optional<Block>> corner_behind(const Execution& execution) {
+core::Result<std::optional<Block>> corner_after(const Execution& execution) {
     const Program& program = execution.library.program(execution.state.next.source);
     Block block;
     for (uint32_t line = execution.state.next.line; line <= program.line_count();) {
@@ -368,12 +368,12 @@ core::Result<double> size_of_corner(Execution& execution, const Block& block) {
 
 PlanePoint plane_point(FlatPoint point) { return {point.u, point.v}; }
 
-FlatPoint flat(const Position& place, const PlaneAxes& axes) {
-    return {place[axes.first].value_or(0.0), place[axes.second].value_or(0.0)};
+FlatPoint flat(const Position& position, const PlaneAxes& axes) {
+    return {position[axes.first].value_or(0.0), position[axes.second].value_or(0.0)};
 }
 
-bool is_known(const Position& place, const PlaneAxes& axes) {
-    return place[axes.first] && place[axes.second];
+bool is_known(const Position& position, const PlaneAxes& axes) {
+    return position[axes.first] && position[axes.second];
 }
 
 /// The motion after the corner, found by running the program ahead on a copy of the state.
@@ -463,7 +463,7 @@ core::Result<Position> lay_corner(Execution& execution, const Block& block, cons
 core::Result<Position> end_before_corner(Execution& execution, const Position& end,
                                          const PlanePoint& centre, int turn) {
     if (klartext_of(execution.state).looks_ahead) return end;
-    FEELER_TRY(const std::optional<Block> block, corner_behind(execution));
+    FEELER_TRY(const std::optional<Block> block, corner_after(execution));
     if (!block) return end;
     FEELER_TRY(const double corner_size, size_of_corner(execution, *block));
     if (corner_size == 0.0) return end;

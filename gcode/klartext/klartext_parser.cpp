@@ -140,7 +140,7 @@ core::Result<void> read_block(KlartextReader& reader) {
     lexer.peek();
     const size_t digits = lexer.at;
     while (lexer.at < lexer.line.size() && is_digit(lexer.line[lexer.at])) ++lexer.at;
-    const size_t behind = lexer.at;
+    const size_t after = lexer.at;
     if (lexer.accept('/')) reader.block.block_delete = 1;
     const char c = lexer.peek();
     if (c == '*' || c == ';') {
@@ -149,11 +149,11 @@ core::Result<void> read_block(KlartextReader& reader) {
     }
     if (reader.next() == '\0') return {};
     reader.begin = lexer.at;
-    if (!is_letter(reader.next()) || (behind > digits && lexer.at == behind && c != '/')) {
+    if (!is_letter(reader.next()) || (after > digits && lexer.at == after && c != '/')) {
         if (!is_letter(reader.next())) return reader.stray();
         return reader.refuse(
             fmt::format("'{}' is not a block number: a block number must be followed by a space",
-                        lexer.line.substr(digits, behind + 1 - digits)),
+                        lexer.line.substr(digits, after + 1 - digits)),
             digits);
     }
     if (auto done = read_statement(reader); !done) return done;
@@ -199,7 +199,7 @@ uint32_t lines_of(std::string_view text) {
     return count;
 }
 
-core::SourceSpan place_in_lines(std::string_view text, core::SourceSpan where) {
+core::SourceSpan position_in_lines(std::string_view text, core::SourceSpan where) {
     if (where.column == 0) return where;
     const size_t at = std::min<size_t>(where.column - 1, text.size());
     const std::string_view before = text.substr(0, at);
@@ -268,7 +268,7 @@ core::Result<void> read_label_name(KlartextReader& reader) {
     return {};
 }
 
-core::Result<int> read_whole(KlartextReader& reader, std::string_view behind) {
+core::Result<int> read_whole(KlartextReader& reader, std::string_view after) {
     reader.next();
     const size_t from = reader.lexer.at;
     int value = 0;
@@ -276,8 +276,7 @@ core::Result<int> read_whole(KlartextReader& reader, std::string_view behind) {
            && is_digit(reader.lexer.line[reader.lexer.at]) && value < 100000)
         value = value * 10 + (reader.lexer.line[reader.lexer.at++] - '0');
     if (reader.lexer.at == from)
-        return reader.refuse(fmt::format("'{}' must be followed by a number", behind),
-                             reader.begin);
+        return reader.refuse(fmt::format("'{}' must be followed by a number", after), reader.begin);
     return value;
 }
 

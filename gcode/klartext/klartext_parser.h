@@ -21,7 +21,7 @@ std::string_view klartext_block(const Program& program, uint32_t line);
 uint32_t lines_of(std::string_view text);
 
 /// Converts a position in a block of several lines to its line and the column in that line.
-core::SourceSpan place_in_lines(std::string_view text, core::SourceSpan where);
+core::SourceSpan position_in_lines(std::string_view text, core::SourceSpan where);
 
 /// The labels of a program.
 FlowIndex klartext_index(const Program& program, const Dialect& dialect);

@@ -51,7 +51,7 @@ core::Result<void> read_m_word(KlartextReader& reader);
 core::Result<void> read_label_name(KlartextReader& reader);
 
 /// Reads a whole number without a sign.
-core::Result<int> read_whole(KlartextReader& reader, std::string_view behind);
+core::Result<int> read_whole(KlartextReader& reader, std::string_view after);
 
 /// Reads `Q5 =`, and adds the assignment of a value to it.
 core::Result<int> read_target(KlartextReader& reader);

@@ -155,10 +155,10 @@ struct Block {
     Flow flow{};
     ExpressionPool pool{};
     LanguageLine language_line{};
-    std::optional<int> block_delete{};  // 1 for `/`, 1 to 9 for `/1` to `/9`
-    bool tape_mark = false;             // a line that begins with %
-    bool is_program_name = false;       // a line that begins with <NAME>
-    std::optional<size_t> kept_words{}; // number of words before a `/` within the block
+    std::optional<int> block_delete{};          // 1 for `/`, 1 to 9 for `/1` to `/9`
+    bool tape_mark = false;                     // a line that begins with %
+    bool is_program_name = false;               // a line that begins with <NAME>
+    std::optional<size_t> words_before_slash{}; // number of words before a `/` within the block
 
     bool has_message = false; // a comment that the control acts on
     bool has_command = false; // a keyword that does something, in Klartext and Siemens

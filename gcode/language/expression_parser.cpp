@@ -253,7 +253,7 @@ core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
 }
 
 core::Result<int> parse_q_parameter(Lexer& lexer) {
-    constexpr int highest = 1999, highest_kept = 499;
+    constexpr int highest = 1999, highest_stored = 499;
     const size_t begin = lexer.at++;
     const char kind = lexer.at < lexer.line.size() ? upper(lexer.line[lexer.at]) : '\0';
     if (kind == 'R' || kind == 'L' || kind == 'S') ++lexer.at;
@@ -270,14 +270,14 @@ core::Result<int> parse_q_parameter(Lexer& lexer) {
                         lexer.written_from(begin), highest),
             lexer.span_from(begin));
     FEELER_TRY(const Number number, lexer.number());
-    const double last = kind == 'R' ? highest_kept : highest;
+    const double last = kind == 'R' ? highest_stored : highest;
     if (number.value > last || number.value != std::floor(number.value))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("'{}': the highest number of these Q parameters is {}",
                                       lexer.written_from(begin), last),
                           lexer.span_from(begin));
     const int index = static_cast<int>(number.value);
-    return kind == 'R' ? first_kept_q + index : index == 0 ? q_zero : index;
+    return kind == 'R' ? first_stored_q + index : index == 0 ? q_zero : index;
 }
 
 core::Result<std::string> parse_name(Lexer& lexer) {

@@ -30,7 +30,7 @@ core::Result<Expression> parse_bracketed(Lexer& lexer, ExpressionSyntax syntax,
                                          ExpressionPool& pool);
 
 /// The numbers under which Q0 and QR0 are stored; Q1 to Q1999 keep their numbers.
-constexpr int q_zero = 2000, first_kept_q = 2001;
+constexpr int q_zero = 2000, first_stored_q = 2001;
 
 /// Reads `Q5` or `QR5` and returns the number under which it is stored.
 ///

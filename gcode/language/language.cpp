@@ -16,7 +16,7 @@ void Block::clear() {
     block_delete.reset();
     tape_mark = false;
     is_program_name = false;
-    kept_words.reset();
+    words_before_slash.reset();
     has_message = has_command = false;
 }
 

@@ -109,21 +109,21 @@ inline bool read_short_number(std::string_view line, size_t& at, Number& number)
     for (; next < end && is_digit(*next); ++next)
         digits = digits * 10 + static_cast<uint64_t>(*next - '0');
     auto count = next - first;
-    size_t behind_point = 0;
+    size_t decimals = 0;
     const bool point = next < end && *next == '.';
     if (point) {
         const char* const fraction = ++next;
         for (; next < end && is_digit(*next); ++next)
             digits = digits * 10 + static_cast<uint64_t>(*next - '0');
-        behind_point = static_cast<size_t>(next - fraction);
+        decimals = static_cast<size_t>(next - fraction);
         count += next - fraction;
     }
     if (count == 0 || count > 15) return false;
-    const char* behind = next;
-    while (behind < end && is_blank(*behind)) ++behind;
+    const char* after = next;
+    while (after < end && is_blank(*after)) ++after;
     // A number may contain blanks: leave these to the general reader.
-    if (behind < end && (*behind == '.' || (behind > next && is_digit(*behind)))) return false;
-    const double size = static_cast<double>(digits) / powers_of_ten[behind_point];
+    if (after < end && (*after == '.' || (after > next && is_digit(*after)))) return false;
+    const double size = static_cast<double>(digits) / powers_of_ten[decimals];
     number = {negative ? -size : size, point};
     at = static_cast<size_t>(next - line.data());
     return true;

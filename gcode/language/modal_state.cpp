@@ -78,25 +78,25 @@ void forget_linear(Position& position) {
 }
 
 /// Replaces the tip position in work coordinates by the linear axis values that reach it.
-void reach_from_work(const Offsets& offsets, Position& place) {
-    const auto values = known_values(offsets, place);
+void reach_from_work(const Offsets& offsets, Position& position) {
+    const auto values = known_values(offsets, position);
     std::optional<AxisValues> reached;
     if (values)
         reached = core::reach_tip(
             *offsets.machine, *values,
             table_from_work(offsets, {(*values)[0], (*values)[1], (*values)[2]}), offsets.tool[2]);
-    if (!reached) return forget_linear(place);
-    for (size_t axis = 0; axis < 3; ++axis) place[axis] = (*reached)[axis];
+    if (!reached) return forget_linear(position);
+    for (size_t axis = 0; axis < 3; ++axis) position[axis] = (*reached)[axis];
 }
 
 /// The inverse: replaces linear axis values by the tip position in work coordinates.
-void place_in_work(const Offsets& offsets, Position& place) {
-    const auto values = known_values(offsets, place);
-    if (!values) return forget_linear(place);
-    const core::Vec3 tip =
-        machine_from_table(offsets) * core::tip_place(*offsets.machine, *values, offsets.tool[2]);
+void put_in_work(const Offsets& offsets, Position& position) {
+    const auto values = known_values(offsets, position);
+    if (!values) return forget_linear(position);
+    const core::Vec3 tip = machine_from_table(offsets)
+                           * core::tip_position(*offsets.machine, *values, offsets.tool[2]);
     for (size_t axis = 0; axis < 3; ++axis)
-        place[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
+        position[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
 }
 
 /// The tool offset without its length, which counts along the tool.
@@ -108,7 +108,8 @@ AxisValues without_length(AxisValues tool) {
 } // namespace
 
 core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work) {
-    return machine_from_table(offsets).inverse() * offsets.machine->place({work.x, work.y, work.z});
+    return machine_from_table(offsets).inverse()
+           * offsets.machine->linear_position({work.x, work.y, work.z});
 }
 
 Position machine_minus_program(const Offsets& offsets) {
@@ -120,49 +121,49 @@ Position machine_minus_program(const Offsets& offsets) {
 }
 
 Position machine_from_program(const Offsets& offsets, const Position& program) {
-    Position place = program;
+    Position position = program;
     if (!mixes_axes(offsets)) {
-        add(place, machine_minus_program(offsets), +1.0);
-        return place;
+        add(position, machine_minus_program(offsets), +1.0);
+        return position;
     }
     if (offsets.has_frame) {
-        map(offsets.frame.linear, place);
-        add(place, shift_of(offsets.frame), +1.0);
+        map(offsets.frame.linear, position);
+        add(position, shift_of(offsets.frame), +1.0);
     }
-    add(place, offsets.axis, +1.0);
-    add(place, offsets.local, +1.0);
-    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(offsets.work.rotation_deg), place);
-    add(place, offsets.work.origin, +1.0);
+    add(position, offsets.axis, +1.0);
+    add(position, offsets.local, +1.0);
+    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(offsets.work.rotation_deg), position);
+    add(position, offsets.work.origin, +1.0);
     if (is_fixed_to_work(offsets)) {
-        add(place, without_length(offsets.tool), +1.0);
-        reach_from_work(offsets, place);
+        add(position, without_length(offsets.tool), +1.0);
+        reach_from_work(offsets, position);
     } else {
-        add(place, offsets.tool, +1.0);
+        add(position, offsets.tool, +1.0);
     }
-    return place;
+    return position;
 }
 
 Position program_from_machine(const Offsets& offsets, const Position& machine) {
-    Position place = machine;
+    Position position = machine;
     if (!mixes_axes(offsets)) {
-        add(place, machine_minus_program(offsets), -1.0);
-        return place;
+        add(position, machine_minus_program(offsets), -1.0);
+        return position;
     }
     if (is_fixed_to_work(offsets)) {
-        place_in_work(offsets, place);
-        add(place, without_length(offsets.tool), -1.0);
+        put_in_work(offsets, position);
+        add(position, without_length(offsets.tool), -1.0);
     } else {
-        add(place, offsets.tool, -1.0);
+        add(position, offsets.tool, -1.0);
     }
-    add(place, offsets.work.origin, -1.0);
-    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(-offsets.work.rotation_deg), place);
-    add(place, offsets.local, -1.0);
-    add(place, offsets.axis, -1.0);
+    add(position, offsets.work.origin, -1.0);
+    if (offsets.work.rotation_deg != 0.0) map(turned_about_z(-offsets.work.rotation_deg), position);
+    add(position, offsets.local, -1.0);
+    add(position, offsets.axis, -1.0);
     if (offsets.has_frame) {
-        add(place, shift_of(offsets.frame), -1.0);
-        map(glm::inverse(offsets.frame.linear), place);
+        add(position, shift_of(offsets.frame), -1.0);
+        map(glm::inverse(offsets.frame.linear), position);
     }
-    return place;
+    return position;
 }
 
 Offsets without_rotary_tool(Offsets offsets) {
@@ -189,16 +190,16 @@ Direction direction_of(double degrees) {
 }
 
 /// Appends a linear map with fixed point `kept` to a frame.
-void add_about(ProgramFrame& frame, const core::Mat3& linear, const core::Vec3& kept) {
+void add_about(ProgramFrame& frame, const core::Mat3& linear, const core::Vec3& fixed_point) {
     frame.linear = linear * frame.linear;
-    frame.shift = linear * (frame.shift - kept) + kept;
+    frame.shift = linear * (frame.shift - fixed_point) + fixed_point;
 }
 
 void add_mirror_and_scaling(ProgramFrame& frame, const ProgramTransforms& transforms) {
     core::Mat3 reflected(1.0);
     for (int axis = 0; axis < 3; ++axis)
         if (transforms.mirror.axes[static_cast<size_t>(axis)]) reflected[axis][axis] = -1.0;
-    if (reflected != core::Mat3(1.0)) add_about(frame, reflected, transforms.mirror.place);
+    if (reflected != core::Mat3(1.0)) add_about(frame, reflected, transforms.mirror.position);
     if (!transforms.scaling) return;
     core::Mat3 stretched(1.0);
     for (int axis = 0; axis < 3; ++axis) stretched[axis][axis] = transforms.scaling->factors[axis];
@@ -233,10 +234,10 @@ ProgramFrame frame_of(const ProgramTransforms& transforms) {
     return frame;
 }
 
-core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place) {
+core::Vec3 scaled_point(const ProgramTransforms& transforms, const core::Vec3& position) {
     ProgramFrame frame;
     add_mirror_and_scaling(frame, transforms);
-    return frame.linear * place + frame.shift;
+    return frame.linear * position + frame.shift;
 }
 
 void change_offsets(ModalState& modal, const Offsets& offsets) {
@@ -251,11 +252,11 @@ void change_offsets(ModalState& modal, const Offsets& offsets) {
     modal.offsets = offsets;
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (before[axis] == after[axis]) continue;
-        std::optional<double>& place = modal.position[axis];
-        if (place && before[axis] && after[axis])
-            *place += *before[axis] - *after[axis];
+        std::optional<double>& position = modal.position[axis];
+        if (position && before[axis] && after[axis])
+            *position += *before[axis] - *after[axis];
         else
-            place.reset();
+            position.reset();
     }
 }
 

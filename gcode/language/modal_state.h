@@ -104,7 +104,7 @@ struct Scaling {
 /// G51.1: coordinates are mirrored about a point, axis by axis.
 struct MirrorImage {
     std::array<bool, 3> axes{};
-    core::Vec3 place = core::Vec3(0.0);
+    core::Vec3 position = core::Vec3(0.0);
 
     bool operator==(const MirrorImage&) const = default;
 };
@@ -160,7 +160,7 @@ core::Mat3 turned_about(int axis, double degrees);
 ProgramFrame frame_of(const ProgramTransforms& transforms);
 
 /// A position after mirror image and scaling, without rotation and tilt.
-core::Vec3 scaled_place(const ProgramTransforms& transforms, const core::Vec3& place);
+core::Vec3 scaled_point(const ProgramTransforms& transforms, const core::Vec3& position);
 
 enum class LengthUnit : uint8_t { inch, mm };                         // G20, G21
 enum class DistanceMode : uint8_t { absolute, incremental };          // G90, G91

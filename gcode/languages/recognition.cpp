@@ -54,9 +54,9 @@ Clue siemens_clue(std::string_view text, size_t line) {
           "ATRANS ", "G500",     "CYCLE800", "HOLES1(",  "HOLES2("})
         if (words.starts_with(word))
             return found(DialectId::siemens, line, fmt::format("contains {}", word));
-    const size_t behind_r = words.find_first_not_of("0123456789 ", 1);
-    if (words.size() > 2 && words[0] == 'R' && is_digit(words[1]) && behind_r < words.size()
-        && words[behind_r] == '=')
+    const size_t after_r = words.find_first_not_of("0123456789 ", 1);
+    if (words.size() > 2 && words[0] == 'R' && is_digit(words[1]) && after_r < words.size()
+        && words[after_r] == '=')
         return found(DialectId::siemens, line, "sets an R parameter");
     for (const std::string_view word :
          {" CR=", "=AC(", "=IC(", "T=\"", " GOTOF ", " GOTOB ", " TURN=", " SUPA ", " AP=", " RP="})
@@ -193,11 +193,11 @@ Clue family_clue(const Block& block) {
 /// Codes that Haas controls have and Fanuc controls do not. On Fanuc, M97 without P is a different
 /// code.
 Clue haas_clue(const Block& block) {
-    const auto is_place = [](const Word& word) { return word.letter == 'P'; };
-    const bool has_place = std::any_of(block.words.begin(), block.words.end(), is_place);
+    const auto is_target = [](const Word& word) { return word.letter == 'P'; };
+    const bool has_target = std::any_of(block.words.begin(), block.words.end(), is_target);
     for (const Word& word : block.words) {
         if (word.expression || (word.letter != 'G' && word.letter != 'M')) continue;
-        if (word.letter == 'M' && (word.value != 97.0 || !has_place)) continue;
+        if (word.letter == 'M' && (word.value != 97.0 || !has_target)) continue;
         if (!find_code(word.letter, word.value, DialectId::haas)
             || find_code(word.letter, word.value, DialectId::fanuc))
             continue;

@@ -79,16 +79,18 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
     const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
     std::vector<Position> ends;
     for (int i = 1; i < count; ++i) {
-        const double share = static_cast<double>(i) / count;
-        const double turn = angle * share;
-        const double reach = (radius + share * (end_radius - radius)) / radius;
-        Position place = command.end;
+        const double fraction = static_cast<double>(i) / count;
+        const double turn = angle * fraction;
+        const double reach = (radius + fraction * (end_radius - radius)) / radius;
+        Position position = command.end;
         for (size_t axis = 0; axis < axis_count; ++axis)
-            if (from[axis] && place[axis])
-                *place[axis] = *from[axis] + share * (*command.end[axis] - *from[axis]);
-        place[axes.first] = command.centre[0] + reach * (u * std::cos(turn) - v * std::sin(turn));
-        place[axes.second] = command.centre[1] + reach * (u * std::sin(turn) + v * std::cos(turn));
-        ends.push_back(place);
+            if (from[axis] && position[axis])
+                *position[axis] = *from[axis] + fraction * (*command.end[axis] - *from[axis]);
+        position[axes.first] =
+            command.centre[0] + reach * (u * std::cos(turn) - v * std::sin(turn));
+        position[axes.second] =
+            command.centre[1] + reach * (u * std::sin(turn) + v * std::cos(turn));
+        ends.push_back(position);
     }
     ends.push_back(command.end);
     return ends;
@@ -127,8 +129,8 @@ struct Visitor {
             to[axis] = motion.to[axis].value_or(0.0);
         }
         const double length = offsets.tool[2];
-        motion.tip = core::TipPath{core::tip_place(*offsets.machine, from, length),
-                                   core::tip_place(*offsets.machine, to, length), length};
+        motion.tip = core::TipPath{core::tip_position(*offsets.machine, from, length),
+                                   core::tip_position(*offsets.machine, to, length), length};
     }
 
     core::Motion motion_to(const Position& end, core::MotionKind kind, double feed) {

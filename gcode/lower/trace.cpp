@@ -13,7 +13,7 @@ namespace {
 /// Rounded to a millionth, without trailing zeros or negative zero.
 std::string number(double value) { return core::number_text(value, 6); }
 
-std::string place(const Position& position) {
+std::string axes_text(const Position& position) {
     std::string text;
     // Axes other than X, Y and Z that are at zero usually do not exist.
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -42,12 +42,12 @@ std::string frame(const ProgramFrame& frame) {
 
 /// The text after the name of a command.
 struct Details {
-    std::string operator()(const StraightTraverse& command) const { return place(command.end); }
+    std::string operator()(const StraightTraverse& command) const { return axes_text(command.end); }
     std::string operator()(const StraightFeed& command) const {
-        return place(command.end) + " feed=" + number(command.feed);
+        return axes_text(command.end) + " feed=" + number(command.feed);
     }
     std::string operator()(const ArcFeed& command) const {
-        return fmt::format("{} plane={} centre={},{} turns={} feed={}", place(command.end),
+        return fmt::format("{} plane={} centre={},{} turns={} feed={}", axes_text(command.end),
                            name_of(command.plane), number(command.centre[0]),
                            number(command.centre[1]), command.turns, number(command.feed));
     }
@@ -82,7 +82,7 @@ struct Details {
         const std::string turn = offsets.work.rotation_deg == 0.0
                                      ? std::string()
                                      : " rotation=" + number(offsets.work.rotation_deg);
-        return " offset=" + name_of_offset(offsets.active) + place(sum) + turn
+        return " offset=" + name_of_offset(offsets.active) + axes_text(sum) + turn
                + (offsets.has_frame ? frame(offsets.frame) : std::string());
     }
     std::string operator()(const UseToolLengthOffset& command) const {
@@ -122,12 +122,12 @@ struct Details {
     }
     std::string operator()(const Message& command) const { return " text=" + command.text; }
     std::string operator()(const StraightProbe& command) const {
-        return fmt::format("{} feed={} towards={} must_succeed={}", place(command.end),
+        return fmt::format("{} feed={} towards={} must_succeed={}", axes_text(command.end),
                            number(command.feed), int(command.towards), int(command.must_succeed));
     }
     std::string operator()(const ThreadFeed& command) const {
-        return fmt::format("{} pitch={} back_again={}", place(command.end), number(command.pitch),
-                           int(command.back_again));
+        return fmt::format("{} pitch={} back_again={}", axes_text(command.end),
+                           number(command.pitch), int(command.back_again));
     }
     std::string operator()(const ProgramStop&) const { return {}; }
     std::string operator()(const OptionalStop&) const { return {}; }

@@ -117,7 +117,7 @@ core::Result<void> act_in_siemens(Execution& execution) {
     switch (entry->code->number) {
     case g_code(74):
     case g_code(75):
-        return go_to_fixed_place(execution);
+        return go_to_fixed_position(execution);
     case g_code(110):
     case g_code(111):
     case g_code(112):
@@ -268,10 +268,10 @@ std::optional<Value> siemens_variable(const InterpreterState& state, std::string
     const char letter = upper(name[bracket + 1]);
     const size_t axis = axis_letters.find(letter);
     if (axis == std::string_view::npos) return std::nullopt;
-    const Position place =
+    const Position position =
         machine ? machine_from_program(modal.offsets, modal.position) : modal.position;
-    if (!place[axis]) return std::nullopt;
-    return Value(is_rotary(axis) ? *place[axis] : from_mm(*place[axis], modal.unit));
+    if (!position[axis]) return std::nullopt;
+    return Value(is_rotary(axis) ? *position[axis] : from_mm(*position[axis], modal.unit));
 }
 
 namespace {

@@ -28,8 +28,8 @@ core::Result<void> select_siemens_offset(Execution& execution); // G54 G500 G505
 core::Result<void> set_siemens_radius(Execution& execution);    // G40 G41 G42
 core::Result<void> change_siemens_frame(Execution& execution);  // TRANS ROT SCALE MIRROR
 core::Result<void> set_pole(Execution& execution);              // G110 G111 G112
-core::Result<void> move_in_siemens(Execution& execution);   // G0 to G3, CIP, CT, polar positions
-core::Result<void> go_to_fixed_place(Execution& execution); // G74 G75
+core::Result<void> move_in_siemens(Execution& execution);      // G0 to G3, CIP, CT, polar positions
+core::Result<void> go_to_fixed_position(Execution& execution); // G74 G75
 core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordUse& use);
 /// Drilling cycles and hole patterns.
 core::Result<void> run_hole_cycle(Execution& execution, const SiemensKeywordUse& use);

@@ -26,9 +26,9 @@ public:
     }
 
     /// A digit of a mode parameter, counted from the right.
-    int digit(size_t index, int place) const {
+    int digit(size_t index, int digit_index) const {
         return static_cast<int>(
-            std::fmod(std::floor(std::abs(plain(index)) / std::pow(10.0, place)), 10.0));
+            std::fmod(std::floor(std::abs(plain(index)) / std::pow(10.0, digit_index)), 10.0));
     }
 
 private:

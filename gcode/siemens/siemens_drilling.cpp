@@ -201,32 +201,32 @@ core::Result<void> machine_hole(SiemensHole& hole) {
     }
 }
 
-struct HolePlace {
+struct HolePosition {
     double first, second;
 };
 
 /// The holes of HOLES1 (SPCA, SPCO, STA1, FDIS, DBH, NUM), starting at the end of the row nearer to
 /// the tool, or of HOLES2 (CPA, CPO, RAD, STA1, INDA, NUM).
-std::vector<HolePlace> places_of(const Execution& execution, bool row,
-                                 const std::vector<double>& given, int count) {
+std::vector<HolePosition> positions_of(const Execution& execution, bool row,
+                                       const std::vector<double>& given, int count) {
     const auto mm = [&](double value) { return to_mm(value, execution.modal().unit); };
-    std::vector<HolePlace> places;
+    std::vector<HolePosition> positions;
     for (int i = 0; i < count; ++i) {
         const double step = given[4] == 0.0 ? 360.0 / count : given[4];
         const double angle = (row ? given[2] : given[3] + i * step) * core::radians_per_degree;
         const double reach = row ? mm(given[3]) + i * mm(given[4]) : mm(given[2]);
-        places.push_back(
+        positions.push_back(
             {mm(given[0]) + reach * std::cos(angle), mm(given[1]) + reach * std::sin(angle)});
     }
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const auto &x = execution.modal().position[axes.first],
                &y = execution.modal().position[axes.second];
-    const auto far = [&](const HolePlace& place) {
-        return std::hypot(place.first - *x, place.second - *y);
+    const auto far = [&](const HolePosition& position) {
+        return std::hypot(position.first - *x, position.second - *y);
     };
-    if (row && x && y && far(places.back()) < far(places.front()))
-        std::reverse(places.begin(), places.end());
-    return places;
+    if (row && x && y && far(positions.back()) < far(positions.front()))
+        std::reverse(positions.begin(), positions.end());
+    return positions;
 }
 
 } // namespace
@@ -266,10 +266,11 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                                              "moves to the positions without drilling",
                                              use.keyword->name));
     const PlaneAxes axes = axes_of(execution.modal().plane);
-    for (const HolePlace& place : places_of(execution, row, given, static_cast<int>(count))) {
+    for (const HolePosition& position :
+         positions_of(execution, row, given, static_cast<int>(count))) {
         Position over = execution.modal().position;
-        over[axes.first] = place.first;
-        over[axes.second] = place.second;
+        over[axes.first] = position.first;
+        over[axes.second] = position.second;
         execution.traverse(over);
         if (!cycle) continue;
         if (auto drilled = drill_here(execution, *cycle); !drilled) return drilled;

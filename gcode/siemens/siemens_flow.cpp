@@ -33,7 +33,7 @@ public:
     core::Result<void> run();
 
 private:
-    core::Result<void> go_behind(uint32_t line) {
+    core::Result<void> go_after(uint32_t line) {
         step_.state.next.line = line + 1;
         return {};
     }
@@ -144,7 +144,7 @@ core::Result<void> SiemensFlowing::begin_loop(std::string_view end) {
     FEELER_TRY(const bool goes_on, holds(siemens_of(step_.block).arguments[0]));
     if (goes_on) return {};
     FEELER_TRY(const uint32_t line, partner(end));
-    return go_behind(line);
+    return go_after(line);
 }
 
 /// FOR, whose variable has been set to its first value, or ENDFOR, which increments it.
@@ -180,8 +180,8 @@ core::Result<void> SiemensFlowing::count_on() {
                        : parameters.set_numbered(number, now, entry.span);
         if (!set) return set;
     }
-    if (now <= last) return begins ? core::Result<void>{} : go_behind(other);
-    return begins ? go_behind(other) : core::Result<void>{};
+    if (now <= last) return begins ? core::Result<void>{} : go_after(other);
+    return begins ? go_after(other) : core::Result<void>{};
 }
 
 /// `REPEAT BEGIN END P=5`: repeats the lines from one label to the other, or to this block, five
@@ -223,7 +223,7 @@ core::Result<void> SiemensFlowing::run() {
         return begin_loop("ENDIF");
     case otherwise: {
         FEELER_TRY(const uint32_t line, partner("ENDIF"));
-        return go_behind(line);
+        return go_after(line);
     }
     case while_loop:
         return begin_loop("ENDWHILE");
@@ -240,7 +240,7 @@ core::Result<void> SiemensFlowing::run() {
     case until: {
         FEELER_TRY(const uint32_t line, partner("REPEAT"));
         FEELER_TRY(const bool is_done, holds(siemens_of(step_.block).arguments[0]));
-        return is_done ? core::Result<void>{} : go_behind(line);
+        return is_done ? core::Result<void>{} : go_after(line);
     }
     case FlowKind::repeat_part:
         return SiemensFlowing::repeat_part();
@@ -318,22 +318,23 @@ std::string plain_name(const std::string& written) {
     return name;
 }
 
-std::optional<Place> place_in(ProgramLibrary& library, uint32_t source, const std::string& name) {
+std::optional<ProgramLine> start_in(ProgramLibrary& library, uint32_t source,
+                                    const std::string& name) {
     const FlowMark* mark = library.index(source).first(FlowKind::program_number, name);
-    return mark ? std::optional(Place{source, mark->line + 1}) : std::nullopt;
+    return mark ? std::optional(ProgramLine{source, mark->line + 1}) : std::nullopt;
 }
 
 /// The start of a program: after its header in this file or the main one, else in a file of the
 /// search path.
-core::Result<Place> place_of_program(const FlowStep& step, const std::string& name) {
-    if (const auto own = place_in(step.library, step.state.next.source, name)) return *own;
-    if (const auto main = place_in(step.library, 0, name)) return *main;
+core::Result<ProgramLine> start_of_program(const FlowStep& step, const std::string& name) {
+    if (const auto own = start_in(step.library, step.state.next.source, name)) return *own;
+    if (const auto main = start_in(step.library, 0, name)) return *main;
     std::vector<std::string> names;
     for (const std::string_view ending : {".SPF", ".MPF"}) names.push_back(name + ending.data());
     for (const std::string_view ending : {"_SPF", "_MPF"})
         names.push_back("_N_" + name + ending.data());
     FEELER_TRY(const auto source, step.library.find_in_any_case(names));
-    if (source) return Place{*source, 1};
+    if (source) return ProgramLine{*source, 1};
     const auto& path = step.library.search_path();
     return core::fail(
         ErrorCode::syntax,
@@ -346,7 +347,7 @@ core::Result<Place> place_of_program(const FlowStep& step, const std::string& na
 }
 
 /// The PROC of a program: its first block that is not empty.
-core::Result<Block> head_of(const FlowStep& step, Place begin) {
+core::Result<Block> head_of(const FlowStep& step, ProgramLine begin) {
     const Program& program = step.library.program(begin.source);
     Block block;
     for (size_t line = begin.line; program.has_line(line).value_or(false); ++line) {
@@ -411,7 +412,7 @@ core::Result<int64_t> rounds_of(const FlowStep& step) {
 
 core::Result<Frame> called_frame(const FlowStep& step) {
     const std::string name = plain_name(siemens_of(step.block).name);
-    FEELER_TRY(const Place begin, place_of_program(step, name));
+    FEELER_TRY(const ProgramLine begin, start_of_program(step, name));
     Frame frame{
         .called_from = {step.state.next.source, step.block.line}, .begin = begin, .name = name};
     FEELER_TRY(const Block head, head_of(step, begin));

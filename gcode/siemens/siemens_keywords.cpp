@@ -320,7 +320,7 @@ constexpr SiemensKeyword keywords[] = {
     {"STARTFIFO", note},
     {"STOPFIFO", note},
     {"STOPRE", note},
-    {"SUPA", machine_place},
+    {"SUPA", machine_position},
     {"SVC", noted_address},
     {"TCARR", refusal, no_frame},
     {"TCOABS", note},

@@ -20,11 +20,11 @@ enum class SiemensAction : uint8_t {
     noted_address,   // the value has no effect on positions
     refused_address, // not supported
     // motions and modes
-    arc_by_point,  // CIP
-    tangent_arc,   // CT
-    machine_place, // SUPA
-    diameters,     // DIAMON
-    radii,         // DIAMOF
+    arc_by_point,     // CIP
+    tangent_arc,      // CT
+    machine_position, // SUPA
+    diameters,        // DIAMON
+    radii,            // DIAMOF
     transformation_off,
     transformation, // TRAORI
     // frames

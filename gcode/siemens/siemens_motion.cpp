@@ -27,16 +27,16 @@ tl::unexpected<core::Error> refuse(const Execution& execution, std::string_view 
     return core::fail(code, fmt::format("{}: {}", word, why), mover.span);
 }
 
-core::Result<Point> plane_point(const Execution& execution, const Position& place) {
+core::Result<Point> plane_point(const Execution& execution, const Position& position) {
     const PlaneAxes axes = axes_of(execution.modal().plane);
     for (const size_t axis : {axes.first, axes.second})
-        if (!place[axis])
+        if (!position[axis])
             return refuse(execution,
                           fmt::format("the {} position is unknown: move there first, or set "
                                       "[program] start in the set-up",
                                       axis_letters[axis]),
                           ErrorCode::missing_value);
-    return Point{*place[axes.first], *place[axes.second]};
+    return Point{*position[axes.first], *position[axes.second]};
 }
 
 /// Emits an arc in the plane and moves to its end.
@@ -280,8 +280,8 @@ void remember_direction(Execution& execution, const Position& start) {
     if (execution.result.commands.empty()) return;
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const Position& end = execution.modal().position;
-    const auto known = [&](const Position& place) {
-        return place[axes.first] && place[axes.second];
+    const auto known = [&](const Position& position) {
+        return position[axes.first] && position[axes.second];
     };
     Point& direction = execution.modal().direction;
     if (!known(start) || !known(end)) {

@@ -358,7 +358,7 @@ core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begi
     case noted_address:
         if (auto skipped = skip_value(begin); !skipped) return skipped;
         break;
-    case machine_place:
+    case machine_position:
         block_.words.push_back({.letter = 'G', .value = 53.0, .span = span});
         return {};
     default:

@@ -22,10 +22,10 @@ bool SiemensReader::is_at_equals() {
     return lexer.at + 1 >= lexer.line.size() || lexer.line[lexer.at + 1] != '=';
 }
 
-core::Result<void> SiemensReader::expect(char wanted, std::string_view behind) {
+core::Result<void> SiemensReader::expect(char wanted, std::string_view after) {
     if (lexer.accept(wanted)) return {};
     return core::fail(core::ErrorCode::syntax,
-                      fmt::format("'{}' is missing after '{}'", wanted, behind),
+                      fmt::format("'{}' is missing after '{}'", wanted, after),
                       lexer.span(lexer.at, lexer.at + 1));
 }
 

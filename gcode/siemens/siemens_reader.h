@@ -34,7 +34,7 @@ struct SiemensReader {
     /// Whether a single `=` comes next.
     bool is_at_equals();
 
-    core::Result<void> expect(char wanted, std::string_view behind);
+    core::Result<void> expect(char wanted, std::string_view after);
 
     /// Reads an expression or a string.
     core::Result<SiemensArgument> argument();

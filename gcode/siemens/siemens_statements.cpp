@@ -100,7 +100,7 @@ private:
     }
 
     /// The target of a jump: a name or a block number.
-    core::Result<std::string> target(std::string_view behind) {
+    core::Result<std::string> target(std::string_view after) {
         reader_.next();
         const size_t begin = reader_.lexer.at;
         if (reader_.next() == '"' || reader_.next() == '(')
@@ -112,7 +112,7 @@ private:
         reader_.lexer.at += name.size();
         if (name.empty() || name.front() == '$')
             return reader_.refuse(
-                fmt::format("'{}' must be followed by a label or a block number", behind), begin_);
+                fmt::format("'{}' must be followed by a label or a block number", after), begin_);
         if (is_digit(name.front())) name.insert(0, 1, 'N');
         return name;
     }
@@ -128,9 +128,9 @@ private:
         return {};
     }
 
-    core::Result<SiemensArgument> truth(std::string_view behind) {
+    core::Result<SiemensArgument> truth(std::string_view after) {
         if (reader_.next() == '\0')
-            return reader_.refuse(fmt::format("'{}' must be followed by a condition", behind),
+            return reader_.refuse(fmt::format("'{}' must be followed by a condition", after),
                                   begin_);
         return reader_.argument();
     }

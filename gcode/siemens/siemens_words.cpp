@@ -176,17 +176,17 @@ core::Result<void> select_siemens_offset(Execution& execution) {
     return {};
 }
 
-core::Result<void> go_to_fixed_place(Execution& execution) {
+core::Result<void> go_to_fixed_position(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
     const bool reference = entry.code->number == g_code(74);
-    const Position& place = reference ? modal.home : modal.second_home;
+    const Position& position = reference ? modal.home : modal.second_home;
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} has no axis word: it needs words such as X1=0 Y1=0 Z1=0",
                                       written(*entry.word)),
                           entry.word->span);
-    if (!(place[0] && place[1] && place[2]) && !execution.state.said_home) {
+    if (!(position[0] && position[1] && position[2]) && !execution.state.said_home) {
         execution.state.said_home = true;
         execution.warn(entry.word->span,
                        fmt::format("{}: the {} is not given and assumed to be machine zero",
@@ -195,7 +195,8 @@ core::Result<void> go_to_fixed_place(Execution& execution) {
     }
     Position machine = machine_from_program(modal.offsets, modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (execution.statement.word(axis_letters[axis])) machine[axis] = place[axis].value_or(0.0);
+        if (execution.statement.word(axis_letters[axis]))
+            machine[axis] = position[axis].value_or(0.0);
     const Position end = program_from_machine(modal.offsets, machine);
     Position target = modal.position;
     const bool turned = mixes_axes(modal.offsets);

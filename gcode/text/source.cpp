@@ -77,10 +77,10 @@ core::Result<void> LineWindows::go_to(uint64_t number) {
         windows_[i].last_use = ++uses_;
         return {};
     }
-    auto behind =
+    auto after =
         std::upper_bound(marks_.begin(), marks_.end(), number,
                          [](uint64_t line, const Mark& mark) { return line < mark.first_line; });
-    auto stretch = static_cast<size_t>(behind - marks_.begin()) - 1;
+    auto stretch = static_cast<size_t>(after - marks_.begin()) - 1;
     while (true) {
         if (auto loaded = load(stretch); !loaded) return loaded;
         if (windows_[current_].holds(number) || ++stretch >= marks_.size()) return {};
@@ -127,10 +127,10 @@ core::Result<void> LineWindows::check(const Window& window) const {
                 line));
     }
     if (const size_t nul = text.find('\0'); nul != std::string_view::npos) {
-        const auto behind = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
+        const auto after = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
         return tl::unexpected(
             refusal(ErrorCode::syntax, what_has_nuls(text),
-                    window.first_line + static_cast<uint64_t>(behind - window.starts.begin()) - 1));
+                    window.first_line + static_cast<uint64_t>(after - window.starts.begin()) - 1));
     }
     const size_t controls = count_stray_controls(text);
     if (looks_binary(controls, window.text.size()))
@@ -141,8 +141,8 @@ core::Result<void> LineWindows::check(const Window& window) const {
 
 /// Stores where a chunk ends, or checks that it still ends at the stored position.
 core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, bool is_last) {
-    const Mark behind{offset, window.first_line + window.starts.size()};
-    if (behind.first_line > std::numeric_limits<uint32_t>::max())
+    const Mark after{offset, window.first_line + window.starts.size()};
+    if (after.first_line > std::numeric_limits<uint32_t>::max())
         return tl::unexpected(refusal(ErrorCode::syntax, "has too many lines"));
     const bool is_known = window.stretch + 1 < marks_.size() || end_;
     if (!is_known) {
@@ -150,15 +150,14 @@ core::Result<void> LineWindows::note_end(const Window& window, uint64_t offset, 
             return tl::unexpected(
                 refusal(ErrorCode::syntax, "has no blocks: there is nothing to run"));
         if (is_last)
-            end_ = behind;
+            end_ = after;
         else
-            marks_.push_back(behind);
+            marks_.push_back(after);
         return {};
     }
     const bool was_last = window.stretch + 1 == marks_.size();
     const Mark& known = was_last ? *end_ : marks_[window.stretch + 1];
-    if (was_last == is_last && known.offset == behind.offset
-        && known.first_line == behind.first_line)
+    if (was_last == is_last && known.offset == after.offset && known.first_line == after.first_line)
         return {};
     return tl::unexpected(refusal(ErrorCode::io, "changed while it was being read"));
 }

@@ -336,14 +336,14 @@ TEST(BatchText, HasTheMessageOfTheWorstOfARuleAndEachLineOnce) {
 
 TEST(BatchReport, OfAShardNamesTheShard) {
     BatchResult batch = batch_of_all_kinds();
-    batch.share = "shard 2/8: 4 of 31 programs";
-    EXPECT_EQ(json::parse(batch_json_report(batch))["share"], batch.share);
+    batch.shard = "shard 2/8: 4 of 31 programs";
+    EXPECT_EQ(json::parse(batch_json_report(batch))["share"], batch.shard);
     EXPECT_FALSE(json::parse(batch_json_report(batch_of_all_kinds())).contains("share"));
     const json run = json::parse(sarif_report(batch, "/"))["runs"][0];
-    EXPECT_EQ(run["automationDetails"]["description"]["text"], batch.share);
+    EXPECT_EQ(run["automationDetails"]["description"]["text"], batch.shard);
     EXPECT_THAT(junit_report(batch), HasSubstr("feeler check, shard 2/8"));
-    EXPECT_THAT(batch_text(batch, {}), HasSubstr(batch.share + "\n4 programs"));
-    EXPECT_THAT(batch_html_report(batch), HasSubstr("<b>" + batch.share));
+    EXPECT_THAT(batch_text(batch, {}), HasSubstr(batch.shard + "\n4 programs"));
+    EXPECT_THAT(batch_html_report(batch), HasSubstr("<b>" + batch.shard));
 }
 
 TEST(BatchText, ListsErrorsAndWithVerboseEverything) {

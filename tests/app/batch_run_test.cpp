@@ -103,7 +103,7 @@ TEST_F(BatchRun, ReportsEachProgramOnce) {
         kept.push_back(job.program);
     };
     hooks.waiting = [&](const BatchProgress& progress) {
-        EXPECT_LE(progress.share, 1.0 + 1e-9);
+        EXPECT_LE(progress.fraction, 1.0 + 1e-9);
         last = progress;
     };
     const BatchPlan all = plan();
@@ -114,7 +114,7 @@ TEST_F(BatchRun, ReportsEachProgramOnce) {
     EXPECT_THAT(kept, testing::UnorderedElementsAreArray(names));
     EXPECT_EQ(last.done, 10U);
     EXPECT_EQ(last.with_errors, 6U);
-    EXPECT_NEAR(last.share, 1.0, 1e-9);
+    EXPECT_NEAR(last.fraction, 1.0, 1e-9);
 }
 
 TEST_F(BatchRun, DoesNotRunWhatIsKnown) {

@@ -97,7 +97,7 @@ TEST(PaperBench, TakesTestsInProportionToThePoints) {
 
 TEST(Bench, FindsTheSameDistanceByBothEnginesNeverNearerThanTheTruth) {
     for (const BenchTable& table : all_tables_at(1.0)) {
-        ASSERT_EQ(table.rows.size(), table.scene.places.size());
+        ASSERT_EQ(table.rows.size(), table.scene.poses.size());
         for (const BenchRow& row : table.rows) {
             const std::string where = table.scene.title + fmt::format(", {}", row.separation);
             EXPECT_TRUE(row.same_answer()) << where;
@@ -134,11 +134,11 @@ TEST(Bench, CountsMoreTestsWhereFlatFacesLieParallel) {
 template <typename Body, typename Inside>
 void expect_lines(const Body& body, const Inside& inside) {
     std::mt19937 rng(41);
-    std::uniform_real_distribution<double> place(-32.0, 32.0);
+    std::uniform_real_distribution<double> pose(-32.0, 32.0);
     const core::Aabb box = bounds(body);
     int in = 0;
     for (int i = 0; i < 50'000; ++i) {
-        const core::Vec3 p(place(rng), place(rng), place(rng));
+        const core::Vec3 p(pose(rng), pose(rng), pose(rng));
         const bool is_inside = inside(p);
         in += is_inside;
         for (int axis = 0; axis < 3; ++axis)

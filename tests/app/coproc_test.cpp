@@ -107,7 +107,7 @@ TEST(TimeText, HasASuitableUnit) {
 TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     CoprocessorJob job = plate("clamped_plate_low.nc");
     job.other_elements = {1};
-    const auto run = run_beside_coprocessor(job);
+    const auto run = run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     ASSERT_EQ(run->blocks.size(), run->check.blocks.size());
     EXPECT_EQ(agreement(*run).missed, 0U);
@@ -118,7 +118,7 @@ TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     double planned = 0.0;
     for (const core::PermitMotion& motion : run->plan) planned += motion.time.duration;
     EXPECT_NEAR(planned, run->check.cycle_time, 1e-6);
-    const auto again = run_beside_coprocessor(job);
+    const auto again = run_with_coprocessor(job);
     ASSERT_TRUE(again.has_value());
     for (size_t i = 0; i < run->blocks.size(); ++i)
         EXPECT_EQ(again->blocks[i].cycles, run->blocks[i].cycles) << i;
@@ -145,7 +145,7 @@ cuts_at_centre = false
 )");
     job.check.program = folder.write("program.nc", "G21 G90 G17\n" + lines + "M2\n");
     job.check.detail = core::Detail::every_pair;
-    auto run = run_beside_coprocessor(job);
+    auto run = run_with_coprocessor(job);
     EXPECT_TRUE(run.has_value());
     return run ? *std::move(run) : CoprocessorRun{};
 }
@@ -187,7 +187,7 @@ TEST(CoprocessorRun, RefusesToTouchWhereRoundedCornersLeaveTheWayOpen) {
 }
 
 TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
-    const auto run = run_beside_coprocessor(plate("clamped_plate.nc"));
+    const auto run = run_with_coprocessor(plate("clamped_plate.nc"));
     ASSERT_TRUE(run.has_value());
     const PermitTiming fast = timed_with_permits(run->plan, services_of(*run, 100), {}, true);
     EXPECT_EQ(fast.missed, 0U);
@@ -205,14 +205,14 @@ TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
 }
 
 TEST(CoprocessorRun, KeepsWhatTheDeviceHadCountedAfterEachBlock) {
-    const auto run = run_beside_coprocessor(plate("clamped_plate_low.nc"));
+    const auto run = run_with_coprocessor(plate("clamped_plate_low.nc"));
     ASSERT_TRUE(run.has_value());
     DeviceTotals before;
     for (const DeviceBlock& block : run->blocks) {
         const auto counted = [&](hwsim::Counter c) { return block.after[c] - before[c]; };
         EXPECT_EQ(counted(hwsim::Counter::nodes), block.nodes);
         EXPECT_EQ(counted(hwsim::Counter::pair_tests), block.pairs);
-        const DeviceShares shares = shares_between(before, block.after, {});
+        const DeviceUse shares = use_between(before, block.after, {});
         EXPECT_GE(shares.busy, 0.0);
         EXPECT_LE(shares.busy, 1.0);
         EXPECT_LE(shares.memory + shares.ports + shares.order, 1.0);
@@ -227,20 +227,20 @@ TEST(CoprocessorRun, KeepsWhatTheDeviceHadCountedAfterEachBlock) {
 TEST(CoprocessorRun, BeginsInTheMiddleAsACheckDoes) {
     CoprocessorJob job = plate("clamped_plate_low.nc");
     job.check.start_line = "38";
-    const auto run = run_beside_coprocessor(job);
+    const auto run = run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     EXPECT_EQ(run->check.blocks.front().line, 38U);
     EXPECT_EQ(run->blocks.size(), run->check.blocks.size());
     EXPECT_EQ(agreement(*run).missed, 0U);
     EXPECT_GT(agreement(*run).violations, 0U);
     job.check.start_line = "9999";
-    EXPECT_FALSE(run_beside_coprocessor(job));
+    EXPECT_FALSE(run_with_coprocessor(job));
 }
 
 TEST(CoprocessorRun, EndsEarlyOnRequest) {
     CoprocessorJob job = plate("clamped_plate.nc");
     job.check.after_block = [](const CheckProgress& progress) { return progress.blocks < 7; };
-    const auto run = run_beside_coprocessor(job);
+    const auto run = run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     EXPECT_EQ(run->check.blocks.size(), 7U);
     EXPECT_EQ(run->blocks.size(), 7U);
@@ -332,7 +332,7 @@ TEST(CoprocessorReport, SaysWhyABlockIsRefused) {
     CoprocessorJob job = plate("clamped_plate_low.nc");
     job.device.search_limit = 1;
     CoprocessorResult result;
-    auto run = run_beside_coprocessor(job);
+    auto run = run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     result.run = *std::move(run);
     result.timing = timed_with_permits(result.run.plan, services_of(result.run, 100), {});

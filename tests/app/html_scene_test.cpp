@@ -54,10 +54,10 @@ TEST(MeshJson, HoldsAllCornersToAStepOfItsBox) {
     ASSERT_EQ(bytes.size(), 10 * count + 6 * mesh.triangles.size());
     for (size_t v = 0; v < count; ++v) {
         for (size_t k = 0; k < 3; ++k) {
-            const double place =
+            const double position =
                 written["origin"][k].get<double>()
                 + written["step"][k].get<double>() * number_at<uint16_t>(bytes, 2 * (3 * v + k));
-            EXPECT_NEAR(place, mesh.vertices[v].place[static_cast<int>(k)], 40.0 / 65535);
+            EXPECT_NEAR(position, mesh.vertices[v].position[static_cast<int>(k)], 40.0 / 65535);
             EXPECT_EQ(number_at<int8_t>(bytes, 6 * count + 4 * v + k), mesh.vertices[v].normal[k]);
         }
         EXPECT_EQ(number_at<uint8_t>(bytes, 6 * count + 4 * v + 3), mesh.vertices[v].tint);

@@ -92,10 +92,10 @@ TEST(InferredSetup, ReportsAForgottenLengthOffsetIfOthersArePresent) {
     forgotten.replace(forgotten.find("G0 Z20.\nM5"), 7,
                       "G0 Z20.\nT4 M6\nS5000 M3\nG49\nG0 Z10.\nG1 Z-1.\nX12.\nG0 Z20.");
     const Inferred run = infer(forgotten);
-    bool told = false;
+    bool shown_assumptions = false;
     for (const json& finding : run.report["findings"])
-        told = told || finding["rule"] == "missing-length-offset";
-    EXPECT_TRUE(told);
+        shown_assumptions = shown_assumptions || finding["rule"] == "missing-length-offset";
+    EXPECT_TRUE(shown_assumptions);
 }
 
 TEST(InferredSetup, DoesNotFailOnAProgramThatCutsNothing) {

@@ -28,7 +28,7 @@ inline const Kind foreign[] = {{".txt", "notes of the shop\nabout a part\n"},
                                {".dat", std::string("\0\1\2", 3)}};
 
 /// The folder of the file with this number: three levels, names with blanks and UTF-8.
-inline std::string place_of(size_t i) {
+inline std::string resolved_path(size_t i) {
     const size_t at = i % folders;
     return "Auftrag " + std::to_string(at % 50) + "/Gehäuse " + std::to_string(at / 50) + "/日本 "
            + std::to_string(at);
@@ -45,12 +45,13 @@ inline void write(const std::filesystem::path& path, const std::string& bytes) {
 inline void fill(const std::filesystem::path& root) {
     const std::string program =
         test_support::program({"X5. Y5.", "G1 Z-1. F200.", "X20.", "G0 Z60."});
-    for (size_t i = 0; i < folders; ++i) std::filesystem::create_directories(root / place_of(i));
+    for (size_t i = 0; i < folders; ++i)
+        std::filesystem::create_directories(root / resolved_path(i));
     for (size_t i = 0; i < all_files; ++i) {
         const bool is_program = i / folders % one_program_in == 0;
         const Kind& kind = foreign[i % std::size(foreign)];
         const std::string name = (is_program ? "part " : "ü ") + std::to_string(i);
-        write(root / place_of(i) / (name + (is_program ? ".nc" : kind.ending)),
+        write(root / resolved_path(i) / (name + (is_program ? ".nc" : kind.ending)),
               is_program ? program : kind.bytes);
     }
 }

@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 using many_files::all_files;
 using many_files::fill;
-using many_files::place_of;
 using many_files::programs;
+using many_files::resolved_path;
 using test_support::bytes_of;
 using test_support::ScopedFolder;
 using test_support::Usage;
@@ -53,7 +53,7 @@ void expect_all_files(const Reports& reports, const std::string& folder) {
     std::set<std::string> skipped;
     for (const auto& file : json["skipped"]) skipped.insert(file["file"]);
     EXPECT_EQ(skipped.size(), all_files - programs);
-    EXPECT_TRUE(skipped.contains(folder + "/" + place_of(1003) + "/ü 1003.stl"));
+    EXPECT_TRUE(skipped.contains(folder + "/" + resolved_path(1003) + "/ü 1003.stl"));
 }
 
 // A single test, because writing so many files takes longer than checking them.

@@ -96,7 +96,7 @@ protected:
         return more;
     }
 
-    Ran check_share(int i, int n, const Words& more = {"--no-cache"}) const {
+    Ran check_shard_option(int i, int n, const Words& more = {"--no-cache"}) const {
         return check(share_words(i, n, more));
     }
 
@@ -144,7 +144,7 @@ TEST_F(Merge, GivesWhatOneRunGives) {
     EXPECT_EQ(one.status, 2);
     size_t programs = 0;
     for (const int n : {1, 3, 20}) {
-        for (int i = 1; i <= n; ++i) EXPECT_NE(check_share(i, n).status, -1);
+        for (int i = 1; i <= n; ++i) EXPECT_NE(check_shard_option(i, n).status, -1);
         const Ran merged = merge(n, to_files("merged"));
         EXPECT_EQ(merged.status, one.status);
         EXPECT_EQ(merged.err, one.err);
@@ -159,7 +159,7 @@ TEST_F(Merge, GivesWhatOneRunGives) {
 /// Reused results have the run times of the run that made them.
 TEST_F(Merge, GivesTheSameBytesWhereResultsAreFoundAgain) {
     const Words kept = {"--cache", folder / "results.db"};
-    for (int i = 1; i <= 3; ++i) check_share(i, 3, kept);
+    for (int i = 1; i <= 3; ++i) check_shard_option(i, 3, kept);
     Words all = to_files("one");
     all.insert(all.end(), kept.begin(), kept.end());
     check(all);
@@ -169,7 +169,7 @@ TEST_F(Merge, GivesTheSameBytesWhereResultsAreFoundAgain) {
 }
 
 TEST_F(Merge, SaysLessOrMoreAsOneRunDoes) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     for (const char* option : {"--quiet", "--verbose"})
         EXPECT_EQ(without_seconds(merge(2, {option}).out),
                   without_seconds(check({option, "--no-cache"}).out));
@@ -180,11 +180,12 @@ TEST_F(Merge, SaysLessOrMoreAsOneRunDoes) {
 
 TEST_F(Merge, HasTheStatusOfAll) {
     words = {folder / "lib/fine.nc", folder / "lib/near.nc", "--setup", folder / "setup.toml"};
-    EXPECT_EQ(check_share(1, 2).status, 1) << "the larger one, which is near the clamp";
-    EXPECT_EQ(check_share(2, 2).status, 0);
+    EXPECT_EQ(check_shard_option(1, 2).status, 1) << "the larger one, which is near the clamp";
+    EXPECT_EQ(check_shard_option(2, 2).status, 0);
     EXPECT_EQ(merge(2).status, 1);
     words.erase(words.begin() + 1);
-    for (int i = 1; i <= 2; ++i) EXPECT_EQ(check_share(i, 2).status, 0) << "the second is empty";
+    for (int i = 1; i <= 2; ++i)
+        EXPECT_EQ(check_shard_option(i, 2).status, 0) << "the second is empty";
     EXPECT_EQ(merge(2).status, 0);
 }
 
@@ -203,7 +204,7 @@ TEST_F(Merge, NamesTheUncheckedProgramsOfAnInterruptedShard) {
     EXPECT_TRUE(running.wait_until_it_catches(SIGINT));
     running.send(SIGINT);
     EXPECT_EQ(running.result().status, 2);
-    check_share(2, 2);
+    check_shard_option(2, 2);
     const Ran merged =
         merge(2, {"--format", "json", "-o", folder / "merged.json", "--format", "text"});
     EXPECT_EQ(merged.status, 2);
@@ -215,7 +216,7 @@ TEST_F(Merge, NamesTheUncheckedProgramsOfAnInterruptedShard) {
 }
 
 TEST_F(Merge, FindsNoOldShardOfARunThatWasKilled) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     write("long.nc", long_program());
     RunningProgram running(first_share());
     EXPECT_TRUE(running.wait_for([&] { return !fs::exists(share(1)); }));
@@ -229,7 +230,7 @@ TEST_F(Merge, FindsNoOldShardOfARunThatWasKilled) {
 }
 
 TEST_F(Merge, FindsNoOldShardOfAComputerThatSawNoPrograms) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     fs::rename(folder / "lib", folder / "not mounted");
     fs::create_directory(folder / "lib");
     const Ran ran =
@@ -241,9 +242,9 @@ TEST_F(Merge, FindsNoOldShardOfAComputerThatSawNoPrograms) {
 TEST_F(Merge, FindsNoOldShardOfARunThatCannotBegin) {
     for (const Words& more :
          {Words{"--search-path", folder / "not mounted"}, Words{"--blocks", "1-2"}}) {
-        check_share(1, 2);
+        check_shard_option(1, 2);
         ASSERT_TRUE(fs::exists(share(1)));
-        EXPECT_EQ(check_share(1, 2, more).status, 2) << more[0];
+        EXPECT_EQ(check_shard_option(1, 2, more).status, 2) << more[0];
         EXPECT_FALSE(fs::exists(share(1))) << more[0];
     }
 }
@@ -251,17 +252,17 @@ TEST_F(Merge, FindsNoOldShardOfARunThatCannotBegin) {
 TEST_F(Merge, FindsNoOldShardThroughALink) {
     fs::create_directory(folder / "far");
     fs::create_symlink("far/1.share", share(1));
-    check_share(1, 2);
+    check_shard_option(1, 2);
     ASSERT_TRUE(fs::exists(folder / "far/1.share"));
-    EXPECT_EQ(check_share(1, 2, {"--search-path", folder / "not mounted"}).status, 2);
+    EXPECT_EQ(check_shard_option(1, 2, {"--search-path", folder / "not mounted"}).status, 2);
     EXPECT_FALSE(fs::exists(folder / "far/1.share"));
-    check_share(1, 2);
+    check_shard_option(1, 2);
     EXPECT_TRUE(fs::is_symlink(share(1)));
     EXPECT_TRUE(fs::exists(folder / "far/1.share"));
 }
 
 TEST_F(Merge, WritesItsFilesWhenThePipeIsClosed) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     const std::string all = folder / "all.json";
     // The reader of the pipe ends before the program starts.
     const Ran ran = test_support::run(
@@ -288,7 +289,7 @@ TEST_F(Merge, LeavesAFileThatIsNotAShardUntilItIsReplaced) {
 }
 
 TEST_F(Merge, RefusesShardsWithOtherOptions) {
-    check_share(1, 2);
+    check_shard_option(1, 2);
     for (const Words& more : std::vector<Words>{{"--allowance", "2.5"},
                                                 {"--engine", "coprocessor"},
                                                 {"--mesh-size", "0.7"},
@@ -303,21 +304,21 @@ TEST_F(Merge, RefusesShardsWithOtherOptions) {
                                                 {"--memory-limit", "100"}}) {
         Words all = more;
         all.push_back("--no-cache");
-        check_share(2, 2, all);
+        check_shard_option(2, 2, all);
         const Ran merged = merge(2);
         EXPECT_EQ(merged.status, 2) << more[0];
         EXPECT_EQ(merged.out, "") << more[0];
         EXPECT_THAT(merged.err, HasSubstr("different options or a different set-up")) << more[0];
     }
-    check_share(2, 2);
+    check_shard_option(2, 2);
     EXPECT_THAT(merge(2).err, "");
 }
 
 TEST_F(Merge, RefusesShardsOfOtherStatesOfTheLibrary) {
     const auto why = [&](auto change) {
-        check_share(1, 2);
+        check_shard_option(1, 2);
         change();
-        check_share(2, 2);
+        check_shard_option(2, 2);
         const Ran merged = merge(2, {"--format", "json", "-o", folder / "all.json"});
         EXPECT_EQ(merged.status, 2);
         EXPECT_FALSE(fs::exists(folder / "all.json"));
@@ -345,7 +346,7 @@ TEST_F(Merge, RefusesShardsOfOtherStatesOfTheLibrary) {
 }
 
 TEST_F(Merge, RefusesFilesThatAreNotShardsOfTheBatch) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     const auto why = [&](Words files) {
         files.insert(files.begin(), "merge");
         const Ran ran = feeler(files);
@@ -371,7 +372,7 @@ TEST_F(Merge, RefusesFilesThatAreNotShardsOfTheBatch) {
 }
 
 TEST_F(Merge, NeverOverwritesAShardThatItReads) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     const std::string before = bytes_of(share(2));
     const Ran ran = merge(2, {"--format", "json", "-o", share(2)});
     EXPECT_EQ(ran.status, 2);
@@ -380,7 +381,7 @@ TEST_F(Merge, NeverOverwritesAShardThatItReads) {
 }
 
 TEST_F(Merge, NeverOverwritesFilesThatItsShardsHaveRead) {
-    for (int i = 1; i <= 2; ++i) check_share(i, 2);
+    for (int i = 1; i <= 2; ++i) check_shard_option(i, 2);
     for (const char* name :
          {"lib/fine.nc", "lib/a bad one.nc", "lib/Geh\xe4use.nc", "setup.toml"}) {
         const std::string before = bytes_of(folder / name);
@@ -395,7 +396,7 @@ TEST_F(Merge, NeverOverwritesFilesThatItsShardsHaveRead) {
 TEST_F(Merge, TakesAsLongAsItsShardsTogether) {
     words = {folder / "lib/fine.nc", folder / "lib/near.nc", "--setup", folder / "setup.toml"};
     for (int i = 1; i <= 2; ++i) {
-        check_share(i, 2);
+        check_shard_option(i, 2);
         std::string text = bytes_of(share(i));
         text.resize(text.rfind(",\n\"seal\""));
         const std::string seconds = i == 1 ? "\"seconds\": 20.25," : "\"seconds\": 10.5,";

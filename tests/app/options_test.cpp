@@ -12,11 +12,12 @@ using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
 /// Expects exit status 2, no standard output, and these words on standard error.
-void expect_misuse(const std::vector<std::string>& words, const std::string& told) {
+void expect_misuse(const std::vector<std::string>& words, const std::string& shown_assumptions) {
     const Ran ran = feeler(words);
-    EXPECT_EQ(ran.status, 2) << told;
-    EXPECT_EQ(ran.out, "") << told;
-    EXPECT_NE(ran.err.find(told), std::string::npos) << told << " in: " << ran.err;
+    EXPECT_EQ(ran.status, 2) << shown_assumptions;
+    EXPECT_EQ(ran.out, "") << shown_assumptions;
+    EXPECT_NE(ran.err.find(shown_assumptions), std::string::npos)
+        << shown_assumptions << " in: " << ran.err;
 }
 
 TEST(CommandLine, NeedsASubcommand) {

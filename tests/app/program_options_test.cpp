@@ -227,7 +227,7 @@ TEST(ProgramOptions, OfCheckMoveBodiesInAWorkOffset) {
 }
 
 /// Expects exit status 2, no standard output, and these words on standard error.
-void expect_refused(const std::vector<std::string>& more, const std::string& told) {
+void expect_refused(const std::vector<std::string>& more, const std::string& shown_assumptions) {
     const ScopedFolder folder;
     const std::string program = folder.write("p.nc", "G21 G0 X1\nM2\n");
     const std::string setup = folder.write("s.toml", SetupWriter().text());
@@ -235,9 +235,10 @@ void expect_refused(const std::vector<std::string>& more, const std::string& tol
         std::vector<std::string> words = {command, program, "--setup", setup};
         words.insert(words.end(), more.begin(), more.end());
         const Ran ran = feeler(words);
-        EXPECT_EQ(ran.status, 2) << command << told;
-        EXPECT_EQ(ran.out, "") << command << told;
-        EXPECT_NE(ran.err.find(told), std::string::npos) << told << " in: " << ran.err;
+        EXPECT_EQ(ran.status, 2) << command << shown_assumptions;
+        EXPECT_EQ(ran.out, "") << command << shown_assumptions;
+        EXPECT_NE(ran.err.find(shown_assumptions), std::string::npos)
+            << shown_assumptions << " in: " << ran.err;
     }
 }
 
@@ -259,8 +260,8 @@ TEST(ProgramOptions, RefuseValuesThatMeanNothing) {
 TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
     const ScopedFolder folder;
     const auto refused = [&](const std::string& option, const std::string& text,
-                             const std::string& told) {
-        expect_refused({option, folder.write("bad.txt", text)}, told);
+                             const std::string& shown_assumptions) {
+        expect_refused({option, folder.write("bad.txt", text)}, shown_assumptions);
     };
     refused("--parameters", "5221 1\nfive 1\n", "bad.txt:2: expected a parameter number");
     refused("--parameters", "5221 1 1\n", "bad.txt:1: ");

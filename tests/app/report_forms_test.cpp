@@ -170,9 +170,9 @@ TEST(Duration, RoundsBeforeItDividesIntoUnits) {
 }
 
 TEST(Progress, FitsALineOfATerminal) {
-    EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .share = 0.0, .findings = 1}, 0.2),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .fraction = 0.0, .findings = 1}, 0.2),
               "[....................]   0 %  1 blocks, 1 finding");
-    EXPECT_EQ(progress_text(CheckProgress{.blocks = 4500, .share = 0.25, .findings = 0}, 30.0),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 4500, .fraction = 0.25, .findings = 0}, 30.0),
               "[#####...............]  25 %  4500 blocks, 0 findings, 1 min 30 s left");
     EXPECT_LE(progress_text(CheckProgress{1'000'000'000, 0.03, 1'000'000}, 1e6).size(), 79U);
 }
@@ -183,7 +183,7 @@ TEST(Stopping, KeepsWhatWasCheckedAndSaysSo) {
                                      .setup = folder + "setups/clamped_plate.toml",
                                      .after_block = [&](const CheckProgress& progress) {
                                          EXPECT_EQ(progress.blocks, ++seen);
-                                         EXPECT_LE(progress.share, 1.0);
+                                         EXPECT_LE(progress.fraction, 1.0);
                                          return seen < 5;
                                      }});
     EXPECT_EQ(run.blocks.size(), 5U);

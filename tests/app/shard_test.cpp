@@ -26,9 +26,9 @@ std::vector<uintmax_t> random_sizes(size_t count) {
 TEST(ShardOf, AssignsTheLargestFirstToTheLeastLoaded) {
     const std::vector<uintmax_t> sizes = {1, 7, 5, 5, 4, 0};
     // 7 to shard 1, 5 to 2, 5 to 3, 4 to 2 (a tie: the first), 1 to 3, the empty one to 3.
-    EXPECT_EQ(app::share_of(sizes, {1, 3}), (std::vector<size_t>{1}));
-    EXPECT_EQ(app::share_of(sizes, {2, 3}), (std::vector<size_t>{2, 4}));
-    EXPECT_EQ(app::share_of(sizes, {3, 3}), (std::vector<size_t>{0, 3, 5}));
+    EXPECT_EQ(app::indices_of_shard(sizes, {1, 3}), (std::vector<size_t>{1}));
+    EXPECT_EQ(app::indices_of_shard(sizes, {2, 3}), (std::vector<size_t>{2, 4}));
+    EXPECT_EQ(app::indices_of_shard(sizes, {3, 3}), (std::vector<size_t>{0, 3, 5}));
 }
 
 TEST(ShardOf, GivesEveryProgramToOneShard) {
@@ -36,7 +36,7 @@ TEST(ShardOf, GivesEveryProgramToOneShard) {
     for (const size_t n : {1, 2, 7, 64, 501}) {
         std::vector<size_t> all;
         for (size_t i = 1; i <= n; ++i)
-            for (const size_t place : app::share_of(sizes, {i, n})) all.push_back(place);
+            for (const size_t index : app::indices_of_shard(sizes, {i, n})) all.push_back(index);
         std::sort(all.begin(), all.end());
         std::vector<size_t> wanted(sizes.size());
         std::iota(wanted.begin(), wanted.end(), size_t(0));
@@ -53,20 +53,20 @@ TEST(ShardOf, IsBalanced) {
         const double best = std::max(whole / static_cast<double>(n), largest);
         for (size_t i = 1; i <= n; ++i) {
             double load = 0.0;
-            for (const size_t place : app::share_of(sizes, {i, n}))
-                load += static_cast<double>(sizes[place]);
+            for (const size_t index : app::indices_of_shard(sizes, {i, n}))
+                load += static_cast<double>(sizes[index]);
             EXPECT_LE(load, 4.0 / 3.0 * best) << i << " of " << n;
         }
     }
 }
 
 TEST(ShardNumber, IsReadAsNumberAndCountAndNothingElse) {
-    EXPECT_EQ(*app::share_named("2/8"), (app::ShardId{2, 8}));
-    EXPECT_EQ(*app::share_named("1/1"), (app::ShardId{1, 1}));
+    EXPECT_EQ(*app::shard_named("2/8"), (app::ShardId{2, 8}));
+    EXPECT_EQ(*app::shard_named("1/1"), (app::ShardId{1, 1}));
     for (const char* text : {"", "2", "0/3", "4/3", "1/0", "1/2/3", "-1/2", "1 /2", "a/b", "1/",
                              "1/99999999999999999999999", "1/1000001"})
-        EXPECT_FALSE(app::share_named(text)) << text;
-    EXPECT_EQ(*app::share_named("1000000/1000000"), (app::ShardId{1'000'000, 1'000'000}));
+        EXPECT_FALSE(app::shard_named(text)) << text;
+    EXPECT_EQ(*app::shard_named("1000000/1000000"), (app::ShardId{1'000'000, 1'000'000}));
 }
 
 /// Ten programs in three shards, as written by three machines.
@@ -77,16 +77,16 @@ std::vector<Shard> three_shards() {
     for (size_t i = 1; i <= 3; ++i) {
         Shard shard{.file = fmt::format("{}.json", i),
                     .version = "1",
-                    .share = {i, 3},
-                    .places = app::share_of(sizes, {i, 3})};
+                    .id = {i, 3},
+                    .indices = app::indices_of_shard(sizes, {i, 3})};
         for (size_t program = 0; program < 10; ++program)
             shard.programs.push_back(
                 {fmt::format("teil \"{}\" ä.nc", program), sizes[program], "terms"});
         shard.failures = {{.program = "*.tap", .error = app::StoredError{.message = "no file"}}};
         shard.skipped = {{"part.stl", "is a mesh"}, {fmt::format("{}.new", i), "is no program"}};
-        for (const size_t place : shard.places)
+        for (const size_t index : shard.indices)
             shard.results.push_back(
-                {.program = shard.programs[place].name, .cycle_time = 0.1 * place});
+                {.program = shard.programs[index].name, .cycle_time = 0.1 * index});
         shards.push_back(std::move(shard));
     }
     return shards;
@@ -122,8 +122,8 @@ TEST(Merged, LeavesUncheckedWhatAStoppedShardLacks) {
     std::vector<Shard> shards = three_shards();
     Shard& cut = shards[1];
     const std::string last = cut.results.back().program;
-    cut.unchecked = {cut.places.back()};
-    cut.places.pop_back();
+    cut.unchecked = {cut.indices.back()};
+    cut.indices.pop_back();
     cut.results.pop_back();
     const auto batch = app::merged(shards);
     ASSERT_TRUE(batch) << batch.error().message;
@@ -169,7 +169,7 @@ TEST(Merged, RefusesShardsOfDifferentBatches) {
     EXPECT_EQ(after([](Shard& shard) { shard.failures.clear(); }),
               other + "different files were missing or unreadable there");
     shards = three_shards();
-    shards[1].share.n = 4;
+    shards[1].id.n = 4;
     EXPECT_EQ(why_not(shards),
               "2.json belongs to a different batch than 1.json: it is shard 2/4, not one of 3");
 }
@@ -179,22 +179,22 @@ TEST(Merged, RefusesResultsThatDoNotFitTheirShard) {
     const std::string missing = shards[1].results.back().program;
     shards[1].results.pop_back();
     EXPECT_EQ(why_not(shards), "2.json has a result that belongs to none of its programs");
-    shards[1].places.pop_back();
+    shards[1].indices.pop_back();
     EXPECT_EQ(why_not(shards), "no shard has a result for " + missing);
     shards = three_shards();
-    shards[2].places[0] = 99;
+    shards[2].indices[0] = 99;
     EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
 TEST(Merged, RefusesAProgramThatTwoShardsContain) {
     std::vector<Shard> shards = three_shards();
-    shards[2].unchecked = {shards[0].places[0]};
+    shards[2].unchecked = {shards[0].indices[0]};
     EXPECT_EQ(why_not(shards), "3.json has a result that belongs to none of its programs");
 }
 
 TEST(Merged, NamesSomeOfManyMissingShards) {
     Shard one = three_shards()[0];
-    one.share.n = 1'000'000;
+    one.id.n = 1'000'000;
     EXPECT_THAT(why_not({one}), testing::EndsWith("20/1000000, 21/1000000, ..."));
 }
 
@@ -233,7 +233,7 @@ TEST(Shard, SaysWhatATextIsThatIsNone) {
 
 /// A shard of one program with a near miss, as text without the seal.
 std::string unsealed_share() {
-    Shard shard{.version = "1", .share = {1, 1}, .programs = {{"a.nc", 9, "terms"}}, .places = {0}};
+    Shard shard{.version = "1", .id = {1, 1}, .programs = {{"a.nc", 9, "terms"}}, .indices = {0}};
     shard.skipped = {{"part.stl", "is a mesh"}};
     shard.results = {{.program = "a.nc",
                       .verdict = core::Verdict::violation,

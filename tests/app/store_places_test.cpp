@@ -43,31 +43,31 @@ protected:
 
 TEST_F(RelativePathsTest, AreTheSameFromAnyWorkingFolder) {
     const std::string whole = folder / "lib/.feeler/r.db";
-    EXPECT_EQ(from(".", "lib/.feeler/r.db").place_of("lib/setups/s.toml"), "setups/s.toml");
-    EXPECT_EQ(from("lib", ".feeler/r.db").place_of("./setups//s.toml"), "setups/s.toml");
-    EXPECT_EQ(from("lib", "./.feeler/r.db").place_of("setups/s.toml"), "setups/s.toml");
-    EXPECT_EQ(from("other", whole).place_of(folder / "lib/setups/s.toml"), "setups/s.toml");
-    EXPECT_EQ(from("lib/sub", "../.feeler/r.db").place_of("../setups/s.toml"), "setups/s.toml");
-    EXPECT_EQ(from(".", "link/.feeler/r.db").place_of("link/setups/s.toml"), "setups/s.toml");
-    EXPECT_EQ(from("lib", "r.db").place_of("../other/a.nc"), "../other/a.nc");
-    EXPECT_EQ(from(".", "lib/r.db").place_of("other/a.nc"), "../other/a.nc");
-    EXPECT_EQ(from("other", whole).place_of(folder / "other/a.nc"), "../other/a.nc");
-    EXPECT_EQ(from("lib", "r.db").place_of("."), ".");
-    EXPECT_EQ(from("lib", "r.db").place_of("/"), "/");
-    EXPECT_EQ(from("lib", "r.db").place_of(""), "");
+    EXPECT_EQ(from(".", "lib/.feeler/r.db").relative("lib/setups/s.toml"), "setups/s.toml");
+    EXPECT_EQ(from("lib", ".feeler/r.db").relative("./setups//s.toml"), "setups/s.toml");
+    EXPECT_EQ(from("lib", "./.feeler/r.db").relative("setups/s.toml"), "setups/s.toml");
+    EXPECT_EQ(from("other", whole).relative(folder / "lib/setups/s.toml"), "setups/s.toml");
+    EXPECT_EQ(from("lib/sub", "../.feeler/r.db").relative("../setups/s.toml"), "setups/s.toml");
+    EXPECT_EQ(from(".", "link/.feeler/r.db").relative("link/setups/s.toml"), "setups/s.toml");
+    EXPECT_EQ(from("lib", "r.db").relative("../other/a.nc"), "../other/a.nc");
+    EXPECT_EQ(from(".", "lib/r.db").relative("other/a.nc"), "../other/a.nc");
+    EXPECT_EQ(from("other", whole).relative(folder / "other/a.nc"), "../other/a.nc");
+    EXPECT_EQ(from("lib", "r.db").relative("."), ".");
+    EXPECT_EQ(from("lib", "r.db").relative("/"), "/");
+    EXPECT_EQ(from("lib", "r.db").relative(""), "");
 }
 
 TEST_F(RelativePathsTest, DistinguishNamesOfOneFile) {
-    const RelativePaths places = from("lib", "r.db");
-    EXPECT_EQ(places.place_of("linked.nc"), "linked.nc")
+    const RelativePaths paths = from("lib", "r.db");
+    EXPECT_EQ(paths.relative("linked.nc"), "linked.nc")
         << "subprograms are searched for next to the link";
-    EXPECT_EQ(places.path_of("linked.nc"), folder / "lib/linked.nc");
+    EXPECT_EQ(paths.absolute("linked.nc"), folder / "lib/linked.nc");
 }
 
 TEST_F(RelativePathsTest, LeadToTheSameFileAsThePathAfterALinkHasChanged) {
-    const std::string place = from(".", "lib/r.db").place_of("lib/current/../s.toml");
+    const std::string place = from(".", "lib/r.db").relative("lib/current/../s.toml");
     const auto read = [&] {
-        return test_support::bytes_of(from("lib/sub", "../r.db").path_of(place));
+        return test_support::bytes_of(from("lib/sub", "../r.db").absolute(place));
     };
     EXPECT_EQ(read(), "old/s.toml");
     fs::remove(folder / "lib/current");
@@ -76,9 +76,9 @@ TEST_F(RelativePathsTest, LeadToTheSameFileAsThePathAfterALinkHasChanged) {
 }
 
 TEST_F(RelativePathsTest, MoveWithTheFolder) {
-    const std::string place = from(".", "lib/r.db").place_of("lib/setups/s.toml");
+    const std::string place = from(".", "lib/r.db").relative("lib/setups/s.toml");
     fs::rename(folder / "lib", folder / "moved");
-    EXPECT_EQ(from(".", "moved/r.db").path_of(place), folder / "moved/setups/s.toml");
+    EXPECT_EQ(from(".", "moved/r.db").absolute(place), folder / "moved/setups/s.toml");
 }
 
 /// A path from any folder must lead to the file that the system opens for it.
@@ -97,16 +97,16 @@ TEST_F(RelativePathsTest, LeadToTheSameFileAsThePath) {
         std::string database = (any({folder.path(), ".", ".."}) + "/");
         for (size_t left = random() % 3; left > 0; --left) database += any(parts) + "/";
         if (!fs::is_directory(database)) continue;
-        const RelativePaths places(database + "r.db");
+        const RelativePaths paths(database + "r.db");
         std::string path = any({folder.path(), any(parts)});
         for (size_t left = random() % 5; left > 0; --left) path += "/" + any(parts);
-        const std::string back = places.path_of(places.place_of(path));
+        const std::string back = paths.absolute(paths.relative(path));
         EXPECT_TRUE(back.starts_with('/')) << back;
         ASSERT_EQ(fs::exists(path), fs::exists(back)) << working << " " << database << " " << path;
         if (!fs::exists(path)) continue;
         ASSERT_TRUE(fs::equivalent(path, back)) << working << " " << database << " " << path;
         const std::string real = fs::canonical(path);
-        EXPECT_EQ(places.path_of(places.place_of(real)), real);
+        EXPECT_EQ(paths.absolute(paths.relative(real)), real);
         ++files;
     }
     EXPECT_GT(files, 1000u);
@@ -149,24 +149,24 @@ TEST(QuotedPath, IsNotTheNameOfTheProgramWhichIsPutBack) {
 }
 
 TEST_F(RelativePathsTest, HoldUntilTheWorkingFolderChanges) {
-    const RelativePaths places = from("old", "../lib/.feeler/results.db");
-    EXPECT_TRUE(places.still_hold());
+    const RelativePaths paths = from("old", "../lib/.feeler/results.db");
+    EXPECT_TRUE(paths.still_hold());
     fs::rename(folder / "old", folder / "older");
     fs::create_directory(folder / "old");
-    EXPECT_FALSE(places.still_hold());
+    EXPECT_FALSE(paths.still_hold());
 }
 
 TEST_F(RelativePathsTest, AreThoseOfTheFileHoweverItIsSpelled) {
-    EXPECT_EQ(from(".", "lib/.feeler/./results.db").place_of("lib/a.nc"), "a.nc");
-    EXPECT_EQ(from(".", "lib//.feeler/results.db").place_of("lib/a.nc"), "a.nc");
+    EXPECT_EQ(from(".", "lib/.feeler/./results.db").relative("lib/a.nc"), "a.nc");
+    EXPECT_EQ(from(".", "lib//.feeler/results.db").relative("lib/a.nc"), "a.nc");
 }
 
 TEST_F(RelativePathsTest, HoldUntilALinkToTheFolderIsChanged) {
-    const RelativePaths places = from(".", "link/.feeler/results.db");
-    EXPECT_TRUE(places.still_hold());
+    const RelativePaths paths = from(".", "link/.feeler/results.db");
+    EXPECT_TRUE(paths.still_hold());
     fs::remove(folder / "link");
     fs::create_directory_symlink("new", folder / "link");
-    EXPECT_FALSE(places.still_hold());
+    EXPECT_FALSE(paths.still_hold());
 }
 
 } // namespace

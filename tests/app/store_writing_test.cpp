@@ -119,7 +119,7 @@ TEST(ResultStore, OfAnOlderFormatIsTakenOver) {
         ASSERT_TRUE(older && older->run("DROP TABLE seen; PRAGMA user_version = 1"));
     }
     const ResultStore own = opened(folder / "own");
-    const auto refused = ResultStore::open_beside(folder / "db", own);
+    const auto refused = ResultStore::open_sibling(folder / "db", own);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "was written by an older version of Feeler");
     EXPECT_EQ(*opened(folder / "db").find(each.job), each.result);

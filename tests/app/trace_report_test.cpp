@@ -68,10 +68,10 @@ TEST(TraceJson, SaysWhereACommandComesFrom) {
 }
 
 TEST(TraceJson, HasTheKeysOfEveryCommand) {
-    const gcode::Position place = {1.5, std::nullopt, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1};
+    const gcode::Position position = {1.5, std::nullopt, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1};
     const Json end = Json::parse("[1.5, null, -3, 0, 0, 0, 0, 0, 0.1]");
-    EXPECT_EQ(json_of(gcode::StraightTraverse{place})["end"], end);
-    const Json arc = json_of(gcode::ArcFeed{place, gcode::Plane::zx, {1.0, 2.5}, -2, 150.0});
+    EXPECT_EQ(json_of(gcode::StraightTraverse{position})["end"], end);
+    const Json arc = json_of(gcode::ArcFeed{position, gcode::Plane::zx, {1.0, 2.5}, -2, 150.0});
     EXPECT_EQ(arc["end"], end);
     EXPECT_EQ(arc["plane"], "ZX");
     EXPECT_EQ(arc["centre"], Json::parse("[1, 2.5]"));

@@ -45,7 +45,7 @@ protected:
 
     std::vector<std::string> changed() {
         std::vector<std::string> names;
-        for (const std::string& path : files.look_again().paths)
+        for (const std::string& path : files.poll().paths)
             names.push_back(fs::path(path).filename());
         return names;
     }
@@ -181,29 +181,29 @@ TEST_F(WatchedFilesTest, AreNotSettledWhileAFileMayBeWrittenWithoutAnotherTime) 
                         std::chrono::time_point_cast<std::chrono::seconds>(in_an_hour));
     watch([&] { core::file_bytes(folder / "a.nc"); });
     advance_the_clock(std::chrono::seconds(2));
-    EXPECT_FALSE(files.look_again().are_files_settled) << "its time stamps may have steps of 2 s";
+    EXPECT_FALSE(files.poll().are_files_settled) << "its time stamps may have steps of 2 s";
     advance_the_clock(std::chrono::seconds(1));
-    EXPECT_TRUE(files.look_again().are_files_settled);
+    EXPECT_TRUE(files.poll().are_files_settled);
 }
 
 TEST_F(WatchedFilesTest, AreSettledAtOnceIfAFileThatWasJustWrittenIsWrittenAgain) {
     stop_the_clock();
     folder.write("a.nc", "G0 X2\n");
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    EXPECT_FALSE(files.look_again().are_files_settled);
+    EXPECT_FALSE(files.poll().are_files_settled);
     folder.write("a.nc", "G0 X2\nG1 X5\n");
-    files.look_again();
-    EXPECT_TRUE(files.look_again().are_files_settled) << "what has changed is checked at once";
+    files.poll();
+    EXPECT_TRUE(files.poll().are_files_settled) << "what has changed is checked at once";
 }
 
 TEST_F(WatchedFilesTest, AreSettledOnceNothingMovesAnyMore) {
     watch([&] { core::file_bytes(folder / "a.nc"); });
-    EXPECT_TRUE(files.look_again().are_files_settled);
+    EXPECT_TRUE(files.poll().are_files_settled);
     folder.write("a.nc", "G0 X1\nG1");
-    EXPECT_FALSE(files.look_again().are_files_settled);
+    EXPECT_FALSE(files.poll().are_files_settled);
     folder.write("a.nc", "G0 X1\nG1 X5\n");
-    EXPECT_FALSE(files.look_again().are_files_settled);
-    const WatchedFiles::Change change = files.look_again();
+    EXPECT_FALSE(files.poll().are_files_settled);
+    const WatchedFiles::Change change = files.poll();
     EXPECT_TRUE(change.are_files_settled);
     EXPECT_EQ(change.paths.size(), 1U);
 }
@@ -213,9 +213,9 @@ TEST_F(WatchedFilesTest, SettleWhileOtherNamesComeAndGo) {
         walk_folder(folder.path());
         core::file_bytes(folder / "a.nc");
     });
-    files.look_again();
+    files.poll();
     folder.write("new.tmp", "");
-    const WatchedFiles::Change change = files.look_again();
+    const WatchedFiles::Change change = files.poll();
     EXPECT_TRUE(change.are_files_settled);
     EXPECT_FALSE(change.are_names_settled);
 }
@@ -252,10 +252,10 @@ TEST_F(WatchedFilesTest, SeeLinksThatLedNowhereLeadToAFileOrAFolder) {
         const core::FileAccessObserver listening(
             [&each](const core::FileAccess& look) { each.note(look); });
         find_programs({folder / word});
-        EXPECT_TRUE(each.look_again().paths.empty()) << word;
+        EXPECT_TRUE(each.poll().paths.empty()) << word;
         fs::create_directory(folder / "folder");
         folder.write("file", "G0 X1\n");
-        EXPECT_FALSE(each.look_again().paths.empty()) << word;
+        EXPECT_FALSE(each.poll().paths.empty()) << word;
         fs::remove(folder / "file");
         fs::remove(folder / "folder");
     }

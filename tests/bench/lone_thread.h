@@ -36,7 +36,7 @@ struct LoneThread {
     void read(hwsim::LineCache& cache, uint32_t address) {
         constexpr uint32_t way_to_memory = 4;
         ++cycles;
-        if (hwsim::looked_up(cache, address)) return;
+        if (hwsim::cached_line(cache, address)) return;
         hwsim::fill(cache, address, {});
         cycles += way_to_memory + memory_latency;
         ++lines;

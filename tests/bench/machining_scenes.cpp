@@ -52,7 +52,8 @@ MachiningScene finishing(double h) {
     scene.keep = 0.7;
     for (size_t i = 0; i < 400; ++i) {
         const size_t at = 5'000 + 17 * i;
-        scene.segments.push_back({program.places[at] + shift, program.places[at + 1] + shift, {}});
+        scene.segments.push_back(
+            {program.positions[at] + shift, program.positions[at + 1] + shift, {}});
     }
     return scene;
 }

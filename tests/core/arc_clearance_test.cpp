@@ -86,20 +86,20 @@ double true_distance(const Round& round) {
 
 TEST(ArcClearance, IsWithinAThousandthForAnyPositionOfThePin) {
     std::mt19937 random(7);
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     size_t near = 0, far = 0, ends = 0;
     for (int i = 0; i < 400; ++i) {
         Round round;
-        round.radius = std::pow(10.0, -0.5 + 3.0 * share(random));
-        round.start = tau * share(random);
-        round.angle = tau * (2.0 * share(random) - 1.0);
-        round.rise = i % 3 == 0 ? 20.0 * share(random) : 0.0;
-        const double gap = i % 2 ? 0.01 * share(random) : 30.0 * share(random);
-        round.pin_radius = 0.5 + 20.0 * share(random);
+        round.radius = std::pow(10.0, -0.5 + 3.0 * fraction(random));
+        round.start = tau * fraction(random);
+        round.angle = tau * (2.0 * fraction(random) - 1.0);
+        round.rise = i % 3 == 0 ? 20.0 * fraction(random) : 0.0;
+        const double gap = i % 2 ? 0.01 * fraction(random) : 30.0 * fraction(random);
+        round.pin_radius = 0.5 + 20.0 * fraction(random);
         const double inside = round.radius - 5.0 - gap;
         const bool is_round_it = inside > 0.5 && i % 5 == 0;
         if (is_round_it) round.pin_radius = inside;
-        const double at = tau * share(random);
+        const double at = tau * fraction(random);
         const double out = is_round_it ? 0.0 : round.radius + 5.0 + gap + round.pin_radius;
         round.pin = {out * std::cos(at), out * std::sin(at), 0.0};
         const PairClearance found = passed(round);
@@ -155,11 +155,12 @@ TEST(ArcPath, StaysWithinItsErrorOfEveryChordThoughTheRadiusChanges) {
                     EXPECT_LE(part.path_error, 0.3 * error);
                     for (int i = 0; i <= 16; ++i) {
                         const double t = i / 16.0;
-                        const double share = part.arc.first + t * (part.arc.last - part.arc.first);
-                        const double r = 10.0 + share * growth, a = share * angle;
-                        const Vec3 real(r * std::cos(a), r * std::sin(a), share);
-                        const AxisValues& p = part.places[0];
-                        const AxisValues& q = part.places[1];
+                        const double fraction =
+                            part.arc.first + t * (part.arc.last - part.arc.first);
+                        const double r = 10.0 + fraction * growth, a = fraction * angle;
+                        const Vec3 real(r * std::cos(a), r * std::sin(a), fraction);
+                        const AxisValues& p = part.positions[0];
+                        const AxisValues& q = part.positions[1];
                         const Vec3 from(p[0], p[1], p[2]), to(q[0], q[1], q[2]);
                         const double off = glm::distance(real, from + t * (to - from));
                         EXPECT_LE(off, part.path_error + 1e-12);

@@ -139,7 +139,7 @@ TEST(BlockClock, PutsWitnessesWhereTheyArePassed) {
 /// Runs a motion from rest to rest, samples its axes finely, and expects that none exceeds its
 /// speed or acceleration. Returns the largest fraction of its acceleration that an axis used.
 double drive(const Motion& motion, const Machine& machine,
-             const std::function<AxisValues(double)>& place) {
+             const std::function<AxisValues(double)>& position_of) {
     const auto path = path_motion(motion, machine);
     EXPECT_TRUE(path);
     if (!path) return 0.0;
@@ -151,9 +151,9 @@ double drive(const Motion& motion, const Machine& machine,
     std::vector<double> when;
     std::vector<AxisValues> where;
     for (int k = 0; k <= steps; ++k) {
-        const double share = 0.5 * (1.0 - std::cos(pi * k / steps)); // finer at the ends
-        when.push_back(done[0].moment(share * path->length));
-        where.push_back(place(share));
+        const double fraction = 0.5 * (1.0 - std::cos(pi * k / steps)); // finer at the ends
+        when.push_back(done[0].moment(fraction * path->length));
+        where.push_back(position_of(fraction));
     }
     EXPECT_NEAR(done[0].moment(path->length), done[0].duration, 1e-9);
     double used = 0.0;
@@ -188,19 +188,19 @@ TEST(PathMotion, DrivesArcsWithinTheLimitsOfEveryAxis) {
         const int normal = static_cast<int>(random() % 3);
         const double radius = between(0.5, 40), angle = between(-7, 7), start = between(-4, 4);
         const double growth = round % 4 == 0 ? between(0.7, 1.4) : 1.0, rise = between(-5, 5);
-        const auto place = [&](double share) {
+        const auto position_of = [&](double fraction) {
             Vec3 p(1, 2, 3);
-            const double r = radius * (1.0 + share * (growth - 1.0));
-            p[(normal + 1) % 3] += r * std::cos(start + share * angle);
-            p[(normal + 2) % 3] += r * std::sin(start + share * angle);
-            p[normal] += share * rise;
+            const double r = radius * (1.0 + fraction * (growth - 1.0));
+            p[(normal + 1) % 3] += r * std::cos(start + fraction * angle);
+            p[(normal + 2) % 3] += r * std::sin(start + fraction * angle);
+            p[normal] += fraction * rise;
             return p;
         };
-        Motion motion = feed(place(0), place(1), between(500, 20'000));
+        Motion motion = feed(position_of(0), position_of(1), between(500, 20'000));
         motion.kind = MotionKind::arc;
         motion.arc = ArcPath{normal, {1, 2, 3}, angle};
-        tightest = std::max(tightest, drive(motion, machine, [&](double share) {
-                                const Vec3 p = place(share);
+        tightest = std::max(tightest, drive(motion, machine, [&](double fraction) {
+                                const Vec3 p = position_of(fraction);
                                 return AxisValues{p.x, p.y, p.z};
                             }));
     }
@@ -229,18 +229,18 @@ TEST(PathMotion, DrivesTheTipWithinTheLimitsOfEveryAxis) {
             first[rotary] = between(-60, 60);
             last[rotary] = first[rotary] + between(-40, 40);
         }
-        const auto place = [&](double share) {
+        const auto position_of = [&](double fraction) {
             AxisValues turned = first;
-            for (size_t i = 3; i < 6; ++i) turned[i] += share * (last[i] - first[i]);
-            return *reach_tip(machine, turned, from + share * (to - from), tool_length);
+            for (size_t i = 3; i < 6; ++i) turned[i] += fraction * (last[i] - first[i]);
+            return *reach_tip(machine, turned, from + fraction * (to - from), tool_length);
         };
         Motion motion{.kind = MotionKind::feed, .feed = between(500, 20'000)};
         motion.tip = TipPath{from, to, tool_length};
         for (size_t i = 0; i < axis_count; ++i) {
-            motion.from[i] = place(0)[i];
-            motion.to[i] = place(1)[i];
+            motion.from[i] = position_of(0)[i];
+            motion.to[i] = position_of(1)[i];
         }
-        tightest = std::max(tightest, drive(motion, machine, place));
+        tightest = std::max(tightest, drive(motion, machine, position_of));
     }
     EXPECT_GT(tightest, 0.8);
 }

@@ -50,12 +50,12 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
     const ExactBody two = solid_mesh(
         together(box_mesh({-31, -1, -1}, {-29, 1, 1}), box_mesh({-1, -1, -1}, {1, 1, 1})));
     const struct {
-        Vec3 place;
+        Vec3 position;
         double distance;
     } cases[] = {{{0, 0, 0}, 5}, {{3, 0, 0}, 2}, {{8, 0, 0}, 0}, {{14, 0, 0}, 3}, {{11, 0, 0}, 0}};
     for (const auto& c : cases) {
-        expect_distance(separation(hollow, small, translation(c.place), Vec3(0)), c.distance);
-        expect_distance(separation(small, hollow, translation(-c.place), Vec3(0)), c.distance);
+        expect_distance(separation(hollow, small, translation(c.position), Vec3(0)), c.distance);
+        expect_distance(separation(small, hollow, translation(-c.position), Vec3(0)), c.distance);
     }
     // One of two shells is inside the material, the other far outside.
     expect_distance(separation(hollow, two, translation({8, 0, 0}), Vec3(0)), 0.0);
@@ -66,8 +66,8 @@ TEST(BodyDistance, OfMeshesInsideOneAnother) {
 TEST(BodyDistance, IsZeroNextToAFoldOfOverlappingMaterial) {
     const ExactBody folded = solid_mesh(test_support::cube_with_a_fold());
     const ExactBody cube = solid_mesh(box_mesh(Vec3(0), Vec3(1)));
-    const Transform place = translation({3.5, 0.229, 5.0}); // above the fold, in the material
-    expect_distance(separation(folded, cube, place, Vec3(0)), 0.0);
+    const Transform position = translation({3.5, 0.229, 5.0}); // above the fold, in the material
+    expect_distance(separation(folded, cube, position, Vec3(0)), 0.0);
     expect_distance(separation(ball_at({3.5, 0.229, 5.0}, 0.5), folded), 0.0);
 }
 

@@ -59,7 +59,7 @@ struct Shop {
     }
 };
 
-TEST(CentreWatch, FindsAPlungeOnTheCentre) {
+TEST(CentreTracker, FindsAPlungeOnTheCentre) {
     Shop shop;
     shop.feed({50, 50, 1});
     const double length = shop.setup.tools.at(ToolNumber{1}).length;
@@ -78,7 +78,7 @@ TEST(CentreWatch, FindsAPlungeOnTheCentre) {
     EXPECT_FALSE(Shop(true).feed({50, 50, -9}));
 }
 
-TEST(CentreWatch, FindsAPlungeInSmallSteps) {
+TEST(CentreTracker, FindsAPlungeInSmallSteps) {
     Shop shop;
     shop.feed({50, 50, 0});
     double z = 0.0;
@@ -87,7 +87,7 @@ TEST(CentreWatch, FindsAPlungeInSmallSteps) {
     EXPECT_NEAR(z, -recess - 0.1, 0.1);
 }
 
-TEST(CentreWatch, IsSilentWhereTheEdgesLeaveNothing) {
+TEST(CentreTracker, IsSilentWhereTheEdgesLeaveNothing) {
     Shop shop; // next to the stock, in the open, and across it
     EXPECT_FALSE(shop.rapid({-20, 50, 20}));
     EXPECT_FALSE(shop.feed({-20, 50, -5}));
@@ -97,7 +97,7 @@ TEST(CentreWatch, IsSilentWhereTheEdgesLeaveNothing) {
     EXPECT_FALSE(shop.feed({60, 50, -4.9})); // down into its own slot
 }
 
-TEST(CentreWatch, IsSilentInAHoleThatWasDrilled) {
+TEST(CentreTracker, IsSilentInAHoleThatWasDrilled) {
     Shop shop(true);
     shop.feed({50, 50, -10});
     shop.rapid({50, 50, 20});
@@ -109,7 +109,7 @@ TEST(CentreWatch, IsSilentInAHoleThatWasDrilled) {
     EXPECT_TRUE(shop.feed({50, 50, -12}));
 }
 
-TEST(CentreWatch, DistinguishesARampFromADive) {
+TEST(CentreTracker, DistinguishesARampFromADive) {
     for (const double degrees : {2.0, 4.0, 6.5}) {
         Shop shop;
         shop.feed({20, 50, 0.2});
@@ -123,7 +123,7 @@ TEST(CentreWatch, DistinguishesARampFromADive) {
     }
 }
 
-TEST(CentreWatch, IsSilentOnARampToAndFroThatIsLongEnough) {
+TEST(CentreTracker, IsSilentOnARampToAndFroThatIsLongEnough) {
     Shop shop;
     shop.feed({40, 50, 0});
     for (int i = 0; i < 10; ++i)
@@ -137,14 +137,14 @@ TEST(CentreWatch, IsSilentOnARampToAndFroThatIsLongEnough) {
     EXPECT_TRUE(found);
 }
 
-TEST(CentreWatch, DistinguishesAHelixFromOneThatIsTooNarrow) {
+TEST(CentreTracker, DistinguishesAHelixFromOneThatIsTooNarrow) {
     EXPECT_LT(Shop().wind(4.0, 0.8, 6.0), -5.9);
     EXPECT_LT(Shop().wind(3.0, 0.5, 4.0), -3.9);
     EXPECT_NEAR(Shop().wind(1.5, 0.5, 4.0), -recess, 0.3); // the pillar in the centre
     EXPECT_GT(Shop().wind(4.0, 6.0, 6.0), -2.0);           // too steep
 }
 
-TEST(CentreWatch, IsSilentOnASurfaceThatGoesUpAndDown) {
+TEST(CentreTracker, IsSilentOnASurfaceThatGoesUpAndDown) {
     Shop shop;
     shop.rapid({-10, 50, 20});
     shop.feed({-10, 50, -3});

@@ -102,25 +102,25 @@ Vec3 move_of(const ProfileElement& e, const Mat3& tool, int axis, std::mt19937& 
 
 /// A point on the axis, on the flank, on a rim or at the end of the axis.
 Vec3 aim_of(const ProfileElement& e, std::mt19937& rng) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    const double s = share(rng);
-    const Vec3 places[] = {{0.0, 0.0, e.z0},
-                           {0.0, 0.0, e.z1},
-                           {0.0, 0.0, e.z0 + s * (e.z1 - e.z0)},
-                           {e.r0 + s * (e.r1 - e.r0), 0.0, e.z0 + s * (e.z1 - e.z0)},
-                           {e.r0, 0.0, e.z0},
-                           {e.r1, 0.0, e.z1}};
-    return places[rng() % 6]
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
+    const double s = fraction(rng);
+    const Vec3 positions[] = {{0.0, 0.0, e.z0},
+                              {0.0, 0.0, e.z1},
+                              {0.0, 0.0, e.z0 + s * (e.z1 - e.z0)},
+                              {e.r0 + s * (e.r1 - e.r0), 0.0, e.z0 + s * (e.z1 - e.z0)},
+                              {e.r0, 0.0, e.z0},
+                              {e.r1, 0.0, e.z1}};
+    return positions[rng() % 6]
            + Vec3(next_to_nothing(rng), next_to_nothing(rng), next_to_nothing(rng));
 }
 
 NearMiss near_miss(std::mt19937& rng) {
-    std::uniform_real_distribution<double> place(-10.0, 10.0);
+    std::uniform_real_distribution<double> position(-10.0, 10.0);
     NearMiss c;
     c.sweep.element = cone_of(rng);
     c.orientation = orientation_of(rng);
     c.axis = static_cast<int>(rng() % 3);
-    if (rng() % 3) c.sweep.from = {place(rng), place(rng), place(rng)};
+    if (rng() % 3) c.sweep.from = {position(rng), position(rng), position(rng)};
     const Vec3 by = move_of(c.sweep.element, c.orientation, c.axis, rng);
     c.sweep.to = c.sweep.from + by;
     const Vec3 p = c.orientation * aim_of(c.sweep.element, rng) + c.sweep.from

@@ -76,11 +76,11 @@ ProfileElement random_element(std::mt19937& rng) {
 }
 
 ConvexShape random_shape(std::mt19937& rng) {
-    std::uniform_real_distribution<double> place(-6.0, 6.0);
-    const auto point = [&] { return Vec3(place(rng), place(rng), place(rng)); };
+    std::uniform_real_distribution<double> position(-6.0, 6.0);
+    const auto point = [&] { return Vec3(position(rng), position(rng), position(rng)); };
     switch (rng() % 8) {
     case 0:
-        return convex_sphere(std::abs(place(rng)));
+        return convex_sphere(std::abs(position(rng)));
     case 1: {
         Aabb box;
         box.extend(point());
@@ -99,12 +99,12 @@ ConvexShape random_shape(std::mt19937& rng) {
 /// A body with a random pose, in two of three cases swept over 2 to 9 positions.
 ConvexShape random_body(std::mt19937& rng, double reach) {
     ConvexShape shape = posed(random_shape(rng), random_pose(rng, reach));
-    if (rng() % 4 == 0) shape = posed(random_shape(rng), translation(shape.places[0].at));
+    if (rng() % 4 == 0) shape = posed(random_shape(rng), translation(shape.positions[0].at));
     if (rng() % 3 == 0) return shape;
     std::uniform_real_distribution<double> step(-10.0, 10.0);
-    std::vector<Vec3> places(2 + rng() % 8, Vec3(0.0));
-    for (size_t i = 1; i < places.size(); ++i) places[i] = {step(rng), step(rng), step(rng)};
-    return swept(shape, places);
+    std::vector<Vec3> positions(2 + rng() % 8, Vec3(0.0));
+    for (size_t i = 1; i < positions.size(); ++i) positions[i] = {step(rng), step(rng), step(rng)};
+    return swept(shape, positions);
 }
 
 TEST(ConvexSeparation, IsProvenByItsWitnessesAndByASlabBetweenTheBodies) {
@@ -132,8 +132,8 @@ TEST(ConvexSeparation, HoldsForBodiesThatTouch) {
         ConvexShape touching = b; // moved to contact, or to a small gap or overlap
         const double by[] = {0.0, 1e-12, -1e-12, 1e-8, -1e-8, 1e-4, -1e-4};
         const Vec3 towards = (apart.point_a - apart.point_b) / apart.upper;
-        for (size_t k = 0; k < touching.place_count; ++k)
-            touching.places[k].at += (apart.upper - by[i % 7]) * towards;
+        for (size_t k = 0; k < touching.position_count; ++k)
+            touching.positions[k].at += (apart.upper - by[i % 7]) * towards;
         SCOPED_TRACE(i);
         expect_proven(a, touching, rng, seen);
         if (HasFailure()) return;
@@ -181,7 +181,7 @@ TEST(ConvexSeparation, HoldsFarFromTheOrigin) {
         const ConvexShape a = posed(random_shape(rng), translation(there));
         const ConvexShape b = posed(random_shape(rng), random_pose(rng, i % 2 ? 2000.0 : 0.01));
         ConvexShape moved = b;
-        if (i % 2 == 0) moved.places[0].at += there + 12.0 * random_direction(rng);
+        if (i % 2 == 0) moved.positions[0].at += there + 12.0 * random_direction(rng);
         SCOPED_TRACE(i);
         expect_proven(a, moved, rng, seen);
         if (HasFailure()) return;
@@ -193,8 +193,8 @@ TEST(ConvexSeparation, HoldsFarFromTheOrigin) {
 TEST(ConvexSeparation, OfSliversAndNeedlesAndPointsIsProven) {
     std::mt19937 rng(14);
     Seen seen;
-    std::uniform_real_distribution<double> place(-6.0, 6.0);
-    const auto point = [&] { return Vec3(place(rng), place(rng), place(rng)); };
+    std::uniform_real_distribution<double> position(-6.0, 6.0);
+    const auto point = [&] { return Vec3(position(rng), position(rng), position(rng)); };
     const auto thin = [&](int kind) {
         const Vec3 a = point(), b = point();
         const double by = std::pow(10.0, -3.0 - rng() % 12);
@@ -280,9 +280,9 @@ TEST(ConvexSeparation, SaysWhenInTheSweepTheWitnessIs) {
     for (int i = 0; i < 300; ++i) {
         const ConvexShape still = posed(random_shape(rng), random_pose(rng, 10.0));
         const Vec3 move = 20.0 * random_direction(rng);
-        const Vec3 places[] = {Vec3(0.0), move};
+        const Vec3 positions[] = {Vec3(0.0), move};
         const ConvexShape b = posed(random_shape(rng), random_pose(rng, 20.0));
-        const Separation found = separation(swept(still, places), b);
+        const Separation found = separation(swept(still, positions), b);
         ASSERT_GE(found.time_a, 0.0);
         ASSERT_LE(found.time_a, 1.0 + 1e-12);
         if (found.upper > 0.0) ++checked;

@@ -28,9 +28,9 @@ void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
 
 /// A random part of the square that contains the point.
 Square part_round(const Square& s, const Vec3& p, std::mt19937& rng) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    return {p.x - share(rng) * (p.x - s.x0), p.x + share(rng) * (s.x1 - p.x),
-            p.y - share(rng) * (p.y - s.y0), p.y + share(rng) * (s.y1 - p.y)};
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
+    return {p.x - fraction(rng) * (p.x - s.x0), p.x + fraction(rng) * (s.x1 - p.x),
+            p.y - fraction(rng) * (p.y - s.y0), p.y + fraction(rng) * (s.y1 - p.y)};
 }
 
 void expect_held(const CutModel& model, const Vec3& p, std::mt19937& rng) {
@@ -82,7 +82,7 @@ TEST(CutModelColumns, HoldEveryPointThatIsStillStock) {
 
 TEST(CutModelLines, AreStockOverTheirWholeLength) {
     std::mt19937 rng(62);
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     size_t ends = 0;
     for (int i = 0; i < 30; ++i) {
         const CutBox world = random_cut_box(rng, 1 + i % 8, i % 3 ? 0.0 : 0.15);
@@ -94,7 +94,7 @@ TEST(CutModelLines, AreStockOverTheirWholeLength) {
             for (int v = 0; v < family.v_count(); ++v)
                 for (int u = 0; u < family.u_count(); ++u)
                     for (const Interval& matter : family.line(u, v))
-                        for (const double s : {0.0, 1.0, share(rng)}) {
+                        for (const double s : {0.0, 1.0, fraction(rng)}) {
                             const Vec3 p = point_on_line(model.lines.grid, axis, u, v,
                                                          matter.lower + s * matter.length());
                             ++ends;

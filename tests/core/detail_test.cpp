@@ -9,21 +9,21 @@ namespace core {
 namespace {
 
 ToolDescription random_tool(std::mt19937& random, ToolNumber number) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     ToolDescription tool;
     tool.number = number;
-    tool.diameter = 4.0 + 8.0 * share(random);
-    tool.shape = share(random) < 0.5 ? ToolShape::flat : ToolShape::ball;
-    tool.flute_length = 8.0 + 10.0 * share(random);
-    const double shank = tool.diameter * (share(random) < 0.5 ? 1.0 : 1.3);
-    tool.shank = {{shank, shank, 5.0 + 10.0 * share(random)}};
+    tool.diameter = 4.0 + 8.0 * fraction(random);
+    tool.shape = fraction(random) < 0.5 ? ToolShape::flat : ToolShape::ball;
+    tool.flute_length = 8.0 + 10.0 * fraction(random);
+    const double shank = tool.diameter * (fraction(random) < 0.5 ? 1.0 : 1.3);
+    tool.shank = {{shank, shank, 5.0 + 10.0 * fraction(random)}};
     tool.holder = {{20, 32, 20}, {40, 40, 30}};
     return tool;
 }
 
 /// A block of 60 x 60 x 20 between two jaws and under a clamp, and two tools.
 Setup random_setup(std::mt19937& random) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     Setup setup;
     setup.mesh_size = 1.0;
     setup.stock = {SolidBox{{{0, 0, -20}, {60, 60, 0}}}, 0.0};
@@ -39,43 +39,43 @@ Setup random_setup(std::mt19937& random) {
     };
     add("jaw-1", {{-30, -20, -30}, {90, 0, -12}});
     add("jaw-2", {{-30, 60, -30}, {90, 80, -12}});
-    const double x = 50.0 * share(random);
-    add("clamp", {{x, 40, 0}, {x + 15, 75, 8.0 + 10.0 * share(random)}});
-    setup.fixtures.back().expendable = share(random) < 0.2;
+    const double x = 50.0 * fraction(random);
+    add("clamp", {{x, 40, 0}, {x + 15, 75, 8.0 + 10.0 * fraction(random)}});
+    setup.fixtures.back().expendable = fraction(random) < 0.2;
     return setup;
 }
 
 /// A program of events above and in that block: rapids, feeds, arcs, tool changes, fixtures that
 /// are added and removed.
 std::vector<std::vector<Event>> random_program(std::mt19937& random, const Setup& setup) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     std::vector<std::vector<Event>> blocks;
     int tool = 1;
     Vec3 gauge(0, 0, 200);
     blocks.push_back(
         {ToolChange{ToolNumber{tool}}, SpindleChange{SpindleDirection::clockwise, 1e4}});
     for (int i = 0; i < 120; ++i) {
-        const double choice = share(random);
+        const double choice = fraction(random);
         if (choice < 0.03) {
             tool = 3 - tool;
             blocks.push_back({ToolChange{ToolNumber{tool}}});
             continue;
         }
         if (choice < 0.05) {
-            blocks.push_back({FixtureChange{2, share(random) < 0.5}});
+            blocks.push_back({FixtureChange{2, fraction(random) < 0.5}});
             continue;
         }
         const double length = setup.tools.at(ToolNumber{tool}).length;
-        const double step = share(random) < 0.8 ? 4.0 : 60.0;
+        const double step = fraction(random) < 0.8 ? 4.0 : 60.0;
         Vec3 to = gauge;
         for (int axis = 0; axis < 3; ++axis)
-            if (share(random) < 0.6) to[axis] += step * (share(random) - 0.5);
+            if (fraction(random) < 0.6) to[axis] += step * (fraction(random) - 0.5);
         to = glm::clamp(to, Vec3(-15, -15, length - 12.0), Vec3(75, 75, length + 30.0));
-        Motion motion{.kind = share(random) < 0.7 ? MotionKind::feed : MotionKind::rapid,
+        Motion motion{.kind = fraction(random) < 0.7 ? MotionKind::feed : MotionKind::rapid,
                       .from = {gauge.x, gauge.y, gauge.z},
                       .to = {to.x, to.y, to.z}};
         motion.feed = motion.kind == MotionKind::feed ? 800.0 : 0.0;
-        if (motion.kind == MotionKind::feed && share(random) < 0.2) {
+        if (motion.kind == MotionKind::feed && fraction(random) < 0.2) {
             motion.kind = MotionKind::arc;
             motion.to = motion.from;
             motion.arc = ArcPath{2, gauge + Vec3(3, 1, 0), 6.283185307179586};

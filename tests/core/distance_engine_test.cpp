@@ -92,9 +92,9 @@ TEST_P(AnyEngine, AgreesWithBruteForceAtAnySizeAndPosition) {
         for (const double away : {0.0, 1.0, 1e5, 1e11}) {
             Points a = random_cloud(rng, 300, size), b = random_cloud(rng, 200, size);
             Transform pose = random_pose(rng, 2.0 * size);
-            const Vec3 place(away, -0.3 * away, 0.7 * away);
-            for (Vec3& p : a) p += place;
-            pose.translation += place;
+            const Vec3 position(away, -0.3 * away, 0.7 * away);
+            for (Vec3& p : a) p += position;
+            pose.translation += position;
             expect_least(a, b, pose);
         }
 }

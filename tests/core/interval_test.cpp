@@ -38,13 +38,13 @@ private:
 
 TEST(IntervalList, AgreesWithABitmap) {
     std::mt19937 rng(42);
-    std::uniform_int_distribution<int> place(0, 64), kind(0, 2);
+    std::uniform_int_distribution<int> position(0, 64), kind(0, 2);
     size_t most = 0;
     for (int round = 0; round < 300; ++round) {
         IntervalList list;
         Bitmap bitmap;
         for (int step = 0; step < 60; ++step) {
-            const int a = place(rng), b = std::min(64, a + place(rng) / 6);
+            const int a = position(rng), b = std::min(64, a + position(rng) / 6);
             const Interval interval{static_cast<double>(a), static_cast<double>(b)};
             if (kind(rng) == 0) {
                 EXPECT_EQ(list.subtract(interval), bitmap.set(a, b, false));

@@ -56,7 +56,7 @@ TEST(TipPosition, OfATrunnionIsTurnedBackThroughBothAxes) {
         // Relative to the work the tool rotates by A and C: first about A, whose axis is fixed.
         const Vec3 tip(q[0], q[1], q[2] - 80.0);
         const Vec3 on_cradle = about_x(tip - a_point, q[3]) + a_point;
-        expect_near(tip_place(machine, q, 80.0), about_z(on_cradle - c_point, q[5]) + c_point,
+        expect_near(tip_position(machine, q, 80.0), about_z(on_cradle - c_point, q[5]) + c_point,
                     1e-9);
     }
 }
@@ -68,7 +68,8 @@ TEST(TipPosition, OfAForkHeadSwingsWithTheTool) {
     for (int i = 0; i < 200; ++i) {
         const AxisValues q = random_values(rng);
         const Vec3 from_pivot = about_z(about_y(Vec3(0, 0, -80) - pivot, q[4]), q[5]);
-        expect_near(tip_place(machine, q, 80.0), from_pivot + pivot + Vec3(q[0], q[1], q[2]), 1e-9);
+        expect_near(tip_position(machine, q, 80.0), from_pivot + pivot + Vec3(q[0], q[1], q[2]),
+                    1e-9);
     }
 }
 
@@ -76,9 +77,9 @@ TEST(TipPosition, IsExactAtQuarterTurns) {
     const Machine machine = trunnion({0, 0, -100}, {0, 0, -100});
     AxisValues q{};
     q[2] = -50.0, q[3] = 90.0;
-    EXPECT_EQ(tip_place(machine, q, 50.0), Vec3(0, 0, -100));
+    EXPECT_EQ(tip_position(machine, q, 50.0), Vec3(0, 0, -100));
     q[2] = 0.0;
-    EXPECT_EQ(tip_place(machine, q, 50.0), Vec3(0, -50, -100));
+    EXPECT_EQ(tip_position(machine, q, 50.0), Vec3(0, -50, -100));
 }
 
 TEST(ReachTip, BringsTheTipToItsTargetOnEveryMachine) {
@@ -86,16 +87,17 @@ TEST(ReachTip, BringsTheTipToItsTargetOnEveryMachine) {
     for (const Machine& machine : machines())
         for (int i = 0; i < 200; ++i) {
             const AxisValues q = random_values(rng);
-            const Vec3 place(random_values(rng)[0], random_values(rng)[1], random_values(rng)[2]);
-            const auto reached = reach_tip(machine, q, place, 80.0);
+            const Vec3 position(random_values(rng)[0], random_values(rng)[1],
+                                random_values(rng)[2]);
+            const auto reached = reach_tip(machine, q, position, 80.0);
             ASSERT_TRUE(reached);
-            expect_near(tip_place(machine, *reached, 80.0), place, 1e-8);
+            expect_near(tip_position(machine, *reached, 80.0), position, 1e-8);
             for (size_t axis = 3; axis < axis_count; ++axis) EXPECT_EQ((*reached)[axis], q[axis]);
         }
 }
 
 Vec3 tool_axis(const Machine& machine, const AxisValues& q) {
-    return glm::normalize(tip_place(machine, q, 0.0) - tip_place(machine, q, 1.0));
+    return glm::normalize(tip_position(machine, q, 0.0) - tip_position(machine, q, 1.0));
 }
 
 TEST(PointTool, ReachesEveryDirectionThatSomeAnglesGive) {
@@ -150,16 +152,17 @@ LinkId random_link(const Machine& machine, std::mt19937& rng) {
 
 RandomLeg random_leg(const Machine& machine, double turn_deg, std::mt19937& rng) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    const auto place = [&](double size) { return size * Vec3(unit(rng), unit(rng), unit(rng)); };
+    const auto position = [&](double size) { return size * Vec3(unit(rng), unit(rng), unit(rng)); };
     RandomLeg random;
     random.target = {random_link(machine, rng),
-                     {rotation_xyz_deg(180.0 * place(1.0)), place(200.0)}};
-    random.mover = {{random_link(machine, rng), {rotation_xyz_deg(180.0 * place(1.0)), place(200)}},
-                    place(60.0),
-                    50.0 * std::abs(unit(rng))};
+                     {rotation_xyz_deg(180.0 * position(1.0)), position(200.0)}};
+    random.mover = {
+        {random_link(machine, rng), {rotation_xyz_deg(180.0 * position(1.0)), position(200)}},
+        position(60.0),
+        50.0 * std::abs(unit(rng))};
     AxisValues from = random_values(rng), to = from;
     for (size_t i = 0; i < 6; ++i) to[i] += is_rotary(i) ? turn_deg * unit(rng) : 8.0 * unit(rng);
-    random.leg.places = {from, to};
+    random.leg.positions = {from, to};
     return random;
 }
 
@@ -175,18 +178,18 @@ TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
         ++(leg.turns ? turned : straight);
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (int k = 0; k <= 20; ++k) {
-            const double share = k / 20.0;
-            const AxisValues q = stretch(random.leg, 0.0, share).places[1];
+            const double fraction = k / 20.0;
+            const AxisValues q = stretch(random.leg, 0.0, fraction).positions[1];
             const Transform real = target_from_mover(machine, random.target, random.mover.mount, q);
             const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
             const Vec3 p = random.mover.centre + random.mover.reach * direction;
-            const Vec3 taken =
-                leg.orientation * p + leg.places[0] + share * (leg.places[1] - leg.places[0]);
+            const Vec3 taken = leg.orientation * p + leg.positions[0]
+                               + fraction * (leg.positions[1] - leg.positions[0]);
             const double off = glm::distance(real * p, taken);
             ASSERT_LE(off, leg.error + 1e-9) << i;
             if (leg.turns) tightest = std::max(tightest, off / leg.error);
-            const Transform before =
-                target_from_mover(machine, random.target, random.mover.mount, random.leg.places[0]);
+            const Transform before = target_from_mover(machine, random.target, random.mover.mount,
+                                                       random.leg.positions[0]);
             ASSERT_LE(glm::distance(real * p, before * p), leg.travel + 1e-9) << i;
         }
     }
@@ -202,7 +205,7 @@ TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
         AxisValues from = random_values(rng), to = from;
         std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (size_t axis = 3; axis < 6; ++axis) to[axis] += 30.0 * unit(rng);
-        const Vec3 a = tip_place(machine, from, 90.0);
+        const Vec3 a = tip_position(machine, from, 90.0);
         const Vec3 b = a + 20.0 * Vec3(unit(rng), unit(rng), unit(rng));
         to = *reach_tip(machine, to, b, 90.0);
         Motion motion{.kind = MotionKind::feed, .tip = TipPath{a, b, 90.0}, .feed = 100.0};
@@ -211,17 +214,17 @@ TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
             motion.to[axis] = to[axis];
         }
         const Path path = path_of(motion, machine, 0.002);
-        double share = 0.0;
+        double fraction = 0.0;
         for (const Leg& leg : path.legs) {
             for (const double part : {0.25, 0.5, 0.75, 1.0}) {
-                const AxisValues q = stretch(leg, 0.0, part).places[1];
-                const double at = (share + part) / static_cast<double>(path.legs.size());
-                expect_near(tip_place(machine, q, 90.0), a + at * (b - a), 0.002 + 1e-8);
+                const AxisValues q = stretch(leg, 0.0, part).positions[1];
+                const double at = (fraction + part) / static_cast<double>(path.legs.size());
+                expect_near(tip_position(machine, q, 90.0), a + at * (b - a), 0.002 + 1e-8);
             }
-            share += 1.0;
+            fraction += 1.0;
         }
-        EXPECT_EQ(path.legs.front().places[0], from);
-        EXPECT_EQ(path.legs.back().places[1], to);
+        EXPECT_EQ(path.legs.front().positions[0], from);
+        EXPECT_EQ(path.legs.back().positions[1], to);
     }
 }
 

@@ -45,7 +45,7 @@ Compared compare(const RevolvedProfile& flutes, unsigned seed) {
             return std::uniform_real_distribution<double>(box.min[along], box.max[along])(rng);
         };
         std::array<double, CornerStretches::size> u;
-        for (double& place : u) place = between(ua);
+        for (double& position : u) position = between(ua);
         const double v = between(va);
         CornerStretches found;
         for (const Cutter::Piece& piece : cutter->pieces) {

@@ -44,7 +44,7 @@ struct Bench {
     Leg leg(const Vec3& from, const Vec3& to) const {
         const double length = context.tool.length;
         const AxisValues a{from.x, from.y, from.z + length}, b{to.x, to.y, to.z + length};
-        return {.places = {a, b}, .end = 1.0};
+        return {.positions = {a, b}, .end = 1.0};
     }
 };
 

@@ -76,13 +76,13 @@ TEST(LateLook, KnowsWhatTheFlutesTookOnTheirWay) {
     ASSERT_EQ(near.pairs[*near.deciding].pair, Pair{PartKind::flutes});
     const BlockResult nibble = run.go(MotionKind::feed, {{0, 0.6}});
     ASSERT_GT(nibble.removed, 0.3);
-    bool told = false;
+    bool shown_assumptions = false;
     for (const PairClearance& pair : nibble.pairs) {
         if (pair.pair != Pair{PartKind::shank}) continue;
-        told = true;
+        shown_assumptions = true;
         EXPECT_LE(pair.lower, 3.0) << "the side of the shank passes over the fin";
     }
-    EXPECT_TRUE(told);
+    EXPECT_TRUE(shown_assumptions);
 }
 
 TEST(TurningCut, KeepsAllRemainingMaterialInTheColumns) {

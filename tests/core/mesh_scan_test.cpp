@@ -71,8 +71,8 @@ TEST(MeshScan, DecidesLinesInFacesAndEdgesAsIfShifted) {
 
 TEST(MeshScan, AgreesWithTheOracleOnGridAlignedTetrahedra) {
     std::mt19937 rng(5);
-    std::uniform_int_distribution<int> place(-4, 4);
-    const auto corner = [&] { return 0.5 * Vec3(place(rng), place(rng), place(rng)); };
+    std::uniform_int_distribution<int> position(-4, 4);
+    const auto corner = [&] { return 0.5 * Vec3(position(rng), position(rng), position(rng)); };
     int scanned = 0;
     for (int i = 0; i < 200; ++i) {
         const Mesh mesh = tetrahedron(corner(), corner(), corner(), corner());

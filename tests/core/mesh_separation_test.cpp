@@ -18,12 +18,12 @@ using test_support::wide_distance;
 
 /// A triangle soup with slivers and triangles of no area.
 Mesh random_soup(std::mt19937& rng) {
-    std::uniform_real_distribution<double> place(-8.0, 8.0);
+    std::uniform_real_distribution<double> position(-8.0, 8.0);
     Mesh mesh;
     for (int i = 0; i < 40; ++i)
-        mesh.vertices.emplace_back(place(rng), place(rng), i % 7 ? place(rng) : 0.0);
+        mesh.vertices.emplace_back(position(rng), position(rng), i % 7 ? position(rng) : 0.0);
     for (int i = 0; i < 9; ++i) {
-        const Vec3 off(place(rng), place(rng), place(rng));
+        const Vec3 off(position(rng), position(rng), position(rng));
         mesh.vertices.push_back(mesh.vertices[rng() % 40] + 1e-9 * off);
     }
     const auto any = [&] { return static_cast<uint32_t>(rng() % mesh.vertices.size()); };
@@ -65,12 +65,12 @@ void expect_representative(const Seen& seen, int times) {
 
 /// The least distance of all pairs of triangles, each swept, by the search for convex shapes.
 double least_of_all_pairs(const Mesh& a, const Mesh& b, const Transform& pose, const Vec3& sweep) {
-    const Vec3 places[] = {Vec3(0.0), sweep};
+    const Vec3 positions[] = {Vec3(0.0), sweep};
     double least = infinity;
     for (size_t j = 0; j < b.triangles.size(); ++j) {
         const Triangle t = b.triangle(j);
         const ConvexShape shape =
-            swept(convex(Triangle{pose * t.a, pose * t.b, pose * t.c}), places);
+            swept(convex(Triangle{pose * t.a, pose * t.b, pose * t.c}), positions);
         for (size_t i = 0; i < a.triangles.size(); ++i)
             least =
                 std::min(least, separation(shape, convex(a.triangle(i)), {.limit = least}).upper);
@@ -84,11 +84,11 @@ TEST(MeshSeparation, HoldsTheDistanceRoundingIncluded) {
     for (int i = 0; i < 240 && !testing::Test::HasFailure(); ++i) {
         // Up to 1 km from the origin, on both sides of the transform.
         const double offset = i % 3 ? 0.0 : std::pow(10.0, 1 + i % 6);
-        const Vec3 place = random_pose(rng, offset).translation;
-        const Mesh a = test_support::moved(random_mesh(rng), translation(place));
+        const Vec3 position = random_pose(rng, offset).translation;
+        const Mesh a = test_support::moved(random_mesh(rng), translation(position));
         const Mesh b = test_support::moved(random_mesh(rng), random_pose(rng, i % 2 * offset));
         Transform pose = random_pose(rng, i % 4 ? 12.0 : 30.0);
-        pose.translation += place - pose.rotation * b.bounds().center();
+        pose.translation += position - pose.rotation * b.bounds().center();
         const Separation found = separation(build_bvh(a), build_bvh(b), pose, Vec3(0.0));
         const long double truth = wide_distance(a, b, pose);
         const double rounding = 1e-13 * (100.0 + 3.0 * offset);
@@ -135,10 +135,10 @@ TEST(MeshSeparation, EndsAtTheLimitAndWithinTheTolerance) {
         EXPECT_GE(rough.upper, exact.lower);
         EXPECT_LE(rough.upper - rough.lower, 1.0 + 1e-10);
         if (exact.upper == 0.0) continue;
-        for (const double share : {0.3, 0.9, 1.0 - 1e-7, 1.1}) {
-            const double limit = share * exact.upper;
+        for (const double fraction : {0.3, 0.9, 1.0 - 1e-7, 1.1}) {
+            const double limit = fraction * exact.upper;
             const Separation found = separation(a, b, pose, sweep, {.limit = limit});
-            EXPECT_EQ(found.found(), share > 1.0);
+            EXPECT_EQ(found.found(), fraction > 1.0);
             EXPECT_LE(found.lower, std::min(limit, exact.upper));
             EXPECT_GE(found.lower, std::min(limit, exact.lower - 1e-7));
         }

@@ -15,14 +15,15 @@ using test_support::Wide;
 
 /// Sets of triangles that are flat, thin, on one line, in one point, or none of these.
 std::vector<Triangle> random_heap(std::mt19937& rng, double offset) {
-    std::uniform_real_distribution<double> place(-1.0, 1.0), power(-14.0, 1.0);
+    std::uniform_real_distribution<double> position(-1.0, 1.0), power(-14.0, 1.0);
     const Vec3 size(std::pow(10.0, power(rng)), std::pow(10.0, power(rng)),
                     rng() % 3 ? std::pow(10.0, power(rng)) : 0.0);
     const Transform pose = random_pose(rng, offset);
     std::vector<Triangle> heap;
     for (size_t i = 0, count = 1 + rng() % 5; i < count; ++i) {
         Vec3 corners[3];
-        for (Vec3& p : corners) p = pose * (size * Vec3(place(rng), place(rng), place(rng)));
+        for (Vec3& p : corners)
+            p = pose * (size * Vec3(position(rng), position(rng), position(rng)));
         if (rng() % 5 == 0) corners[2] = corners[1];
         if (rng() % 9 == 0) corners[1] = corners[0];
         heap.push_back({corners[0], corners[1], corners[2]});
@@ -85,8 +86,8 @@ TEST(DistanceBound, IsNeverMoreThanTheDistance) {
     for (int i = 0; i < 20000; ++i) {
         const OrientedBox a = random_box(rng, 15.0), b = random_box(rng, 15.0);
         const Vec3 sweep = i % 2 ? random_pose(rng, 10.0).translation : Vec3(0.0);
-        const Vec3 places[] = {Vec3(0.0), sweep};
-        const double truth = separation(swept(hull(b), places), hull(a)).upper;
+        const Vec3 positions[] = {Vec3(0.0), sweep};
+        const double truth = separation(swept(hull(b), positions), hull(a)).upper;
         const double bound = distance_bound(a, b, sweep);
         EXPECT_LE(bound, truth + 1e-10);
         EXPECT_GE(bound, 0.0);

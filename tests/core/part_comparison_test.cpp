@@ -94,9 +94,9 @@ TEST(PartComparison, SeesAPartThatIsMoved) {
     ASSERT_EQ(count(result, Deviation::gouge), 2u);
     ASSERT_EQ(count(result, Deviation::excess), 2u);
     for (const DeviationRegion& region : result.regions) {
-        const bool in_slot = std::abs(region.place.y - 20.1) < 4.0;
+        const bool in_slot = std::abs(region.position.y - 20.1) < 4.0;
         EXPECT_EQ(region.block, in_slot ? std::optional(7u) : std::nullopt);
-        const bool low = region.place.y < 20.1;
+        const bool low = region.position.y < 20.1;
         EXPECT_EQ(region.kind, low == in_slot ? Deviation::gouge : Deviation::excess);
         EXPECT_NEAR(region.area, 60.0 * (in_slot ? 5.3 : 20.0), 60.0 * 1.2);
     }
@@ -117,7 +117,7 @@ TEST(PartComparison, NamesTheBlockOfAPocketTooMany) {
     EXPECT_EQ(pocket.kind, Deviation::gouge);
     EXPECT_NEAR(pocket.amount, 3.0, 1e-5);
     EXPECT_EQ(pocket.block, 9u);
-    EXPECT_LT(glm::distance(pocket.place, Vec3(45, 8, -1.5)), 4.5);
+    EXPECT_LT(glm::distance(pocket.position, Vec3(45, 8, -1.5)), 4.5);
 }
 
 TEST(PartComparison, MeasuresAGougedWall) {

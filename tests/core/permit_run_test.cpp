@@ -100,21 +100,21 @@ TEST_P(RandomPermitRun, EntersNothingWithoutAPermitAndBrakesNoHarderThanItsAxesC
             hardest = std::max(hardest, motion.time.acceleration);
     }
     PermitRun run = permit_run(motions, servo);
-    double before = 0.0, place = 0.0;
+    double before = 0.0, position = 0.0;
     size_t held = 0;
     while (!run.is_done()) {
         ASSERT_LT(run.time(), 1e4) << "it continues by itself";
         const uint32_t permitted = permitted_at(known, run.time());
         step(run, permitted);
-        ASSERT_LE(run.place(), run.starts[permitted] + 1e-9);
-        ASSERT_GE(run.place(), place - 1e-9) << "never back";
+        ASSERT_LE(run.position(), run.starts[permitted] + 1e-9);
+        ASSERT_GE(run.position(), position - 1e-9) << "never back";
         const double speed = run.speed_now();
         const double change = std::abs(speed - before) / servo.period;
         ASSERT_LE(change, 2.1 * hardest) << run.time();
-        ASSERT_LE(run.place() - place, 1.01 * std::max(before, speed) * servo.period + 1e-6
-                                           + 0.5 * hardest * servo.period * servo.period);
+        ASSERT_LE(run.position() - position, 1.01 * std::max(before, speed) * servo.period + 1e-6
+                                                 + 0.5 * hardest * servo.period * servo.period);
         before = speed;
-        place = run.place();
+        position = run.position();
         held += run.is_held();
     }
     EXPECT_GT(held, 0U);
@@ -135,7 +135,7 @@ TEST_P(RandomPermitRun, StopsBeforeWhatIsNeverPermitted) {
     EXPECT_TRUE(run.is_held());
     EXPECT_EQ(run.motion, last);
     EXPECT_EQ(run.speed_now(), 0.0);
-    EXPECT_EQ(run.place(), run.starts[last]);
+    EXPECT_EQ(run.position(), run.starts[last]);
     EXPECT_EQ(run.entries[last].entered, infinity);
 }
 
@@ -147,7 +147,7 @@ TEST_P(RandomPermitRun, ACopyGoesOnAsTheOriginalDoes) {
         step(run, static_cast<uint32_t>(i / 3));
         step(copy, static_cast<uint32_t>(i / 3));
     }
-    EXPECT_EQ(copy.place(), run.place());
+    EXPECT_EQ(copy.position(), run.position());
     EXPECT_EQ(copy.speed_now(), run.speed_now());
 }
 
@@ -172,8 +172,8 @@ TEST(PermitRun, GoesFromOneHoldToTheNextAsItsAxesCan) {
     double before = 0.0;
     while (!run.is_done()) {
         step(run, run.time() < 1.0 ? 1 : run.time() < 2.0 ? 2 : 3);
-        EXPECT_LE(run.place() - before, 0.1 + 1e-6) << run.time();
-        before = run.place();
+        EXPECT_LE(run.position() - before, 0.1 + 1e-6) << run.time();
+        before = run.position();
         ASSERT_LT(run.time(), 5.0);
     }
     EXPECT_NEAR(run.entries[1].entered, 1.0, 0.0011);

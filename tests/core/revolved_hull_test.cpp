@@ -27,13 +27,13 @@ std::vector<Mesh> meshes() {
 
 TEST(RevolvedHull, HoldsEveryPointOfTheMesh) {
     std::mt19937 rng(5);
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     for (const Mesh& mesh : meshes()) {
         const RevolvedProfile hull = revolved_hull(mesh, 0.005);
         for (size_t i = 0; i < mesh.triangles.size(); ++i) {
             const Triangle t = mesh.triangle(i);
             for (int k = 0; k < 10; ++k) {
-                double u = share(rng), v = share(rng);
+                double u = fraction(rng), v = fraction(rng);
                 if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
                 EXPECT_LE(outside(hull, t.a + u * (t.b - t.a) + v * (t.c - t.a)), 1e-9);
             }

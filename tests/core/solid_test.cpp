@@ -50,17 +50,17 @@ bool within(const IntervalList& inner, const IntervalList& outer, double nearly 
 }
 
 Square random_square(std::mt19937& rng, double side) {
-    std::uniform_real_distribution<double> place(-4.5, 4.0);
-    const double x = place(rng), y = place(rng);
+    std::uniform_real_distribution<double> position(-4.5, 4.0);
+    const double x = position(rng), y = position(rng);
     if (rng() % 4 == 0) return {std::round(x), std::round(x) + side, std::round(y), std::round(y)};
     return {x, x + side, y, y + side};
 }
 
 Vec3 point_in(const Square& s, std::mt19937& rng) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     const auto pick = [&](double low, double high) {
         const auto kind = rng() % 6;
-        return kind == 0 ? low : kind == 1 ? high : low + share(rng) * (high - low);
+        return kind == 0 ? low : kind == 1 ? high : low + fraction(rng) * (high - low);
     };
     return {pick(s.x0, s.x1), pick(s.y0, s.y1), 0.0};
 }
@@ -130,18 +130,19 @@ std::vector<Solid> simple_solids(double tolerance) {
 
 TEST(ColumnOf, HoldsEveryPointOfTheSolidAndItsTolerance) {
     std::mt19937 rng(52);
-    std::uniform_real_distribution<double> share(0.0, 1.0);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
     for (const double tolerance : {0.0, 0.3}) {
         for (const Solid& solid : simple_solids(tolerance)) {
             int met = 0;
             for (int i = 0; i < 20000; ++i) {
                 const Aabb box = bounds(solid);
-                const Vec3 p = box.min + Vec3(share(rng), share(rng), share(rng)) * box.size();
+                const Vec3 p =
+                    box.min + Vec3(fraction(rng), fraction(rng), fraction(rng)) * box.size();
                 if (!in_solid(solid, p)) continue;
                 const Vec3 grown = p + tolerance * random_direction(rng);
                 const double side = i % 2 ? 0.5 : 0.02;
-                const double x0 = grown.x - (i % 5 ? share(rng) : i % 3 / 2.0) * side;
-                const double y0 = grown.y - share(rng) * side;
+                const double x0 = grown.x - (i % 5 ? fraction(rng) : i % 3 / 2.0) * side;
+                const double y0 = grown.y - fraction(rng) * side;
                 const IntervalList column = column_of(solid, {x0, x0 + side, y0, y0 + side});
                 ++met;
                 ASSERT_TRUE(column.contains(grown.z)) << grown.x << ' ' << grown.y;
@@ -165,13 +166,13 @@ TEST(ColumnOf, IsNoHigherThanTheSolid) {
 
 TEST(LineOf, IsTheMatterOnTheLine) {
     std::mt19937 rng(53);
-    std::uniform_real_distribution<double> place(-4.5, 4.5);
+    std::uniform_real_distribution<double> position(-4.5, 4.5);
     for (const Solid& solid : simple_solids(0.0)) {
         int in = 0;
         for (int i = 0; i < 20000; ++i) {
-            const Vec3 p =
-                i % 2 ? Vec3(place(rng), place(rng), place(rng))
-                      : bounds(solid).center() + 0.3 * Vec3(place(rng), place(rng), place(rng));
+            const Vec3 p = i % 2 ? Vec3(position(rng), position(rng), position(rng))
+                                 : bounds(solid).center()
+                                       + 0.3 * Vec3(position(rng), position(rng), position(rng));
             const int axis = static_cast<int>(rng() % 3);
             const bool held =
                 line_of(solid, axis, p[(axis + 1) % 3], p[(axis + 2) % 3]).contains(p[axis]);
@@ -184,12 +185,12 @@ TEST(LineOf, IsTheMatterOnTheLine) {
 
 TEST(LineOf, IsTheMatterOfAMeshOnTheLine) {
     std::mt19937 rng(55);
-    std::uniform_real_distribution<double> place(-3.5, 3.5);
+    std::uniform_real_distribution<double> position(-3.5, 3.5);
     int met = 0;
     for (const Named& named : meshes()) {
         const Solid solid{solid_mesh(named.mesh), 0.0};
         for (int i = 0; i < 200; ++i) {
-            const double u = place(rng), v = place(rng);
+            const double u = position(rng), v = position(rng);
             const IntervalList found = line_of(solid, i % 3, u, v);
             const IntervalList truth = line_oracle(named.mesh, i % 3, u, v);
             // The oracle shifts the line by 2^-30; flanks are up to 100 times as steep.
@@ -202,11 +203,11 @@ TEST(LineOf, IsTheMatterOfAMeshOnTheLine) {
 
 TEST(Holds, SaysWhatTheLineThroughThePointSays) {
     std::mt19937 rng(54);
-    std::uniform_real_distribution<double> place(-4.0, 4.0);
+    std::uniform_real_distribution<double> position(-4.0, 4.0);
     for (const Named& named : meshes()) {
         const SolidMesh solid = solid_mesh(named.mesh);
         for (int i = 0; i < 400; ++i) {
-            const Vec3 p(place(rng), place(rng), place(rng));
+            const Vec3 p(position(rng), position(rng), position(rng));
             EXPECT_EQ(holds(solid, p), line_oracle(named.mesh, 2, p.x, p.y).contains(p.z));
         }
     }

@@ -224,20 +224,20 @@ TEST(StockCase, AFullCircleHelixIsARoundBore) {
 
 TEST(Removed, IsThatOfASlotOfAnyWidthAndDirection) {
     std::mt19937 rng(78);
-    std::uniform_real_distribution<double> place(-0.5, 0.5);
+    std::uniform_real_distribution<double> position(-0.5, 0.5);
     for (const double width : {6.3, 0.31, 1.0, 2.77}) {
         const RevolvedProfile tool{{{0, 0.5 * width, 40, 0.5 * width, 0}}};
         for (int along = 0; along < 2; ++along) {
             CutModel model = block({60, 60, 20}, 0.5);
-            const double aside = 30.0 + place(rng), depth = 8.0 + place(rng);
+            const double aside = 30.0 + position(rng), depth = 8.0 + position(rng);
             Vec3 from(aside, aside, -depth), to = from;
             from[along] = -10.0;
             to[along] = 70.0;
             const double truth = width * depth * 60.0;
             // Where the slot is narrower than a cell, no line may run down into it and give its
             // depth.
-            const double share = width < 0.5 ? 0.5 * 0.5 / depth : 0.01;
-            EXPECT_NEAR(cut(model, {cutter(tool), from, to}), truth, share * truth) << width;
+            const double fraction = width < 0.5 ? 0.5 * 0.5 / depth : 0.01;
+            EXPECT_NEAR(cut(model, {cutter(tool), from, to}), truth, fraction * truth) << width;
         }
     }
 }

@@ -21,7 +21,7 @@ ProfileElement cylinder(double r, double z0, double z1) { return {z0, r, z1, r, 
 /// A shank and a holder, a ball, a rotated box or a triangle, at rest or moved straight.
 Shapes random_tool(std::mt19937& rng, const Aabb& near) {
     const Vec3 at = random_point(near, rng);
-    const Vec3 places[] = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
+    const Vec3 positions[] = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
     Shapes shapes;
     switch (rng() % 4) {
     case 0:
@@ -37,7 +37,7 @@ Shapes random_tool(std::mt19937& rng, const Aabb& near) {
     default:
         shapes = {convex(Triangle{{0, 0, 0}, {1, 2, 0}, {0, 0, 1.5}})};
     }
-    for (ConvexShape& shape : shapes) shape = swept(posed(shape, translation(at)), places);
+    for (ConvexShape& shape : shapes) shape = swept(posed(shape, translation(at)), positions);
     return shapes;
 }
 
@@ -170,8 +170,8 @@ TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
             const Shapes shapes = random_tool(rng, world.box.grown(2.0));
             const Separation first = separation(shapes, model).separation;
             if (!first.found()) continue;
-            const double share = k / 5.0;
-            const StockGoal goal{.threshold = first.lower + share * (first.upper - first.lower),
+            const double fraction = k / 5.0;
+            const StockGoal goal{.threshold = first.lower + fraction * (first.upper - first.lower),
                                  .finest = 0.02,
                                  .work_limit = k == 3 ? 10u : 3000u};
             const StockSeparation found = separation(shapes, model, goal);

@@ -157,10 +157,10 @@ TEST(StockMesh, IsClosedWhateverIsCut) {
         CutModel model = block_model(1.0);
         for (int k = 0; k < 30; ++k) {
             const auto cutter = k % 2 ? flat_cutter(between(0.3, 4)) : ball_cutter(between(0.3, 4));
-            const auto place = [&] {
+            const auto position = [&] {
                 return Vec3(between(-5, 65), between(-5, 45), between(-22, 0));
             };
-            cut(model, {cutter, place(), place()});
+            cut(model, {cutter, position(), position()});
         }
         const StockMesh surface = stock_mesh(model);
         EXPECT_TRUE(is_closed(surface.mesh));
@@ -241,7 +241,7 @@ TEST(FeaturePoint, LiesOnTheEdgeOfTwoPlanesAndTheCornerOfThree) {
     const TangentPlane edge[] = {x, y, x, y}, all[] = {x, y, z}, one[] = {x, x};
     EXPECT_LT(glm::distance(feature_point(edge, cell), Vec3(0.3, 0.7, 0.5)), 1e-12);
     EXPECT_LT(glm::distance(feature_point(all, cell), Vec3(0.3, 0.7, 0.2)), 1e-12);
-    EXPECT_LT(glm::distance(feature_point(one, cell), x.place), 1e-12);
+    EXPECT_LT(glm::distance(feature_point(one, cell), x.position), 1e-12);
 }
 
 } // namespace

@@ -117,9 +117,9 @@ protected:
         for (int move = 0; move < move_kinds; ++move)
             for (int axis = 0; axis < 3; ++axis)
                 for (int i = 0; i < repeats; ++i) {
-                    std::uniform_real_distribution<double> place(-10.0, 10.0);
+                    std::uniform_real_distribution<double> position(-10.0, 10.0);
                     Case c{{element_of(GetParam(), rng), {}, {}}, axis, 0.0, 0.0};
-                    if (i % 3) c.sweep.from = {place(rng), place(rng), place(rng)};
+                    if (i % 3) c.sweep.from = {position(rng), position(rng), position(rng)};
                     if (i % 8 == 1) c.sweep.from += Vec3(1900.0, -1500.0, 700.0);
                     c.sweep.to = c.sweep.from + move_of(move, rng);
                     act(c, rng);
@@ -133,11 +133,11 @@ TEST_P(EveryElementMoveAndAxis, GivesTheLineInTheSweptVolume) {
     Seen seen;
     run(40, [&](Case& c, std::mt19937& rng) {
         const Aabb body = bounds(c.sweep.element);
-        std::uniform_real_distribution<double> share(-0.05, 1.05);
+        std::uniform_real_distribution<double> fraction(-0.05, 1.05);
         const auto somewhere = [&](int axis) {
             const double low = std::min(c.sweep.from[axis], c.sweep.to[axis]) + body.min[axis];
             const double high = std::max(c.sweep.from[axis], c.sweep.to[axis]) + body.max[axis];
-            return low + share(rng) * (high - low);
+            return low + fraction(rng) * (high - low);
         };
         c.u = somewhere((c.axis + 1) % 3);
         c.v = somewhere((c.axis + 2) % 3);

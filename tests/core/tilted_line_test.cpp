@@ -143,13 +143,13 @@ protected:
             for (int move = 0; move < move_kinds; ++move)
                 for (int axis = 0; axis < 3; ++axis)
                     for (int i = 0; i < repeats; ++i) {
-                        std::uniform_real_distribution<double> place(-10.0, 10.0);
+                        std::uniform_real_distribution<double> position(-10.0, 10.0);
                         Case c{{element_of(GetParam(), rng), {}, {}},
                                orientation_of(turn, rng),
                                axis,
                                0.0,
                                0.0};
-                        if (i % 3) c.sweep.from = {place(rng), place(rng), place(rng)};
+                        if (i % 3) c.sweep.from = {position(rng), position(rng), position(rng)};
                         if (i % 8 == 1) c.sweep.from += Vec3(1900.0, -1500.0, 700.0);
                         c.sweep.to = c.sweep.from + move_of(move, c.orientation, axis, rng);
                         aim(c, rng);
@@ -162,17 +162,17 @@ protected:
 private:
     /// Makes the line pass near the body at some moment; every fourth time through its axis or rim.
     static void aim(Case& c, std::mt19937& rng) {
-        std::uniform_real_distribution<double> share(-1.02, 1.02);
+        std::uniform_real_distribution<double> fraction(-1.02, 1.02);
         const ProfileElement& e = c.sweep.element;
         const double r = std::max(e.r0, e.r1) + e.margin;
         const bool special = rng() % 4 == 0;
-        Vec3 q(r * share(rng), r * share(rng), 0.0);
-        q.z = e.z0 - e.margin + 0.5 * (1.0 + share(rng)) * (e.z1 - e.z0 + 2.0 * e.margin);
+        Vec3 q(r * fraction(rng), r * fraction(rng), 0.0);
+        q.z = e.z0 - e.margin + 0.5 * (1.0 + fraction(rng)) * (e.z1 - e.z0 + 2.0 * e.margin);
         if (special) {
             const double radii[] = {0.0, e.r0, e.r1, e.r0 + e.margin};
             q = {radii[rng() % 4], 0.0, rng() % 2 ? e.z0 : e.z1};
         }
-        const double t = special ? 0.5 * static_cast<double>(rng() % 3) : share(rng);
+        const double t = special ? 0.5 * static_cast<double>(rng() % 3) : fraction(rng);
         const Vec3 p = c.orientation * q + c.sweep.from + t * (c.sweep.to - c.sweep.from);
         c.u = p[(c.axis + 1) % 3];
         c.v = p[(c.axis + 2) % 3];

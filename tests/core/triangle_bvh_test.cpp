@@ -32,10 +32,10 @@ Mesh random_mesh(std::mt19937& rng) {
     case 2:
         return box_mesh({-5, -1, -0.01}, {5, 1, 0.01});
     default: { // a soup with slivers and triangles of no area
-        std::uniform_real_distribution<double> place(-8.0, 8.0);
+        std::uniform_real_distribution<double> position(-8.0, 8.0);
         Mesh mesh;
         for (int i = 0; i < 60; ++i)
-            mesh.vertices.emplace_back(place(rng), place(rng), i % 7 ? place(rng) : 0.0);
+            mesh.vertices.emplace_back(position(rng), position(rng), i % 7 ? position(rng) : 0.0);
         for (uint32_t i = 0; i + 2 < 60; ++i) mesh.triangles.push_back({i, i + 1, i + 2 - i % 2});
         return mesh;
     }
@@ -52,8 +52,8 @@ ConvexShape random_probe(std::mt19937& rng, double reach) {
     case 2:
         return posed(convex(Triangle{{0, 0, 0}, {3, 0, 0}, {0, 1e-9, 4}}), pose);
     default: {
-        const Vec3 places[] = {Vec3(0.0), random_pose(rng, 8.0).translation};
-        return swept(posed(convex_sphere(1.0), pose), places);
+        const Vec3 positions[] = {Vec3(0.0), random_pose(rng, 8.0).translation};
+        return swept(posed(convex_sphere(1.0), pose), positions);
     }
     }
 }

@@ -12,8 +12,8 @@ namespace {
 using test_support::random_pose;
 
 Vec3 random_point(std::mt19937& rng, double reach) {
-    std::uniform_real_distribution<double> place(-reach, reach);
-    return {place(rng), place(rng), place(rng)};
+    std::uniform_real_distribution<double> position(-reach, reach);
+    return {position(rng), position(rng), position(rng)};
 }
 
 /// Well-shaped triangles, needles, caps, points and lines, in a random position.
@@ -146,9 +146,9 @@ TEST(TriangleDistance, HoldsFarFromTheOrigin) {
     std::mt19937 rng(74);
     int meeting = 0, near = 0;
     for (int i = 0; i < 4000 && !testing::Test::HasFailure(); ++i) {
-        const Vec3 place = random_point(rng, std::pow(10.0, 3 + i % 4));
+        const Vec3 position = random_point(rng, std::pow(10.0, 3 + i % 4));
         const auto put = [&](const Triangle& t) {
-            return Triangle{t.a + place, t.b + place, t.c + place};
+            return Triangle{t.a + position, t.b + position, t.c + position};
         };
         const Triangle a = random_triangle(rng, 5.0);
         const Triangle b = i % 2 ? random_triangle(rng, 5.0) : related(a, rng);

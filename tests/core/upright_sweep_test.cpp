@@ -14,25 +14,25 @@ public:
         const double any = std::uniform_real_distribution<double>(0.0, most)(rng_);
         return rng_() % 2 ? any : std::round(2.0 * any) / 2.0;
     }
-    double place(double most) { return length(2.0 * most) - most; }
+    double position(double most) { return length(2.0 * most) - most; }
     bool chance(unsigned one_in) { return rng_() % one_in == 0; }
 
     UprightSweep sweep() {
         UprightSweep s;
-        s.element.z0 = place(2.0);
+        s.element.z0 = position(2.0);
         s.element.z1 = s.element.z0 + (chance(5) ? 0.0 : length(4.0));
         s.element.r0 = length(2.0);
         s.element.r1 = chance(2) ? s.element.r0 : length(2.0);
         if (chance(6)) s.element.r0 = 0.0;
         if (chance(3)) s.element.margin = length(1.0);
-        s.from = {place(6.0), place(6.0), place(6.0)};
+        s.from = {position(6.0), position(6.0), position(6.0)};
         for (int axis = 0; axis < 3; ++axis)
-            if (chance(2)) s.by[axis] = place(5.0);
+            if (chance(2)) s.by[axis] = position(5.0);
         return s;
     }
     Aabb box() {
         Aabb b;
-        b.min = {place(2.0), place(2.0), place(2.0)};
+        b.min = {position(2.0), position(2.0), position(2.0)};
         b.max = b.min;
         for (int axis = 0; axis < 3; ++axis)
             if (!chance(3)) b.max[axis] += length(4.0);
@@ -44,8 +44,8 @@ private:
 };
 
 ConvexShape shape_of(const UprightSweep& sweep) {
-    const Vec3 places[] = {sweep.from, sweep.from + sweep.by};
-    return swept(convex(sweep.element), places);
+    const Vec3 positions[] = {sweep.from, sweep.from + sweep.by};
+    return swept(convex(sweep.element), positions);
 }
 
 /// The distance of a point from a piece at rest, from its definition.
@@ -54,9 +54,9 @@ double outside(const ProfileElement& element, const Vec3& p) {
     double least = infinity;
     constexpr int steps = 2000;
     for (int i = 0; i <= steps; ++i) {
-        const double share = double(i) / steps;
-        const double z = element.z0 + share * (element.z1 - element.z0);
-        const double wide = element.r0 + share * (element.r1 - element.r0);
+        const double fraction = double(i) / steps;
+        const double z = element.z0 + fraction * (element.z1 - element.z0);
+        const double wide = element.r0 + fraction * (element.r1 - element.r0);
         const double inner = element.z0 == element.z1 ? std::max(element.r0, element.r1) : wide;
         least = std::min(least, std::hypot(std::max(0.0, r - inner), p.z - z));
     }

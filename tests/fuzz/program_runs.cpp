@@ -34,8 +34,8 @@ void require(bool holds, std::string_view what) {
     std::abort();
 }
 
-bool is_finite(const gcode::Position& place) {
-    for (const auto& value : place)
+bool is_finite(const gcode::Position& position) {
+    for (const auto& value : position)
         if (value && !std::isfinite(*value)) return false;
     return true;
 }
@@ -64,8 +64,8 @@ bool is_finite(const gcode::CanonicalCommand& command) {
 bool is_finite(const core::Event& event) {
     const auto* motion = std::get_if<core::Motion>(&event);
     if (!motion) return true;
-    for (const core::AxisPosition* place : {&motion->from, &motion->to})
-        for (const auto& value : *place)
+    for (const core::AxisPosition* position : {&motion->from, &motion->to})
+        for (const auto& value : *position)
             if (value && !std::isfinite(*value)) return false;
     return !motion->arc || std::isfinite(motion->arc->angle);
 }

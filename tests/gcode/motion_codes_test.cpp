@@ -29,9 +29,9 @@ double distance_to_chords(SplinePoint place, SplinePoint from,
         const double squared = x * x + y * y;
         const double along =
             squared > 0.0 ? ((place.x - from.x) * x + (place.y - from.y) * y) / squared : 0.0;
-        const double share = std::min(std::max(along, 0.0), 1.0);
-        nearest = std::min(nearest,
-                           std::hypot(place.x - from.x - share * x, place.y - from.y - share * y));
+        const double fraction = std::min(std::max(along, 0.0), 1.0);
+        nearest = std::min(
+            nearest, std::hypot(place.x - from.x - fraction * x, place.y - from.y - fraction * y));
         from = end;
     }
     return nearest;

@@ -68,7 +68,7 @@ TEST(Parser, ReadsBlockDeleteWithItsSwitch) {
     EXPECT_EQ(parsed("/G0 X1").block_delete, 1);
     EXPECT_EQ(parsed(" /3 G0").block_delete, 3);
     EXPECT_EQ(parsed("N10 /9 G0").block_delete, 9);
-    EXPECT_EQ(parsed("G0 /2 X1").kept_words, 1u);
+    EXPECT_EQ(parsed("G0 /2 X1").words_before_slash, 1u);
     EXPECT_EQ(refused("G0 / X1", DialectId::linuxcnc), "4: '/' must be at the start of the block");
 }
 

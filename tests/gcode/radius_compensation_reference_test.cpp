@@ -29,7 +29,7 @@ struct Draw {
     double between(double low, double high) {
         return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53;
     }
-    bool chance(double share) { return between(0.0, 1.0) < share; }
+    bool chance(double fraction) { return between(0.0, 1.0) < fraction; }
 };
 
 double rounded(double value) { return std::round(value * 1e9) * 1e-9; }

@@ -60,12 +60,12 @@ inline Question random_question(std::mt19937& rng, const core::Aabb& box, double
             {lower, r, lower + height, r, 0.0},
             {lower + height, any(0.0, 9.0), lower + height + 3.0, any(0.0, 9.0), 0.0}};
     }
-    const auto place = [&] {
+    const auto position = [&] {
         return core::Vec3(any(box.min.x - 9.0, box.max.x + 9.0),
                           any(box.min.y - 9.0, box.max.y + 9.0), any(box.min.z, box.max.z + 6.0));
     };
-    q.from = place();
-    q.to = rng() % 3 == 0 ? q.from : place();
+    q.from = position();
+    q.to = rng() % 3 == 0 ? q.from : position();
     for (int axis = 0; axis < 3; ++axis)
         if (rng() % 2 == 0) q.to[axis] = q.from[axis];
     q.allowance = rng() % 5 == 0 ? 0.0 : any(0.0, 3.0);
@@ -107,10 +107,10 @@ struct DeviceStock {
 };
 
 inline core::StockSeparation exact_distance(const Question& q, const core::CutModel& stock) {
-    const std::array<core::Vec3, 2> places{q.from, q.to};
+    const std::array<core::Vec3, 2> positions{q.from, q.to};
     std::vector<core::ConvexShape> shapes;
     for (const core::ProfileElement& element : q.body.elements)
-        shapes.push_back(swept(core::convex(element), places));
+        shapes.push_back(swept(core::convex(element), positions));
     return separation(shapes, stock,
                       {.limit = q.allowance + 1.0, .threshold = q.allowance, .work_limit = 500});
 }

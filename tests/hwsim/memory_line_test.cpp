@@ -22,7 +22,7 @@ int32_t coordinate(std::mt19937& rng) {
     }
 }
 
-FixedVec place(std::mt19937& rng) { return {coordinate(rng), coordinate(rng), coordinate(rng)}; }
+FixedVec position(std::mt19937& rng) { return {coordinate(rng), coordinate(rng), coordinate(rng)}; }
 
 int32_t extent(std::mt19937& rng) {
     return rng() % 4 == 0 ? Record::greatest_extent
@@ -31,7 +31,7 @@ int32_t extent(std::mt19937& rng) {
 
 Node random_node(std::mt19937& rng) {
     Node node;
-    for (Volume& volume : node.volume) volume = {{place(rng), place(rng)}, extent(rng)};
+    for (Volume& volume : node.volume) volume = {{position(rng), position(rng)}, extent(rng)};
     node.child[0] = Reference::leaf(rng() % (1U << Reference::line_bits), 1 + rng() % 32);
     node.child[1] = rng() % 2 == 0 ? Reference{} : Reference::node(rng() % (1U << 26));
     return node;
@@ -52,7 +52,7 @@ TEST(MemoryLine, GivesBackTheRecordsThatWerePutIn) {
     std::mt19937 rng(2);
     for (int i = 0; i < 10'000; ++i) {
         Records records;
-        for (Record& r : records) r = {place(rng), extent(rng), extent(rng)};
+        for (Record& r : records) r = {position(rng), extent(rng), extent(rng)};
         const Line line = packed(records, 0xFFFF'FFFFU, 3);
         ASSERT_EQ(records_in(line), records);
         ASSERT_EQ(epoch_of(line), 0xFFFF'FFFFU);

@@ -56,10 +56,10 @@ private:
         return size;
     }
 
-    FixedVec place(int k) const { return offset_at(query_.segment, static_cast<uint32_t>(k)); }
+    FixedVec position(int k) const { return offset_at(query_.segment, static_cast<uint32_t>(k)); }
 
     Wide gap_of(const Half& half) const {
-        const FixedVec a = place(half.first), b = place(half.last);
+        const FixedVec a = position(half.first), b = position(half.last);
         std::array<Wide, 3> gap{};
         for (size_t axis = 0; axis < 3; ++axis) {
             const Box& tool = half.tool.volume.box;
@@ -88,7 +88,7 @@ private:
     }
 
     void visit(const Part& tool, const Part& work, int first, int last, uint32_t waiting) {
-        const FixedVec a = place(first), b = place(last);
+        const FixedVec a = position(first), b = position(last);
         Wide way = 0;
         for (size_t axis = 0; axis < 3; ++axis)
             way = std::max<Wide>(way, b[axis] > a[axis] ? Wide(b[axis]) - a[axis]
@@ -143,7 +143,7 @@ private:
         ++answer.counts.pair_tests;
         const Record a = records_in(memory_[tool / 4])[tool % 4];
         const Record b = records_in(memory_[work / 4])[work % 4];
-        const uint64_t squared = squared_distance(a, place(sample), b);
+        const uint64_t squared = squared_distance(a, position(sample), b);
         if (squared >= answer.squared) return;
         answer.found = true;
         answer.squared = squared;

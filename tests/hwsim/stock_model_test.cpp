@@ -53,17 +53,17 @@ struct Workshop {
 };
 
 Segment segment_over_the_stock(std::mt19937& rng) {
-    const auto place = [&] {
+    const auto position = [&] {
         const core::Vec3 p = test_support::random_point({{-45, -35, -3}, {45, 35, 3}}, rng);
         FixedVec v{};
         for (int axis = 0; axis < 3; ++axis)
             v[static_cast<size_t>(axis)] = fixed(p[axis], Rounding::nearest).value();
         return v;
     };
-    const FixedVec start = place();
+    const FixedVec start = position();
     return {.log2_steps = static_cast<uint8_t>(rng() % 9),
             .start = start,
-            .end = rng() % 2 ? start : place()};
+            .end = rng() % 2 ? start : position()};
 }
 
 TEST(StockModel, AfterCutsAnswersAsOneMadeAfresh) {

@@ -33,11 +33,11 @@ TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     const Checked checked = check(SetupWriter(), passes(""));
     EXPECT_EQ(checked.errors(), "missing-length-offset 5");
     EXPECT_EQ(checked.of_severity("warning"), "");
-    const FindingLine told = checked.finding("missing-length-offset");
-    EXPECT_THAT(told.message,
+    const FindingLine shown_assumptions = checked.finding("missing-length-offset");
+    EXPECT_THAT(shown_assumptions.message,
                 HasSubstr("95.000 mm lower than intended and collides with the stock"));
-    EXPECT_THAT(told.message, HasSubstr("from line 5 to line 17"));
-    EXPECT_THAT(told.cure, HasSubstr("G43 H1"));
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("from line 5 to line 17"));
+    EXPECT_THAT(shown_assumptions.cure, HasSubstr("G43 H1"));
     EXPECT_EQ(checked.verdict, "collision");
     EXPECT_EQ(checked.at_line(8).verdict, "collision"); // blocks keep their verdicts
     EXPECT_EQ(check(SetupWriter(), passes("G43 H1")).errors(), "");
@@ -82,9 +82,9 @@ TEST(LengthOfAnotherTool, IsOneWarningAndOneError) {
     const Checked deep = check(setup, passes("G43 H2"));
     EXPECT_EQ(deep.of_severity("warning"), "offset-not-tool 5");
     EXPECT_EQ(deep.errors(), "collision 8");
-    const FindingLine told = deep.finding("collision");
-    EXPECT_THAT(told.message, HasSubstr("see offset-not-tool in line 5"));
-    EXPECT_THAT(told.message, HasSubstr("55.000 mm lower"));
+    const FindingLine shown_assumptions = deep.finding("collision");
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("see offset-not-tool in line 5"));
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("55.000 mm lower"));
     const SetupWriter alike = SetupWriter().lengths("[[length_offset]]\nnumber = 2\nlength = 95\n");
     const Checked harmless = check(alike, passes("G43 H2"));
     EXPECT_EQ(harmless.errors(), "");
@@ -152,11 +152,11 @@ TEST(WorkOffset, ThatTheSetUpStatesAsZeroIsSet) {
 TEST(RestartInTheMiddle, NamesTheMotionCodeThatItsFirstBlockNeeds) {
     const std::string slot =
         program({"G0 X-20. Y50.", "Z-5.", "G1 X50. F800.", "X120.", "G0 Z60."});
-    const FindingLine told =
+    const FindingLine shown_assumptions =
         check(SetupWriter(), slot, {"--start-line", "9"}).finding("restart-in-the-middle");
-    EXPECT_EQ(told.line, 9);
-    EXPECT_EQ(told.severity, "warning");
-    EXPECT_THAT(told.message, HasSubstr("G1, F800"));
+    EXPECT_EQ(shown_assumptions.line, 9);
+    EXPECT_EQ(shown_assumptions.severity, "warning");
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("G1, F800"));
 }
 
 } // namespace

@@ -98,7 +98,7 @@ TEST(Coprocessor, GivesTheSamePermitsWhenBlocksOverlapInIt) {
         const CheckJob job = job_of(program);
         hwsim::FunctionalDevice device = hwsim::functional_device({}).value();
         const auto alone = test_support::judged_by_device(job, port_of(device));
-        const auto beside = run_beside_coprocessor({.check = job});
+        const auto beside = run_with_coprocessor({.check = job});
         ASSERT_TRUE(alone && beside) << program.file;
         ASSERT_EQ(beside->blocks.size(), alone->permits.size());
         uint64_t last = 0;

@@ -14,7 +14,7 @@ using test_support::program;
 using test_support::SetupWriter;
 
 /// The first number in a text after the given words.
-double number_behind(const std::string& text, const std::string& words) {
+double number_after(const std::string& text, const std::string& words) {
     const size_t at = text.find(words);
     double number = -1.0;
     if (at == std::string::npos
@@ -36,9 +36,9 @@ Checked deep_slot(double stick_out) {
 
 TEST(Cure, OfAShortStickOutIsTheLeastThatKeepsEveryMinimumClearance) {
     // Minimum clearance above the walls is 1 mm: depth 24 needs 25, depth 28 needs 29.
-    const FindingLine told = deep_slot(24.0).finding("stick-out-short");
-    EXPECT_EQ(told.line, 12);
-    const double enough = number_behind(told.cure, "A stick-out of ");
+    const FindingLine shown_assumptions = deep_slot(24.0).finding("stick-out-short");
+    EXPECT_EQ(shown_assumptions.line, 12);
+    const double enough = number_after(shown_assumptions.cure, "A stick-out of ");
     EXPECT_NEAR(enough, 29.0, 0.11);
     EXPECT_EQ(deep_slot(enough).errors(), "");
     EXPECT_NE(deep_slot(enough - 0.2).errors(), "");
@@ -54,9 +54,9 @@ Checked slot_at_once(double flutes) {
 }
 
 TEST(Cure, OfFlutesThatAreTooShortIsTheDepth) {
-    const FindingLine told = slot_at_once(18.0).finding("over-engagement");
-    EXPECT_EQ(told.severity, "warning");
-    const double enough = number_behind(told.cure, "Flutes of ");
+    const FindingLine shown_assumptions = slot_at_once(18.0).finding("over-engagement");
+    EXPECT_EQ(shown_assumptions.severity, "warning");
+    const double enough = number_after(shown_assumptions.cure, "Flutes of ");
     EXPECT_NEAR(enough, 24.0, 0.2);
     EXPECT_EQ(slot_at_once(enough).errors(), "");
     EXPECT_NE(slot_at_once(enough - 0.3).errors(), "");
@@ -71,9 +71,9 @@ Checked two_pockets(double retract) {
 }
 
 TEST(Cure, OfALowRetractClearsTheObstacle) {
-    const FindingLine told = two_pockets(4.0).finding("low-retract");
-    EXPECT_EQ(told.line, 11);
-    const double higher = number_behind(told.cure, "Retract ");
+    const FindingLine shown_assumptions = two_pockets(4.0).finding("low-retract");
+    EXPECT_EQ(shown_assumptions.line, 11);
+    const double higher = number_after(shown_assumptions.cure, "Retract ");
     EXPECT_NEAR(higher, 6.0, 0.11); // 8 plus the minimum clearance of 2, minus 4
     EXPECT_EQ(two_pockets(4.0 + higher).of_severity("warning"), "");
     EXPECT_EQ(two_pockets(4.0 + higher).errors(), "");

@@ -20,19 +20,19 @@ TEST(CureOfDoubt, NamesTheCornersThatTheControlRounds) {
         SetupWriter()
             .machine("rapid = \"straight\"\ncorner_tolerance = 2\n" + SetupWriter::mill())
             .fixture("clamp-1", "box = [[58, 40, -10], [70, 60, 10]]\n");
-    const FindingLine told = undecided_in(
+    const FindingLine shown_assumptions = undecided_in(
         check(rounded, program({"G0 X-20. Y50.", "Z-5.", "G1 X50. F800.", "Y120.", "G0 Z60."})));
-    EXPECT_THAT(told.cure, HasSubstr("round corners by 2 mm"));
-    EXPECT_THAT(told.cure, Not(HasSubstr("mesh")));
+    EXPECT_THAT(shown_assumptions.cure, HasSubstr("round corners by 2 mm"));
+    EXPECT_THAT(shown_assumptions.cure, Not(HasSubstr("mesh")));
 }
 
 TEST(CureOfDoubt, NamesTheToleranceOfTheStock) {
     const std::vector<std::string> over = {"G0 X-20. Y50.", "Z0.5", "X120.", "Z60."};
     const std::string box = "box = [[0, 0, -30], [100, 100, 0]]\n";
-    const FindingLine told =
+    const FindingLine shown_assumptions =
         undecided_in(check(SetupWriter().stock(box + "tolerance = 1.0\n"), program(over)));
-    EXPECT_THAT(told.cure, HasSubstr("`tolerance` of [stock], or"));
-    EXPECT_THAT(told.cure, Not(HasSubstr("mesh")));
+    EXPECT_THAT(shown_assumptions.cure, HasSubstr("`tolerance` of [stock], or"));
+    EXPECT_THAT(shown_assumptions.cure, Not(HasSubstr("mesh")));
     EXPECT_EQ(check(SetupWriter().stock(box), program(over)).errors(), "");
 }
 

@@ -19,10 +19,11 @@ using testing::Not;
 TEST(RapidOnTheWayHome, IsARapidInTheStock) {
     const Checked checked =
         check(SetupWriter(), program({"G0 X-20. Y50.", "Z2.", "G28 X120. Z-5.", "G0 Z0."}));
-    const FindingLine told = checked.finding("rapid-in-stock");
-    EXPECT_EQ(told.line, 8);
-    EXPECT_THAT(told.message, HasSubstr("on the way to the reference point (G28, G30)"));
-    EXPECT_THAT(told.cure, HasSubstr("G91 G28 Z0"));
+    const FindingLine shown_assumptions = checked.finding("rapid-in-stock");
+    EXPECT_EQ(shown_assumptions.line, 8);
+    EXPECT_THAT(shown_assumptions.message,
+                HasSubstr("on the way to the reference point (G28, G30)"));
+    EXPECT_THAT(shown_assumptions.cure, HasSubstr("G91 G28 Z0"));
     EXPECT_THAT(checked.errors(), Not(HasSubstr("collision")));
 }
 
@@ -32,10 +33,10 @@ TEST(RapidOfACycle, IsARapidInTheStock) {
     std::vector<std::string> lines = pocket;
     lines.insert(lines.end(), {"G98 G81 X80. Y50. Z-12. R-8. F200.", "G80", "G0 Z60."});
     const Checked checked = check(SetupWriter(), program(lines));
-    const FindingLine told = checked.finding("rapid-in-stock");
-    EXPECT_EQ(told.line, 9);
-    EXPECT_THAT(told.message, HasSubstr("on a rapid of this cycle"));
-    EXPECT_THAT(told.cure, HasSubstr("the cycle"));
+    const FindingLine shown_assumptions = checked.finding("rapid-in-stock");
+    EXPECT_EQ(shown_assumptions.line, 9);
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("on a rapid of this cycle"));
+    EXPECT_THAT(shown_assumptions.cure, HasSubstr("the cycle"));
     lines = {"G0 X20. Y50.", "Z2.", "G98 G81 X80. Y50. Z-12. R2. F200.", "G80", "G0 Z60."};
     EXPECT_EQ(check(SetupWriter(), program(lines)).errors(), "");
 }
@@ -54,9 +55,9 @@ TEST(RapidOfACycle, PastAClampIsNamedAsARapid) {
     const Checked checked =
         check(setup, program({"G0 X-20. Y97.8", "Z2.5", "G98 G81 X90. Y97.8 Z-3. R2.5 F200.", "G80",
                               "G0 Z60."}));
-    const FindingLine told = checked.finding("rapid-near-clamp");
-    EXPECT_EQ(told.line, 8);
-    EXPECT_THAT(told.message,
+    const FindingLine shown_assumptions = checked.finding("rapid-near-clamp");
+    EXPECT_EQ(shown_assumptions.line, 8);
+    EXPECT_THAT(shown_assumptions.message,
                 HasSubstr("On a rapid of this cycle, the flutes come within 1.200 mm of clamp-1"));
 }
 
@@ -101,9 +102,9 @@ TEST(FluteLength, IsReportedAsTheSetUpStatesIt) {
         "neck_length = 20\nstick_out = 45\nholder = [[40, 40, 50]]\n");
     const Checked checked =
         check(setup, program({"G0 X-20. Y0.", "Z-14.", "G1 X120. F300.", "G0 Z60."}));
-    const FindingLine told = checked.finding("over-engagement");
-    EXPECT_THAT(told.message, HasSubstr("5.0 mm"));
-    EXPECT_THAT(told.message, Not(HasSubstr("5.2")));
+    const FindingLine shown_assumptions = checked.finding("over-engagement");
+    EXPECT_THAT(shown_assumptions.message, HasSubstr("5.0 mm"));
+    EXPECT_THAT(shown_assumptions.message, Not(HasSubstr("5.2")));
 }
 
 // The same words with and without --pairs.

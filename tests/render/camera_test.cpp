@@ -11,13 +11,13 @@ const Viewport wide{1280, 800}, narrow{300, 900};
 const Aabb box{{-40, -90, -10}, {60, 20, 35}};
 
 Camera random_camera(std::mt19937& random) {
-    const auto share = [&] { return std::uniform_real_distribution<>(-1.0, 1.0)(random); };
+    const auto fraction = [&] { return std::uniform_real_distribution<>(-1.0, 1.0)(random); };
     Camera camera;
-    camera.target = {100 * share(), 100 * share(), 50 * share()};
-    camera.distance = 250.0 + 200.0 * share();
-    camera.yaw = 3.1 * share();
-    camera.pitch = 1.5 * share();
-    camera.projection = share() > 0.0 ? Projection::perspective : Projection::orthographic;
+    camera.target = {100 * fraction(), 100 * fraction(), 50 * fraction()};
+    camera.distance = 250.0 + 200.0 * fraction();
+    camera.yaw = 3.1 * fraction();
+    camera.pitch = 1.5 * fraction();
+    camera.projection = fraction() > 0.0 ? Projection::perspective : Projection::orthographic;
     return camera;
 }
 
@@ -38,11 +38,11 @@ TEST(Camera, FramesTheWholeBox) {
             for (const Vec3& corner : corners(box)) {
                 const auto seen = project(camera, viewport, corner);
                 ASSERT_TRUE(seen);
-                const Vec2 share = seen->place / Vec2(viewport.width, viewport.height);
-                EXPECT_GE(std::min(share.x, share.y), 0.05 - 1e-9);
-                EXPECT_LE(std::max(share.x, share.y), 0.95 + 1e-9);
-                nearest = std::min(
-                    {nearest, share.x - 0.05, share.y - 0.05, 0.95 - share.x, 0.95 - share.y});
+                const Vec2 fraction = seen->position / Vec2(viewport.width, viewport.height);
+                EXPECT_GE(std::min(fraction.x, fraction.y), 0.05 - 1e-9);
+                EXPECT_LE(std::max(fraction.x, fraction.y), 0.95 + 1e-9);
+                nearest = std::min({nearest, fraction.x - 0.05, fraction.y - 0.05,
+                                    0.95 - fraction.x, 0.95 - fraction.y});
             }
             EXPECT_LT(nearest, 1e-6); // and no farther away than need be
         }
@@ -62,12 +62,12 @@ TEST(Camera, SeesAPointWhereItsRayGoes) {
     std::uniform_real_distribution<> x(0, wide.width), y(0, wide.height), deep(100, 700);
     for (int i = 0; i < 500; ++i) {
         const Camera camera = random_camera(random);
-        const Vec2 place(x(random), y(random));
-        const Ray ray = ray_through(camera, wide, place);
+        const Vec2 position(x(random), y(random));
+        const Ray ray = ray_through(camera, wide, position);
         EXPECT_NEAR(glm::length(ray.direction), 1.0, 1e-12);
         const auto seen = project(camera, wide, ray.origin + deep(random) * ray.direction);
         ASSERT_TRUE(seen);
-        EXPECT_LT(glm::distance(seen->place, place), 1e-6);
+        EXPECT_LT(glm::distance(seen->position, position), 1e-6);
     }
 }
 
@@ -81,8 +81,8 @@ TEST(Camera, ProjectsAsOpenGlDoes) {
             const Vec3 device = Vec3(at) / at.w;
             EXPECT_LE(std::abs(device.z), 1.0); // between the near and the far plane
             const auto seen = project(camera, wide, corner);
-            EXPECT_NEAR(seen->place.x, (0.5 + 0.5 * device.x) * wide.width, 1e-6);
-            EXPECT_NEAR(seen->place.y, (0.5 - 0.5 * device.y) * wide.height, 1e-6);
+            EXPECT_NEAR(seen->position.x, (0.5 + 0.5 * device.x) * wide.width, 1e-6);
+            EXPECT_NEAR(seen->position.y, (0.5 - 0.5 * device.y) * wide.height, 1e-6);
         }
     }
 }
@@ -99,7 +99,7 @@ TEST(Camera, ZoomsToTheCursor) {
         for (const auto& fixed : {std::optional(at), std::optional<Vec3>()}) {
             const Camera nearer = zoomed(camera, wide, cursor, by(random), fixed);
             const Vec3 point = fixed.value_or(point_under(camera, wide, cursor, camera.target));
-            EXPECT_LT(glm::distance(project(nearer, wide, point)->place, cursor), 1e-6);
+            EXPECT_LT(glm::distance(project(nearer, wide, point)->position, cursor), 1e-6);
             EXPECT_NE(nearer.distance, camera.distance);
         }
     }
@@ -114,7 +114,7 @@ TEST(Camera, PanMovesWhatIsUnderTheCursorWithIt) {
         const Vec3 level = camera.target + Vec3(5, -7, 3);
         const Vec3 held = point_under(camera, wide, from, level);
         const Camera moved = panned(camera, wide, from, to, level);
-        EXPECT_LT(glm::distance(project(moved, wide, held)->place, to), 1e-6);
+        EXPECT_LT(glm::distance(project(moved, wide, held)->position, to), 1e-6);
         EXPECT_EQ(moved.distance, camera.distance);
     }
 }

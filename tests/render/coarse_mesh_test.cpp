@@ -18,7 +18,7 @@ std::vector<const TriangleMesh*> surface_of(const StockBricks& bricks) {
 core::Aabb box_of(std::span<const TriangleMesh* const> parts) {
     core::Aabb box;
     for (const TriangleMesh* part : parts)
-        for (const MeshVertex& vertex : part->vertices) box.extend(Vec3(vertex.place));
+        for (const MeshVertex& vertex : part->vertices) box.extend(Vec3(vertex.position));
     return box;
 }
 
@@ -27,8 +27,8 @@ double volume_of(std::span<const TriangleMesh* const> parts) {
     double volume = 0.0;
     for (const TriangleMesh* part : parts)
         for (const TriangleMesh::Corners& t : part->triangles) {
-            const Vec3 a(part->vertices[t[0]].place), b(part->vertices[t[1]].place),
-                c(part->vertices[t[2]].place);
+            const Vec3 a(part->vertices[t[0]].position), b(part->vertices[t[1]].position),
+                c(part->vertices[t[2]].position);
             volume += glm::dot(a, glm::cross(b, c)) / 6.0;
         }
     return volume;
@@ -58,14 +58,14 @@ TEST(CoarseMesh, LiesOnTheSurface) {
     const Scene scene = sample_scene(0.5);
     const auto fine = surface_of(scene.stock);
     const TriangleMesh mesh = coarse(fine, 6000);
-    std::vector<Vec3> places;
+    std::vector<Vec3> positions;
     for (const TriangleMesh* part : fine)
-        for (const MeshVertex& vertex : part->vertices) places.emplace_back(vertex.place);
+        for (const MeshVertex& vertex : part->vertices) positions.emplace_back(vertex.position);
     size_t off = 0;
     for (const MeshVertex& vertex : mesh.vertices) {
         double nearest = 1e9;
-        for (const Vec3& place : places)
-            nearest = std::min(nearest, glm::length(place - Vec3(vertex.place)));
+        for (const Vec3& position : positions)
+            nearest = std::min(nearest, glm::length(position - Vec3(vertex.position)));
         off += nearest > 0.5;
     }
     // Where the planes of a cell meet between lines.

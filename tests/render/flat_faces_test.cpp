@@ -85,7 +85,7 @@ size_t turned_over(const StockBricks& bricks, TriangleMesh StockBrick::*part) {
     for (const auto& brick : bricks) {
         const TriangleMesh& mesh = (*brick).*part;
         for (const TriangleMesh::Corners& t : mesh.triangles) {
-            const auto at = [&](size_t i) { return Vec3(mesh.vertices[t[i]].place); };
+            const auto at = [&](size_t i) { return Vec3(mesh.vertices[t[i]].position); };
             const Vec3 across = glm::cross(at(1) - at(0), at(2) - at(0));
             count += glm::dot(across, unpacked_normal(mesh.vertices[t[0]])) < 0.0;
         }

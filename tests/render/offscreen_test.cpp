@@ -216,7 +216,7 @@ TEST_F(Picture, DrawsAPathOfManyPieces) {
     // More than one texture holds; the last piece is as much there as the first.
     std::vector<PathPoint> points;
     for (uint32_t i = 0; i < 150'000; ++i)
-        points.push_back({.place = {static_cast<float>(i) * 1e-3F, 0, 0},
+        points.push_back({.position = {static_cast<float>(i) * 1e-3F, 0, 0},
                           .block = i,
                           .state = ClearanceState::violation});
     Scene plain;
@@ -227,7 +227,7 @@ TEST_F(Picture, DrawsAPathOfManyPieces) {
     const Image image = drawn(plain, camera);
     const Color ink = color(ColorScheme::dark, Role::violation);
     for (const double x : {1.0, 70.0, 100.0, 149.0}) {
-        const Vec2 at = project(camera, size, {x, 0, 0})->place;
+        const Vec2 at = project(camera, size, {x, 0, 0})->position;
         const uint8_t* p = image.pixel(static_cast<int>(at.x), static_cast<int>(at.y));
         EXPECT_NEAR(p[0], ink.r, 30) << x;
     }

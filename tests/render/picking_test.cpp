@@ -27,7 +27,9 @@ Camera above() {
     return camera;
 }
 
-Vec2 seen(const Camera& camera, const Vec3& point) { return project(camera, window, point)->place; }
+Vec2 seen(const Camera& camera, const Vec3& point) {
+    return project(camera, window, point)->position;
+}
 
 TEST(PickStock, NamesTheBlockThatCut) {
     const Camera camera = above();
@@ -39,7 +41,7 @@ TEST(PickStock, NamesTheBlockThatCut) {
     std::vector<PathPoint> path;
     sample_moves(path);
     const auto bottom = std::find_if(path.begin(), path.end(), [](const PathPoint& p) {
-        return p.place == glm::vec3(28, 2, -14);
+        return p.position == glm::vec3(28, 2, -14);
     });
     EXPECT_EQ(*hole->block, bottom->block);
     const auto raw = pick_stock(sample(), ray_through(camera, window, seen(camera, {40, 25, 0})));
@@ -191,8 +193,8 @@ double nearest_piece(const ToolPath& path, const Camera& camera, const Vec2& cur
     double best = core::infinity;
     for (size_t i = 1; i < path.points.size(); ++i) {
         if (path.points[i].begins) continue;
-        const Vec2 a = seen(camera, Vec3(path.points[i - 1].place));
-        const Vec2 b = seen(camera, Vec3(path.points[i].place));
+        const Vec2 a = seen(camera, Vec3(path.points[i - 1].position));
+        const Vec2 b = seen(camera, Vec3(path.points[i].position));
         const double size = glm::dot(b - a, b - a);
         const double t = size > 0 ? std::clamp(glm::dot(cursor - a, b - a) / size, 0.0, 1.0) : 0.0;
         best = std::min(best, glm::distance(cursor, a + t * (b - a)));
@@ -225,7 +227,7 @@ TEST(PickPath, NamesTheBlockOfThePiece) {
     const ToolPath& path = *sample().path;
     Camera camera;
     camera.distance = 250;
-    const Vec3 middle = 0.5 * (Vec3(path.points[3].place) + Vec3(path.points[4].place));
+    const Vec3 middle = 0.5 * (Vec3(path.points[3].position) + Vec3(path.points[4].position));
     const auto hit = pick_path(path, camera, window, seen(camera, middle));
     ASSERT_TRUE(hit);
     EXPECT_LT(hit->pixels, 1.0);

@@ -17,7 +17,7 @@ using core::Vec3;
 double volume(const TriangleMesh& mesh) {
     double six = 0.0;
     for (const TriangleMesh::Corners& t : mesh.triangles) {
-        const auto at = [&](size_t i) { return Vec3(mesh.vertices[t[i]].place); };
+        const auto at = [&](size_t i) { return Vec3(mesh.vertices[t[i]].position); };
         six += glm::dot(at(0), glm::cross(at(1), at(2)));
     }
     return six / 6.0;
@@ -29,7 +29,7 @@ bool is_closed(const TriangleMesh& mesh) {
     for (const TriangleMesh::Corners& t : mesh.triangles)
         for (size_t k = 0; k < 3; ++k) {
             const auto at = [&](size_t i) {
-                const glm::vec3& p = mesh.vertices[t[i % 3]].place;
+                const glm::vec3& p = mesh.vertices[t[i % 3]].position;
                 return Place{p.x, p.y, p.z};
             };
             const Place a = at(k), b = at(k + 1);
@@ -91,7 +91,7 @@ TEST(ProfileMesh, IsSmoothRoundAndCrispAtRims) {
     EXPECT_TRUE(is_closed(ball_end));
     size_t on_ball = 0;
     for (const MeshVertex& v : ball_end.vertices) {
-        const Vec3 p(v.place), n = unpacked_normal(v);
+        const Vec3 p(v.position), n = unpacked_normal(v);
         if (p.z > 7.0) continue;
         EXPECT_GT(glm::dot(n, glm::normalize(p - Vec3(0, 0, 8))), 0.985);
         ++on_ball;
@@ -161,7 +161,7 @@ TEST(SetupScene, LeavesOutFixturesThatAreNotThere) {
 TEST(ToolPath, FindsThePointsOfABlock) {
     std::vector<PathPoint> points;
     for (uint32_t i = 0; i < 500; ++i)
-        points.push_back({.place = {static_cast<float>(i), 0, 0}, .block = i / 3});
+        points.push_back({.position = {static_cast<float>(i), 0, 0}, .block = i / 3});
     points[0].begins = true;
     const ToolPath path = tool_path(points);
     EXPECT_EQ(points_of_block(path, 7), (std::pair<size_t, size_t>(21, 24)));
@@ -175,7 +175,7 @@ TEST(ToolPath, FindsThePointsOfABlock) {
 ToolPath steps(uint32_t count) {
     std::vector<PathPoint> points;
     for (uint32_t i = 0; i < count; ++i)
-        points.push_back({.place = {static_cast<float>(i), 0, 0}, .block = i});
+        points.push_back({.position = {static_cast<float>(i), 0, 0}, .block = i});
     return tool_path(std::move(points));
 }
 
@@ -187,12 +187,12 @@ TEST(ToolPath, KeepsWhatIsNearABlock) {
     using Ends = std::pair<uint32_t, uint32_t>;
     const ToolPath path = steps(1000);
     // With the place from which the first of so many blocks goes.
-    const PathReach blocks{.before = 30, .behind = 8, .way_before = 0, .way_behind = 0};
+    const PathReach blocks{.before = 30, .after = 8, .length_before = 0, .length_after = 0};
     EXPECT_EQ(ends(path_near(path, 500, blocks)), Ends(469, 508));
     EXPECT_TRUE(path_near(path, 500, blocks).points[0].begins);
-    const PathReach way{.before = 0, .behind = 0, .way_before = 99.5, .way_behind = 9.5};
+    const PathReach way{.before = 0, .after = 0, .length_before = 99.5, .length_after = 9.5};
     EXPECT_EQ(ends(path_near(path, 500, way)), Ends(400, 510));
-    const PathReach all{.before = 5000, .behind = 5000, .most = 7};
+    const PathReach all{.before = 5000, .after = 5000, .most = 7};
     EXPECT_EQ(ends(path_near(path, 500, all)), Ends(493, 507));
     EXPECT_EQ(ends(path_near(path, 0, blocks)), Ends(0, 8));
     EXPECT_EQ(ends(path_near(path, 999, blocks)), Ends(968, 999));
@@ -202,13 +202,13 @@ TEST(ToolPath, KeepsWhatIsNearABlock) {
 TEST(ToolPath, KeepsWhatIsNearABlockThatDoesNotMove) {
     std::vector<PathPoint> points = steps(20).points;
     std::erase_if(points, [](const PathPoint& point) { return point.block == 10; });
-    const ToolPath near = path_near(tool_path(points), 10,
-                                    {.before = 2, .behind = 2, .way_before = 0, .way_behind = 0});
+    const ToolPath near = path_near(
+        tool_path(points), 10, {.before = 2, .after = 2, .length_before = 0, .length_after = 0});
     EXPECT_EQ(ends(near), (std::pair<uint32_t, uint32_t>(7, 12)));
 }
 
 core::Leg leg(const core::AxisValues& from, const core::AxisValues& to) {
-    return {.places = {from, to}};
+    return {.positions = {from, to}};
 }
 
 TEST(MotionPath, FollowsTheLegsOfADogLeg) {
@@ -219,9 +219,9 @@ TEST(MotionPath, FollowsTheLegsOfADogLeg) {
     append_motion(points, setup, 80.0, {{leg({30, 10, 100}, {30, 10, 90})}}, {.block = 4});
     ASSERT_EQ(points.size(), 4u);
     EXPECT_TRUE(points[0].begins);
-    EXPECT_EQ(points[1].place, glm::vec3(10, 10, 20));
+    EXPECT_EQ(points[1].position, glm::vec3(10, 10, 20));
     EXPECT_TRUE(points[2].rapid && !points[2].begins);
-    EXPECT_EQ(points[3].place, glm::vec3(30, 10, 10));
+    EXPECT_EQ(points[3].position, glm::vec3(30, 10, 10));
     EXPECT_EQ(points[3].block, 4u);
     append_motion(points, setup, 70.0, {{leg({30, 10, 90}, {31, 10, 90})}}, {.block = 5});
     EXPECT_TRUE(points[4].begins); // a tool of another length
@@ -240,14 +240,14 @@ TEST(MotionPath, BendsWhereTheTableTurns) {
     to[5] = 90.0;
     append_motion(points, setup, 50.0, {{leg(from, to)}}, {});
     EXPECT_GE(points.size(), 30u);
-    for (const PathPoint& p : points) EXPECT_NEAR(glm::length(p.place), 40.0, 1e-4);
-    EXPECT_NEAR(std::abs(points.back().place.y), 40.0, 1e-4);
+    for (const PathPoint& p : points) EXPECT_NEAR(glm::length(p.position), 40.0, 1e-4);
+    EXPECT_NEAR(std::abs(points.back().position.y), 40.0, 1e-4);
 }
 
 TEST(MotionPath, OmitsAnUnknownPath) {
     const core::Setup setup = sample_setup();
     std::vector<PathPoint> points;
-    core::Leg unknown{.places = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}},
+    core::Leg unknown{.positions = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}},
                       .straight = false,
                       .start_known = false,
                       .certain = {{10, 10, 0}}};
@@ -261,7 +261,7 @@ std::vector<PathPoint> raster() {
     std::vector<PathPoint> points;
     for (uint32_t i = 0; i < 20'000; ++i) {
         const float x = static_cast<float>(i % 200) * 0.25F, y = static_cast<float>(i / 200) * 0.4F;
-        points.push_back({.place = {x, y, 3.0F * std::sin(x * 0.3F) * std::cos(y * 0.2F)},
+        points.push_back({.position = {x, y, 3.0F * std::sin(x * 0.3F) * std::cos(y * 0.2F)},
                           .block = i,
                           .state = i % 700 < 9 ? ClearanceState::violation : ClearanceState::clear,
                           .rapid = i % 200 == 0,
@@ -278,7 +278,7 @@ TEST(SimplifiedPath, StaysWithinItsToleranceAndKeepsStates) {
         size_t next = 0; // blocks tell which point is which
         double farthest = 0.0;
         for (size_t i = 1; i < kept.size(); ++i) {
-            const Vec3 a(kept[i - 1].place), b(kept[i].place), by = b - a;
+            const Vec3 a(kept[i - 1].position), b(kept[i].position), by = b - a;
             for (; next <= kept[i].block; ++next) {
                 const PathPoint& p = points[next];
                 if (next > kept[i - 1].block) {
@@ -287,8 +287,8 @@ TEST(SimplifiedPath, StaysWithinItsToleranceAndKeepsStates) {
                     EXPECT_EQ(p.begins, kept[i].begins);
                 }
                 const double t =
-                    std::clamp(glm::dot(Vec3(p.place) - a, by) / glm::dot(by, by), 0.0, 1.0);
-                farthest = std::max(farthest, glm::distance(Vec3(p.place), a + t * by));
+                    std::clamp(glm::dot(Vec3(p.position) - a, by) / glm::dot(by, by), 0.0, 1.0);
+                farthest = std::max(farthest, glm::distance(Vec3(p.position), a + t * by));
             }
         }
         EXPECT_EQ(next, points.size());
@@ -308,9 +308,9 @@ TEST(VisiblePath, LeavesOutNothingThatIsSeen) {
     size_t drawn = 0, seen = 0;
     for (const PathRange& range : ranges) drawn += range.last - range.first;
     for (size_t i = 1; i < path.points.size(); ++i) {
-        const auto at = project(camera, viewport, Vec3(path.points[i].place));
-        if (!at || at->place.x < 0 || at->place.y < 0 || at->place.x > viewport.width
-            || at->place.y > viewport.height || at->depth < 1.0)
+        const auto at = project(camera, viewport, Vec3(path.points[i].position));
+        if (!at || at->position.x < 0 || at->position.y < 0 || at->position.x > viewport.width
+            || at->position.y > viewport.height || at->depth < 1.0)
             continue;
         ++seen;
         EXPECT_TRUE(std::any_of(ranges.begin(), ranges.end(), [&](const PathRange& range) {

@@ -18,7 +18,7 @@ using core::Vec3;
 using Place = std::array<float, 3>;
 
 Place place_of(const StockBrick& brick, uint32_t vertex) {
-    const glm::vec3& p = brick.mesh.vertices[vertex].place;
+    const glm::vec3& p = brick.mesh.vertices[vertex].position;
     return {p.x, p.y, p.z};
 }
 
@@ -45,7 +45,7 @@ double volume(const StockBricks& bricks) {
     double six = 0.0;
     for (const auto& brick : bricks)
         for (const TriangleMesh::Corners& t : brick->mesh.triangles) {
-            const auto at = [&](size_t i) { return Vec3(brick->mesh.vertices[t[i]].place); };
+            const auto at = [&](size_t i) { return Vec3(brick->mesh.vertices[t[i]].position); };
             six += glm::dot(at(0), glm::cross(at(1), at(2)));
         }
     return six / 6.0;
@@ -160,7 +160,7 @@ TEST(StockSurface, KnowsTheBlockThatMadeATriangle) {
             for (const uint32_t corner : corners)
                 EXPECT_EQ(brick->mesh.vertices[corner].tint, block == StockBrick::raw ? 0 : 1);
             if (block == StockBrick::raw) continue;
-            const float y = brick->mesh.vertices[corners[0]].place.y;
+            const float y = brick->mesh.vertices[corners[0]].position.y;
             EXPECT_EQ(block, y > 0.0F ? 17u : 23u);
             ++(y > 0.0F ? first : second);
         }
@@ -175,7 +175,7 @@ TEST(StockSurface, KeepsEdgesCrispAndRoundsSmooth) {
     size_t round = 0, flat = 0;
     for (const auto& brick : stock_bricks(model)) {
         for (const MeshVertex& v : brick->mesh.vertices) {
-            const Vec3 p(v.place), n = unpacked_normal(v);
+            const Vec3 p(v.position), n = unpacked_normal(v);
             if (std::abs(p.x) > 44.0) continue;
             if (v.tint == 1) { // towards the axis of the groove
                 const Vec3 expected = glm::normalize(Vec3(0, -p.y, 2.0 - p.z));

@@ -106,8 +106,8 @@ TEST(Keyframes, StayWithinTheirMemory) {
     app::DebugSession& session = *walked.session;
     while (session.record_for(1.0)) {
     }
-    for (size_t place = 0; place < walked.digests.size(); place += 7) {
-        ASSERT_TRUE(session.go_to(place));
+    for (size_t position = 0; position < walked.digests.size(); position += 7) {
+        ASSERT_TRUE(session.go_to(position));
         EXPECT_LE(session.keyframe_memory(), budget);
     }
     EXPECT_GE(session.keyframe_count(), 2U);

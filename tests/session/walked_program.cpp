@@ -91,13 +91,13 @@ std::vector<uint64_t> digests_of(const app::CheckJob& job) {
     auto check = app::prepare_check(job);
     if (!check) return {};
     app::BlockRunner runner(*check);
-    app::RunState place = app::start_of_program(check->file.environment, check->run.setup,
+    app::RunState state = app::start_of_program(check->file.environment, check->run.setup,
                                                 std::move(*check->machine));
-    std::vector<uint64_t> digests = {app::digest_of(place)};
+    std::vector<uint64_t> digests = {app::digest_of(state)};
     while (true) {
-        const auto step = runner.step(place);
+        const auto step = runner.step(state);
         if (!step || !*step) return digests;
-        digests.push_back(app::digest_of(place));
+        digests.push_back(app::digest_of(state));
     }
 }
 

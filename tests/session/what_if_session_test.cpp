@@ -148,10 +148,11 @@ TEST(WhatIf, OfAVastAllowanceLooksAsFarAsACheckDoes) {
     for (size_t i = 0; i < other->blocks.size(); ++i)
         EXPECT_EQ(session->record().blocks[i].result.verdict, other->blocks[i].result.verdict) << i;
     const auto text_of = [](const core::Finding& finding) { return finding.message; };
-    std::vector<std::string> told, expected;
-    std::ranges::transform(session->record().findings, std::back_inserter(told), text_of);
+    std::vector<std::string> shown_assumptions, expected;
+    std::ranges::transform(session->record().findings, std::back_inserter(shown_assumptions),
+                           text_of);
     std::ranges::transform(other->findings, std::back_inserter(expected), text_of);
-    EXPECT_EQ(told, expected);
+    EXPECT_EQ(shown_assumptions, expected);
 }
 
 const char* const moved_by_program = R"(G21 G90 G17 G54
@@ -222,11 +223,13 @@ TEST(WhatIf, LetsAWrongLengthTakeInOnlyWhatComesOfIt) {
     ASSERT_TRUE(session->go_to(*session->find_line("7")));
     ASSERT_TRUE(session->change(app::MovedFixture{"post", core::Vec3(-80.0, 0.0, 0.0)}));
     record_all(*session);
-    const auto told = [&](const core::Finding& finding) { return finding.pair[1] == "post"; };
+    const auto shown_assumptions = [&](const core::Finding& finding) {
+        return finding.pair[1] == "post";
+    };
     const auto& findings = session->record().findings;
-    EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), told));
+    EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), shown_assumptions));
     const auto& taken_in = session->record().taken_in;
-    EXPECT_TRUE(std::none_of(taken_in.begin(), taken_in.end(), told));
+    EXPECT_TRUE(std::none_of(taken_in.begin(), taken_in.end(), shown_assumptions));
 }
 
 } // namespace

@@ -52,10 +52,11 @@ public:
             ASSERT_TRUE(other->change(made.change));
         }
         ASSERT_TRUE(other->go_to(session_->at()));
-        EXPECT_EQ(app::digest_of(session_->state()), app::digest_of(other->state())) << told();
+        EXPECT_EQ(app::digest_of(session_->state()), app::digest_of(other->state()))
+            << shown_assumptions();
         while (session_->record_for(1.0) || other->record_for(1.0)) {
         }
-        EXPECT_EQ(report_of(session_->record()), report_of(other->record())) << told();
+        EXPECT_EQ(report_of(session_->record()), report_of(other->record())) << shown_assumptions();
     }
 
     size_t most_made() const { return most_made_; }
@@ -98,7 +99,7 @@ private:
         EXPECT_EQ(session_->at(), made_.back().block);
         made_.pop_back();
     }
-    std::string told() const {
+    std::string shown_assumptions() const {
         std::string text;
         for (const app::MadeChange& made : made_)
             text += std::to_string(made.block) + ": " + app::text_of(made.change) + "\n";

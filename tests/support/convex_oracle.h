@@ -18,8 +18,8 @@ inline double reach(const core::ConvexShape& shape, const core::Vec3& n) {
     for (size_t i = 0; i < shape.point_count; ++i)
         core_reach = std::max(core_reach, glm::dot(shape.points[i], n));
     double place_reach = -core::infinity;
-    for (size_t i = 0; i < shape.place_count; ++i)
-        place_reach = std::max(place_reach, glm::dot(shape.places[i].at, n));
+    for (size_t i = 0; i < shape.position_count; ++i)
+        place_reach = std::max(place_reach, glm::dot(shape.positions[i].at, n));
     return core_reach + place_reach + shape.margin;
 }
 

@@ -46,7 +46,7 @@ private:
     core::AxisPosition start() const {
         core::AxisPosition position;
         for (size_t i = 0; i < core::axis_count; ++i)
-            if (known_.setup.machine.axes[i].present) position[i] = machinist_.place()[i];
+            if (known_.setup.machine.axes[i].present) position[i] = machinist_.current()[i];
         return position;
     }
 
@@ -103,12 +103,12 @@ private:
         ++tally_.pairs;
         core::PairClearance claim{.pair = {pair.part, pair.fixture}, .lower = 0.0};
         claim.allowance = core::allowance_of(known_.setup, claim.pair);
-        bool told = false;
+        bool shown_assumptions = false;
         for (const core::PairClearance& known : result.pairs)
-            if (known.pair == claim.pair) claim = known, told = true;
+            if (known.pair == claim.pair) claim = known, shown_assumptions = true;
         if (pair.cuts_fixture(known_.world) && cut_fixtures_[*pair.fixture])
             return judge_cut_fixture(block, claim, pair, crashed);
-        if (!told && known_.setup.detail == core::Detail::every_pair)
+        if (!shown_assumptions && known_.setup.detail == core::Detail::every_pair)
             fail("every pair is reported", describe(claim, {}));
         ClearanceSearch search(known_.world, block, pair, crashed, dice_.random);
         if (claim.found()) {
@@ -260,9 +260,9 @@ private:
         const core::Vec3 p = dice_.within(bounds(flutes).grown(1.0));
         const PieceDistance near = nearest_of(flutes, p);
         if (near.distance <= 0.0) return;
-        const double away = dice_.chance(0.5) ? 1e-6 : 0.4 * dice_.share();
+        const double away = dice_.chance(0.5) ? 1e-6 : 0.4 * dice_.fraction();
         const core::Vec3 beside = near.nearest + (p - near.nearest) * (away / near.distance);
-        const core::AxisValues at = by.path.at(dice_.share());
+        const core::AxisValues at = by.path.at(dice_.fraction());
         keep(mounted_place(known_.world.machine, known_.world.stock_mount, at,
                            beside + core::Vec3(at[0], at[1], at[2] - by.tool->length)));
     }
@@ -276,7 +276,7 @@ private:
                            claim.upper, core::name_of(claim.verdict), claim.allowance.distance,
                            claim.allowance.contact, int(known_.setup.detail),
                            known_.setup.search_limit, known_.setup.mesh_size, best.near.distance,
-                           best.p.x, best.p.y, best.p.z, best.near.passage, best.near.share);
+                           best.p.x, best.p.y, best.p.z, best.near.passage, best.near.fraction);
     }
 
     void fail(const std::string& claim, const std::string& what) {

@@ -110,9 +110,9 @@ inline core::Mesh together(core::Mesh a, const core::Mesh& b) {
 }
 
 inline core::Transform random_pose(std::mt19937& rng, double reach) {
-    std::uniform_real_distribution<double> angle(-180.0, 180.0), place(-reach, reach);
+    std::uniform_real_distribution<double> angle(-180.0, 180.0), position(-reach, reach);
     const core::Vec3 turn(angle(rng), angle(rng), angle(rng));
-    return {core::rotation_xyz_deg(turn), core::Vec3(place(rng), place(rng), place(rng))};
+    return {core::rotation_xyz_deg(turn), core::Vec3(position(rng), position(rng), position(rng))};
 }
 
 } // namespace test_support

@@ -11,10 +11,10 @@ using Points = std::vector<core::Vec3>;
 
 /// Random points in a cube of half size `reach`.
 inline Points random_cloud(std::mt19937& rng, int count, double reach) {
-    std::uniform_real_distribution<double> place(-reach, reach);
+    std::uniform_real_distribution<double> position(-reach, reach);
     Points cloud;
     for (int i = 0; i < count; ++i) {
-        const double x = place(rng), y = place(rng), z = place(rng);
+        const double x = position(rng), y = position(rng), z = position(rng);
         cloud.emplace_back(x, y, z);
     }
     return cloud;

@@ -25,7 +25,7 @@ public:
         at_ = values_at(tip_, 0.0, 0.0);
     }
 
-    const core::AxisValues& place() const { return at_; }
+    const core::AxisValues& current() const { return at_; }
 
     KnownBlock next() {
         KnownBlock block;
@@ -47,7 +47,8 @@ private:
     core::AxisValues values_at(const core::Vec3& tip, double a, double c) const {
         core::AxisValues at{};
         at[3] = a, at[5] = c;
-        const core::Vec3 p = machine_place(known_.world.machine, known_.world.stock_mount, at, tip);
+        const core::Vec3 p =
+            machine_position(known_.world.machine, known_.world.stock_mount, at, tip);
         at[0] = p.x, at[1] = p.y, at[2] = p.z + tool().length;
         return at;
     }

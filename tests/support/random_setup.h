@@ -17,14 +17,14 @@ namespace test_support {
 struct Dice {
     std::mt19937 random;
 
-    double share() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); }
-    double between(double low, double high) { return low + (high - low) * share(); }
-    bool chance(double of) { return share() < of; }
+    double fraction() { return std::uniform_real_distribution<double>(0.0, 1.0)(random); }
+    double between(double low, double high) { return low + (high - low) * fraction(); }
+    bool chance(double of) { return fraction() < of; }
     size_t index(size_t count) {
         return std::uniform_int_distribution<size_t>(0, count - 1)(random);
     }
     core::Vec3 within(const core::Aabb& box) {
-        return box.min + core::Vec3(share(), share(), share()) * box.size();
+        return box.min + core::Vec3(fraction(), fraction(), fraction()) * box.size();
     }
     core::Transform turned(const core::Vec3& centre, double most_deg) {
         const core::Vec3 angles(between(-most_deg, most_deg), between(-most_deg, most_deg),

@@ -50,17 +50,17 @@ RasterProgram raster_program(double stepover, double spacing) {
         for (int k = 0; k < columns; ++k) {
             const double x = ((row % 2 ? columns - 1 - k : k) + 0.5) * spacing;
             const double y = (row + 0.5) * stepover;
-            const core::Vec3 place(posted(x), posted(y), posted(raster_tip(x, y, ball_radius)));
-            if (program.places.empty()) {
-                program.start = {place.x, place.y, clear};
-                program.places.push_back({place.x, place.y, 1.0});
+            const core::Vec3 position(posted(x), posted(y), posted(raster_tip(x, y, ball_radius)));
+            if (program.positions.empty()) {
+                program.start = {position.x, position.y, clear};
+                program.positions.push_back({position.x, position.y, 1.0});
             }
-            program.places.push_back(place);
+            program.positions.push_back(position);
         }
-    const core::Vec3 last = program.places.back();
-    program.places.push_back({last.x, last.y, 1.0});
-    program.places.push_back({last.x, last.y, clear});
-    program.places.push_back({program.start.x, program.start.y, clear});
+    const core::Vec3 last = program.positions.back();
+    program.positions.push_back({last.x, last.y, 1.0});
+    program.positions.push_back({last.x, last.y, clear});
+    program.positions.push_back({program.start.x, program.start.y, clear});
     return program;
 }
 
@@ -74,10 +74,10 @@ std::vector<core::CutterSweep> sweeps_of(const RasterProgram& program,
     const auto cutter = std::make_shared<const core::Cutter>(core::make_cutter(flutes, path_error));
     std::vector<core::CutterSweep> sweeps;
     core::Vec3 at = program.start;
-    for (const core::Vec3& place : program.places) {
+    for (const core::Vec3& position : program.positions) {
         sweeps.push_back(
-            {cutter, at, place, core::Mat3(1.0), static_cast<uint32_t>(sweeps.size())});
-        at = place;
+            {cutter, at, position, core::Mat3(1.0), static_cast<uint32_t>(sweeps.size())});
+        at = position;
     }
     return sweeps;
 }

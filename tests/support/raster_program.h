@@ -9,8 +9,8 @@ namespace test_support {
 /// A stock and the moves that finish a surface on it row by row.
 struct RasterProgram {
     core::Aabb stock;
-    core::Vec3 start;               // tip before the first move
-    std::vector<core::Vec3> places; // end point of each block
+    core::Vec3 start;                  // tip before the first move
+    std::vector<core::Vec3> positions; // end point of each block
 };
 
 /// z = -5 + 3 sin(2 pi x / 25) cos(2 pi y / 25), the surface to be finished.

@@ -144,8 +144,8 @@ std::vector<PlainCommand> comparable(const PlainRun& run, std::optional<size_t> 
     std::vector<PlainCommand> commands;
     PlainCommand last_move;
     for (const PlainCommand& command : run.commands) {
-        const bool is_told = run.has_actions || is_motion(command) || command.kind == "dwell";
-        if (is_told && command.kind != "orient_spindle" && command.kind != "pallet_shuttle"
+        const bool is_reported = run.has_actions || is_motion(command) || command.kind == "dwell";
+        if (is_reported && command.kind != "orient_spindle" && command.kind != "pallet_shuttle"
             && !goes_nowhere(command, last_move))
             commands.push_back(command);
         if (is_motion(command) && command.kind != "rigid_tap") last_move = command;

@@ -43,8 +43,8 @@ struct CutBox {
 };
 
 inline core::Vec3 random_point(const core::Aabb& box, std::mt19937& rng) {
-    std::uniform_real_distribution<double> share(0.0, 1.0);
-    const core::Vec3 at(share(rng), share(rng), share(rng));
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
+    const core::Vec3 at(fraction(rng), fraction(rng), fraction(rng));
     return box.min + at * box.size();
 }
 

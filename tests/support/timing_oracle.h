@@ -54,18 +54,18 @@ inline CornerRun run_corner(const core::AxisValues& before, const core::AxisValu
     CornerRun run;
     run.length = 0.5 * speed * lasts;
     constexpr int steps = 2000;
-    core::AxisValues place{}, rate{};
-    for (size_t i = 0; i < place.size(); ++i) place[i] = -run.length * before[i];
+    core::AxisValues position{}, rate{};
+    for (size_t i = 0; i < position.size(); ++i) position[i] = -run.length * before[i];
     const double tick = lasts / steps;
     for (int k = 0; k <= steps; ++k) {
-        run.missed = std::min(run.missed, std::hypot(place[0], place[1], place[2]));
-        for (size_t i = 0; i < place.size(); ++i) {
-            const double share = (k + 0.5) / steps;
-            const double now = speed * (before[i] + share * (after[i] - before[i]));
+        run.missed = std::min(run.missed, std::hypot(position[0], position[1], position[2]));
+        for (size_t i = 0; i < position.size(); ++i) {
+            const double fraction = (k + 0.5) / steps;
+            const double now = speed * (before[i] + fraction * (after[i] - before[i]));
             if (k > 0)
                 run.acceleration[i] = std::max(run.acceleration[i], std::abs(now - rate[i]) / tick);
             rate[i] = now;
-            place[i] += now * tick;
+            position[i] += now * tick;
         }
     }
     return run;

@@ -46,9 +46,9 @@ public:
         for (const TruePassage& by : block_) {
             if (!pair_.counts_in(world_, by)) continue;
             const core::ProfileElement& hull = by.tool->part(pair_.part)->hull;
-            for (const double share : {0.0, 0.5, 1.0})
+            for (const double fraction : {0.0, 0.5, 1.0})
                 for (const double z : {hull.z0, 0.5 * (hull.z0 + hull.z1), hull.z1})
-                    offer_nearest_to({0, 0, z}, by, share);
+                    offer_nearest_to({0, 0, z}, by, fraction);
         }
     }
 
@@ -60,9 +60,10 @@ public:
             if (best_.near.distance == core::infinity) return;
             const double before = best_.near.distance;
             const TruePassage& by = block_[best_.near.passage];
-            const core::Vec3 seen = world_.seen(by, pair_.mount(world_), best_.p)(best_.near.share);
+            const core::Vec3 seen =
+                world_.seen(by, pair_.mount(world_), best_.p)(best_.near.fraction);
             const auto on_part = nearest_of(by.tool->part(pair_.part)->profile, seen).nearest;
-            offer_nearest_to(on_part, by, best_.near.share);
+            offer_nearest_to(on_part, by, best_.near.fraction);
             if (pair_.fixture && best_.near.distance > before - 1e-7) return;
             if (pair_.fixture) continue;
             const core::Vec3 by_chance(way(random_), way(random_), way(random_));
@@ -73,8 +74,8 @@ public:
 
 private:
     /// Adds the point of the raw body nearest to a point in the tool's frame.
-    void offer_nearest_to(const core::Vec3& p, const TruePassage& by, double share) {
-        const core::AxisValues at = by.path.at(share);
+    void offer_nearest_to(const core::Vec3& p, const TruePassage& by, double fraction) {
+        const core::AxisValues at = by.path.at(fraction);
         const core::Vec3 tip(at[0], at[1], at[2] - by.tool->length);
         const core::Vec3 here = mounted_place(world_.machine, pair_.mount(world_), at, p + tip);
         offer(nearest_of(pair_.solid(world_), here).nearest);

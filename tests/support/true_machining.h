@@ -50,7 +50,7 @@ struct TruePassage {
 /// Until when a point certainly exists: a passage of the block and a fraction of it.
 struct Removal {
     size_t passage;
-    double share;
+    double fraction;
 };
 
 /// A stock as the set of points of its raw shape that the flutes have not reached. No model is
@@ -140,7 +140,7 @@ struct TrueMachining {
 struct Nearness {
     double distance = core::infinity;
     size_t passage = 0;
-    double share = 0.0;
+    double fraction = 0.0;
 };
 
 /// A query about a block: the distance of a part of the tool to a mounted body.
@@ -174,12 +174,12 @@ inline Nearness nearness(const TrueMachining& world, const std::vector<TruePassa
                          double limit) {
     Nearness best;
     for (size_t i = 0; i < block.size() && i <= removal.passage; ++i) {
-        const double until = i < removal.passage ? 1.0 : removal.share;
+        const double until = i < removal.passage ? 1.0 : removal.fraction;
         if (!pair.counts_in(world, block[i])) continue;
-        const auto [distance, share] = nearest_passage(*block[i].tool->part(pair.part),
-                                                       world.seen(block[i], pair.mount(world), p),
-                                                       until, std::min(limit, best.distance));
-        if (distance < best.distance) best = {distance, i, share};
+        const auto [distance, fraction] = nearest_passage(
+            *block[i].tool->part(pair.part), world.seen(block[i], pair.mount(world), p), until,
+            std::min(limit, best.distance));
+        if (distance < best.distance) best = {distance, i, fraction};
     }
     return best.distance < limit ? best : Nearness{};
 }

@@ -33,8 +33,8 @@ struct TrueMount {
 };
 
 /// The position in the machine of a mounted point.
-inline core::Vec3 machine_place(const TrueTrunnion& machine, const TrueMount& mount,
-                                const core::AxisValues& at, const core::Vec3& p) {
+inline core::Vec3 machine_position(const TrueTrunnion& machine, const TrueMount& mount,
+                                   const core::AxisValues& at, const core::Vec3& p) {
     core::Vec3 here = mount.link_from_body * p;
     if (!mount.on_table) return here;
     if (at[5] != 0.0)
@@ -61,13 +61,13 @@ struct TruePath {
     bool turns() const { return from[3] != to[3] || from[5] != to[5]; }
     bool is_straight() const { return !arc && !turns(); }
 
-    core::AxisValues at(double share) const {
+    core::AxisValues at(double fraction) const {
         core::AxisValues values = from;
-        for (size_t i = 0; i < core::axis_count; ++i) values[i] += share * (to[i] - from[i]);
+        for (size_t i = 0; i < core::axis_count; ++i) values[i] += fraction * (to[i] - from[i]);
         if (!arc) return values;
         const int a = (arc->normal + 1) % 3, b = (arc->normal + 2) % 3;
         const double u = from[size_t(a)] - arc->centre[a], v = from[size_t(b)] - arc->centre[b];
-        const double c = std::cos(share * arc->angle), s = std::sin(share * arc->angle);
+        const double c = std::cos(fraction * arc->angle), s = std::sin(fraction * arc->angle);
         values[size_t(a)] = arc->centre[a] + c * u - s * v;
         values[size_t(b)] = arc->centre[b] + s * u + c * v;
         return values;
@@ -100,12 +100,13 @@ struct SeenPoint {
     double tool_length;
     core::Vec3 p;
 
-    core::Vec3 operator()(double share) const {
-        const core::AxisValues at = path.at(share);
-        return machine_place(machine, mount, at, p) - core::Vec3(at[0], at[1], at[2] - tool_length);
+    core::Vec3 operator()(double fraction) const {
+        const core::AxisValues at = path.at(fraction);
+        return machine_position(machine, mount, at, p)
+               - core::Vec3(at[0], at[1], at[2] - tool_length);
     }
-    double off(double share) const {
-        const double turn = path.bend() * share;
+    double off(double fraction) const {
+        const double turn = path.bend() * fraction;
         if (turn == 0.0) return 0.0;
         const core::Vec3 p_table = mount.link_from_body * p;
         return 0.125 * turn * turn * path.bend_radius(machine, p_table);

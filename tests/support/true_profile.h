@@ -66,9 +66,9 @@ inline PieceDistance nearest_of(const core::ProfileElement& e, const core::Vec3&
     HalfPlanePoint nearest;
     const double core = core_distance(e, {r, p.z}, nearest), apart = core - e.margin;
     if (apart <= 0.0) return {apart, p};
-    const double share = e.margin / core;
-    const double to_r = nearest.r + share * (r - nearest.r);
-    const double to_z = nearest.z + share * (p.z - nearest.z);
+    const double fraction = e.margin / core;
+    const double to_r = nearest.r + fraction * (r - nearest.r);
+    const double to_z = nearest.z + fraction * (p.z - nearest.z);
     const double scale = r > 0.0 ? to_r / r : 0.0;
     const core::Vec3 on =
         r > 0.0 ? core::Vec3(p.x * scale, p.y * scale, to_z) : core::Vec3(to_r, 0.0, to_z);

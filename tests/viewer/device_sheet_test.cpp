@@ -135,7 +135,7 @@ TEST(DeviceStatus, DescribesTheCurrentState) {
     ViewModel model = model_with({viewer_test::permitted(1.0)});
     EXPECT_EQ(device_status(model), "");
     model.device.is_running = true;
-    model.device.share = 0.5;
+    model.device.fraction = 0.5;
     EXPECT_EQ(device_status(model), "") << "the answers are there";
     EXPECT_EQ(value_of(device_sheet(model), "sufficient"), "searching: 50 %");
     model.device.study = nullptr;

@@ -76,7 +76,7 @@ TEST(DeviceWorker, PublishesTheAnswersFirstAndThenTheSmallestDevice) {
     ASSERT_TRUE(watcher.wait_for([&] { return device.study != nullptr; }));
     app::CoprocessorJob job;
     job.check = plate("clamped_plate_low.nc");
-    const auto run = app::run_beside_coprocessor(job);
+    const auto run = app::run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     ASSERT_EQ(device.study->size(), run->blocks.size());
     for (size_t i = 0; i < run->blocks.size(); ++i) {

@@ -76,14 +76,14 @@ int main(int count, char** words) {
     source.display = XOpenDisplay(nullptr);
     if (count < 5 || !source.display) return 2;
     source.target = std::strtoul(words[1], nullptr, 0);
-    const long place = std::atol(words[2]) << 16 | std::atol(words[3]);
+    const long block_state = std::atol(words[2]) << 16 | std::atol(words[3]);
     for (int i = 4; i < count; ++i) source.uris += "file://" + std::string(words[i]) + "\r\n";
     source.own =
         XCreateSimpleWindow(source.display, DefaultRootWindow(source.display), 0, 0, 1, 1, 0, 0, 0);
     XSetSelectionOwner(source.display, source.atom("XdndSelection"), source.own, CurrentTime);
     constexpr long version = 5;
     send(source, "XdndEnter", version << 24, static_cast<long>(source.atom("text/uri-list")), 0, 0);
-    send(source, "XdndPosition", 0, place, CurrentTime,
+    send(source, "XdndPosition", 0, block_state, CurrentTime,
          static_cast<long>(source.atom("XdndActionCopy")));
     if (!wait_for(source, "XdndStatus")) return 1;
     send(source, "XdndDrop", 0, CurrentTime, 0, 0);

@@ -126,7 +126,8 @@ TEST(FindingGroups, HoldEveryFindingOnce) {
         }
         EXPECT_EQ(count, findings.size());
         size_t walked = 0;
-        for (auto at = stretch_beside(groups, {}, true); at; at = stretch_beside(groups, at, true))
+        for (auto at = neighbouring_stretch(groups, {}, true); at;
+             at = neighbouring_stretch(groups, at, true))
             ++walked;
         EXPECT_EQ(walked, stretches);
     }
@@ -151,7 +152,7 @@ TEST(FindingGroups, AreWalkedThroughAndFollowTheCursor) {
     EXPECT_EQ(selected_stretch(model)->group, 1u) << "the selected one, not the first of the block";
     EXPECT_FALSE(step_stretch(model, true));
     go_to(model, 2);
-    EXPECT_EQ(*selected_stretch(model), (StretchPlace{1, 0}));
+    EXPECT_EQ(*selected_stretch(model), (StretchIndex{1, 0}));
     go_to(model, 5);
     EXPECT_FALSE(selected_stretch(model));
 }

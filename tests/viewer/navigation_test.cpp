@@ -87,7 +87,7 @@ TEST(Navigation, AWitnessAtTheEndOfABlockIsShownBeforeItsEnd) {
     ViewModel model = ten_blocks();
     model.rows[3].witness_time = model.rows[3].duration;
     go_to_witness(model, 3);
-    EXPECT_LT(model.cursor.share, 1.0);
+    EXPECT_LT(model.cursor.fraction, 1.0);
     EXPECT_FALSE(model.wanted->at_end);
 }
 
@@ -202,13 +202,13 @@ TEST(SceneOf, ShowsNoWitnessWhileTheToolIsAtAnotherBlock) {
     ViewModel model = ten_blocks();
     go_to(model, 3);
     EXPECT_TRUE(witness_of(model)) << "there is no tool yet";
-    auto place = std::make_shared<PlaceView>();
-    place->block = 2;
-    model.place = place;
+    auto block_state = std::make_shared<BlockState>();
+    block_state->block = 2;
+    model.block_state = block_state;
     EXPECT_FALSE(witness_of(model));
-    place = std::make_shared<PlaceView>();
-    place->block = 3;
-    model.place = place;
+    block_state = std::make_shared<BlockState>();
+    block_state->block = 3;
+    model.block_state = block_state;
     EXPECT_TRUE(witness_of(model));
 }
 
@@ -296,7 +296,7 @@ TEST(Playback, IsAsManyTimesAsFastAsIsSaid) {
         model.playback.speed = speed;
         play(model, 4.5 / speed);
         EXPECT_EQ(model.cursor.block, 4U) << speed;
-        EXPECT_NEAR(model.cursor.share, 0.5, 1e-9) << speed;
+        EXPECT_NEAR(model.cursor.fraction, 0.5, 1e-9) << speed;
     }
 }
 

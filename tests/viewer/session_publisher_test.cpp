@@ -89,15 +89,16 @@ TEST(SessionPublisher, PaintsThePathAsTheRowsAre) {
     program.publisher.begin(points, 11);
     program.record_all();
     ASSERT_TRUE(program.model.path);
-    size_t told = 0, failed = 0;
+    size_t shown_assumptions = 0, failed = 0;
     for (const render::PathPoint& point : program.model.path->points) {
         const BlockRow& row = program.model.rows[point.block];
         EXPECT_EQ(point.state, state_of(row)) << point.block << " " << row.text;
-        const bool is_told = row.worst > core::Severity::off && row.worst < core::Severity::error;
-        if (is_told && !is_offending(row)) ++told;
+        const bool is_reported =
+            row.worst > core::Severity::off && row.worst < core::Severity::error;
+        if (is_reported && !is_offending(row)) ++shown_assumptions;
         if (row.worst == core::Severity::error) ++failed;
     }
-    EXPECT_GT(told, 0U);
+    EXPECT_GT(shown_assumptions, 0U);
     EXPECT_GT(failed, 0U);
 }
 

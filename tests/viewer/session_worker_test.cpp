@@ -132,20 +132,20 @@ TEST(SessionWorker, ShowsABlockAsItFindsTheStockAndAsItLeavesIt) {
     const auto show = [&](size_t block, bool at_end) {
         watcher.worker().show({block, at_end});
         return watcher.wait_for([&] {
-            const auto& place = watcher.model.place;
-            return place && place->block == block && place->at_end == at_end;
+            const auto& block_state = watcher.model.block_state;
+            return block_state && block_state->block == block && block_state->at_end == at_end;
         });
     };
     ASSERT_TRUE(show(15, false));
-    const auto before = watcher.model.place;
+    const auto before = watcher.model.block_state;
     ASSERT_TRUE(show(15, true));
-    const auto after = watcher.model.place;
+    const auto after = watcher.model.block_state;
     EXPECT_FALSE(before->stock.empty());
     EXPECT_NE(before->stock, after->stock) << "this block cuts";
     ASSERT_FALSE(after->poses.empty());
     EXPECT_EQ(pose_at(after->poses, 1.0), after->standing);
     ASSERT_TRUE(show(15, false));
-    ASSERT_EQ(watcher.model.place->stock.size(), before->stock.size());
+    ASSERT_EQ(watcher.model.block_state->stock.size(), before->stock.size());
 }
 
 TEST(SessionWorker, StopsAtABreakpoint) {
@@ -159,7 +159,7 @@ TEST(SessionWorker, StopsAtABreakpoint) {
     send_requests(watcher.model, watcher.worker());
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.cursor.block > 0; }));
     EXPECT_EQ(watcher.model.row().line, 44U);
-    EXPECT_EQ(watcher.model.cursor.share, 0.0);
+    EXPECT_EQ(watcher.model.cursor.fraction, 0.0);
     ASSERT_EQ(watcher.model.breakpoints.size(), 1U);
     EXPECT_EQ(watcher.model.breakpoints[0].hits, 1U);
 }
@@ -176,7 +176,7 @@ TEST(SessionWorker, PublishesFindingsDuringALongWalk) {
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.rows[100].is_known; }));
     EXPECT_TRUE(watcher.model.walking);
     watcher.worker().show({50, true});
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.place != nullptr; }));
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.block_state != nullptr; }));
     EXPECT_TRUE(watcher.model.walking) << "a block is shown on the way";
     ASSERT_TRUE(watcher.wait_for([&] { return !watcher.model.walking; }));
     EXPECT_EQ(watcher.model.cursor.block, watcher.model.rows.size() - 1);
@@ -250,8 +250,8 @@ TEST(SessionWorker, TheEndOfAnAbandonedWalkChangesNothing) {
     go_to(watcher.model, 7);
     EXPECT_TRUE(watcher.model.wants_interrupt);
     send_requests(watcher.model, watcher.worker());
-    ASSERT_TRUE(
-        watcher.wait_for([&] { return watcher.model.place && watcher.model.place->block == 7; }));
+    ASSERT_TRUE(watcher.wait_for(
+        [&] { return watcher.model.block_state && watcher.model.block_state->block == 7; }));
     EXPECT_EQ(watcher.model.cursor.block, 7U);
 }
 

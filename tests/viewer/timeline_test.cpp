@@ -96,7 +96,7 @@ TEST(Timeline, ShowsABlockWithoutMovingMoreThanNeeded) {
 TEST(Timeline, PositionAndBlockAreInverse) {
     const TimelineRange range{17.0, 92.0};
     for (size_t block = 17; block < 92; ++block)
-        EXPECT_EQ(block_at(range, 1000, place_of(range, block)), block);
+        EXPECT_EQ(block_at(range, 1000, column_of(range, block)), block);
 }
 
 TEST(Timeline, BandsCoverEveryBlockOnce) {

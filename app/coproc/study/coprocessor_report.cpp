@@ -13,7 +13,7 @@
 namespace app {
 namespace {
 
-std::optional<double> share(uint64_t part, uint64_t whole) {
+std::optional<double> fraction(uint64_t part, uint64_t whole) {
     if (whole == 0) return {};
     return static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -30,20 +30,21 @@ CoprocessorResult in_time(CoprocessorRun run, const DeviceFile& file, bool past_
     return result;
 }
 
-DeviceShares shares_between(const DeviceTotals& before, const DeviceTotals& after,
-                            const hwsim::DeviceConfig& device) {
+DeviceUse use_between(const DeviceTotals& before, const DeviceTotals& after,
+                      const hwsim::DeviceConfig& device) {
     using hwsim::Counter;
     const auto counted = [&](Counter counter) { return after[counter] - before[counter]; };
     const uint64_t threads = counted(Counter::busy) * device.threads;
     const auto hits = [&](Counter hit, Counter miss) {
-        return share(counted(hit), counted(hit) + counted(miss));
+        return fraction(counted(hit), counted(hit) + counted(miss));
     };
-    return {share(counted(Counter::busy), counted(Counter::cycles) * device.elements).value_or(0.0),
-            share(counted(Counter::wait_memory), threads).value_or(0.0),
-            share(counted(Counter::wait_port), threads).value_or(0.0),
-            share(counted(Counter::wait_retire), threads).value_or(0.0),
-            hits(Counter::node_hits, Counter::node_misses),
-            hits(Counter::record_hits, Counter::record_misses)};
+    return {
+        fraction(counted(Counter::busy), counted(Counter::cycles) * device.elements).value_or(0.0),
+        fraction(counted(Counter::wait_memory), threads).value_or(0.0),
+        fraction(counted(Counter::wait_port), threads).value_or(0.0),
+        fraction(counted(Counter::wait_retire), threads).value_or(0.0),
+        hits(Counter::node_hits, Counter::node_misses),
+        hits(Counter::record_hits, Counter::record_misses)};
 }
 
 namespace {
@@ -81,7 +82,7 @@ double joules(const CoprocessorResult& result, double working) {
            + part(energy.memory_line, moved) + energy.idle_watts * working;
 }
 
-std::string place(const CoprocessorResult& result, size_t block) {
+std::string block_text(const CoprocessorResult& result, size_t block) {
     return fmt::format("block {}, line {}", block, result.run.check.blocks[block].line);
 }
 
@@ -95,7 +96,7 @@ std::string verdict_text(const CoprocessorResult& result) {
                                          [](const auto& b) { return !b.permit.permitted; })
                             - blocks.begin());
     std::string text = fmt::format("refuses {} of {} blocks, first {}: {}", refused, blocks.size(),
-                                   place(result, first), refusal(result, first));
+                                   block_text(result, first), refusal(result, first));
     if (result.timing.refused) text += "; the machine stops before it";
     return text;
 }
@@ -105,7 +106,7 @@ std::string slack_text(const CoprocessorResult& result) {
     if (!timing.tightest) return "no block needs a permit in time";
     const std::string least =
         fmt::format("least slack {}, {}", time_text(timing.blocks[*timing.tightest].slack()),
-                    place(result, *timing.tightest));
+                    block_text(result, *timing.tightest));
     if (timing.missed == 0) return "yes; " + least;
     return fmt::format("no: {} permits were late; {}", timing.missed, least);
 }
@@ -205,17 +206,17 @@ DeviceFigures figures(const CoprocessorResult& result) {
         f.p99 = at(0.99);
         f.longest = sorted.back();
     }
-    if (result.timing.taken > 0.0) f.busy_share = result.timing.busy / result.timing.taken;
+    if (result.timing.taken > 0.0) f.busy_fraction = result.timing.busy / result.timing.taken;
     if (working > 0.0) {
         f.queries_per_second = static_cast<double>(totals[Counter::queries]) / working;
         f.bytes_per_second = 64.0 * static_cast<double>(totals[Counter::lines_read]) / working;
     }
-    const DeviceShares shares = shares_between({}, totals, result.file.device);
-    f.memory_stall = shares.memory;
-    f.port_stall = shares.ports;
-    f.order_stall = shares.order;
-    f.node_hits = shares.node_hits.value_or(0.0);
-    f.record_hits = shares.record_hits.value_or(0.0);
+    const DeviceUse fractions = use_between({}, totals, result.file.device);
+    f.memory_stall = fractions.memory;
+    f.port_stall = fractions.ports;
+    f.order_stall = fractions.order;
+    f.node_hits = fractions.node_hits.value_or(0.0);
+    f.record_hits = fractions.record_hits.value_or(0.0);
     f.joules = joules(result, working);
     return f;
 }
@@ -243,7 +244,7 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     add("latency", fmt::format("median {}, 99th percentile {}, maximum {}", time_text(f.p50),
                                time_text(f.p99), time_text(f.longest)));
     add("rate", fmt::format("{:.0f} queries per second while busy; busy {:.3g} % of the time",
-                            f.queries_per_second, 100.0 * f.busy_share));
+                            f.queries_per_second, 100.0 * f.busy_fraction));
     add("stalls", fmt::format("memory {:.0f} %, ports {:.0f} %, order {:.0f} % of busy threads",
                               100.0 * f.memory_stall, 100.0 * f.port_stall, 100.0 * f.order_stall));
     add("caches",
@@ -287,7 +288,7 @@ std::string coprocessor_json(const CoprocessorResult& result) {
           {"least_slack",
            timing.tightest ? Json(timing.blocks[*timing.tightest].slack()) : Json(nullptr)},
           {"tightest", timing.tightest ? Json(*timing.tightest) : Json(nullptr)},
-          {"busy_share", f.busy_share},
+          {"busy_share", f.busy_fraction},
           {"queries_per_second", f.queries_per_second},
           {"latency", {{"p50", f.p50}, {"p99", f.p99}, {"max", f.longest}}},
           {"stalls",

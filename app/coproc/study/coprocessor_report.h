@@ -22,22 +22,22 @@ struct CoprocessorResult {
 CoprocessorResult in_time(CoprocessorRun run, const DeviceFile& file, bool past_refusals);
 
 /// Utilisation of a device between two readings of its counters.
-struct DeviceShares {
+struct DeviceUse {
     double busy = 0.0;                             // fraction of the cycles of all elements
     double memory = 0.0, ports = 0.0, order = 0.0; // waiting, fraction of busy threads' cycles
     std::optional<double> node_hits, record_hits;  // fractions of cache reads; empty: no reads
 };
 
 /// The utilisation between one reading of the counters and a later one.
-DeviceShares shares_between(const DeviceTotals& before, const DeviceTotals& after,
-                            const hwsim::DeviceConfig& device);
+DeviceUse use_between(const DeviceTotals& before, const DeviceTotals& after,
+                      const hwsim::DeviceConfig& device);
 
 /// The agreement over a whole run.
 EngineAgreement agreement(const CoprocessorRun& run);
 
 /// Figures of the device over a whole run.
 struct DeviceFigures {
-    double busy_share = 0.0;                    // fraction of the machine's time
+    double busy_fraction = 0.0;                 // fraction of the machine's time
     double queries_per_second = 0.0;            // while busy
     double p50 = 0.0, p99 = 0.0, longest = 0.0; // seconds from a block's first word to its permit
     double memory_stall = 0.0, port_stall = 0.0, order_stall = 0.0; // fractions of threads' cycles

@@ -12,9 +12,9 @@
 namespace app {
 namespace {
 
-class BesideCoprocessor {
+class ParallelCoprocessor {
 public:
-    BesideCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
+    ParallelCoprocessor(const CoprocessorJob& job, PreparedCheck& check)
         : job_(job), check_(check), runner_(check) {
         runner_.after_block = job.check.after_block;
         runner_.on_timed = [this](const core::BlockTime& time) { plan(time); };
@@ -42,7 +42,7 @@ private:
     CoprocessorRun made_;
 };
 
-core::Result<void> BesideCoprocessor::open() {
+core::Result<void> ParallelCoprocessor::open() {
     const core::CutModel& stock = runner_.machine().stock;
     FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle));
     for (const uint32_t elements : job_.other_elements) {
@@ -54,7 +54,7 @@ core::Result<void> BesideCoprocessor::open() {
     return runner_.start_at(job_.check.start_line);
 }
 
-core::Result<void> BesideCoprocessor::ask() {
+core::Result<void> ParallelCoprocessor::ask() {
     const auto events = runner_.next_events();
     if (!events) return {};
     if (auto pushed = device_->push(*events, runner_.machine()); !pushed) return pushed;
@@ -63,7 +63,7 @@ core::Result<void> BesideCoprocessor::ask() {
     return {};
 }
 
-core::Result<void> BesideCoprocessor::finish() {
+core::Result<void> ParallelCoprocessor::finish() {
     if (auto finished = device_->finish(); !finished) return finished;
     made_.blocks = device_->blocks();
     made_.blocks.resize(check_.run.blocks.size());
@@ -78,7 +78,7 @@ core::Result<void> BesideCoprocessor::finish() {
     return {};
 }
 
-core::Result<CoprocessorRun> BesideCoprocessor::run() {
+core::Result<CoprocessorRun> ParallelCoprocessor::run() {
     const Stopwatch checking;
     if (auto opened = open(); !opened) return tl::unexpected(std::move(opened).error());
     do
@@ -93,9 +93,9 @@ core::Result<CoprocessorRun> BesideCoprocessor::run() {
 
 } // namespace
 
-core::Result<CoprocessorRun> run_beside_coprocessor(const CoprocessorJob& job) {
+core::Result<CoprocessorRun> run_with_coprocessor(const CoprocessorJob& job) {
     FEELER_TRY(PreparedCheck check, prepare_check(job.check));
-    return BesideCoprocessor(job, check).run();
+    return ParallelCoprocessor(job, check).run();
 }
 
 namespace {

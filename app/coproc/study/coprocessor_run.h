@@ -43,7 +43,7 @@ struct CoprocessorJob {
 ///
 /// Errors: those of run_check and of the driver. An error inside the program ends the run.
 /// Cost:   that of the check, and for each device about 0.4 us a cycle.
-core::Result<CoprocessorRun> run_beside_coprocessor(const CoprocessorJob& job);
+core::Result<CoprocessorRun> run_with_coprocessor(const CoprocessorJob& job);
 
 /// A device that is fast enough.
 struct DeviceFit {

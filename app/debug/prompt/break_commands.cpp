@@ -35,7 +35,8 @@ std::pair<std::string, std::optional<std::string>> split_condition(const std::st
     return {trimmed(text.substr(0, at)), condition};
 }
 
-core::Result<void> read_place(PromptState& state, const std::string& text, Breakpoint& breakpoint) {
+core::Result<void> read_location(PromptState& state, const std::string& text,
+                                 Breakpoint& breakpoint) {
     const auto [first, rest] = split_word(text);
     if (first == "tool" || (rest.empty() && (first[0] == 'T' || first[0] == 't'))) {
         FEELER_TRY(breakpoint.tool, tool_in(first == "tool" ? rest : first));
@@ -70,9 +71,9 @@ core::Result<void> read_place(PromptState& state, const std::string& text, Break
 
 core::Result<Breakpoint> breakpoint_in(PromptState& state, const std::string& arguments) {
     Breakpoint breakpoint;
-    const auto [place, condition] = split_condition(arguments);
-    if (!place.empty()) {
-        if (auto read = read_place(state, place, breakpoint); !read)
+    const auto [location_words, condition] = split_condition(arguments);
+    if (!location_words.empty()) {
+        if (auto read = read_location(state, location_words, breakpoint); !read)
             return tl::unexpected(read.error());
     } else if (!condition) {
         if (!has_block(state))

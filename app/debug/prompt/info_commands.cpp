@@ -97,7 +97,7 @@ CommandResult show_fixtures(PromptState& state, const std::string&) {
 }
 
 CommandResult show_block(PromptState& state, const std::string&) {
-    std::string text = place_text(state);
+    std::string text = location_text(state);
     if (!has_block(state)) return text;
     const core::BlockResult& result = state.session.record().blocks[state.session.at()].result;
     const core::Setup& setup = state.session.setup_at(state.session.at());
@@ -118,7 +118,7 @@ CommandResult show_program(PromptState& state, const std::string&) {
                                    gcode::dialect(record.dialect).name);
     text += fmt::format(
         "{} checked ({:.0f} % of the program), {}\n", counted(record.blocks.size(), "block"),
-        100.0 * state.session.recorded_share(), counted(record.findings.size(), "finding"));
+        100.0 * state.session.recorded_fraction(), counted(record.findings.size(), "finding"));
     text += fmt::format("so far: {}\n", verdict_text(record.verdict));
     if (state.session.is_recorded())
         text += fmt::format("cycle time {}\n", duration_text(record.cycle_time));

@@ -38,10 +38,10 @@ core::Result<std::string> file_named(PromptState& state, const std::string& name
         names.push_back(last);
     }
     // A subprogram that was not called so far is searched for next to the main program.
-    const auto beside =
+    const auto sibling =
         std::filesystem::path(state.session.record().program_file).parent_path() / name;
     std::error_code failure;
-    if (std::filesystem::is_regular_file(beside, failure)) return beside.string();
+    if (std::filesystem::is_regular_file(sibling, failure)) return sibling.string();
     return core::fail(ErrorCode::invalid_value,
                       fmt::format("there is no file {}; the nearest name is {}", name,
                                   core::nearest_name(name, names)));
@@ -90,7 +90,7 @@ core::Result<Location> location_in(PromptState& state, const std::string& text) 
     return Location{*line, {}};
 }
 
-core::Result<size_t> place_of(PromptState& state, const Location& location) {
+core::Result<size_t> position_of(PromptState& state, const Location& location) {
     DebugSession& session = state.session;
     const auto is_there = [&](size_t block) {
         const CheckedBlock& at = session.record().blocks[block];

@@ -26,7 +26,7 @@ core::Result<Location> location_in(PromptState& state, const std::string& text);
 /// the beginning.
 ///
 /// Errors: the line is never executed.
-core::Result<size_t> place_of(PromptState& state, const Location& location);
+core::Result<size_t> position_of(PromptState& state, const Location& location);
 
 /// The text of a file: the main program, or a subprogram, which is read only once.
 ///

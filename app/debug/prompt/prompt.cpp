@@ -35,7 +35,7 @@ std::string Prompt::greeting() {
     if (state_.session.setup_file().is_inferred)
         text += "the set-up is inferred from the program; 'info program' lists the assumptions\n";
     return text + "'help' lists the commands; start with 'run', 'step' or 'next-finding'\n"
-           + place_text(state_);
+           + location_text(state_);
 }
 
 PromptAnswer Prompt::answer(std::string_view line) {
@@ -113,7 +113,7 @@ Names set_names(PromptState& state, const Names& before) {
 }
 
 /// The possible words after these; the first one is a command.
-Names names_behind(PromptState& state, const Names& before) {
+Names names_after(PromptState& state, const Names& before) {
     const auto command = command_named(before[0]);
     if (!command) return {};
     const std::string_view name = (*command)->name;
@@ -138,7 +138,7 @@ std::vector<std::string> Prompt::completions(std::string_view line) {
         begun = before.back();
         before.pop_back();
     }
-    Names all = before.empty() ? command_names() : names_behind(state_, before);
+    Names all = before.empty() ? command_names() : names_after(state_, before);
     std::erase_if(all, [&](const std::string& name) {
         return !core::lower_case(name).starts_with(core::lower_case(begun));
     });

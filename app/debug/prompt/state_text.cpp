@@ -139,7 +139,7 @@ std::string displays_text(PromptState& state) {
     return text;
 }
 
-std::string place_text(PromptState& state) {
+std::string location_text(PromptState& state) {
     state.listed_to = 0;
     if (!has_block(state)) return end_text(state) + displays_text(state);
     const CheckedBlock& block = state.session.record().blocks[state.session.at()];

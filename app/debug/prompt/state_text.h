@@ -15,7 +15,7 @@ struct CheckedBlock;
 
 /// The position of the session: the next block, its clearance and findings, and the displays. After
 /// the last block: how the program ended.
-std::string place_text(PromptState& state);
+std::string location_text(PromptState& state);
 
 /// Why a walk stopped, with a newline; empty if it ran the requested number of blocks.
 std::string stop_text(const PromptState& state, const Stop& stop);

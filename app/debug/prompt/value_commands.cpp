@@ -28,7 +28,7 @@ core::Result<double> value_in(const std::string& text) {
     return value;
 }
 
-core::Result<int32_t> number_behind(char letter, const std::string& text) {
+core::Result<int32_t> number_after(char letter, const std::string& text) {
     const bool lettered = !text.empty() && core::lower_case(text.substr(0, 1))[0] == letter;
     FEELER_TRY(const size_t number, number_in(text.substr(lettered ? 1 : 0)));
     if (number > 99999999)
@@ -41,14 +41,14 @@ core::Result<WhatIf> tool_change(std::vector<std::string> words) {
     if (words[0] == "tool") words.erase(words.begin());
     if (words.size() == 3 && words[1] == "length") words.erase(words.begin() + 1);
     if (words.size() != 2) return core::fail(ErrorCode::syntax, "write set tool 3 length 95");
-    FEELER_TRY(const int32_t number, number_behind('t', words[0]));
+    FEELER_TRY(const int32_t number, number_after('t', words[0]));
     FEELER_TRY(const double length, value_in(words[1]));
     return WhatIf(app::OtherToolLength{core::ToolNumber(number), length});
 }
 
 core::Result<WhatIf> length_change(const std::vector<std::string>& words) {
     if (words.size() != 2) return core::fail(ErrorCode::syntax, "write set H3 95");
-    FEELER_TRY(const int32_t number, number_behind('h', words[0]));
+    FEELER_TRY(const int32_t number, number_after('h', words[0]));
     FEELER_TRY(const double length, value_in(words[1]));
     return WhatIf(OtherLengthOffset{core::OffsetNumber(number), length});
 }
@@ -129,14 +129,14 @@ std::vector<std::string> set_topics() { return {"allowance", "fixture", "tool", 
 CommandResult change_something(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const WhatIf change, change_in(arguments));
     if (auto done = state.session.change(change); !done) return tl::unexpected(done.error());
-    return fmt::format("from here on, {}\n", text_of(change)) + place_text(state);
+    return fmt::format("from here on, {}\n", text_of(change)) + location_text(state);
 }
 
 CommandResult take_back(PromptState& state, const std::string&) {
     const auto& changes = state.session.changes();
     const std::string what = changes.empty() ? std::string() : text_of(changes.back().change);
     if (auto done = state.session.take_back(); !done) return tl::unexpected(done.error());
-    return fmt::format("undone: {}\n", what) + place_text(state);
+    return fmt::format("undone: {}\n", what) + location_text(state);
 }
 
 namespace {

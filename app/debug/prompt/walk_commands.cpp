@@ -10,18 +10,18 @@ namespace {
 
 using core::ErrorCode;
 
-std::string told(PromptState& state, const Stop& stop) {
-    return stop_text(state, stop) + place_text(state);
+std::string stop_and_location(PromptState& state, const Stop& stop) {
+    return stop_text(state, stop) + location_text(state);
 }
 
 /// The answer to a search: `what` says what was not found, if nothing was.
-std::string told_of_search(PromptState& state, const Stop& stop, const std::string& what) {
+std::string search_text(PromptState& state, const Stop& stop, const std::string& what) {
     if (stop.reason == StopReason::end || stop.reason == StopReason::error
         || stop.reason == StopReason::beginning)
         return fmt::format("no {} {}\n", what,
                            stop.reason == StopReason::beginning ? "before here" : "from here on")
-               + place_text(state);
-    return told(state, stop);
+               + location_text(state);
+    return stop_and_location(state, stop);
 }
 
 CommandResult want_nothing(const std::string& arguments) {
@@ -32,9 +32,9 @@ CommandResult want_nothing(const std::string& arguments) {
 }
 
 /// Goes to a position and describes it. On an error nothing changes.
-CommandResult gone_to(PromptState& state, size_t place) {
-    if (auto done = state.session.go_to(place); !done) return tl::unexpected(done.error());
-    return place_text(state);
+CommandResult gone_to(PromptState& state, size_t position) {
+    if (auto done = state.session.go_to(position); !done) return tl::unexpected(done.error());
+    return location_text(state);
 }
 
 } // namespace
@@ -42,7 +42,7 @@ CommandResult gone_to(PromptState& state, size_t place) {
 CommandResult run_program(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
     if (auto done = state.session.go_to(0); !done) return tl::unexpected(done.error());
-    return text + told(state, state.session.go_on());
+    return text + stop_and_location(state, state.session.go_on());
 }
 
 CommandResult start_program(PromptState& state, const std::string& arguments) {
@@ -52,22 +52,22 @@ CommandResult start_program(PromptState& state, const std::string& arguments) {
 
 CommandResult step_on(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const size_t count, count_in(arguments));
-    return told(state, state.session.step(count));
+    return stop_and_location(state, state.session.step(count));
 }
 
 CommandResult step_over(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const size_t count, count_in(arguments));
-    return told(state, state.session.next(count));
+    return stop_and_location(state, state.session.next(count));
 }
 
 CommandResult step_back(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const size_t count, count_in(arguments));
-    return told(state, state.session.step_back(count));
+    return stop_and_location(state, state.session.step_back(count));
 }
 
 CommandResult step_back_over(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const size_t count, count_in(arguments));
-    return told(state, state.session.next_back(count));
+    return stop_and_location(state, state.session.next_back(count));
 }
 
 CommandResult finish_subprogram(PromptState& state, const std::string& arguments) {
@@ -75,7 +75,7 @@ CommandResult finish_subprogram(PromptState& state, const std::string& arguments
     if (!has_block(state) || state.session.record().blocks[state.session.at()].calls.empty())
         return core::fail(ErrorCode::invalid_value,
                           "this is the main program: there is no subprogram to finish");
-    return text + told(state, state.session.finish());
+    return text + stop_and_location(state, state.session.finish());
 }
 
 CommandResult go_on(PromptState& state, const std::string& arguments) {
@@ -83,7 +83,7 @@ CommandResult go_on(PromptState& state, const std::string& arguments) {
     Stop stop = state.session.go_on();
     for (size_t i = 1; i < count && stop.reason == StopReason::breakpoint; ++i)
         stop = state.session.go_on();
-    return told(state, stop);
+    return stop_and_location(state, stop);
 }
 
 CommandResult go_on_back(PromptState& state, const std::string& arguments) {
@@ -91,7 +91,7 @@ CommandResult go_on_back(PromptState& state, const std::string& arguments) {
     Stop stop = state.session.go_on_back();
     for (size_t i = 1; i < count && stop.reason == StopReason::breakpoint; ++i)
         stop = state.session.go_on_back();
-    return told(state, stop);
+    return stop_and_location(state, stop);
 }
 
 CommandResult go_until(PromptState& state, const std::string& arguments) {
@@ -104,8 +104,7 @@ CommandResult go_until(PromptState& state, const std::string& arguments) {
         condition = fmt::format("line = {} and file = \"{}\"", location.line, location.file);
     }
     FEELER_TRY(const Condition goal, Condition::read(condition));
-    return told_of_search(state, state.session.until(goal),
-                          fmt::format("block with {}", arguments));
+    return search_text(state, state.session.until(goal), fmt::format("block with {}", arguments));
 }
 
 CommandResult go_to(PromptState& state, const std::string& arguments) {
@@ -127,28 +126,28 @@ CommandResult go_to(PromptState& state, const std::string& arguments) {
     if (first.empty())
         return core::fail(ErrorCode::syntax, "go where? block 17, line 120, N210, start or end");
     FEELER_TRY(const Location location, location_in(state, first == "line" ? rest : arguments));
-    FEELER_TRY(const size_t place, place_of(state, location));
-    return gone_to(state, place);
+    FEELER_TRY(const size_t position, position_of(state, location));
+    return gone_to(state, position);
 }
 
 CommandResult go_to_finding(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.next_finding(), "problem");
+    return text + search_text(state, state.session.next_finding(), "problem");
 }
 
 CommandResult go_back_to_finding(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.previous_finding(), "problem");
+    return text + search_text(state, state.session.previous_finding(), "problem");
 }
 
 CommandResult go_to_tool(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.next_tool(), "tool change");
+    return text + search_text(state, state.session.next_tool(), "tool change");
 }
 
 CommandResult go_back_to_tool(PromptState& state, const std::string& arguments) {
     FEELER_TRY(std::string text, want_nothing(arguments));
-    return text + told_of_search(state, state.session.previous_tool(), "tool change");
+    return text + search_text(state, state.session.previous_tool(), "tool change");
 }
 
 } // namespace app

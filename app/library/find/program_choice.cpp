@@ -16,7 +16,7 @@ void take_all(ProgramChoice& choice, const ProgramChoice& other) {
 } // namespace
 
 void ProgramChoice::add(const ChosenProgram& program) {
-    const auto [at, is_new] = places_.try_emplace(identities_.of(program.path), programs_.size());
+    const auto [at, is_new] = index_.try_emplace(identities_.of(program.path), programs_.size());
     if (is_new) {
         programs_.push_back(program);
         return;
@@ -32,17 +32,17 @@ void ProgramChoice::add(const ChosenProgram& program) {
 }
 
 void ProgramChoice::skip(const SkippedFile& file) {
-    if (told_.insert(identities_.of(file.path)).second) skipped_.push_back(file);
+    if (recorded_.insert(identities_.of(file.path)).second) skipped_.push_back(file);
 }
 
 void ProgramChoice::fail(const core::Error& error) {
     const std::string text = fmt::format("{}\n{}\n{}", error.file, error.where.line, error.message);
-    if (told_.insert(text).second) failures_.push_back(error);
+    if (recorded_.insert(text).second) failures_.push_back(error);
 }
 
 const ChosenProgram* ProgramChoice::find(const std::string& path) const {
-    const auto found = places_.find(identities_.of(path));
-    return found == places_.end() ? nullptr : &programs_[found->second];
+    const auto found = index_.find(identities_.of(path));
+    return found == index_.end() ? nullptr : &programs_[found->second];
 }
 
 std::vector<SkippedFile> ProgramChoice::skipped() const {

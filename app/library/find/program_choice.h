@@ -39,8 +39,8 @@ private:
     std::vector<ChosenProgram> programs_;
     std::vector<SkippedFile> skipped_;
     std::vector<core::Error> failures_;
-    std::map<std::string, size_t> places_; // index in programs_, by file identity
-    std::set<std::string> told_;           // skipped files and failures already recorded
+    std::map<std::string, size_t> index_; // index in programs_, by file identity
+    std::set<std::string> recorded_;      // skipped files and failures already recorded
     mutable FileIdentities identities_;
 };
 

@@ -77,31 +77,31 @@ private:
 
     /// Adds a file if it is a program. True if it is one, or may be one. Reads each file only once.
     bool take_file(const std::string& file, const std::string& project) {
-        const auto [known, is_new] = looked_into_.try_emplace(identities_.of(file));
-        Look& look = known->second;
-        if (look.place) {
-            FoundProgram& program = found.programs[*look.place];
+        const auto [known, is_new] = examined_.try_emplace(identities_.of(file));
+        Examined& examined = known->second;
+        if (examined.index) {
+            FoundProgram& program = found.programs[*examined.index];
             // A program found by a search that began below its project is always checked.
             if (program.project.empty() != project.empty()) program.is_named = true;
             if (!project.empty()) program.project = project;
         }
-        if (!is_new) return look.may_be_program;
+        if (!is_new) return examined.may_be_program;
         core::notify_file_access({core::FileQuestion::kind, file, {}, {}});
         auto why = why_no_program(file);
-        look.may_be_program = !why || !*why;
+        examined.may_be_program = !why || !*why;
         if (!why)
             found.failures.push_back(why.error());
         else if (*why)
             found.skipped.push_back({file, **why});
         else
-            look.place = put(file, project);
-        return look.may_be_program;
+            examined.index = put(file, project);
+        return examined.may_be_program;
     }
 
     void add(const std::string& file) {
-        Look& look = looked_into_[identities_.of(file)];
-        if (!look.place) look = {true, put(file, {})};
-        found.programs[*look.place].is_named = true;
+        Examined& examined = examined_[identities_.of(file)];
+        if (!examined.index) examined = {true, put(file, {})};
+        found.programs[*examined.index].is_named = true;
     }
 
     size_t put(const std::string& file, const std::string& project) {
@@ -118,15 +118,15 @@ private:
     }
 
     /// The result of examining a file.
-    struct Look {
+    struct Examined {
         bool may_be_program = false;
-        std::optional<size_t> place = {}; // index in found.programs
+        std::optional<size_t> index = {}; // index in found.programs
     };
 
     fs::path folder_;
     FileIdentities identities_;
     ProjectOwners owners_;
-    std::map<std::string, Look> looked_into_;
+    std::map<std::string, Examined> examined_;
     std::set<std::string> skipped_;
 };
 
@@ -140,7 +140,7 @@ FoundPrograms find_programs(const std::vector<std::string>& words, const fs::pat
 
 namespace {
 
-constexpr size_t looked_at = 65536; // bytes at the beginning of a file that are read
+constexpr size_t sample_size = 65536; // bytes at the beginning of a file that are read
 
 /// File extensions, without the dot, that NC programs never have.
 struct Kind {
@@ -234,7 +234,7 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
              {},
              "cannot be read: " + std::generic_category().message(errno),
              path});
-    std::string text(looked_at, '\0');
+    std::string text(sample_size, '\0');
     file.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<size_t>(file.gcount()));
     const bool is_named_so =

@@ -13,7 +13,7 @@ struct BatchResult {
     std::vector<ProgramResult> programs; // in the order of the arguments
     std::vector<std::string> unchecked;  // programs not finished because the batch was stopped
     std::vector<SkippedFile> skipped;    // files that are not NC programs
-    std::string share = {};    // such as "shard 2/8: 13 of 104 programs"; empty: the whole batch
+    std::string shard = {};    // such as "shard 2/8: 13 of 104 programs"; empty: the whole batch
     FileBytes file_bytes = {}; // of unchecked and skipped files; see ProgramResult
 };
 

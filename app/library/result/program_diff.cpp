@@ -183,19 +183,19 @@ struct Split {
 /// The items of a list that the other list contains, too, with their indices.
 struct Items {
     std::vector<uint32_t> items;
-    std::vector<size_t> places;
+    std::vector<size_t> indices;
 };
 
 Items known_to(std::span<const uint32_t> others, std::span<const uint32_t> list) {
     std::vector<uint32_t> known(others.begin(), others.end());
     std::sort(known.begin(), known.end());
-    Items kept;
+    Items selected;
     for (size_t i = 0; i < list.size(); ++i) {
         if (!std::binary_search(known.begin(), known.end(), list[i])) continue;
-        kept.items.push_back(list[i]);
-        kept.places.push_back(i);
+        selected.items.push_back(list[i]);
+        selected.indices.push_back(i);
     }
-    return kept;
+    return selected;
 }
 
 /// Searches for the path through two lists with the fewest differences, from both ends until the
@@ -312,7 +312,7 @@ std::vector<std::pair<size_t, size_t>> aligned(std::span<const uint32_t> a,
     Fronts fronts(in_a.items, in_b.items);
     std::vector<std::pair<size_t, size_t>> pairs;
     const auto pair_up = [&](ptrdiff_t x, ptrdiff_t y) {
-        pairs.emplace_back(in_a.places[x], in_b.places[y]);
+        pairs.emplace_back(in_a.indices[x], in_b.indices[y]);
     };
     std::vector<Stretch> open = {{0, static_cast<ptrdiff_t>(in_a.items.size()), 0,
                                   static_cast<ptrdiff_t>(in_b.items.size())}};
@@ -338,10 +338,10 @@ namespace {
 using Findings = std::vector<StoredFinding>;
 using Identity = std::tuple<std::string, core::Severity, std::array<std::string, 2>, std::string>;
 
-std::vector<Identity> identities(const Findings& findings, const PlaceOfFinding& place_of) {
+std::vector<Identity> identities(const Findings& findings, const FindingKey& key_of) {
     std::vector<Identity> named;
     for (const StoredFinding& finding : findings)
-        named.emplace_back(finding.rule, finding.severity, finding.pair, place_of(finding));
+        named.emplace_back(finding.rule, finding.severity, finding.pair, key_of(finding));
     return named;
 }
 
@@ -368,17 +368,16 @@ double margin_of(const Tightest& tightest) {
 } // namespace
 
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after) {
-    const PlaceOfFinding by_text = [](const StoredFinding& finding) {
+    const FindingKey by_text = [](const StoredFinding& finding) {
         return finding.file + "\n" + numberless(finding.text);
     };
     return change_between(before, after, by_text, by_text);
 }
 
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after,
-                             const PlaceOfFinding& place_before,
-                             const PlaceOfFinding& place_after) {
-    const auto were = identities(before.findings, place_before);
-    const auto are = identities(after.findings, place_after);
+                             const FindingKey& key_before, const FindingKey& key_after) {
+    const auto were = identities(before.findings, key_before);
+    const auto are = identities(after.findings, key_after);
     ProgramChange change{.verdict_differs = before.verdict != after.verdict,
                          .longer = after.cycle_time - before.cycle_time,
                          .new_findings = missing_in(were, after.findings, are),

@@ -29,11 +29,11 @@ struct ProgramChange {
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after);
 
 /// Returns a key for the place of a finding, equal for the same place in both versions.
-using PlaceOfFinding = std::function<std::string(const StoredFinding&)>;
+using FindingKey = std::function<std::string(const StoredFinding&)>;
 
 /// Compares two results. Findings are equal if rule, severity, bodies and place are.
 ProgramChange change_between(const ProgramResult& before, const ProgramResult& after,
-                             const PlaceOfFinding& place_before, const PlaceOfFinding& place_after);
+                             const FindingKey& key_before, const FindingKey& key_after);
 
 /// A block of a checked program and its clearance, mm.
 struct BlockMeasure {

@@ -29,12 +29,12 @@ uint32_t column_of(const core::Error& error) {
     return static_cast<uint32_t>(characters_in(text.substr(starts[line - 1], column - 1))) + 1;
 }
 
-StoredError kept(const core::Error& error, FileBytes& bytes) {
+StoredError stored(const core::Error& error, FileBytes& bytes) {
     return {shown_name(error.file, bytes), error.where.line, column_of(error),
             utf8_text(error.message)};
 }
 
-StoredFinding kept(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
+StoredFinding stored(const core::Finding& finding, const CheckRun& run, FileBytes& bytes) {
     StoredFinding made{finding};
     made.message = utf8_text(finding.message);
     made.cure = utf8_text(finding.cure);
@@ -164,11 +164,11 @@ ProgramResult result_of(const CheckRun& run, const std::string& setup) {
                          .removed = run.removed,
                          .tightest = tightest_of(run),
                          .seconds = run.times.read + run.times.model + run.times.check};
-    if (run.stopped) result.error = kept(*run.stopped, bytes);
+    if (run.stopped) result.error = stored(*run.stopped, bytes);
     for (const std::string& assumption : run.all_assumptions())
         result.assumptions.push_back(utf8_text(assumption));
     for (const core::Finding& finding : run.findings)
-        result.findings.push_back(kept(finding, run, bytes));
+        result.findings.push_back(stored(finding, run, bytes));
     result.file_bytes = std::move(bytes);
     return result;
 }
@@ -179,7 +179,7 @@ ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
                          .setup = shown_name(job.setup, bytes),
                          .sha256 = sha256_of_file(job.program),
                          .engine = name_of(job.engine),
-                         .error = kept(error, bytes)};
+                         .error = stored(error, bytes)};
     result.file_bytes = std::move(bytes);
     return result;
 }
@@ -215,7 +215,7 @@ std::string json_of(const ProgramResult& result) {
 
 core::Result<ProgramResult> result_from_json(const std::string& text) {
     try {
-        return result_from(kept_json(text));
+        return result_from(parsed_stored_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
                           std::string("this is not the result of a check: ") + wrong.what());

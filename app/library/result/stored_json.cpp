@@ -26,7 +26,7 @@ bool is_nested_too_deep(std::string_view text) {
     return false;
 }
 
-StoredJson kept_json(const std::string& text) {
+StoredJson parsed_stored_json(const std::string& text) {
     if (is_nested_too_deep(text)) throw std::invalid_argument("nested too deeply");
     return StoredJson::parse(text);
 }

@@ -22,7 +22,7 @@ using StoredJson = nlohmann::ordered_json;
 bool is_nested_too_deep(std::string_view text);
 
 /// Parses JSON. Throws if the text is not JSON or is nested too deeply.
-StoredJson kept_json(const std::string& text);
+StoredJson parsed_stored_json(const std::string& text);
 
 /// A whole number that fits the type.
 template <typename Whole>

@@ -29,7 +29,7 @@ CheckJob job_of(const ChosenProgram& chosen, const CheckJob& asked) {
     CheckJob job = asked;
     job.program = chosen.path;
     if (job.setup.empty()) job.setup = terms.setup;
-    look_beside(job);
+    find_setup_next_to(job);
     if (!job.settings.dialect) job.settings.dialect = terms.dialect;
     if (!job.allowance) job.allowance = terms.allowance;
     if (!job.mesh_size) job.mesh_size = terms.mesh_size;

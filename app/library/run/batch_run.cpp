@@ -60,7 +60,7 @@ public:
         if (most > 1)
             std::stable_sort(order_.begin(), order_.end(),
                              [&](size_t a, size_t b) { return sizes_[a] > sizes_[b]; });
-        shares_ = std::vector<std::atomic<double>>(most);
+        fractions_ = std::vector<std::atomic<double>>(most);
     }
 
     std::vector<std::optional<ProgramResult>> run() {
@@ -76,10 +76,10 @@ private:
     /// ends the others before the first check begins. If there are none, the caller's thread does
     /// all the work.
     void begin(std::vector<std::thread>& threads) {
-        size_t most = shares_.size();
+        size_t most = fractions_.size();
         try {
             threads.reserve(most);
-            while (threads.size() < shares_.size())
+            while (threads.size() < fractions_.size())
                 threads.emplace_back([this, i = threads.size()] { work_in_turn(i); });
         } catch (const std::exception&) { // the system is out of threads or memory
             const size_t cores = std::max(1U, std::thread::hardware_concurrency());
@@ -87,9 +87,9 @@ private:
         }
         let_begin(most, false);
         for (; threads.size() > most; threads.pop_back()) threads.back().join();
-        working_ = std::max<size_t>(most, shares_.empty() ? 0 : 1);
+        working_ = std::max<size_t>(most, fractions_.empty() ? 0 : 1);
         let_begin(most, true);
-        if (most == 0 && !shares_.empty()) work(0);
+        if (most == 0 && !fractions_.empty()) work(0);
     }
 
     void let_begin(size_t most, bool now) {
@@ -112,11 +112,11 @@ private:
 
     void work(size_t thread) {
         std::optional<core::FileAccessObserver> listening;
-        if (hooks_.looked) listening.emplace(hooks_.looked);
+        if (hooks_.file_accessed) listening.emplace(hooks_.file_accessed);
         while (!is_stopped()) {
-            const size_t place = next_++;
-            if (place >= order_.size()) break;
-            check_whatever_comes(order_[place], thread);
+            const size_t index = next_++;
+            if (index >= order_.size()) break;
+            check_whatever_comes(order_[index], thread);
         }
         const std::lock_guard lock(mutex_);
         --working_;
@@ -138,20 +138,20 @@ private:
             if (auto known = hooks_.known(job)) return end(i, thread, *std::move(known));
         double taken = 0.0;
         bool is_cut = false;
-        CheckJob watched = job;
-        watched.before_model = [&](double bytes) {
+        CheckJob hooked = job;
+        hooked.before_model = [&](double bytes) {
             is_cut = !budget_.take(bytes, [this] { return is_stopped(); });
             if (!is_cut) taken = bytes;
             return !is_cut;
         };
-        watched.after_block = [&](const CheckProgress& progress) {
-            shares_[thread].store(sizes_[i] * progress.share, std::memory_order_relaxed);
+        hooked.after_block = [&](const CheckProgress& progress) {
+            fractions_[thread].store(sizes_[i] * progress.fraction, std::memory_order_relaxed);
             is_cut = is_stopped();
             return !is_cut;
         };
-        watched.is_stopped = [&] { return is_cut = is_cut || is_stopped(); };
+        hooked.is_stopped = [&] { return is_cut = is_cut || is_stopped(); };
         {
-            const auto run = run_whatever_comes(watched);
+            const auto run = run_whatever_comes(hooked);
             if (!is_cut) end(i, thread, result(job, run));
         }
         // Return the memory of a large model to the system; otherwise the allocator keeps it.
@@ -170,7 +170,7 @@ private:
     void end(size_t i, size_t thread, ProgramResult result) {
         const std::lock_guard lock(mutex_);
         results_[i] = std::move(result);
-        shares_[thread].store(0.0, std::memory_order_relaxed);
+        fractions_[thread].store(0.0, std::memory_order_relaxed);
         ended_.push_back(i);
         something_ended_.notify_one();
     }
@@ -193,7 +193,7 @@ private:
                 if (hooks_.ended) hooks_.ended(*results_[i]);
                 lock.lock();
             }
-            progress.share = (done + under_way()) / all;
+            progress.fraction = (done + under_way()) / all;
             lock.unlock();
             if (hooks_.waiting) hooks_.waiting(progress);
             lock.lock();
@@ -202,7 +202,7 @@ private:
 
     double under_way() const {
         double bytes = 0.0;
-        for (const auto& share : shares_) bytes += share.load(std::memory_order_relaxed);
+        for (const auto& fraction : fractions_) bytes += fraction.load(std::memory_order_relaxed);
         return bytes;
     }
 
@@ -211,8 +211,8 @@ private:
     MemoryBudget budget_;
     std::vector<double> sizes_; // of the programs, bytes
     std::vector<size_t> order_;
-    std::atomic<size_t> next_{0};             // index in order_
-    std::vector<std::atomic<double>> shares_; // of each thread's program, bytes
+    std::atomic<size_t> next_{0};                // index in order_
+    std::vector<std::atomic<double>> fractions_; // of each thread's program, bytes
     std::vector<std::optional<ProgramResult>> results_;
     std::deque<size_t> ended_;                         // results not reported yet
     size_t working_ = 0;                               // number of running threads

@@ -29,7 +29,7 @@ struct BatchLimits {
 struct BatchProgress {
     size_t programs = 0, done = 0;
     size_t with_errors = 0; // programs with errors, or that could not be run
-    double share = 0.0;     // of the bytes of all programs, 0..1
+    double fraction = 0.0;  // of the bytes of all programs, 0..1
 };
 
 /// Callbacks of a batch; each may be empty.
@@ -41,7 +41,7 @@ struct BatchHooks {
     std::function<void(const CheckJob&, const CheckRun&, const ProgramResult&)> keep = {};
 
     /// Receives every file access, in the thread that makes it.
-    std::function<void(const core::FileAccess&)> looked = {};
+    std::function<void(const core::FileAccess&)> file_accessed = {};
 
     /// Receives each result, in the caller's thread.
     std::function<void(const ProgramResult&)> ended = {};

@@ -51,29 +51,29 @@ std::vector<PlannedProgram> planned_programs(const BatchPlan& plan) {
     return programs;
 }
 
-std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShardId& share) {
+std::vector<size_t> indices_of(const std::vector<PlannedProgram>& programs, const ShardId& id) {
     std::vector<uintmax_t> sizes;
     for (const PlannedProgram& program : programs) sizes.push_back(program.size);
-    return share_of(sizes, share);
+    return indices_of_shard(sizes, id);
 }
 
-BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& places) {
+BatchPlan part_of_plan(const BatchPlan& plan, const std::vector<size_t>& indices) {
     BatchPlan part{.jobs = {}, .skipped = plan.skipped, .failures = plan.failures};
-    for (const size_t place : places) part.jobs.push_back(plan.jobs[place]);
+    for (const size_t index : indices) part.jobs.push_back(plan.jobs[index]);
     return part;
 }
 
-Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult& batch) {
-    const size_t checked = places.size() - batch.unchecked.size();
+Shard shard_of(Shard shard, const std::vector<size_t>& indices, const BatchResult& batch) {
+    const size_t checked = indices.size() - batch.unchecked.size();
     assert(checked <= batch.programs.size());
     // Both are in the order of the places; a program without a result was not checked.
-    for (const size_t place : places) {
+    for (const size_t index : indices) {
         const size_t next = shard.results.size();
-        if (next < checked && batch.programs[next].program == shard.programs[place].name) {
-            shard.places.push_back(place);
+        if (next < checked && batch.programs[next].program == shard.programs[index].name) {
+            shard.indices.push_back(index);
             shard.results.push_back(batch.programs[next]);
         } else {
-            shard.unchecked.push_back(place);
+            shard.unchecked.push_back(index);
         }
     }
     shard.failures.assign(batch.programs.begin() + static_cast<std::ptrdiff_t>(checked),
@@ -117,10 +117,10 @@ std::string list_text(const char* key, const Entries& entries, TextOf text_of_en
     return text + "]";
 }
 
-std::vector<size_t> places_from(const Json& json) {
-    std::vector<size_t> places;
-    for (const Json& each : list_from(json)) places.push_back(whole_from<size_t>(each));
-    return places;
+std::vector<size_t> indices_from(const Json& json) {
+    std::vector<size_t> indices;
+    for (const Json& each : list_from(json)) indices.push_back(whole_from<size_t>(each));
+    return indices;
 }
 
 core::Result<std::vector<ProgramResult>> results_from(const Json& json) {
@@ -137,17 +137,17 @@ core::Result<Shard> shard_from(const Json& json) {
         throw std::invalid_argument("its format is unknown");
     Shard shard;
     shard.version = json.at("version");
-    const Json& share = list_from(json.at("share"), 2);
-    FEELER_TRY(shard.share, share_named(text_of(ShardId{whole_from<size_t>(share[0]),
-                                                        whole_from<size_t>(share[1])})));
+    const Json& id = list_from(json.at("share"), 2);
+    FEELER_TRY(shard.id,
+               shard_named(text_of(ShardId{whole_from<size_t>(id[0]), whole_from<size_t>(id[1])})));
     shard.seconds = number_from(json.at("seconds"), 0.0);
     if (shard.seconds > longest) throw std::invalid_argument("its time is out of range");
     for (const Json& each : list_from(json.at("programs")))
         shard.programs.push_back(program_from(each));
     for (const Json& each : list_from(json.at("skipped")))
         shard.skipped.push_back(skipped_from(each));
-    shard.places = places_from(json.at("places"));
-    shard.unchecked = places_from(json.at("unchecked"));
+    shard.indices = indices_from(json.at("places"));
+    shard.unchecked = indices_from(json.at("unchecked"));
     FEELER_TRY(shard.failures, results_from(json.at("failures")));
     FEELER_TRY(shard.results, results_from(json.at("results")));
     return shard;
@@ -185,8 +185,8 @@ std::string json_of(const Shard& shard) {
     std::string json = fmt::format(
         "{{\"feeler_shard\": {}, \"version\": {}, \"share\": [{}, {}], \"seconds\": {},\n"
         "\"places\": [{}],\n\"unchecked\": [{}]",
-        shard_format, json_text(shard.version), shard.share.i, shard.share.n,
-        json_text(shard.seconds), fmt::join(shard.places, ","), fmt::join(shard.unchecked, ","));
+        shard_format, json_text(shard.version), shard.id.i, shard.id.n, json_text(shard.seconds),
+        fmt::join(shard.indices, ","), fmt::join(shard.unchecked, ","));
     json += list_text("programs", shard.programs, line);
     json += list_text("skipped", shard.skipped, line);
     json += list_text("failures", shard.failures, result_line);
@@ -203,7 +203,7 @@ core::Result<Shard> shard_from_json(const std::string& text) {
         return core::fail(core::ErrorCode::syntax,
                           "is a shard of a batch that was truncated or changed");
     try {
-        return shard_from(kept_json(text));
+        return shard_from(parsed_stored_json(text));
     } catch (const std::exception& wrong) {
         return core::fail(core::ErrorCode::syntax,
                           fmt::format("is not a shard of a batch: {}", wrong.what()));

@@ -20,11 +20,11 @@ struct PlannedProgram {
 struct Shard {
     std::string file;    // from which it was read; not stored
     std::string version; // of Feeler: see build_version
-    ShardId share;
+    ShardId id;
     std::vector<PlannedProgram> programs; // of the whole batch, in order
     std::vector<ProgramResult> failures;  // arguments of the whole batch without a match
     std::vector<SkippedFile> skipped;     // of the whole batch
-    std::vector<size_t> places;           // indices in `programs` of the results
+    std::vector<size_t> indices;          // indices in `programs` of the results
     std::vector<ProgramResult> results;
     std::vector<size_t> unchecked; // indices in `programs` not finished because the run was stopped
     double seconds = 0.0;          // wall time of the shard
@@ -36,13 +36,13 @@ struct Shard {
 std::vector<PlannedProgram> planned_programs(const BatchPlan& plan);
 
 /// The indices of the programs of a shard.
-std::vector<size_t> places_of(const std::vector<PlannedProgram>& programs, const ShardId& share);
+std::vector<size_t> indices_of(const std::vector<PlannedProgram>& programs, const ShardId& id);
 
 /// The part of a plan with these programs. Failures of arguments stay in every part.
-BatchPlan plan_of_places(const BatchPlan& plan, const std::vector<size_t>& places);
+BatchPlan part_of_plan(const BatchPlan& plan, const std::vector<size_t>& indices);
 
 /// Adds the results of a part of the plan to a shard that already describes the batch.
-Shard shard_of(Shard shard, const std::vector<size_t>& places, const BatchResult& batch);
+Shard shard_of(Shard shard, const std::vector<size_t>& indices, const BatchResult& batch);
 
 /// Converts a shard to a JSON object with one entry per line, and back.
 ///

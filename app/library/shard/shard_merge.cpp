@@ -35,21 +35,21 @@ std::string difference(const std::vector<PlannedProgram>& first,
 /// Why a shard belongs to a different batch than the first; empty if it does not.
 std::string difference(const Shard& first, const Shard& other) {
     if (other.version != first.version) return "it was made by a different version of Feeler";
-    if (other.share.n != first.share.n)
-        return fmt::format("it is shard {}, not one of {}", text_of(other.share), first.share.n);
+    if (other.id.n != first.id.n)
+        return fmt::format("it is shard {}, not one of {}", text_of(other.id), first.id.n);
     if (other.failures != first.failures) return "different files were missing or unreadable there";
     return difference(first.programs, other.programs);
 }
 
-core::Result<void> check_shares(const std::vector<Shard>& shards) {
+core::Result<void> check_shard_numbers(const std::vector<Shard>& shards) {
     for (size_t i = 1; i < shards.size(); ++i) {
         if (const std::string why = difference(shards[0], shards[i]); !why.empty())
             return tl::unexpected(
                 merge_error(shards[i].file, fmt::format("belongs to a different batch than {}: {}",
                                                         shards[0].file, why)));
-        if (shards[i].share == shards[i - 1].share)
+        if (shards[i].id == shards[i - 1].id)
             return tl::unexpected(merge_error(
-                shards[i].file, fmt::format("is shard {}, and so is {}", text_of(shards[i].share),
+                shards[i].file, fmt::format("is shard {}, and so is {}", text_of(shards[i].id),
                                             shards[i - 1].file)));
     }
     return {};
@@ -57,13 +57,13 @@ core::Result<void> check_shares(const std::vector<Shard>& shards) {
 
 core::Result<void> find_missing(const std::vector<Shard>& shards) {
     constexpr size_t shown = 20;
-    const size_t n = shards[0].share.n;
+    const size_t n = shards[0].id.n;
     const size_t count = n - std::min(n, shards.size());
     if (count == 0) return {};
     std::vector<std::string> missing;
     size_t at = 0;
     for (size_t i = 1; i <= n && missing.size() < shown; ++i)
-        if (at < shards.size() && shards[at].share.i == i)
+        if (at < shards.size() && shards[at].id.i == i)
             ++at;
         else
             missing.push_back(text_of(ShardId{i, n}));
@@ -77,14 +77,14 @@ core::Result<void> find_missing(const std::vector<Shard>& shards) {
 class Outcomes {
 public:
     explicit Outcomes(const std::vector<PlannedProgram>& programs)
-        : programs_(programs), is_told_(programs.size(), false), results_(programs.size()) {}
+        : programs_(programs), is_covered_(programs.size(), false), results_(programs.size()) {}
 
     core::Result<void> take(const Shard& shard) {
-        bool fits = shard.places.size() == shard.results.size();
-        for (size_t i = 0; fits && i < shard.places.size(); ++i)
-            fits = is_new(shard.places[i])
-                   && shard.results[i].program == programs_[shard.places[i]].name
-                   && put(shard.places[i], &shard.results[i]);
+        bool fits = shard.indices.size() == shard.results.size();
+        for (size_t i = 0; fits && i < shard.indices.size(); ++i)
+            fits = is_new(shard.indices[i])
+                   && shard.results[i].program == programs_[shard.indices[i]].name
+                   && put(shard.indices[i], &shard.results[i]);
         for (size_t i = 0; fits && i < shard.unchecked.size(); ++i)
             fits = is_new(shard.unchecked[i]) && put(shard.unchecked[i], nullptr);
         if (fits) return {};
@@ -95,7 +95,7 @@ public:
     core::Result<BatchResult> batch() const {
         BatchResult batch;
         for (size_t i = 0; i < programs_.size(); ++i) {
-            if (!is_told_[i])
+            if (!is_covered_[i])
                 return core::fail(core::ErrorCode::missing_value,
                                   fmt::format("no shard has a result for {}", programs_[i].name));
             if (results_[i])
@@ -107,16 +107,16 @@ public:
     }
 
 private:
-    bool is_new(size_t place) const { return place < is_told_.size() && !is_told_[place]; }
+    bool is_new(size_t index) const { return index < is_covered_.size() && !is_covered_[index]; }
 
-    bool put(size_t place, const ProgramResult* result) {
-        results_[place] = result;
-        is_told_[place] = true;
+    bool put(size_t index, const ProgramResult* result) {
+        results_[index] = result;
+        is_covered_[index] = true;
         return true;
     }
 
     const std::vector<PlannedProgram>& programs_;
-    std::vector<bool> is_told_;
+    std::vector<bool> is_covered_;
     std::vector<const ProgramResult*> results_;
 };
 
@@ -141,9 +141,9 @@ std::vector<SkippedFile> skipped_by_all(const std::vector<Shard>& shards) {
 core::Result<BatchResult> merged(std::vector<Shard> shards) {
     if (shards.empty()) return core::fail(core::ErrorCode::missing_value, "there are no shards");
     std::sort(shards.begin(), shards.end(), [](const Shard& a, const Shard& b) {
-        return a.share.i != b.share.i ? a.share.i < b.share.i : a.file < b.file;
+        return a.id.i != b.id.i ? a.id.i < b.id.i : a.file < b.file;
     });
-    if (auto same = check_shares(shards); !same) return tl::unexpected(same.error());
+    if (auto same = check_shard_numbers(shards); !same) return tl::unexpected(same.error());
     if (auto whole = find_missing(shards); !whole) return tl::unexpected(whole.error());
     Outcomes outcomes(shards[0].programs);
     for (const Shard& shard : shards)

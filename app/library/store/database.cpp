@@ -17,16 +17,17 @@ constexpr auto when_stopped = 1s;
 } // namespace
 
 RetryBudget::RetryBudget(std::function<bool()> is_stopped)
-    : is_stopped_(std::move(is_stopped)), left_(whole_budget), told_(Clock::now()) {}
+    : is_stopped_(std::move(is_stopped)), left_(whole_budget), last_wait_end_(Clock::now()) {}
 
 bool RetryBudget::take(Clock::duration nap) {
     const std::lock_guard lock(mutex_);
     const Clock::time_point now = Clock::now();
-    if (now > told_) left_ = std::min<Clock::duration>(whole_budget, left_ + (now - told_) / 2);
+    if (now > last_wait_end_)
+        left_ = std::min<Clock::duration>(whole_budget, left_ + (now - last_wait_end_) / 2);
     if (is_stopped_ && is_stopped_()) left_ = std::min<Clock::duration>(left_, when_stopped);
     if (left_ < nap) return false;
     left_ -= nap;
-    told_ = now + nap;
+    last_wait_end_ = now + nap;
     return true;
 }
 

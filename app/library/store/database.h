@@ -30,7 +30,7 @@ private:
     std::function<bool()> is_stopped_;
     std::mutex mutex_; // guards all members below
     Clock::duration left_;
-    Clock::time_point told_; // end of the last wait
+    Clock::time_point last_wait_end_; // end of the last wait
 };
 
 } // namespace app

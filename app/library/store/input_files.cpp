@@ -7,7 +7,7 @@
 namespace app {
 namespace {
 
-std::optional<std::string> place_of(const InputFile& input) {
+std::optional<std::string> answer_of(const InputFile& input) {
     const auto found = gcode::file_in(input.path, input.name);
     return found ? std::optional(found->string()) : std::nullopt;
 }
@@ -21,7 +21,7 @@ bool InputAnswers::is_same(const InputFile& input) {
     case core::FileQuestion::presence:
         return core::presence_of(input.path) == input.answer;
     case core::FileQuestion::in_folder:
-        return place_of(input) == input.answer;
+        return answer_of(input) == input.answer;
     case core::FileQuestion::any_case:
         return name_in_any_case(input) == input.answer;
     case core::FileQuestion::listing:

@@ -71,7 +71,7 @@ bool RelativePaths::still_hold() const {
            && is_same(stamps_[0], here);
 }
 
-std::string RelativePaths::place_of(const std::string& path) const {
+std::string RelativePaths::relative(const std::string& path) const {
     if (path.empty()) return {};
     const std::string file = absolute_path(path, working_folder_);
     for (const std::string& folder : {named_folder_, folder_})
@@ -84,9 +84,9 @@ std::string RelativePaths::place_of(const std::string& path) const {
     return file.empty() ? "/" : file;
 }
 
-std::string RelativePaths::path_of(const std::string& place) const {
-    if (place.empty() || place.starts_with('/')) return place;
-    std::string_view folder = folder_, rest = place;
+std::string RelativePaths::absolute(const std::string& relative_path) const {
+    if (relative_path.empty() || relative_path.starts_with('/')) return relative_path;
+    std::string_view folder = folder_, rest = relative_path;
     while (rest == ".." || rest.starts_with("../")) {
         folder = parent_of(folder);
         rest.remove_prefix(std::min<size_t>(3, rest.size()));
@@ -96,27 +96,27 @@ std::string RelativePaths::path_of(const std::string& place) const {
     return path.empty() ? "/" : path;
 }
 
-CheckJob placed(const CheckJob& job, const RelativePaths& places) {
+CheckJob with_relative_paths(const CheckJob& job, const RelativePaths& paths) {
     CheckJob made = job;
     ProgramSettings& settings = made.settings;
     for (std::string* path :
          {&made.program, &made.setup, &settings.ini, &settings.parameters, &settings.tool_table})
-        *path = places.place_of(*path);
-    for (std::string& folder : settings.search_path) folder = places.place_of(folder);
+        *path = paths.relative(*path);
+    for (std::string& folder : settings.search_path) folder = paths.relative(folder);
     return made;
 }
 
-InputFile placed(InputFile input, const RelativePaths& places) {
-    input.path = places.place_of(input.path);
+InputFile with_relative_paths(InputFile input, const RelativePaths& paths) {
+    input.path = paths.relative(input.path);
     if (input.question == core::FileQuestion::in_folder && input.answer)
-        input.answer = places.place_of(*input.answer);
+        input.answer = paths.relative(*input.answer);
     return input;
 }
 
-InputFile asked_again(InputFile input, const RelativePaths& places) {
-    input.path = places.path_of(input.path);
+InputFile asked_again(InputFile input, const RelativePaths& paths) {
+    input.path = paths.absolute(input.path);
     if (input.question == core::FileQuestion::in_folder && input.answer)
-        input.answer = places.path_of(*input.answer);
+        input.answer = paths.absolute(*input.answer);
     return input;
 }
 

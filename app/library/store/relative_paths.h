@@ -23,10 +23,10 @@ public:
 
     /// The place of a path: relative if the path is in the folder or shares a parent with it,
     /// otherwise absolute; empty for an empty path.
-    std::string place_of(const std::string& path) const;
+    std::string relative(const std::string& path) const;
 
     /// The absolute path of a place.
-    std::string path_of(const std::string& place) const;
+    std::string absolute(const std::string& relative_path) const;
 
     /// Whether the name of the folder still leads to it, and the working folder is the same. If a
     /// link or folder has been replaced since, paths and places refer to different files.
@@ -41,11 +41,11 @@ private:
 };
 
 /// A job with its paths replaced by places.
-CheckJob placed(const CheckJob& job, const RelativePaths& places);
+CheckJob with_relative_paths(const CheckJob& job, const RelativePaths& paths);
 
 /// An access with paths replaced by places, and back.
-InputFile placed(InputFile input, const RelativePaths& places);
-InputFile asked_again(InputFile input, const RelativePaths& places);
+InputFile with_relative_paths(InputFile input, const RelativePaths& paths);
+InputFile asked_again(InputFile input, const RelativePaths& paths);
 
 /// Whether any text of a result may contain the path of a file or folder of its check (as in the
 /// job, as accessed, or any in `folder`), apart from the members for program and set-up. True if in

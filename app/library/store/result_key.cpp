@@ -44,12 +44,12 @@ KeyJson settings_json(const ProgramSettings& settings) {
     const auto& [dialect, block_delete, start, machine_unit, max_blocks, counts_smallest_steps, ini,
                  parameters, tool_table, search_path, machine_codes, tool_at_start,
                  spindle_at_start, speed_by_hand] = settings;
-    KeyJson places = KeyJson::array(), folders = KeyJson::array();
-    for (const auto& place : start) places.push_back(optional_json(place));
+    KeyJson positions = KeyJson::array(), folders = KeyJson::array();
+    for (const auto& position : start) positions.push_back(optional_json(position));
     for (const std::string& folder : search_path) folders.push_back(path_json(folder));
     return {{"dialect", enum_json(dialect)},
             {"block_delete", optional_json(block_delete)},
-            {"start", places},
+            {"start", positions},
             {"machine_unit", enum_json(machine_unit)},
             {"max_blocks", optional_json(max_blocks)},
             {"counts_smallest_steps", optional_json(counts_smallest_steps)},

@@ -44,11 +44,11 @@ std::string names_in(const CheckJob& job) {
 }
 
 /// Whether results of a job are stored.
-bool is_kept(const CheckJob& job) { return job.edits.empty(); }
+bool is_stored(const CheckJob& job) { return job.edits.empty(); }
 
 /// The keys under which the result of a job may be stored.
 struct JobKeys {
-    std::string options;     // see options_text; with places instead of paths
+    std::string options;     // see options_text; with relative_paths instead of paths
     std::string by_any_name; // for results whose texts contain no paths of the job
     std::string by_this_name;
 };
@@ -56,20 +56,20 @@ struct JobKeys {
 } // namespace
 
 struct ResultStore::State {
-    State(const std::string& path, std::string by) : version(std::move(by)), places(path) {}
+    State(const std::string& path, std::string by) : version(std::move(by)), relative_paths(path) {}
 
     std::string version;
-    RelativePaths places;
+    RelativePaths relative_paths;
     std::shared_ptr<InputAnswers> answers;
     std::shared_ptr<RetryBudget> retries;
     std::shared_ptr<ResultWriter> writer; // that of the own store if this one is read-only
-    bool is_kept_in = true;
+    bool is_writable = true;
     std::mutex mutex; // guards all members below
     Database database;
-    Statement rows_of_key, looks_of_row, rows_of_program, sighting;
+    Statement rows_of_key, accesses_of_row, rows_of_program, sighting;
 
     core::Result<void> prepare();
-    std::string place_of(const std::string& program) const;
+    std::string relative(const std::string& program) const;
     std::string content_of(const CheckJob& job) const;
     JobKeys keys_of(const CheckJob& job, const std::string& sha256) const;
     bool is_same(const StoredRow& row);
@@ -81,7 +81,7 @@ core::Result<void> ResultStore::State::prepare() {
     FEELER_TRY(rows_of_key,
                database.prepare("SELECT id, key, looks, value, seal FROM result WHERE key = ?1 "
                                 "ORDER BY id DESC"));
-    FEELER_TRY(looks_of_row,
+    FEELER_TRY(accesses_of_row,
                database.prepare("SELECT question, path, name, answer FROM result_look "
                                 "JOIN look ON look.id = look WHERE result = ?1"));
     FEELER_TRY(
@@ -95,28 +95,28 @@ core::Result<void> ResultStore::State::prepare() {
 }
 
 /// The path of a program relative to the folder, independent of the working folder.
-std::string ResultStore::State::place_of(const std::string& program) const {
+std::string ResultStore::State::relative(const std::string& program) const {
     std::error_code failure;
     const auto whole = std::filesystem::weakly_canonical(program, failure);
-    return failure ? program : whole.lexically_relative(places.folder()).string();
+    return failure ? program : whole.lexically_relative(relative_paths.folder()).string();
 }
 
 std::string ResultStore::State::content_of(const CheckJob& job) const {
-    return answers->content_of(places.path_of(places.place_of(job.program)));
+    return answers->content_of(relative_paths.absolute(relative_paths.relative(job.program)));
 }
 
 JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha256) const {
-    const CheckJob there = placed(job, places);
+    const CheckJob there = with_relative_paths(job, relative_paths);
     JobKeys keys{
         .options = options_text(there).value_or(""), .by_any_name = {}, .by_this_name = {}};
     keys.by_any_name = result_key(version, there, sha256, keys.options);
-    keys.by_this_name = sha256_of(keys.by_any_name + places.folder() + names_in(job));
+    keys.by_this_name = sha256_of(keys.by_any_name + relative_paths.folder() + names_in(job));
     return keys;
 }
 
 bool ResultStore::State::is_same(const StoredRow& row) {
     return std::all_of(row.inputs.begin(), row.inputs.end(), [this](const InputFile& input) {
-        return answers->is_same(asked_again(input, places));
+        return answers->is_same(asked_again(input, relative_paths));
     });
 }
 
@@ -130,20 +130,20 @@ core::Result<std::vector<StoredRow>> ResultStore::State::rows(const std::string&
         if (!more) break;
         found.push_back({.id = rows_of_key.number(0),
                          .key = rows_of_key.text(1),
-                         .looks = rows_of_key.text(2),
+                         .accesses = rows_of_key.text(2),
                          .value = rows_of_key.text(3),
                          .seal = rows_of_key.text(4)});
     }
     rows_of_key.reset();
     for (StoredRow& row : found) {
-        looks_of_row.reset();
-        looks_of_row.bind(1, row.id);
+        accesses_of_row.reset();
+        accesses_of_row.bind(1, row.id);
         for (bool more = true;;) {
-            FEELER_TRY(more, looks_of_row.step());
+            FEELER_TRY(more, accesses_of_row.step());
             if (!more) break;
-            row.inputs.push_back(input_of(looks_of_row));
+            row.inputs.push_back(input_of(accesses_of_row));
         }
-        looks_of_row.reset();
+        accesses_of_row.reset();
     }
     return found;
 }
@@ -163,20 +163,20 @@ core::Result<ResultStore> ResultStore::open(const std::string& path, const std::
     return open_as(path, std::move(state));
 }
 
-core::Result<ResultStore> ResultStore::open_beside(const std::string& path,
-                                                   const ResultStore& own) {
+core::Result<ResultStore> ResultStore::open_sibling(const std::string& path,
+                                                    const ResultStore& own) {
     auto state = std::make_unique<State>(path, own.state_->version);
     state->answers = own.state_->answers;
     state->retries = own.state_->retries;
     state->writer = own.state_->writer;
-    state->is_kept_in = false;
+    state->is_writable = false;
     return open_as(path, std::move(state));
 }
 
 core::Result<ResultStore> ResultStore::open_as(const std::string& path,
                                                std::unique_ptr<State> state) {
     const auto access =
-        state->is_kept_in ? Database::Access::read_write : Database::Access::read_only;
+        state->is_writable ? Database::Access::read_write : Database::Access::read_only;
     FEELER_TRY(state->database, open_store_file(path, access, state->retries));
     if (auto done = state->prepare(); !done) return tl::unexpected(std::move(done).error());
     return ResultStore(std::move(state));
@@ -185,9 +185,9 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path,
 void ResultStore::try_again() { state_->writer->try_again(); }
 
 std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
-    if (!state_->places.still_hold()) return {};
+    if (!state_->relative_paths.still_hold()) return {};
     const std::string sha256 = state_->content_of(job);
-    if (!is_kept(job) || sha256.empty()) return {};
+    if (!is_stored(job) || sha256.empty()) return {};
     const JobKeys keys = state_->keys_of(job, sha256);
     return {keys.by_any_name, keys.by_this_name};
 }
@@ -209,7 +209,7 @@ core::Result<std::optional<ProgramResult>> ResultStore::State::find(const std::s
         if (!is_same(row) || !is_sound(row)) continue;
         auto result = result_from_json(row.value);
         if (!result) continue;
-        writer->put({row.key, row.looks, now()});
+        writer->put({row.key, row.accesses, now()});
         return *std::move(result);
     }
     return std::nullopt;
@@ -226,27 +226,28 @@ core::Result<std::optional<ProgramResult>> ResultStore::find(const CheckJob& job
 core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
                                      const ProgramResult& result) {
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
-    if (!state_->is_kept_in || !is_kept(job) || was_stopped || run.sha256.empty()) return {};
-    const RelativePaths& places = state_->places;
-    if (!places.still_hold()) return {};
+    if (!state_->is_writable || !is_stored(job) || was_stopped || run.sha256.empty()) return {};
+    const RelativePaths& relative_paths = state_->relative_paths;
+    if (!relative_paths.still_hold()) return {};
     const JobKeys keys = state_->keys_of(job, run.sha256);
-    const bool is_named = quotes_paths(result, job, run.inputs, places.folder());
+    const bool is_named = quotes_paths(result, job, run.inputs, relative_paths.folder());
     std::set<InputFile> inputs; // a set, because two paths may give the same place
-    for (const InputFile& input : run.inputs) inputs.insert(placed(input, places));
+    for (const InputFile& input : run.inputs)
+        inputs.insert(with_relative_paths(input, relative_paths));
     const int64_t at = now();
-    StoredRow row{.program = state_->place_of(job.program),
-                  .setup = places.place_of(job.setup),
+    StoredRow row{.program = state_->relative(job.program),
+                  .setup = relative_paths.relative(job.setup),
                   .options = keys.options,
                   .version = state_->version,
                   .checked_at = at / 1'000'000,
                   .key = is_named ? keys.by_this_name : keys.by_any_name,
-                  .looks = {},
+                  .accesses = {},
                   .value = json_of(result),
                   .seal = {},
                   .inputs = {inputs.begin(), inputs.end()}};
-    row.looks = looks_of(row.inputs);
+    row.accesses = digest_of_accesses(row.inputs);
     row.seal = seal_of(row);
-    Sighting sighting{row.key, row.looks, at};
+    Sighting sighting{row.key, row.accesses, at};
     return state_->writer->put(std::move(row), std::move(sighting));
 }
 
@@ -257,12 +258,12 @@ core::Result<std::vector<StoredVersion>> ResultStore::history(const std::string&
     std::vector<StoredVersion> versions;
     Statement& rows = state_->rows_of_program;
     rows.reset();
-    rows.bind(1, state_->place_of(program));
+    rows.bind(1, state_->relative(program));
     for (bool more = true;;) {
         FEELER_TRY(more, rows.step());
         if (!more) break;
         const StoredRow row{.key = rows.text(6),
-                            .looks = rows.text(4),
+                            .accesses = rows.text(4),
                             .value = rows.text(5),
                             .seal = rows.text(7)};
         auto result = result_from_json(row.value);
@@ -272,7 +273,7 @@ core::Result<std::vector<StoredVersion>> ResultStore::history(const std::string&
                             .version = rows.text(1),
                             .setup = rows.text(2),
                             .options = rows.text(3),
-                            .inputs = row.looks,
+                            .inputs = row.accesses,
                             .key = row.key,
                             .result = *std::move(result)});
     }
@@ -291,12 +292,12 @@ core::Result<int64_t> ResultStore::seen_at(const StoredVersion& version) {
 }
 
 SiblingStores::SiblingStores(const std::string& path, const ResultStore& own) : own_(own) {
-    for (const std::string& place : stores_beside(path)) {
-        auto store = ResultStore::open_beside(place, own_);
+    for (const std::string& sibling : sibling_stores(path)) {
+        auto store = ResultStore::open_sibling(sibling, own_);
         if (!store) continue;
         const auto keys = store->keys();
         if (!keys) continue;
-        for (const std::string& key : *keys) paths_of_key_.emplace(key, place);
+        for (const std::string& key : *keys) paths_of_key_.emplace(key, sibling);
     }
 }
 
@@ -304,7 +305,7 @@ ResultStore* SiblingStores::store_at(const std::string& path) {
     constexpr size_t most_open = 64;
     if (const auto at = open_.find(path); at != open_.end()) return &at->second;
     if (open_.size() >= most_open) open_.clear();
-    auto store = ResultStore::open_beside(path, own_);
+    auto store = ResultStore::open_sibling(path, own_);
     return store ? &open_.emplace(path, *std::move(store)).first->second : nullptr;
 }
 

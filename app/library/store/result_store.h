@@ -55,7 +55,7 @@ public:
     /// `own`. When it finds a result, it records in `own` that the result is still valid.
     ///
     /// Errors: as open.
-    static core::Result<ResultStore> open_beside(const std::string& path, const ResultStore& own);
+    static core::Result<ResultStore> open_sibling(const std::string& path, const ResultStore& own);
 
     /// The keys under which the result of a job may be stored; empty if its results are not stored.
     std::vector<std::string> keys_of(const CheckJob& job) const;

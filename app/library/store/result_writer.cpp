@@ -25,7 +25,7 @@ size_t row_size(const StoredRow& row) {
 /// An open database with its prepared statements.
 struct ResultWriter::Connection {
     Database database;
-    Statement add_program, add_row, add_look, add_link, add_sighting;
+    Statement add_program, add_row, add_access, add_link, add_sighting;
 
     static core::Result<Connection> open(const std::string& path,
                                          std::shared_ptr<RetryBudget> retries);
@@ -48,7 +48,7 @@ ResultWriter::Connection::open(const std::string& path, std::shared_ptr<RetryBud
                    "INSERT OR IGNORE INTO result(program, key, looks, setup, options, "
                    "version, checked_at, value, seal) VALUES((SELECT id FROM program WHERE "
                    "path = ?1), ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9) RETURNING id"));
-    FEELER_TRY(made.add_look,
+    FEELER_TRY(made.add_access,
                made.database.prepare("INSERT OR IGNORE INTO look(question, path, name, answer) "
                                      "VALUES(?1, ?2, ?3, ?4)"));
     FEELER_TRY(made.add_link,
@@ -63,15 +63,15 @@ ResultWriter::Connection::open(const std::string& path, std::shared_ptr<RetryBud
 core::Result<void> ResultWriter::Connection::add(const InputFile& input, int64_t row) {
     const auto question = static_cast<int64_t>(input.question);
     const std::string answer = answer_text(input);
-    add_look.bind(1, question).bind(2, input.path).bind(3, input.name).bind(4, answer);
-    if (auto done = add_look.finish(); !done) return done;
+    add_access.bind(1, question).bind(2, input.path).bind(3, input.name).bind(4, answer);
+    if (auto done = add_access.finish(); !done) return done;
     add_link.bind(1, row).bind(2, question).bind(3, input.path).bind(4, input.name);
     return add_link.bind(5, answer).finish();
 }
 
 core::Result<void> ResultWriter::Connection::add(const StoredRow& row) {
     if (auto done = add_program.bind(1, row.program).finish(); !done) return done;
-    add_row.bind(1, row.program).bind(2, row.key).bind(3, row.looks).bind(4, row.setup);
+    add_row.bind(1, row.program).bind(2, row.key).bind(3, row.accesses).bind(4, row.setup);
     add_row.bind(5, row.options).bind(6, row.version).bind(7, row.checked_at);
     add_row.bind(8, row.value).bind(9, row.seal);
     FEELER_TRY(const bool is_new, add_row.step());
@@ -88,7 +88,7 @@ core::Result<void> ResultWriter::Connection::write(const Group& group) {
     for (const StoredRow& row : group.rows)
         if (auto done = add(row); !done) return done;
     for (const Sighting& each : group.sightings) {
-        add_sighting.bind(1, each.key).bind(2, each.looks).bind(3, each.at);
+        add_sighting.bind(1, each.key).bind(2, each.accesses).bind(3, each.at);
         if (auto done = add_sighting.finish(); !done) return done;
     }
     return writing.commit();
@@ -183,7 +183,7 @@ void ResultWriter::write(std::unique_lock<std::mutex>& lock) {
 
 std::string answer_text(const InputFile& input) { return input.answer ? "=" + *input.answer : ""; }
 
-std::string looks_of(std::vector<InputFile> inputs) {
+std::string digest_of_accesses(std::vector<InputFile> inputs) {
     std::sort(inputs.begin(), inputs.end());
     std::string text;
     for (const InputFile& input : inputs) {
@@ -194,10 +194,10 @@ std::string looks_of(std::vector<InputFile> inputs) {
     return sha256_of(text);
 }
 
-std::string seal_of(const StoredRow& row) { return sha256_of(row.key + row.looks + row.value); }
+std::string seal_of(const StoredRow& row) { return sha256_of(row.key + row.accesses + row.value); }
 
 bool is_sound(const StoredRow& row) {
-    return row.seal == seal_of(row) && row.looks == looks_of(row.inputs);
+    return row.seal == seal_of(row) && row.accesses == digest_of_accesses(row.inputs);
 }
 
 } // namespace app

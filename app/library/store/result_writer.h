@@ -19,7 +19,7 @@ struct StoredRow {
     int64_t id = 0;
     std::string program, setup, options, version;
     int64_t checked_at = 0; // seconds since 1970
-    std::string key, looks, value, seal;
+    std::string key, accesses, value, seal;
     std::vector<InputFile> inputs;
 };
 
@@ -27,7 +27,7 @@ struct StoredRow {
 std::string answer_text(const InputFile& input);
 
 /// A digest of file accesses; it does not depend on their order.
-std::string looks_of(std::vector<InputFile> inputs);
+std::string digest_of_accesses(std::vector<InputFile> inputs);
 
 /// A digest of key, looks and value. It detects damage to the file that SQLite does not notice.
 std::string seal_of(const StoredRow& row);
@@ -37,7 +37,7 @@ bool is_sound(const StoredRow& row);
 
 /// A record that a stored result was found still valid.
 struct Sighting {
-    std::string key, looks;
+    std::string key, accesses;
     int64_t at = 0; // microseconds since 1970
 };
 

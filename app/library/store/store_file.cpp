@@ -116,13 +116,13 @@ std::vector<std::string> stores_in(const std::filesystem::path& folder) {
 
 } // namespace
 
-std::string default_store_path(const std::string& folder, const std::optional<ShardId>& share) {
+std::string default_store_path(const std::string& folder, const std::optional<ShardId>& shard) {
     const std::string name =
-        share ? fmt::format("results-{}of{}.db", share->i, share->n) : "results.db";
+        shard ? fmt::format("results-{}of{}.db", shard->i, shard->n) : "results.db";
     return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler" / name).string();
 }
 
-std::vector<std::string> stores_beside(const std::string& path) {
+std::vector<std::string> sibling_stores(const std::string& path) {
     std::vector<std::string> stores = stores_in(std::filesystem::path(path).parent_path());
     std::erase(stores, path);
     return stores;

@@ -11,10 +11,10 @@ namespace app {
 
 /// The default database for the programs of a folder. Each shard of a batch has its own, so that
 /// computers with a shared disk do not write to the same file.
-std::string default_store_path(const std::string& folder, const std::optional<ShardId>& share = {});
+std::string default_store_path(const std::string& folder, const std::optional<ShardId>& shard = {});
 
 /// The other databases in the same folder: of the whole batch and of shards.
-std::vector<std::string> stores_beside(const std::string& path);
+std::vector<std::string> sibling_stores(const std::string& path);
 
 /// The databases in the nearest folder above a program that has any; empty if none has.
 std::vector<std::string> stores_above(const std::string& program);

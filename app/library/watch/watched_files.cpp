@@ -21,9 +21,9 @@ std::string whole_path(const std::string& path) {
 }
 
 /// The path of a file as it is, or will be once it is written.
-std::string written_place(const std::string& path) {
-    const fs::path place = place_of(path);
-    return place.empty() ? path : place.string();
+std::string written_path(const std::string& path) {
+    const fs::path resolved = resolved_path(path);
+    return resolved.empty() ? path : resolved.string();
 }
 
 /// Why a file is not a program, see why_no_program; empty for a program, "?" if unreadable.
@@ -55,7 +55,7 @@ WatchedFiles::WatchedFiles(const std::vector<std::string>& own, std::function<Wa
 
 void WatchedFiles::add_own(const std::string& path) {
     if (path.empty()) return;
-    own_.insert(written_place(path));
+    own_.insert(written_path(path));
 }
 
 bool WatchedFiles::reads(const std::string& path) const {
@@ -66,7 +66,7 @@ bool WatchedFiles::reads(const std::string& path) const {
 
 bool WatchedFiles::is_own(const std::string& path) const {
     if (own_.empty()) return false;
-    const std::string whole = written_place(path);
+    const std::string whole = written_path(path);
     return std::any_of(own_.begin(), own_.end(), [&](const std::string& own) {
         // SQLite creates these next to a database.
         return whole == own || whole == own + "-journal" || whole == own + "-wal"
@@ -94,18 +94,19 @@ bool WatchedFiles::may_be_rewritten(const std::string& path, const FileStamp& st
     return now.steady - seen.since <= tick_of(stamp);
 }
 
-WatchedFiles::Look WatchedFiles::look_at(const std::string& path, const Asked& asked,
-                                         const Look& before) {
-    Look look{stamp_of(path)};
-    look.was_fresh = may_be_rewritten(path, look.stamp);
-    const bool is_known = before.stamp == look.stamp && !before.was_fresh;
-    if (asked.names && look.stamp.is_folder) look.names = is_known ? before.names : names_of(path);
-    if (asked.kind && look.stamp.is_file) // reading a pipe would block
-        look.kind = is_known ? before.kind : kind_of(path);
-    return look;
+WatchedFiles::Observation WatchedFiles::observe(const std::string& path, const Asked& asked,
+                                                const Observation& before) {
+    Observation observation{stamp_of(path)};
+    observation.was_fresh = may_be_rewritten(path, observation.stamp);
+    const bool is_known = before.stamp == observation.stamp && !before.was_fresh;
+    if (asked.names && observation.stamp.is_folder)
+        observation.names = is_known ? before.names : names_of(path);
+    if (asked.kind && observation.stamp.is_file) // reading a pipe would block
+        observation.kind = is_known ? before.kind : kind_of(path);
+    return observation;
 }
 
-bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
+bool WatchedFiles::differ(const Asked& asked, const Observation& a, const Observation& b) {
     if (a.stamp.is_there != b.stamp.is_there || a.stamp.is_folder != b.stamp.is_folder
         || a.stamp.is_file != b.stamp.is_file)
         return true;
@@ -117,38 +118,39 @@ bool WatchedFiles::differ(const Asked& asked, const Look& a, const Look& b) {
     return a.names != b.names || a.kind != b.kind;
 }
 
-void WatchedFiles::note(const core::FileAccess& look) {
+void WatchedFiles::note(const core::FileAccess& access) {
     using enum core::FileQuestion;
-    const bool is_named = look.question == in_folder;
-    const std::string path = is_named ? (fs::path(look.path) / look.name).string() : look.path;
+    const bool is_named = access.question == in_folder;
+    const std::string path =
+        is_named ? (fs::path(access.path) / access.name).string() : access.path;
     if (path.empty()) return;
     const std::lock_guard lock(mutex_);
     if (is_own(path)) {
-        if (look.question == content || is_named) own_reads_.insert(path);
+        if (access.question == content || is_named) own_reads_.insert(path);
         return;
     }
-    const auto [found, is_new] = places_.try_emplace(path);
-    Place& place = found->second;
-    const Asked before = place.asked;
-    place.asked.bytes |= look.question == content || is_named;
-    place.asked.names |= look.question == listing || look.question == any_case;
-    place.asked.kind |= look.question == kind;
-    if (!is_new && place.asked == before) return;
-    place.latest = look_at(path, place.asked, {});
-    place.first = place.latest;
+    const auto [found, is_new] = paths_.try_emplace(path);
+    WatchedPath& watched = found->second;
+    const Asked before = watched.asked;
+    watched.asked.bytes |= access.question == content || is_named;
+    watched.asked.names |= access.question == listing || access.question == any_case;
+    watched.asked.kind |= access.question == kind;
+    if (!is_new && watched.asked == before) return;
+    watched.latest = observe(path, watched.asked, {});
+    watched.first = watched.latest;
 }
 
-WatchedFiles::Change WatchedFiles::look_again() {
+WatchedFiles::Change WatchedFiles::poll() {
     Change change;
-    for (auto& [path, place] : places_) {
-        Look look = look_at(path, place.asked, place.latest);
-        if (differ(place.asked, look, place.latest))
-            (place.asked.names ? change.are_names_settled : change.are_files_settled) = false;
-        place.latest = std::move(look);
-        const bool was_written = place.asked.bytes && place.first.was_fresh;
-        const bool differs = differ(place.asked, place.latest, place.first);
+    for (auto& [path, watched] : paths_) {
+        Observation observation = observe(path, watched.asked, watched.latest);
+        if (differ(watched.asked, observation, watched.latest))
+            (watched.asked.names ? change.are_names_settled : change.are_files_settled) = false;
+        watched.latest = std::move(observation);
+        const bool was_written = watched.asked.bytes && watched.first.was_fresh;
+        const bool differs = differ(watched.asked, watched.latest, watched.first);
         if (was_written || differs) change.paths.push_back(path);
-        if (was_written && !differs && place.latest.was_fresh) change.are_files_settled = false;
+        if (was_written && !differs && watched.latest.was_fresh) change.are_files_settled = false;
     }
     change.paths = each_once(change.paths);
     return change;
@@ -158,8 +160,8 @@ using namespace std::chrono_literals;
 
 bool WatchPace::is_time(const WatchedFiles::Change& change, Clock::time_point begin,
                         Clock::duration took) {
-    constexpr int idle_share = 20; // ratio of the pause to the duration of polling
-    pause_ = std::max(least_pause, idle_share * took);
+    constexpr int pause_ratio = 20; // ratio of the pause to the duration of polling
+    pause_ = std::max(least_pause, pause_ratio * took);
     if (change.paths.empty()) {
         since_ = begin + took;
         return false;

@@ -34,16 +34,16 @@ public:
     void add_own(const std::string& path);
 
     /// Records an access; call it when the access is made. Thread-safe.
-    void note(const core::FileAccess& look);
+    void note(const core::FileAccess& access);
 
-    size_t size() const { return places_.size(); }
+    size_t size() const { return paths_.size(); }
 
     /// Whether the check has read this one of its own files, by any path.
     bool reads(const std::string& path) const;
 
     /// Drops all paths before another check.
     void begin_again() {
-        places_.clear();
+        paths_.clear();
         own_reads_.clear();
     }
 
@@ -58,7 +58,7 @@ public:
     /// read. It has settled once another write would change its time stamp.
     ///
     /// Cost: one stat per path, and a new read of changed files and folders.
-    Change look_again();
+    Change poll();
 
 private:
     /// What the check accessed, besides the type of the path, which is always compared.
@@ -69,30 +69,30 @@ private:
 
         bool operator==(const Asked&) const = default;
     };
-    struct Look {
+    struct Observation {
         FileStamp stamp;
         bool was_fresh = false; // may have been written when it was examined
         std::string names = {}, kind = {};
     };
-    struct Place {
+    struct WatchedPath {
         Asked asked;
-        Look first, latest;
+        Observation first, latest;
     };
     struct Seen {
         FileStamp stamp;
         std::chrono::steady_clock::time_point since{};
     };
 
-    Look look_at(const std::string& path, const Asked& asked, const Look& before);
+    Observation observe(const std::string& path, const Asked& asked, const Observation& before);
     bool may_be_rewritten(const std::string& path, const FileStamp& stamp);
     bool is_own(const std::string& path) const;
     std::string names_of(const std::string& folder) const;
-    static bool differ(const Asked& asked, const Look& a, const Look& b);
+    static bool differ(const Asked& asked, const Observation& a, const Observation& b);
 
     std::function<WatchTime()> clock_;
     std::set<std::string> own_, own_reads_;
-    std::map<std::string, Place> places_; // by path
-    std::map<std::string, Seen> fresh_;   // by path; also of earlier checks
+    std::map<std::string, WatchedPath> paths_; // by path
+    std::map<std::string, Seen> fresh_;        // by path; also of earlier checks
     std::mutex mutex_;
 };
 

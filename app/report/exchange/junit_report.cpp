@@ -82,10 +82,10 @@ std::string case_of(const ProgramResult& program) {
     const std::string errors = finding_texts(program, true), others = finding_texts(program, false);
     if (program.error) {
         const StoredError& error = *program.error;
-        const std::string place = error.line == 0 ? "" : fmt::format("line {}: ", error.line);
+        const std::string location = error.line == 0 ? "" : fmt::format("line {}: ", error.line);
         text += fmt::format(
             "      <error message=\"{}\" type=\"not-run-to-its-end\">{}</error>\n",
-            xml_attribute(place + error.message),
+            xml_attribute(location + error.message),
             xml_text(fmt::format("{}:{}: {}\n{}", error.file, error.line, error.message, errors)));
     } else if (!errors.empty()) {
         text += fmt::format("      <failure message=\"{}: {}\" type=\"{}\">{}</failure>\n",
@@ -121,7 +121,7 @@ std::string junit_report(const BatchResult& batch) {
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
            + fmt::format("<testsuites name=\"feeler\" {0}>\n  <testsuite name=\"feeler check{1}\" "
                          "{0} skipped=\"0\">\n{2}  </testsuite>\n</testsuites>\n",
-                         counts, batch.share.empty() ? "" : ", " + batch.share, cases);
+                         counts, batch.shard.empty() ? "" : ", " + batch.shard, cases);
 }
 
 } // namespace app

@@ -58,8 +58,8 @@ size_t index_of(const std::string& rule) {
     const auto found = std::find_if(rules.begin(), rules.end(), [&](const core::RuleEntry& entry) {
         return entry.name == rule;
     });
-    const size_t behind = rule == not_checked ? 1 : 0; // `not_run` follows the last rule
-    return static_cast<size_t>(found - rules.begin()) + behind;
+    const size_t extra = rule == not_checked ? 1 : 0; // `not_run` follows the last rule
+    return static_cast<size_t>(found - rules.begin()) + extra;
 }
 
 /// A location in a file; line 1 if none is known, because code hosts show nothing otherwise. The
@@ -136,7 +136,7 @@ std::vector<Urgency> urgencies_of(const std::vector<StoredFinding>& findings) {
 }
 
 /// Which results to write, in the order of results_json.
-std::vector<bool> told_results(const BatchResult& batch) {
+std::vector<bool> chosen_results(const BatchResult& batch) {
     std::vector<Urgency> all;
     for (const ProgramResult& program : batch.programs) {
         const std::vector<Urgency> urgencies = urgencies_of(program.findings);
@@ -148,24 +148,24 @@ std::vector<bool> told_results(const BatchResult& batch) {
     std::iota(order.begin(), order.end(), size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](size_t a, size_t b) { return all[a] < all[b]; });
-    std::vector<bool> is_told(all.size(), false);
-    for (size_t i = 0; i < std::min(order.size(), most_results); ++i) is_told[order[i]] = true;
-    return is_told;
+    std::vector<bool> is_chosen(all.size(), false);
+    for (size_t i = 0; i < std::min(order.size(), most_results); ++i) is_chosen[order[i]] = true;
+    return is_chosen;
 }
 
-Json results_json(const BatchResult& batch, const std::vector<bool>& is_told) {
+Json results_json(const BatchResult& batch, const std::vector<bool>& is_chosen) {
     Json results = Json::array();
     size_t next = 0;
     for (const ProgramResult& program : batch.programs) {
         std::map<std::string, size_t> seen; // by the fingerprint for `before` = 0
         for (const StoredFinding& finding : program.findings) {
             const size_t before = seen[fingerprint_of(finding, 0)]++;
-            if (is_told[next++]) results.push_back(finding_json(program, finding, before));
+            if (is_chosen[next++]) results.push_back(finding_json(program, finding, before));
         }
-        if (program.error && is_told[next++]) results.push_back(error_json(program));
+        if (program.error && is_chosen[next++]) results.push_back(error_json(program));
     }
     for (const std::string& program : batch.unchecked)
-        if (is_told[next++]) results.push_back(unchecked_json(program, batch.file_bytes));
+        if (is_chosen[next++]) results.push_back(unchecked_json(program, batch.file_bytes));
     return results;
 }
 
@@ -197,9 +197,9 @@ void add_skipped(Json& notes, const BatchResult& batch) {
     }
 }
 
-Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_told) {
+Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_chosen) {
     Json notes = Json::array();
-    if (const auto left_out = std::count(is_told.begin(), is_told.end(), false); left_out > 0)
+    if (const auto left_out = std::count(is_chosen.begin(), is_chosen.end(), false); left_out > 0)
         notes.push_back(notification_json(
             "warning",
             fmt::format("omitted: {} of the results, because code hosts accept at most {} per run; "
@@ -245,18 +245,18 @@ std::string fingerprint_of(const StoredFinding& finding, size_t before) {
 
 std::string sarif_report(const BatchResult& batch, const std::string& folder) {
     const std::string root = uri_of(folder);
-    const std::vector<bool> is_told = told_results(batch);
+    const std::vector<bool> is_chosen = chosen_results(batch);
     const Json driver = {{"name", "Feeler"},
                          {"version", version},
                          {"semanticVersion", version},
                          {"rules", rules_json()}};
     Json run = {
         {"tool", {{"driver", driver}}},
-        {"invocations", Json::array({invocation_json(batch, is_told)})},
+        {"invocations", Json::array({invocation_json(batch, is_chosen)})},
         {"originalUriBaseIds", {{"%SRCROOT%", {{"uri", root.ends_with('/') ? root : root + "/"}}}}},
         {"columnKind", "unicodeCodePoints"},
-        {"results", results_json(batch, is_told)}};
-    if (!batch.share.empty()) run["automationDetails"] = {{"description", {{"text", batch.share}}}};
+        {"results", results_json(batch, is_chosen)}};
+    if (!batch.shard.empty()) run["automationDetails"] = {{"description", {{"text", batch.shard}}}};
     const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                       {"version", "2.1.0"},
                       {"runs", Json::array({run})}};

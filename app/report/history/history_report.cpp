@@ -24,11 +24,11 @@ using Json = nlohmann::ordered_json;
 constexpr int64_t microseconds = 1'000'000; // per second
 
 /// The previous version checked with the same set-up and options; null if there is none.
-const StoredVersion* before(const std::vector<StoredVersion>& versions, size_t place) {
-    const StoredVersion& asked = versions[place];
-    while (place-- > 0)
-        if (versions[place].setup == asked.setup && versions[place].options == asked.options)
-            return &versions[place];
+const StoredVersion* before(const std::vector<StoredVersion>& versions, size_t index) {
+    const StoredVersion& asked = versions[index];
+    while (index-- > 0)
+        if (versions[index].setup == asked.setup && versions[index].options == asked.options)
+            return &versions[index];
     return nullptr;
 }
 
@@ -62,19 +62,20 @@ std::string change_text(const ProgramChange& change) {
     return text.empty() ? "    no other change\n" : text;
 }
 
-std::string version_text(const StoredVersion& kept, const StoredVersion* earlier) {
-    const ProgramResult& result = kept.result;
-    const std::string checked = minute_text(kept.checked_at);
-    const std::string seen = minute_text(kept.seen_at / microseconds);
+std::string version_text(const StoredVersion& stored, const StoredVersion* earlier) {
+    const ProgramResult& result = stored.result;
+    const std::string checked = minute_text(stored.checked_at);
+    const std::string seen = minute_text(stored.seen_at / microseconds);
     std::string text =
         fmt::format("{} UTC  {}\n", checked,
                     result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
     if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
                         duration_text(result.cycle_time), counts_text(result.findings));
-    text += fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
-                        kept.setup.empty() ? "set-up inferred" : "set-up " + trimmed(kept.setup),
-                        kept.version.substr(0, kept.version.find(' ')));
+    text +=
+        fmt::format("    program {}, {}; Feeler {}\n", result.sha256.substr(0, 8),
+                    stored.setup.empty() ? "set-up inferred" : "set-up " + trimmed(stored.setup),
+                    stored.version.substr(0, stored.version.find(' ')));
     return earlier ? text + change_text(change_between(earlier->result, result)) : text;
 }
 
@@ -102,17 +103,17 @@ std::string history_json(const std::string& program, const std::vector<StoredVer
                  {"program", utf8_text(program)},
                  {"versions", Json::array()}};
     for (size_t i = 0; i < versions.size(); ++i) {
-        const StoredVersion& kept = versions[i];
+        const StoredVersion& stored = versions[i];
         const StoredVersion* earlier = before(versions, i);
         json["versions"].push_back(
-            {{"checked_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.checked_at)},
-             {"seen_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", kept.seen_at / microseconds)},
-             {"feeler", kept.version},
-             {"setup", utf8_text(kept.setup)},
-             {"options", Json::parse(kept.options)},
-             {"inputs", kept.inputs},
-             {"result", Json::parse(json_of(kept.result))},
-             {"change", earlier ? change_json(change_between(earlier->result, kept.result))
+            {{"checked_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", stored.checked_at)},
+             {"seen_at", time_text("{:%Y-%m-%dT%H:%M:%SZ}", stored.seen_at / microseconds)},
+             {"feeler", stored.version},
+             {"setup", utf8_text(stored.setup)},
+             {"options", Json::parse(stored.options)},
+             {"inputs", stored.inputs},
+             {"result", Json::parse(json_of(stored.result))},
+             {"change", earlier ? change_json(change_between(earlier->result, stored.result))
                                 : Json(nullptr)}});
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

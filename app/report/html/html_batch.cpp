@@ -119,7 +119,7 @@ std::string columns_json(const BatchResult& batch, size_t most_findings) {
 }
 
 /// The number of findings kept if each program keeps at most `most`.
-size_t kept_findings(const BatchResult& batch, size_t most) {
+size_t finding_count(const BatchResult& batch, size_t most) {
     size_t count = 0;
     for (const ProgramResult& program : batch.programs)
         count += std::min(program.findings.size(), most);
@@ -131,7 +131,7 @@ size_t kept_findings(const BatchResult& batch, size_t most) {
 std::string batch_columns_json(const BatchResult& batch) {
     constexpr size_t most_bytes = 18'000'000, most_in_all = 200'000;
     size_t most = 1'000; // per program
-    while (most > 1 && kept_findings(batch, most) > most_in_all) most /= 2;
+    while (most > 1 && finding_count(batch, most) > most_in_all) most /= 2;
     std::string json = columns_json(batch, most);
     for (; most > 1 && json.size() > most_bytes; json = columns_json(batch, most)) most /= 2;
     return json;
@@ -159,7 +159,7 @@ size_t programs_of_status(const BatchResult& batch, int status) {
 }
 
 /// "3 of 125 programs".
-std::string share(const BatchResult& batch, size_t count) {
+std::string count_text(const BatchResult& batch, size_t count) {
     return fmt::format("{} of {}", count, counted(all_programs(batch), "program"));
 }
 
@@ -247,18 +247,18 @@ std::string batch_title(const BatchResult& batch) {
     const std::string folder = common_folder(batch);
     const std::string all =
         counted(all_programs(batch), "program") + (folder.empty() ? folder : " in " + folder);
-    return batch.share.empty() ? all : all + ", " + batch.share;
+    return batch.shard.empty() ? all : all + ", " + batch.shard;
 }
 
 std::string batch_outcome_text(const BatchResult& batch) {
     if (all_programs(batch) == 0) return "no program was checked";
     const size_t lost = programs_of_status(batch, 2) + batch.unchecked.size();
-    if (lost > 0) return share(batch, lost) + " not checked to the end";
+    if (lost > 0) return count_text(batch, lost) + " not checked to the end";
     const size_t bad = programs_of_status(batch, 1);
-    if (bad > 0) return share(batch, bad) + (bad == 1 ? " has errors" : " have errors");
+    if (bad > 0) return count_text(batch, bad) + (bad == 1 ? " has errors" : " have errors");
     const size_t clear = programs_with(batch, Outcome::clear);
     if (clear == all_programs(batch)) return counted(clear, "program") + ": all clear";
-    return share(batch, clear) + " clear, no errors";
+    return count_text(batch, clear) + " clear, no errors";
 }
 
 const char* batch_outcome_class(const BatchResult& batch) {
@@ -278,16 +278,16 @@ std::string html_missing(const BatchResult& batch) {
             stopped.push_back(program.program.substr(folder.size()) + ": "
                               + clipped(program.error->message, longest));
     std::string html;
-    if (!batch.share.empty())
-        html += "<p><b>" + html_text(batch.share)
+    if (!batch.shard.empty())
+        html += "<p><b>" + html_text(batch.shard)
                 + ":</b> the reports of the other shards contain the other programs.</p>\n";
     if (!unchecked.empty())
-        html += "<p><b>" + share(batch, unchecked.size())
+        html += "<p><b>" + count_text(batch, unchecked.size())
                 + " not checked:</b> the batch was stopped before them.</p>\n"
                 + list_html(unchecked, shown);
     if (!stopped.empty())
         html +=
-            "<p><b>" + share(batch, stopped.size())
+            "<p><b>" + count_text(batch, stopped.size())
             + " could not be run to the end:</b> the blocks after the error were not checked.</p>\n"
             + list_html(stopped, shown);
     if (html.empty()) return html;

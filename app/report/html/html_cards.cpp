@@ -15,7 +15,7 @@ namespace {
 using viewer::FindingGroup;
 using viewer::FindingStretch;
 
-constexpr size_t most_places = 12; // per card; the table of blocks has all
+constexpr size_t most_locations = 12; // per card; the table of blocks has all
 
 const BlockView* view_of(const ReportViews& views, size_t block) {
     for (const BlockView& view : views.views)
@@ -48,7 +48,7 @@ std::string clearance_of(const FindingStretch& stretch) {
                              : std::string();
 }
 
-std::string place_button(const CheckRun& run, const FindingStretch& stretch) {
+std::string location_button(const CheckRun& run, const FindingStretch& stretch) {
     const CheckedBlock &first = run.blocks[stretch.first], &last = run.blocks[stretch.last];
     std::string lines = line_of(first);
     if (last.line != first.line) lines += fmt::format("\xE2\x80\x93{}", last.line);
@@ -56,14 +56,14 @@ std::string place_button(const CheckRun& run, const FindingStretch& stretch) {
                        stretch.worst, lines, clearance_of(stretch));
 }
 
-std::string places_of(const CheckRun& run, const FindingGroup& group) {
+std::string location_list(const CheckRun& run, const FindingGroup& group) {
     if (group.stretches.size() < 2) return "";
     std::string list = R"(<ul class="places">)";
-    for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
-        list += place_button(run, group.stretches[i]);
-    if (group.stretches.size() > most_places)
+    for (size_t i = 0; i < std::min(group.stretches.size(), most_locations); ++i)
+        list += location_button(run, group.stretches[i]);
+    if (group.stretches.size() > most_locations)
         list += fmt::format(R"(<li><button type="button" data-rule="{}">and {} more</button></li>)",
-                            html_text(group.rule), group.stretches.size() - most_places);
+                            html_text(group.rule), group.stretches.size() - most_locations);
     return list + "</ul>";
 }
 
@@ -96,7 +96,7 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
         worst.worst, worst.worst, line_of(block), clearance_of(worst),
         html_text(trimmed(block.text)),
         group.count > 1 ? fmt::format(" The worst of {} blocks.", group.count) : std::string());
-    return card + places_of(run, group) + "</article>\n";
+    return card + location_list(run, group) + "</article>\n";
 }
 
 /// Card of the block with the least margin, for a program without findings.
@@ -140,7 +140,7 @@ std::vector<size_t> blocks_of_cards(const CheckRun& run) {
 std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most) {
     std::vector<size_t> blocks = blocks_of_cards(run);
     for (const FindingGroup& group : finding_groups(run))
-        for (size_t i = 0; i < std::min(group.stretches.size(), most_places); ++i)
+        for (size_t i = 0; i < std::min(group.stretches.size(), most_locations); ++i)
             add_new(blocks, group.stretches[i].worst);
     if (blocks.size() > most) blocks.resize(most);
     return blocks;

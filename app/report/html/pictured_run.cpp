@@ -72,12 +72,12 @@ void append(std::string& bytes, Number value) {
 /// A piece of the path drawn in one style.
 struct Stretch {
     bool rapid = false, current = false;
-    std::vector<std::string> places;
+    std::vector<std::string> positions;
 };
 
 std::string json_of(const Stretch& stretch) {
     return fmt::format(R"({{"rapid":{},"current":{},"places":[{}]}})", stretch.rapid,
-                       stretch.current, fmt::join(stretch.places, ","));
+                       stretch.current, fmt::join(stretch.positions, ","));
 }
 
 /// The path of the tool tip, with the pieces of the given block separate.
@@ -88,14 +88,14 @@ std::string path_json(const render::ToolPath& path, uint32_t block) {
         const bool is_current = point.block == block;
         const bool changes = stretch.rapid != point.rapid || stretch.current != is_current;
         if (point.begins || changes) {
-            if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
-            std::vector<std::string> places;
-            if (!point.begins && !stretch.places.empty()) places = {stretch.places.back()};
-            stretch = {point.rapid, is_current, std::move(places)};
+            if (stretch.positions.size() > 1) pieces.push_back(json_of(stretch));
+            std::vector<std::string> positions;
+            if (!point.begins && !stretch.positions.empty()) positions = {stretch.positions.back()};
+            stretch = {point.rapid, is_current, std::move(positions)};
         }
-        stretch.places.push_back(numbers(core::Vec3(point.place)));
+        stretch.positions.push_back(numbers(core::Vec3(point.position)));
     }
-    if (stretch.places.size() > 1) pieces.push_back(json_of(stretch));
+    if (stretch.positions.size() > 1) pieces.push_back(json_of(stretch));
     return fmt::format("[{}]", fmt::join(pieces, ","));
 }
 
@@ -103,13 +103,13 @@ std::string path_json(const render::ToolPath& path, uint32_t block) {
 
 std::string mesh_json(const render::TriangleMesh& mesh) {
     core::Aabb box;
-    for (const render::MeshVertex& vertex : mesh.vertices) box.extend(core::Vec3(vertex.place));
+    for (const render::MeshVertex& vertex : mesh.vertices) box.extend(core::Vec3(vertex.position));
     const core::Vec3 step = glm::max((box.max - box.min) / 65535.0, core::Vec3(1e-9));
     std::string bytes;
     for (const render::MeshVertex& vertex : mesh.vertices)
         for (int k = 0; k < 3; ++k)
             append(bytes, static_cast<uint16_t>(
-                              std::lround((double(vertex.place[k]) - box.min[k]) / step[k])));
+                              std::lround((double(vertex.position[k]) - box.min[k]) / step[k])));
     for (const render::MeshVertex& vertex : mesh.vertices) {
         for (const int8_t part : vertex.normal) append(bytes, part);
         append(bytes, vertex.tint);
@@ -258,7 +258,7 @@ struct Stage {
     /// the witness.
     void go_to(size_t block) {
         viewer::go_to_witness(model, block);
-        session.show({block, model.cursor.share >= 1.0});
+        session.show({block, model.cursor.fraction >= 1.0});
         take_in(model, session.take_news(), 0.0);
         model.camera = render::seen_from(model.camera, render::StandardView::iso);
         model.camera = render::framing(model.camera, picture_size,

@@ -60,8 +60,8 @@ std::string batch_json_report(const BatchResult& batch) {
     Json skipped = Json::array();
     for (const SkippedFile& file : batch.skipped)
         skipped.push_back({{"file", file.path}, {"why", file.why}});
-    if (!batch.share.empty())
-        text += "\n],\n\"share\":" + dumped(batch.share);
+    if (!batch.shard.empty())
+        text += "\n],\n\"share\":" + dumped(batch.shard);
     else
         text += "\n]";
     return text

@@ -136,7 +136,7 @@ Json part_json(const CheckRun& run) {
         Json entry;
         entry["kind"] = core::name_of(region.kind);
         entry["amount"] = region.amount;
-        entry["at"] = array_of(region.place);
+        entry["at"] = array_of(region.position);
         entry["area"] = region.area;
         entry["block"] = region.block ? Json(*region.block) : Json(nullptr);
         entry["line"] = region.block ? Json(run.blocks[*region.block].line) : Json(nullptr);

@@ -69,15 +69,15 @@ std::string rule_lines(const ProgramResult& result, const BatchStyle& style) {
     return text;
 }
 
-std::string place_of(const StoredError& error, const std::string& program) {
-    std::string place = error.file.empty() ? program : error.file;
-    if (error.line != 0) place += fmt::format(":{}", error.line);
-    if (error.line != 0 && error.column != 0) place += fmt::format(":{}", error.column);
-    return trimmed(place);
+std::string location_text(const StoredError& error, const std::string& program) {
+    std::string location = error.file.empty() ? program : error.file;
+    if (error.line != 0) location += fmt::format(":{}", error.line);
+    if (error.line != 0 && error.column != 0) location += fmt::format(":{}", error.column);
+    return trimmed(location);
 }
 
 std::string error_line(const ProgramResult& result) {
-    return place_of(*result.error, result.program) + ": " + result.error->message;
+    return location_text(*result.error, result.program) + ": " + result.error->message;
 }
 
 /// The error for a line below that of the program: as error_line, but without the program's name.
@@ -181,7 +181,7 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
 }
 
 std::string batch_summary(const BatchResult& batch, double seconds, const BatchStyle& style) {
-    std::string text = batch.share.empty() ? batch.share : batch.share + "\n";
+    std::string text = batch.shard.empty() ? batch.shard : batch.shard + "\n";
     text += counted(batch.programs.size() + batch.unchecked.size(), "program");
     if (seconds >= 60.0) text += " in " + duration_text(seconds);
     if (seconds >= 0.0 && seconds < 60.0) text += fmt::format(" in {:.1f} s", seconds);

@@ -90,7 +90,7 @@ std::string scene_text(const BenchTable& table, size_t number) {
     size_t part = 0;
     if (means.size() > 2)
         text += fmt::format("\n{}.{}  Means over {} gaps (of the ratios: geometric)\n\n{}{}",
-                            number, ++part, table.scene.places.size(),
+                            number, ++part, table.scene.poses.size(),
                             means_text(means, number == 1), growth_text(means));
     for (const BenchMeans& mean : means)
         text +=

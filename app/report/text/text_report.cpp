@@ -78,20 +78,23 @@ std::string blocks_text(const CheckRun& run) {
 }
 
 std::string assumptions_text(const std::vector<std::string>& all,
-                             const std::vector<std::string>& told) {
+                             const std::vector<std::string>& shown_assumptions) {
     const auto is_in = [](const std::vector<std::string>& list) {
         return [&list](const std::string& each) {
             return std::find(list.begin(), list.end(), each) != list.end();
         };
     };
-    const bool is_more = !told.empty() && std::all_of(told.begin(), told.end(), is_in(all));
+    const bool is_more =
+        !shown_assumptions.empty()
+        && std::all_of(shown_assumptions.begin(), shown_assumptions.end(), is_in(all));
     std::string text = is_more ? "  assuming   the same as before\n" : "  assuming\n";
     for (const std::string& assumption : all)
-        if (!is_more || !is_in(told)(assumption)) text += wrapped("- " + assumption, 4, 2);
+        if (!is_more || !is_in(shown_assumptions)(assumption))
+            text += wrapped("- " + assumption, 4, 2);
     return text;
 }
 
-std::string summary_text(const CheckRun& run, const std::vector<std::string>& told) {
+std::string summary_text(const CheckRun& run, const std::vector<std::string>& shown_assumptions) {
     size_t moving = 0;
     for (const CheckedBlock& block : run.blocks)
         moving += block.result.motion != core::BlockMotion::none;
@@ -118,7 +121,7 @@ std::string summary_text(const CheckRun& run, const std::vector<std::string>& to
         text +=
             fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
     if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
-    return text + assumptions_text(run.all_assumptions(), told);
+    return text + assumptions_text(run.all_assumptions(), shown_assumptions);
 }
 
 /// Whether a text contains the name as a whole word.
@@ -147,7 +150,7 @@ std::string outcome_text(const CheckRun& run) {
 std::string text_report(const CheckRun& run, const TextOptions& options) {
     std::string text = finding_groups_text(run);
     if (options.blocks) text += blocks_text(run);
-    return printable(text + summary_text(run, options.told));
+    return printable(text + summary_text(run, options.shown_assumptions));
 }
 
 std::string error_text(const core::Error& error) {

@@ -13,8 +13,8 @@ struct CheckRun;
 
 /// Options of the text report.
 struct TextOptions {
-    bool blocks = false;                // the table of all blocks that move
-    std::vector<std::string> told = {}; // assumptions already shown on the terminal
+    bool blocks = false;                             // the table of all blocks that move
+    std::vector<std::string> shown_assumptions = {}; // assumptions already shown on the terminal
 };
 
 /// The report of a check for an 80-column terminal: findings first.

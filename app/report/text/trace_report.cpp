@@ -243,7 +243,7 @@ void JsonLine::add_position(std::string_view key, const gcode::Position& positio
 
 namespace {
 
-constexpr uint64_t said_places = 10;     // printed per message
+constexpr uint64_t most_lines = 10;      // printed per message
 constexpr size_t most_messages = 10'000; // distinct messages that are counted
 
 } // namespace
@@ -257,7 +257,7 @@ std::string WarningLog::line_for(const gcode::Warning& warning, std::string_view
         }
         found = counts_.emplace(warning.message, 0).first;
     }
-    if (++found->second > said_places) return {};
+    if (++found->second > most_lines) return {};
     const std::string cure = warning.cure.empty() ? "" : " (" + warning.cure + ")";
     return error_text(
                {core::ErrorCode::syntax, warning.where, warning.message + cure, std::string(file)})
@@ -267,8 +267,8 @@ std::string WarningLog::line_for(const gcode::Warning& warning, std::string_view
 std::string WarningLog::rest() const {
     std::string text;
     for (const auto& [message, count] : counts_)
-        if (count > said_places)
-            text += fmt::format("{} more times: {}\n", count - said_places, message);
+        if (count > most_lines)
+            text += fmt::format("{} more times: {}\n", count - most_lines, message);
     if (others_ > 0) text += fmt::format("and {} other warnings\n", others_);
     return text;
 }

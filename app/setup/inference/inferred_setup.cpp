@@ -28,17 +28,17 @@ constexpr double zero_above_program = 500.0; // mm; height of machine zero
 
 constexpr double between = 500.0; // mm in X between workpieces, leaves room for holders and rapids
 
-std::string name_of_place(size_t offset) {
+std::string name_of_work_area(size_t offset) {
     if (offset < 6) return fmt::format("G{}", 54 + offset);
     if (offset < gcode::plain_offset_count) return fmt::format("G59.{}", offset - 5);
     return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
 }
 
 /// The work offset with most of the feed travel; empty if nothing is cut.
-std::optional<size_t> main_place(const ProgramSurvey& seen) {
+std::optional<size_t> main_offset(const ProgramSurvey& seen) {
     std::optional<size_t> main;
-    for (const auto& [offset, place] : seen.places)
-        if (!main || place.way > seen.places.at(*main).way) main = offset;
+    for (const auto& [offset, area] : seen.work_areas)
+        if (!main || area.way > seen.work_areas.at(*main).way) main = offset;
     return main;
 }
 
@@ -47,23 +47,23 @@ std::optional<size_t> main_place(const ProgramSurvey& seen) {
 ///
 /// Result: the assumptions; empty if nothing was moved.
 std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
-    const auto main = main_place(seen);
-    if (!main || seen.places.size() < 2 || seen.sets_offsets) return {};
+    const auto main = main_offset(seen);
+    if (!main || seen.work_areas.size() < 2 || seen.sets_offsets) return {};
     std::vector<std::string> others;
-    double edge = seen.places.at(*main).reach.max.x;
-    for (const auto& [offset, place] : seen.places) {
+    double edge = seen.work_areas.at(*main).reach.max.x;
+    for (const auto& [offset, area] : seen.work_areas) {
         if (offset == *main) continue;
-        others.push_back(name_of_place(offset));
+        others.push_back(name_of_work_area(offset));
         if (offset >= environment.work_offsets.size()) continue; // at machine zero, high above
-        const double shift = edge + between - place.reach.min.x;
+        const double shift = edge + between - area.reach.min.x;
         environment.work_offsets[offset][0] += shift;
-        edge = place.reach.max.x + shift;
+        edge = area.reach.max.x + shift;
     }
     return {fmt::format("the program cuts in {} and {}, assumed to be separate workpieces. The "
                         "stock is at {}, where most is cut; there is none at {}, so cuts there "
                         "are not checked: to check them, state the offsets and a stock in a "
                         "set-up",
-                        name_of_place(*main), fmt::join(others, ", "), name_of_place(*main),
+                        name_of_work_area(*main), fmt::join(others, ", "), name_of_work_area(*main),
                         fmt::join(others, ", "))};
 }
 
@@ -199,7 +199,7 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
                           "no stock, and only the codes are checked",
                           *turning);
         file.not_judged = why;
-    } else if (const auto line = line_that_asks_for_places(program); line && file.needs_stock) {
+    } else if (const auto line = line_that_asks_for_positions(program); line && file.needs_stock) {
         why = fmt::format("line {} reads the axis positions, so the motions depend on where the "
                           "axes were jogged: no stock is assumed",
                           *line);
@@ -290,8 +290,8 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     if (!file.needs_stock) choose_mesh_size(file);
     if (!file.needs_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
-    const auto place = file.is_inferred ? main_place(first) : std::nullopt;
-    const ProgramSurvey seen = survey(program, file.environment, known, place);
+    const auto offset = file.is_inferred ? main_offset(first) : std::nullopt;
+    const ProgramSurvey seen = survey(program, file.environment, known, offset);
     if (const auto why = leave_out_stock(file, program)) {
         about_stock = {*why};
     } else if (file.needs_stock) {

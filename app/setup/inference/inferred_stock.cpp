@@ -35,7 +35,8 @@ struct Top {
 };
 
 Top top_of(const ProgramSurvey& seen, double zero) {
-    constexpr double near = 2.0, share = 0.25; // ramps and leads begin up to this height above zero
+    constexpr double near = 2.0,
+                     fraction = 0.25; // ramps and leads begin up to this height above zero
     const double lowest = seen.lowest - zero;
     if (seen.retract && *seen.retract - zero < 0.0 && *seen.retract > seen.lowest)
         return {*seen.retract - zero, "where rapids travel"};
@@ -43,7 +44,7 @@ Top top_of(const ProgramSurvey& seen, double zero) {
         return lowest < 0.0 ? Top{0.0, "at Z0, where cuts go below it"}
                             : Top{lowest + smallest_height, "just above the deepest feed"};
     const double highest = seen.highest_cut - zero;
-    const bool at_zero = lowest < 0.0 && highest <= std::max(near, -share * lowest);
+    const bool at_zero = lowest < 0.0 && highest <= std::max(near, -fraction * lowest);
     if (at_zero) return {0.0, "at Z0, where cuts go below it"};
     return {highest, "at the highest cut"};
 }
@@ -63,20 +64,20 @@ struct Sides {
     Aabb whole, box;
     std::array<const UncutPlunge*, 4> ends{}; // X from, X to, Y from, Y to
 
-    double& place(size_t side) {
+    double& coordinate(size_t side) {
         return side % 2 == 0 ? box.min[static_cast<int>(side / 2)]
                              : box.max[static_cast<int>(side / 2)];
     }
 
     /// The position of a side that makes a plunge pass just outside.
-    static double beside(const UncutPlunge& plunge, size_t side) {
+    static double side_of(const UncutPlunge& plunge, size_t side) {
         const double at = plunge.tip[static_cast<int>(side / 2)];
         return side % 2 == 0 ? at + plunge.radius : at - plunge.radius;
     }
 
     bool holds(const UncutPlunge& plunge) {
         for (size_t side = 0; side < 4; ++side)
-            if ((side % 2 == 0) == (beside(plunge, side) <= place(side))) return false;
+            if ((side % 2 == 0) == (side_of(plunge, side) <= coordinate(side))) return false;
         return true;
     }
 
@@ -86,15 +87,15 @@ struct Sides {
         std::optional<size_t> chosen;
         for (size_t side = 0; side < 4; ++side) {
             const int axis = static_cast<int>(side / 2);
-            const double gone = std::abs(beside(plunge, side) - place(side)) + whole.size()[axis]
-                                - box.size()[axis];
-            const double share = gone / whole.size()[axis];
-            if (share >= least) continue;
-            least = share;
+            const double gone = std::abs(side_of(plunge, side) - coordinate(side))
+                                + whole.size()[axis] - box.size()[axis];
+            const double fraction = gone / whole.size()[axis];
+            if (fraction >= least) continue;
+            least = fraction;
             chosen = side;
         }
         if (!chosen) return;
-        place(*chosen) = beside(plunge, *chosen);
+        coordinate(*chosen) = side_of(plunge, *chosen);
         ends[*chosen] = &plunge;
     }
 
@@ -103,10 +104,10 @@ struct Sides {
         std::string text;
         for (size_t side = 0; side < 4; ++side)
             if (ends[side])
-                text +=
-                    fmt::format("{} {} {:.3f}, because line {} plunges next to it by rapid",
-                                text.empty() ? "; it ends at" : " and at", names[side],
-                                place(side) - frame[static_cast<int>(side / 2)], ends[side]->line);
+                text += fmt::format("{} {} {:.3f}, because line {} plunges next to it by rapid",
+                                    text.empty() ? "; it ends at" : " and at", names[side],
+                                    coordinate(side) - frame[static_cast<int>(side / 2)],
+                                    ends[side]->line);
         return text;
     }
 };
@@ -163,8 +164,8 @@ public:
           heights_(static_cast<size_t>(columns_ * rows_), box.max.z) {}
 
     void cut(const TipTrack& track, double radius) {
-        for (size_t i = 1; i < track.places.size(); ++i) {
-            const Vec3 from = track.places[i - 1], way = track.places[i] - from;
+        for (size_t i = 1; i < track.positions.size(); ++i) {
+            const Vec3 from = track.positions[i - 1], way = track.positions[i] - from;
             const long steps = 1 + static_cast<long>(std::hypot(way.x, way.y) / cell_);
             for (long step = 0; step <= steps; ++step)
                 cut(from + way * (static_cast<double>(step) / static_cast<double>(steps)), radius);
@@ -189,8 +190,8 @@ private:
 
     /// Calls for every cell whose centre lies within the radius, and at least for the cell below.
     template <typename Visit>
-    void visit(const Vec3& place, double radius, Visit&& call) const {
-        const double x = (place.x - box_.min.x) / cell_, y = (place.y - box_.min.y) / cell_;
+    void visit(const Vec3& position, double radius, Visit&& call) const {
+        const double x = (position.x - box_.min.x) / cell_, y = (position.y - box_.min.y) / cell_;
         const double reach = std::max(0.75, radius / cell_);
         const auto first = [](double v) { return std::max(0L, std::lround(std::floor(v))); };
         const auto last = [](double v, long count) {
@@ -211,11 +212,11 @@ private:
 };
 
 bool goes_straight_down(const TipTrack& track) {
-    return !track.sideways && track.places.back().z < track.places[0].z;
+    return !track.sideways && track.positions.back().z < track.positions[0].z;
 }
 
 bool ends_inside(const TipTrack& track, const Aabb& box) {
-    const Vec3& tip = track.places.back();
+    const Vec3& tip = track.positions.back();
     return tip.z < box.max.z - same_height && tip.x > box.min.x && tip.x < box.max.x
            && tip.y > box.min.y && tip.y < box.max.y;
 }
@@ -238,8 +239,8 @@ std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
         if (motion->kind != core::MotionKind::rapid)
             heights.cut(*track, radius);
         else if (goes_straight_down(*track) && ends_inside(*track, box)
-                 && heights.is_uncut(track->places.back(), radius))
-            plunges.push_back({track->places.back(), radius, event.line});
+                 && heights.is_uncut(track->positions.back(), radius))
+            plunges.push_back({track->positions.back(), radius, event.line});
     });
     return plunges;
 }

@@ -40,7 +40,7 @@ struct Travel {
 
     void note(bool rapid, const TipTrack& path) {
         has_rapids = has_rapids || rapid;
-        const core::Vec3 &from = path.places[0], &to = path.places.back();
+        const core::Vec3 &from = path.positions[0], &to = path.positions.back();
         if (!path.sideways || from.z != to.z) return;
         (rapid ? of_rapids : of_feeds)[std::lround(10.0 * path.lowest())] +=
             glm::distance(from, to);
@@ -84,7 +84,7 @@ void note_cut(const TipTrack& path, double radius, ProgramSurvey& result) {
     if (!result.feeds) result.lowest = core::infinity;
     result.feeds = true;
     result.lowest = std::min(result.lowest, path.lowest());
-    for (const Vec3& p : path.places)
+    for (const Vec3& p : path.positions)
         result.cutting.extend(
             core::Aabb{p - Vec3(radius, radius, 0.0), p + Vec3(radius, radius, 0.0)});
     if (!path.sideways) return;
@@ -102,24 +102,24 @@ Vec3 zero_of(const gcode::Offsets& offsets) {
     return zero;
 }
 
-void note_place(const ProgramEvent& event, const TipTrack& path,
-                const gcode::Environment& environment, ProgramSurvey& result) {
+void add_work_area(const ProgramEvent& event, const TipTrack& path,
+                   const gcode::Environment& environment, ProgramSurvey& result) {
     const size_t active = event.offsets.active;
-    const auto [place, is_new] = result.places.try_emplace(active);
-    if (is_new) place->second.zero = zero_of(event.offsets);
-    for (const Vec3& p : path.places) place->second.reach.extend(p);
-    place->second.way += path.length();
+    const auto [area, is_new] = result.work_areas.try_emplace(active);
+    if (is_new) area->second.zero = zero_of(event.offsets);
+    for (const Vec3& p : path.positions) area->second.reach.extend(p);
+    area->second.way += path.length();
     if (active < environment.work_offsets.size())
         result.sets_offsets =
             result.sets_offsets || event.offsets.work.origin != environment.work_offsets[active];
 }
 
-/// The zero of work offset `place`, else of the first one with feeds.
-Vec3 zero_of_place(const gcode::Environment& environment, const std::optional<size_t>& place,
-                   const ProgramSurvey& seen) {
-    auto found = seen.places.begin();
-    if (place) found = seen.places.find(*place);
-    if (found != seen.places.end()) return found->second.zero;
+/// The zero of work offset `offset`, else of the first one with feeds.
+Vec3 zero_of_offset(const gcode::Environment& environment, const std::optional<size_t>& offset,
+                    const ProgramSurvey& seen) {
+    auto found = seen.work_areas.begin();
+    if (offset) found = seen.work_areas.find(*offset);
+    if (found != seen.work_areas.end()) return found->second.zero;
     const gcode::AxisValues& origin = environment.work_offsets[0];
     return {origin[0], origin[1], origin[2]};
 }
@@ -133,7 +133,7 @@ double size_of(const std::map<core::ToolNumber, double>& sizes,
 }
 
 ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
-                     const SurveyTools& tools, const std::optional<size_t>& place) {
+                     const SurveyTools& tools, const std::optional<size_t>& offset) {
     ProgramSurvey result;
     Notes notes{result};
     Travel travel;
@@ -150,24 +150,24 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         mills = mills || path->sideways;
         result.control_lengths.try_emplace(tool, notes.length);
         result.feeds_before_call = result.feeds_before_call || !result.calls_tools;
-        note_place(event, *path, environment, result);
+        add_work_area(event, *path, environment, result);
     });
-    result.zero = zero_of_place(environment, place, result);
+    result.zero = zero_of_offset(environment, offset, result);
     result.retract = travel.plane(result.zero.z);
-    const auto look_at_cuts = [&] {
+    const auto survey_cuts = [&] {
         visit_events(program, environment, [&](const ProgramEvent& event) {
             const auto* motion = std::get_if<Motion>(&event.event);
             if (!motion || motion->kind == MotionKind::rapid) return;
-            if (place && event.offsets.active != *place) return;
+            if (offset && event.offsets.active != *offset) return;
             const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
             if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
             note_cut(*path, size_of(tools.radii, event.tool), result);
         });
     };
-    look_at_cuts();
+    survey_cuts();
     if (!result.feeds && result.retract) { // rapids are at the depth of the cuts
         result.retract.reset();
-        look_at_cuts();
+        survey_cuts();
     }
     return result;
 }
@@ -201,19 +201,19 @@ std::optional<Vec3> known(const core::AxisPosition& position) {
 
 /// Adds points along an arc, enough that their box is accurate to a thousandth of the radius.
 void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
-             std::vector<Vec3>& places) {
-    constexpr int places_of_turn = 72;
+             std::vector<Vec3>& positions) {
+    constexpr int steps_per_turn = 72;
     const int u = (arc.normal + 1) % 3, v = (arc.normal + 2) % 3, w = arc.normal;
     const double du = from[u] - arc.centre[u], dv = from[v] - arc.centre[v];
     const int count =
-        1 + static_cast<int>(std::min(20.0, std::abs(arc.angle) / (2.0 * M_PI)) * places_of_turn);
+        1 + static_cast<int>(std::min(20.0, std::abs(arc.angle) / (2.0 * M_PI)) * steps_per_turn);
     for (int i = 1; i < count; ++i) {
-        const double share = static_cast<double>(i) / count, angle = share * arc.angle;
+        const double fraction = static_cast<double>(i) / count, angle = fraction * arc.angle;
         Vec3 p(0.0);
         p[u] = arc.centre[u] + du * std::cos(angle) - dv * std::sin(angle);
         p[v] = arc.centre[v] + du * std::sin(angle) + dv * std::cos(angle);
-        p[w] = from[w] + share * (to[w] - from[w]);
-        places.push_back(p);
+        p[w] = from[w] + fraction * (to[w] - from[w]);
+        positions.push_back(p);
     }
 }
 
@@ -221,13 +221,14 @@ void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
 
 double TipTrack::lowest() const {
     double z = core::infinity;
-    for (const Vec3& p : places) z = std::min(z, p.z);
+    for (const Vec3& p : positions) z = std::min(z, p.z);
     return z;
 }
 
 double TipTrack::length() const {
     double way = 0.0;
-    for (size_t i = 1; i < places.size(); ++i) way += glm::distance(places[i - 1], places[i]);
+    for (size_t i = 1; i < positions.size(); ++i)
+        way += glm::distance(positions[i - 1], positions[i]);
     return way;
 }
 
@@ -235,14 +236,14 @@ std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length
     const auto from = known(motion.from), to = known(motion.to);
     if (!from || !to) return std::nullopt;
     TipTrack track;
-    track.places.push_back(*from);
-    if (motion.arc) add_arc(*motion.arc, *from, *to, track.places);
-    track.places.push_back(*to);
-    for (Vec3& p : track.places) {
+    track.positions.push_back(*from);
+    if (motion.arc) add_arc(*motion.arc, *from, *to, track.positions);
+    track.positions.push_back(*to);
+    for (Vec3& p : track.positions) {
         p.z -= tool_length;
         track.sideways =
             track.sideways
-            || std::hypot(p.x - track.places[0].x, p.y - track.places[0].y) > sideways_from;
+            || std::hypot(p.x - track.positions[0].x, p.y - track.positions[0].y) > sideways_from;
     }
     return track;
 }
@@ -261,14 +262,14 @@ std::optional<std::string> turning_code(const std::string& code) {
         if (at > 0 && !is_number_part(code[at - 1])) continue;
         double value = 0.0;
         const char* end = code.data() + code.size();
-        const auto [behind, failure] = std::from_chars(code.data() + at + 1, end, value);
+        const auto [rest, failure] = std::from_chars(code.data() + at + 1, end, value);
         if (failure != std::errc()) continue;
         const bool diameters = value == 7.0 || value == 8.0;
         const bool limits_speed = value == 50.0 && has("S");
         const bool roughs = value >= 70.0 && value < 74.0 && has("QUW") && has("PUDR");
         const bool threads = value == 76.0 && has("K") && has("I");
         if (diameters || limits_speed || roughs || threads || value == 96.0)
-            return code.substr(at, static_cast<size_t>(behind - code.data()) - at);
+            return code.substr(at, static_cast<size_t>(rest - code.data()) - at);
     }
     return std::nullopt;
 }
@@ -326,7 +327,7 @@ std::optional<std::string> turning_reason(const gcode::Program& program) {
     return turret_reason && !changes ? turret_reason : plane_reason;
 }
 
-std::optional<size_t> line_that_asks_for_places(const gcode::Program& program) {
+std::optional<size_t> line_that_asks_for_positions(const gcode::Program& program) {
     for (size_t line = 1; line <= program.line_count(); ++line) {
         const std::string code = parts_of_line(program.line(line)).code;
         const bool asks = code.find("SYSREAD") != std::string::npos;

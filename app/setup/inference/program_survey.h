@@ -19,7 +19,7 @@ struct Program;
 namespace app {
 
 /// The feeds of a program in the coordinates of one work offset.
-struct WorkPlace {
+struct WorkArea {
     core::Vec3 zero = core::Vec3(0.0); // program zero at the first feed, machine frame
     core::Aabb reach;                  // of the tip
     double way = 0.0;                  // travel of the tip, mm
@@ -37,8 +37,8 @@ struct ProgramSurvey {
     std::map<core::ToolNumber, double> control_lengths; // in effect at the first feed of each tool
     std::map<core::ToolNumber, bool> mills;             // of each tool that feeds: whether sideways
 
-    std::map<size_t, WorkPlace> places; // by work offset with feeds, 0 is G54
-    bool sets_offsets = false;          // sets a work offset that it then uses
+    std::map<size_t, WorkArea> work_areas; // by work offset with feeds, 0 is G54
+    bool sets_offsets = false;             // sets a work offset that it then uses
 
     core::Vec3 zero = core::Vec3(0.0); // of the surveyed work offset, machine frame
     bool feeds = false;                // in that work offset
@@ -58,10 +58,10 @@ struct SurveyTools {
 double size_of(const std::map<core::ToolNumber, double>& sizes,
                const std::optional<core::ToolNumber>& tool);
 
-/// Surveys a whole program. Cuts are limited to those in the coordinates of work offset `place`, if
-/// given.
+/// Surveys a whole program. Cuts are limited to those in the coordinates of work offset `offset`,
+/// if given.
 ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& environment,
-                     const SurveyTools& tools, const std::optional<size_t>& place = {});
+                     const SurveyTools& tools, const std::optional<size_t>& offset = {});
 
 /// One event of a block, with the tool in the spindle, the active offsets and the line of the
 /// block.
@@ -79,7 +79,7 @@ void visit_events(const gcode::Program& program, const gcode::Environment& envir
 
 /// The path of a tool tip over one motion, machine frame; arcs as points on them.
 struct TipTrack {
-    std::vector<core::Vec3> places;
+    std::vector<core::Vec3> positions;
     bool sideways = false; // it moves in X or Y
 
     double lowest() const;
@@ -95,6 +95,6 @@ std::optional<std::string> turning_reason(const gcode::Program& program);
 
 /// The line in which a Klartext program first reads the axis positions: what it does then depends
 /// on where the axes were jogged.
-std::optional<size_t> line_that_asks_for_places(const gcode::Program& program);
+std::optional<size_t> line_that_asks_for_positions(const gcode::Program& program);
 
 } // namespace app

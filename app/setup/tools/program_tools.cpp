@@ -25,9 +25,9 @@ using core::ToolShape;
 /// The whole number at a position in a text.
 std::optional<int> whole_at(const std::string& text, size_t at) {
     int value = 0;
-    const auto [behind, failure] =
+    const auto [after_number, failure] =
         std::from_chars(text.data() + at, text.data() + text.size(), value);
-    if (failure != std::errc() || behind == text.data() + at) return std::nullopt;
+    if (failure != std::errc() || after_number == text.data() + at) return std::nullopt;
     return value;
 }
 
@@ -152,8 +152,8 @@ void Scan::comment(const std::string& words, size_t line) {
     }
     // A number alone belongs to the sizes in adjacent comments, in any order.
     if (read.number && !read.text.shape) {
-        for (const auto& [other, place] : waiting)
-            if (other.text.diameter && !other.number) note(*read.number, other, place);
+        for (const auto& [other, source] : waiting)
+            if (other.text.diameter && !other.number) note(*read.number, other, source);
         return;
     }
     if (selected && moves_since_call == 0 && waiting.empty()

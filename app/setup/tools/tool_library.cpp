@@ -323,13 +323,13 @@ core::Result<ToolMap> tools_of_freecad_library(const json& library,
                            && entry["path"].is_string();
         if (!named) return tl::unexpected(error(path, "each entry of tools needs nr and path"));
         const std::string name = entry["path"];
-        const auto place = find_bit(path, name);
-        if (!place)
+        const auto bit_path = find_bit(path, name);
+        if (!bit_path)
             return tl::unexpected(error(path, fmt::format("there is no bit {} next to it or in "
                                                           "../Bit",
                                                           name)));
-        FEELER_TRY(const json bit, read_json(*place));
-        FEELER_TRY(const FoundTool tool, tool_of_bit(bit, entry["nr"].get<int>(), *place));
+        FEELER_TRY(const json bit, read_json(*bit_path));
+        FEELER_TRY(const FoundTool tool, tool_of_bit(bit, entry["nr"].get<int>(), *bit_path));
         if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
     }
     return tools;

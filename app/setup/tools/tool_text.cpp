@@ -31,8 +31,8 @@ std::optional<double> plain_number(const std::string& text, size_t& at) {
     while (end < text.size() && (is_digit(text[end]) || text[end] == '.')) ++end;
     double value = 0.0;
     const char* const from = text.data() + first;
-    const auto [behind, failure] = std::from_chars(from, text.data() + end, value);
-    if (failure != std::errc() || behind != text.data() + end) return std::nullopt;
+    const auto [rest, failure] = std::from_chars(from, text.data() + end, value);
+    if (failure != std::errc() || rest != text.data() + end) return std::nullopt;
     at = end;
     return value;
 }
@@ -274,7 +274,7 @@ void read_number(const TextNumber& number, LengthUnit unit, ToolText& text,
 
 /// Assigns an angle as catalogues give it: of the whole tip for drills and V-bits, of the flank for
 /// tapers and dovetails.
-void place_angle(const ToolText& text, core::ToolDescription& tool) {
+void assign_angle(const ToolText& text, core::ToolDescription& tool) {
     if (!text.angle_deg) return;
     const double angle = *text.angle_deg;
     if (tool.shape == ToolShape::drill) tool.point_deg = angle;
@@ -319,7 +319,7 @@ std::optional<core::ToolDescription> tool_of_text(const ToolText& text) {
     if (tipped && text.tip_diameter.value_or(0.0) < tool.diameter)
         tool.tip_diameter = text.tip_diameter.value_or(0.0);
     if (tool.shape == ToolShape::threadmill) tool.pitch = text.pitch;
-    place_angle(text, tool);
+    assign_angle(text, tool);
     return tool;
 }
 

@@ -32,14 +32,16 @@ struct Subject {
     }
 };
 
-std::string percent(double share) {
-    if (share > 0.0 && share < 1e-4) return "< 0.01 %";
-    return fmt::format("{:.{}f} %", 100.0 * share, share < 0.01 ? 2 : share < 0.1 ? 1 : 0);
+std::string percent(double fraction) {
+    if (fraction > 0.0 && fraction < 1e-4) return "< 0.01 %";
+    return fmt::format("{:.{}f} %", 100.0 * fraction, fraction < 0.01 ? 2 : fraction < 0.1 ? 1 : 0);
 }
 
-std::string percent(std::optional<double> share) { return share ? percent(*share) : no_value; }
+std::string percent(std::optional<double> fraction) {
+    return fraction ? percent(*fraction) : no_value;
+}
 
-std::string place_words(const DeviceStudy& study, size_t block) {
+std::string block_words(const DeviceStudy& study, size_t block) {
     return fmt::format("block {}, line {}", block, study.result->run.check.blocks[block].line);
 }
 
@@ -149,16 +151,16 @@ DevicePart register_part(const Subject& subject) {
 }
 
 /// What the threads of the device did since the last block.
-DevicePart share_part(const Subject& subject) {
-    const DeviceShares shares =
-        shares_between(subject.before(), subject.block().after, subject.study.result->file.device);
+DevicePart use_part(const Subject& subject) {
+    const DeviceUse fractions =
+        use_between(subject.before(), subject.block().after, subject.study.result->file.device);
     return {"Busy, waiting for, cache hits",
-            {{"busy", percent(shares.busy)},
-             {"memory", percent(shares.memory)},
-             {"ports", percent(shares.ports)},
-             {"order", percent(shares.order)},
-             {"nodes", percent(shares.node_hits)},
-             {"records", percent(shares.record_hits)}},
+            {{"busy", percent(fractions.busy)},
+             {"memory", percent(fractions.memory)},
+             {"ports", percent(fractions.ports)},
+             {"order", percent(fractions.order)},
+             {"nodes", percent(fractions.node_hits)},
+             {"records", percent(fractions.record_hits)}},
             true};
 }
 
@@ -173,7 +175,7 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
     if (both.not_asked > 0) count("not checked", both.not_asked);
     if (study.held)
         part.lines.push_back(
-            {"stopped before", place_words(study, *study.held), Tone::bad, *study.held});
+            {"stopped before", block_words(study, *study.held), Tone::bad, *study.held});
     const size_t late = study.result->timing.missed;
     part.lines.push_back({"late", late == 0 ? "none" : fmt::format("{}", late),
                           late == 0 ? Tone::plain : Tone::bad});
@@ -185,7 +187,7 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
     const double slack = timing.blocks[*timing.tightest].slack();
     const Tone tone = slack < 0.0 ? Tone::bad : slack < study.near ? Tone::near : Tone::plain;
     part.lines.push_back({"least slack", time_text(slack), tone, timing.tightest});
-    part.lines.push_back({"at", place_words(study, *timing.tightest), Tone::dim, timing.tightest});
+    part.lines.push_back({"at", block_words(study, *timing.tightest), Tone::dim, timing.tightest});
 }
 
 DevicePart run_part(const ViewModel& model) {
@@ -195,7 +197,7 @@ DevicePart run_part(const ViewModel& model) {
     add_stops(study, part);
     part.lines.push_back({"latency p50", time_text(study.figures->p50)});
     part.lines.push_back({"latency max", time_text(study.figures->longest)});
-    part.lines.push_back({"busy", percent(study.figures->busy_share)});
+    part.lines.push_back({"busy", percent(study.figures->busy_fraction)});
     if (study.agreement->missed > 0)
         part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
     part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});
@@ -204,7 +206,7 @@ DevicePart run_part(const ViewModel& model) {
     const auto best = smallest(study.result->fits);
     std::string enough = "none of those tried";
     if (model.device.is_running)
-        enough = fmt::format("searching: {:.0f} %", 100.0 * model.device.share);
+        enough = fmt::format("searching: {:.0f} %", 100.0 * model.device.fraction);
     if (best)
         enough = fmt::format("{} element{}, {} MHz", best->elements, best->elements == 1 ? "" : "s",
                              *best->clock_mhz);
@@ -230,7 +232,7 @@ DeviceSheet device_sheet(const ViewModel& model) {
         sheet.answer = answer_words(subject);
         compare(subject, exact_words(model, subject), sheet);
         sheet.parts = {time_part(subject), run_part(model), work_part(subject),
-                       register_part(subject), share_part(subject)};
+                       register_part(subject), use_part(subject)};
     }
     return sheet;
 }
@@ -252,7 +254,7 @@ std::string device_status(const ViewModel& model) {
     if (!device.is_running || device.study) return {};
     if (device.blocks == 0) return "Loading the stock into the coprocessor \xE2\x80\xA6";
     return fmt::format("Checking block {} \xE2\x80\xA6 {:.0f} %", device.blocks,
-                       100.0 * device.share);
+                       100.0 * device.fraction);
 }
 
 std::string slack_words(const ViewModel& model, size_t block) {

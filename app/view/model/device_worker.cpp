@@ -127,18 +127,18 @@ core::Result<CoprocessorResult> DeviceWorker::Thread::emulate(const DeviceJob& j
     asked.device = file.device;
     asked.other_elements = std::move(others);
     const bool is_fitting = !asked.other_elements.empty();
-    Clock::time_point told = {};
+    Clock::time_point last_report = {};
     asked.check.after_block = [&](const CheckProgress& progress) {
-        if (Clock::now() - told > progress_interval) {
-            told = Clock::now();
+        if (Clock::now() - last_report > progress_interval) {
+            last_report = Clock::now();
             deliver({.run = run,
-                     .share = progress.share,
+                     .fraction = progress.fraction,
                      .blocks = progress.blocks,
                      .is_fitting = is_fitting});
         }
         return !is_over(run);
     };
-    FEELER_TRY(CoprocessorRun made, run_beside_coprocessor(asked));
+    FEELER_TRY(CoprocessorRun made, run_with_coprocessor(asked));
     if (is_over(run)) return CoprocessorResult{};
     return in_time(std::move(made), file, true);
 }
@@ -159,7 +159,7 @@ void DeviceWorker::Thread::carry_out(const DeviceJob& job, uint64_t run) {
         if (is_over(run)) return;
         if (!result) return fail(result.error());
         deliver({.run = run,
-                 .share = others.empty() ? 0.0 : 1.0,
+                 .fraction = others.empty() ? 0.0 : 1.0,
                  .is_fitting = true,
                  .is_done = !others.empty(),
                  .study = study_of(*std::move(result))});

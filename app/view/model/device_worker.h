@@ -57,7 +57,7 @@ std::optional<double> slack_of(const DeviceStudy* study, size_t block);
 /// What a run has produced since the last update.
 struct DeviceUpdate {
     uint64_t run = 0; // number of the run
-    double share = 0.0;
+    double fraction = 0.0;
     size_t blocks = 0;                        // answered so far
     bool is_fitting = false;                  // true while other devices are tried
     bool is_done = false;                     // this is the last update

@@ -51,7 +51,7 @@ std::vector<std::string> files_of_setup(const std::string& setup) {
     return files;
 }
 
-FileWatch::Seen FileWatch::look_at(const std::string& path) {
+FileWatch::Seen FileWatch::observe(const std::string& path) {
     Seen seen{path};
     std::error_code gone;
     const auto time = std::filesystem::last_write_time(path, gone);
@@ -64,12 +64,12 @@ FileWatch::Seen FileWatch::look_at(const std::string& path) {
 void FileWatch::set(std::vector<std::string> paths) {
     known_.clear();
     for (const std::string& path : paths)
-        if (!path.empty()) known_.push_back(look_at(path));
+        if (!path.empty()) known_.push_back(observe(path));
     last_ = known_;
     missing_.clear();
 }
 
-void FileWatch::look_for_missing(const std::vector<Seen>& now) {
+void FileWatch::check_for_missing(const std::vector<Seen>& now) {
     missing_.clear();
     for (size_t i = now.size(); i-- > 0;)
         if (now[i].size == 0 && now[i] != known_[i]) missing_ = now[i].path;
@@ -77,12 +77,12 @@ void FileWatch::look_for_missing(const std::vector<Seen>& now) {
 
 bool FileWatch::has_changed() {
     std::vector<Seen> now;
-    for (const Seen& seen : known_) now.push_back(look_at(seen.path));
+    for (const Seen& seen : known_) now.push_back(observe(seen.path));
     const bool rests = now == last_;
     last_ = now;
     if (!rests) return false;
     // Editors that replace a file delete it for a moment.
-    look_for_missing(now);
+    check_for_missing(now);
     if (now == known_ || !missing_.empty()) return false;
     known_ = std::move(now);
     return true;

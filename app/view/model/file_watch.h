@@ -33,8 +33,8 @@ private:
 
         bool operator==(const Seen&) const = default;
     };
-    void look_for_missing(const std::vector<Seen>& now);
-    static Seen look_at(const std::string& path);
+    void check_for_missing(const std::vector<Seen>& now);
+    static Seen observe(const std::string& path);
 
     std::vector<Seen> known_, last_;
     std::string missing_;

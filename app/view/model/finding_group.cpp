@@ -96,21 +96,22 @@ std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
     return groups;
 }
 
-std::optional<StretchPlace> stretch_at(const std::vector<FindingGroup>& groups, size_t block) {
+std::optional<StretchIndex> stretch_at(const std::vector<FindingGroup>& groups, size_t block) {
     for (size_t group = 0; group < groups.size(); ++group) {
         const auto& all = groups[group].stretches;
         const auto found = std::lower_bound(
             all.begin(), all.end(), block,
             [](const FindingStretch& stretch, size_t wanted) { return stretch.last < wanted; });
         if (found != all.end() && found->first <= block)
-            return StretchPlace{group, static_cast<size_t>(found - all.begin())};
+            return StretchIndex{group, static_cast<size_t>(found - all.begin())};
     }
     return {};
 }
 
-std::optional<StretchPlace> stretch_beside(const std::vector<FindingGroup>& groups,
-                                           const std::optional<StretchPlace>& from, bool forward) {
-    std::vector<StretchPlace> all;
+std::optional<StretchIndex> neighbouring_stretch(const std::vector<FindingGroup>& groups,
+                                                 const std::optional<StretchIndex>& from,
+                                                 bool forward) {
+    std::vector<StretchIndex> all;
     for (size_t group = 0; group < groups.size(); ++group)
         for (size_t stretch = 0; stretch < groups[group].stretches.size(); ++stretch)
             all.push_back({group, stretch});
@@ -198,11 +199,11 @@ std::string text_of(const Notes& notes) {
     return text;
 }
 
-Notes merged(Notes kept, const Notes& notes, const std::string& program) {
-    std::erase_if(kept, [&](const FindingNote& note) { return note.program == program; });
-    std::copy_if(notes.begin(), notes.end(), std::back_inserter(kept),
+Notes merged(Notes stored, const Notes& notes, const std::string& program) {
+    std::erase_if(stored, [&](const FindingNote& note) { return note.program == program; });
+    std::copy_if(notes.begin(), notes.end(), std::back_inserter(stored),
                  [&](const FindingNote& note) { return note.program == program; });
-    return kept;
+    return stored;
 }
 
 } // namespace app::viewer

@@ -35,19 +35,20 @@ std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
                                   const std::vector<core::Finding>& findings);
 
 /// The indices of a group and of a stretch in it.
-struct StretchPlace {
+struct StretchIndex {
     size_t group = 0, stretch = 0;
 
-    bool operator==(const StretchPlace&) const = default;
+    bool operator==(const StretchIndex&) const = default;
 };
 
 /// The first stretch that contains a block.
-std::optional<StretchPlace> stretch_at(const std::vector<FindingGroup>& groups, size_t block);
+std::optional<StretchIndex> stretch_at(const std::vector<FindingGroup>& groups, size_t block);
 
 /// The next or previous stretch of the list; without `from`, the first or last one. Empty at the
 /// end of the list.
-std::optional<StretchPlace> stretch_beside(const std::vector<FindingGroup>& groups,
-                                           const std::optional<StretchPlace>& from, bool forward);
+std::optional<StretchIndex> neighbouring_stretch(const std::vector<FindingGroup>& groups,
+                                                 const std::optional<StretchIndex>& from,
+                                                 bool forward);
 
 /// A note of the user on a stretch of findings. It is matched by rule, bodies and the text of the
 /// first line, so it survives inserted lines.
@@ -79,7 +80,7 @@ std::string text_of(const std::vector<FindingNote>& notes);
 
 /// Stored notes with those of one program replaced, so that two windows do not overwrite each
 /// other.
-std::vector<FindingNote> merged(std::vector<FindingNote> kept,
+std::vector<FindingNote> merged(std::vector<FindingNote> stored,
                                 const std::vector<FindingNote>& notes, const std::string& program);
 
 } // namespace app::viewer

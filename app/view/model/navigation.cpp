@@ -42,11 +42,11 @@ size_t stepped(const ViewModel& model, int blocks) {
 
 } // namespace
 
-void go_to(ViewModel& model, size_t block, double share) {
+void go_to(ViewModel& model, size_t block, double fraction) {
     if (!model.has_rows()) return;
     stay(model);
-    model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(share, 0.0, 1.0)};
-    model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
+    model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(fraction, 0.0, 1.0)};
+    model.wanted = ShowRequest{model.cursor.block, model.cursor.fraction >= 1.0};
     model.list_follows = true;
     model.range = showing(model.range, model.rows.size(), model.cursor.block);
 }
@@ -62,7 +62,7 @@ void step(ViewModel& model, int blocks) {
     if (!model.has_rows()) return;
     model.playback.running = false;
     // In the middle of a block, the first step goes to its end.
-    if (blocks > 0 && model.cursor.share < 1.0) --blocks;
+    if (blocks > 0 && model.cursor.fraction < 1.0) --blocks;
     go_to(model, stepped(model, blocks));
 }
 
@@ -133,19 +133,19 @@ void go_to_bookmark(ViewModel& model) {
     go_to(model, next == model.bookmarks.end() ? *model.bookmarks.begin() : *next);
 }
 
-void go_to_stretch(ViewModel& model, const StretchPlace& place) {
+void go_to_stretch(ViewModel& model, const StretchIndex& which) {
     model.playback.running = false;
-    model.selected = place;
-    go_to_witness(model, model.groups[place.group].stretches[place.stretch].worst);
+    model.selected = which;
+    go_to_witness(model, model.groups[which.group].stretches[which.stretch].worst);
 }
 
 bool step_stretch(ViewModel& model, bool forward) {
-    const auto next = stretch_beside(model.groups, selected_stretch(model), forward);
+    const auto next = neighbouring_stretch(model.groups, selected_stretch(model), forward);
     if (next) go_to_stretch(model, *next);
     return next.has_value();
 }
 
-std::optional<StretchPlace> selected_stretch(const ViewModel& model) {
+std::optional<StretchIndex> selected_stretch(const ViewModel& model) {
     const size_t block = model.cursor.block;
     if (model.selected && model.selected->group < model.groups.size()) {
         const auto& stretches = model.groups[model.selected->group].stretches;
@@ -169,18 +169,18 @@ std::string notes_key(const ViewModel& model) {
     return utf8_text(failure ? model.program->program : path.lexically_normal().string());
 }
 
-std::string note_at(const ViewModel& model, const StretchPlace& place) {
+std::string note_at(const ViewModel& model, const StretchIndex& which) {
     if (!model.program) return {};
-    const FindingGroup& group = model.groups[place.group];
+    const FindingGroup& group = model.groups[which.group];
     return note_on(model.notes, notes_key(model), group,
-                   model.rows[group.stretches[place.stretch].first]);
+                   model.rows[group.stretches[which.stretch].first]);
 }
 
-void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text) {
+void write_note_at(ViewModel& model, const StretchIndex& which, const std::string& text) {
     if (!model.program) return;
-    const FindingGroup& group = model.groups[place.group];
+    const FindingGroup& group = model.groups[which.group];
     write_note(model.notes, notes_key(model), group,
-               model.rows[group.stretches[place.stretch].first], text);
+               model.rows[group.stretches[which.stretch].first], text);
     model.notes_changed = true;
 }
 
@@ -244,27 +244,27 @@ bool play(ViewModel& model, double seconds) {
     if (!model.playback.running || !model.has_rows()) return false;
     double left = seconds * model.playback.speed * slowing(model);
     size_t block = model.cursor.block;
-    double share = model.cursor.share;
+    double fraction = model.cursor.fraction;
     while (left > 0.0) {
         const double duration = model.rows[block].duration;
-        const double rest = std::max(duration * (1.0 - share), 0.0);
+        const double rest = std::max(duration * (1.0 - fraction), 0.0);
         if (rest > left) {
-            share += left / duration;
+            fraction += left / duration;
             break;
         }
         left -= rest;
-        share = 1.0;
+        fraction = 1.0;
         if (block + 1 == model.rows.size()) {
             model.playback.running = false;
             break;
         }
         ++block;
-        share = 0.0;
+        fraction = 0.0;
     }
     const bool is_same_stock =
-        block == model.cursor.block && share < 1.0 && model.cursor.share < 1.0;
-    model.cursor = {block, share};
-    if (!is_same_stock) model.wanted = ShowRequest{block, share >= 1.0};
+        block == model.cursor.block && fraction < 1.0 && model.cursor.fraction < 1.0;
+    model.cursor = {block, fraction};
+    if (!is_same_stock) model.wanted = ShowRequest{block, fraction >= 1.0};
     model.list_follows = true;
     model.range = showing(model.range, model.rows.size(), block);
     return true;

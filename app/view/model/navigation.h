@@ -10,7 +10,7 @@ namespace app::viewer {
 struct ViewModel;
 
 /// Goes to a block, at a fraction of its time (1: its end), and requests its view.
-void go_to(ViewModel& model, size_t block, double share = 1.0);
+void go_to(ViewModel& model, size_t block, double fraction = 1.0);
 
 /// Goes to a block at its moment of least clearance, if known.
 void go_to_witness(ViewModel& model, size_t block);
@@ -33,18 +33,18 @@ bool await_offending(ViewModel& model);
 void go_to_bookmark(ViewModel& model);
 
 /// Goes to the worst block of a stretch of findings.
-void go_to_stretch(ViewModel& model, const StretchPlace& place);
+void go_to_stretch(ViewModel& model, const StretchIndex& index);
 /// Goes to the next or previous stretch of the list. False: there is none.
 bool step_stretch(ViewModel& model, bool forward);
 /// The selected stretch of the list: the last one visited if it contains the current block, else
 /// the first one that does.
-std::optional<StretchPlace> selected_stretch(const ViewModel& model);
+std::optional<StretchIndex> selected_stretch(const ViewModel& model);
 /// Shows the findings or the lines in the list.
 void show_findings(ViewModel& model, bool shown);
 /// The key of the program in the stored notes: its absolute path.
 std::string notes_key(const ViewModel& model);
-std::string note_at(const ViewModel& model, const StretchPlace& place);
-void write_note_at(ViewModel& model, const StretchPlace& place, const std::string& text);
+std::string note_at(const ViewModel& model, const StretchIndex& index);
+void write_note_at(ViewModel& model, const StretchIndex& index, const std::string& text);
 
 /// The block with the worst verdict; among equals, one with an error, then the one with the least
 /// margin. There must be rows.

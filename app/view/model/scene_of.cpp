@@ -22,13 +22,13 @@ std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
 namespace {
 
 /// The view of the current block, or an older one while the worker still makes it.
-const PlaceView* view_of(const ViewModel& model) {
-    return model.place ? model.place.get() : nullptr;
+const BlockState* view_of(const ViewModel& model) {
+    return model.block_state ? model.block_state.get() : nullptr;
 }
 
-std::optional<core::AxisValues> axes_now(const ViewModel& model, const PlaceView& view) {
-    const double share = view.block == model.cursor.block ? model.cursor.share : 1.0;
-    if (const auto pose = pose_at(view.poses, share)) return pose;
+std::optional<core::AxisValues> axes_now(const ViewModel& model, const BlockState& view) {
+    const double fraction = view.block == model.cursor.block ? model.cursor.fraction : 1.0;
+    if (const auto pose = pose_at(view.poses, fraction)) return pose;
     return view.standing;
 }
 
@@ -57,7 +57,7 @@ void mark_pair(const BlockRow& row, std::vector<render::Body>& bodies) {
 }
 
 /// Adds the tool at the end of the hovered block. Only on machines without rotary axes.
-void add_ghost(const ViewModel& model, const PlaceView& view, const core::AxisValues& values,
+void add_ghost(const ViewModel& model, const BlockState& view, const core::AxisValues& values,
                const std::vector<render::Body>& tool, render::Scene& scene) {
     if (!model.hovered || *model.hovered == model.cursor.block || !model.path || tool.empty())
         return;
@@ -67,7 +67,7 @@ void add_ghost(const ViewModel& model, const PlaceView& view, const core::AxisVa
         render::points_of_block(*model.path, static_cast<uint32_t>(*model.hovered));
     if (first == last) return;
     const auto length = setup.tools.find(*view.tool)->second.length;
-    const core::Vec3 by = core::Vec3(model.path->points[last - 1].place)
+    const core::Vec3 by = core::Vec3(model.path->points[last - 1].position)
                           - render::tip_in_stock(setup, length, values);
     for (render::Body body : tool) {
         body.stock_from_body = core::translation(by) * body.stock_from_body;
@@ -75,7 +75,7 @@ void add_ghost(const ViewModel& model, const PlaceView& view, const core::AxisVa
     }
 }
 
-void add_bodies(const ViewModel& model, const PlaceView& view, render::Scene& scene) {
+void add_bodies(const ViewModel& model, const BlockState& view, render::Scene& scene) {
     const core::Setup& setup = view.scene->setup;
     const auto values = axes_now(model, view);
     const core::AxisValues standing = values.value_or(core::AxisValues{});
@@ -114,7 +114,7 @@ void add_raw_bodies(const SceneSetup& known, render::Scene& scene) {
 } // namespace
 
 std::optional<core::Vec3> tip_now(const ViewModel& model) {
-    const PlaceView* view = view_of(model);
+    const BlockState* view = view_of(model);
     if (!view || !view->tool || !view->scene->setup.tools.contains(*view->tool)) return {};
     const auto values = axes_now(model, *view);
     if (!values) return {};
@@ -125,7 +125,7 @@ std::optional<core::Vec3> tip_now(const ViewModel& model) {
 std::optional<render::Witness> witness_of(const ViewModel& model) {
     if (!model.has_rows() || !model.settings.shown.witness) return {};
     // Until the worker has made the new view, the tool is drawn at its position in the old one.
-    if (model.place && model.place->block != model.cursor.block) return {};
+    if (model.block_state && model.block_state->block != model.cursor.block) return {};
     const BlockRow& row = model.row();
     if (!row.has_witness()) return {};
     return render::Witness{row.on_tool, row.on_body, state_of(row)};
@@ -133,7 +133,7 @@ std::optional<render::Witness> witness_of(const ViewModel& model) {
 
 render::Scene scene_of(const ViewModel& model) {
     render::Scene scene;
-    if (const PlaceView* view = view_of(model); view && model.has_rows())
+    if (const BlockState* view = view_of(model); view && model.has_rows())
         add_bodies(model, *view, scene);
     else if (model.program && model.program->scene)
         add_raw_bodies(*model.program->scene, scene);
@@ -145,17 +145,17 @@ render::Scene scene_of(const ViewModel& model) {
     if (model.hovered) scene.hovered_block = static_cast<uint32_t>(*model.hovered);
     scene.witness = witness_of(model);
     scene.section = model.section;
-    scene.measured = model.measuring.places;
+    scene.measured = model.measuring.positions;
     return scene;
 }
 
 SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     SceneKey key;
     key.opening = model.opening;
-    key.place = model.place ? model.place->serial : 0;
+    key.block_state = model.block_state ? model.block_state->serial : 0;
     key.path = model.path.get();
     key.block = model.cursor.block;
-    key.share = model.cursor.share;
+    key.fraction = model.cursor.fraction;
     key.camera = model.camera;
     key.shown = model.settings.shown;
     key.theme = model.settings.theme;
@@ -164,7 +164,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
         key.section = model.section->normal;
         key.section_offset = model.section->offset;
     }
-    key.measured = model.measuring.places;
+    key.measured = model.measuring.positions;
     key.width = size.width;
     key.height = size.height;
     key.has_program = model.program != nullptr;

@@ -29,10 +29,10 @@ render::Scene scene_of(const ViewModel& model);
 
 /// Everything that the picture of a scene depends on: equal keys give equal pictures.
 struct SceneKey {
-    uint64_t opening = 0, place = 0;
+    uint64_t opening = 0, block_state = 0;
     const void* path = nullptr;
     size_t block = 0;
-    double share = 1.0; // of the block's time
+    double fraction = 1.0; // of the block's time
     render::Camera camera;
     Shown shown;
     render::ColorScheme theme = render::ColorScheme::dark;

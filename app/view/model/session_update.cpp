@@ -74,7 +74,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     news.rows.append(std::move(later.rows));
     take(news.findings, later.findings);
     take(news.path, later.path);
-    take(news.place, later.place);
+    take(news.block_state, later.block_state);
     take(news.walk, later.walk);
     take(news.breakpoints, later.breakpoints);
     if (later.changes) news.stopped.reset(); // the program takes another course now
@@ -83,7 +83,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.refusal, later.refusal);
     take(news.saved, later.saved);
     take(news.stopped, later.stopped);
-    news.share = later.share;
+    news.fraction = later.fraction;
     news.is_recorded = later.is_recorded;
     news.is_busy = later.is_busy;
     news.has_news = true;
@@ -103,8 +103,8 @@ void add_motion(const core::Machine& machine, const core::Motion& motion, double
     }
     const core::Path path = core::path_of(motion, machine, drawing_error);
     for (const core::Leg& leg : path.legs)
-        if (leg.straight && leg.places.size() == 2)
-            poses.push_back({begin + leg.end, leg.places[1]});
+        if (leg.straight && leg.positions.size() == 2)
+            poses.push_back({begin + leg.end, leg.positions[1]});
     poses.push_back({begin + path.duration, *to});
 }
 
@@ -123,13 +123,13 @@ std::vector<Pose> poses_of(const core::Machine& machine, std::span<const core::E
     return poses;
 }
 
-std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double share) {
+std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double fraction) {
     if (poses.empty()) return {};
-    const double time = std::clamp(share, 0.0, 1.0) * poses.back().time;
+    const double time = std::clamp(fraction, 0.0, 1.0) * poses.back().time;
     const auto after = std::lower_bound(poses.begin(), poses.end(), time,
                                         [](const Pose& pose, double t) { return pose.time < t; });
-    if (after == poses.begin()) return share >= 1.0 ? poses.back().values : poses.front().values;
-    if (after == poses.end() || share >= 1.0) return poses.back().values;
+    if (after == poses.begin()) return fraction >= 1.0 ? poses.back().values : poses.front().values;
+    if (after == poses.end() || fraction >= 1.0) return poses.back().values;
     const Pose& before = *(after - 1);
     const double part = (time - before.time) / (after->time - before.time);
     core::AxisValues values{};
@@ -236,7 +236,7 @@ void SessionPublisher::publish(const DebugSession& session, SessionUpdate& news)
     if (!is_whole_) paint_path(session, news);
     if (session.is_recorded() && !is_whole_) news.stopped = run.stopped;
     is_whole_ = session.is_recorded();
-    news.share = session.recorded_share();
+    news.fraction = session.recorded_fraction();
     news.is_recorded = is_whole_;
     news.has_news = true;
 }

@@ -40,7 +40,7 @@ struct Pose {
 std::vector<Pose> poses_of(const core::Machine& machine, std::span<const core::Event> events);
 
 /// The axis positions at a fraction of a block's time, 0..1.
-std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double share);
+std::optional<core::AxisValues> pose_at(const std::vector<Pose>& poses, double fraction);
 
 /// A named value, and whether the block has changed it.
 struct ShownValue {
@@ -53,7 +53,7 @@ std::vector<ShownValue> compared(const std::vector<NamedValue>& before,
                                  const std::vector<NamedValue>& after);
 
 /// A block and the state before or after it, for the window. Never changes.
-struct PlaceView {
+struct BlockState {
     size_t block = 0;
     bool at_end = true; // true: the stock after the block; false: before it
     std::shared_ptr<const SceneSetup> scene;
@@ -127,7 +127,7 @@ struct SessionUpdate {
     RowsUpdate rows;
     std::optional<std::vector<core::Finding>> findings;
     std::shared_ptr<const render::ToolPath> path;
-    std::shared_ptr<const PlaceView> place;
+    std::shared_ptr<const BlockState> block_state;
     std::optional<WalkEnd> walk;
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
@@ -135,7 +135,7 @@ struct SessionUpdate {
     std::optional<std::string> refusal;              // why a request was refused, as a sentence
     std::optional<SetupSaved> saved;
     std::optional<core::Error> stopped; // the program could not be run to its end
-    double share = 0.0;                 // of the program, checked so far
+    double fraction = 0.0;              // of the program, checked so far
     bool is_recorded = false;
     bool is_busy = false; // with opening or walking
 

@@ -141,14 +141,14 @@ std::vector<ShownValue> WorkerSession::watched_values() const {
 
 void WorkerSession::show(const ShowRequest& request) {
     if (!session_ || session_->record().blocks.empty()) return;
-    auto view = std::make_shared<PlaceView>();
+    auto view = std::make_shared<BlockState>();
     view->block = std::min(request.block, session_->record().blocks.size() - 1);
     view->at_end = request.at_end;
     view->serial = ++views_;
     if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
     view->scene = scene_at(view->block);
     const ControlValues before = values_of(*session_);
-    const auto ahead = first_events([&](const BlockVisit& look) { session_->visit_ahead(look); });
+    const auto ahead = first_events([&](const BlockVisit& visit) { session_->visit_ahead(visit); });
     const std::vector<core::Event> events = ahead.value_or(std::vector<core::Event>());
     view->poses = poses_of(view->scene->setup.machine, events);
     view->tool = tool_of(events, session_->tool());
@@ -165,7 +165,7 @@ void WorkerSession::show(const ShowRequest& request) {
     view->offsets = compared(before.offsets, after.offsets);
     view->parameters = compared(before.parameters, after.parameters);
     view->watched = watched_values();
-    news_.place = std::move(view);
+    news_.block_state = std::move(view);
     news_.has_news = true;
     publish_if_due();
 }
@@ -255,7 +255,7 @@ SessionUpdate WorkerSession::take_news() {
     SessionUpdate news = std::move(news_);
     news_ = {};
     news_.opening = news.opening = openings_;
-    news_.share = news.share;
+    news_.fraction = news.fraction;
     news_.is_recorded = news.is_recorded;
     return news;
 }

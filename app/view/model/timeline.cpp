@@ -45,7 +45,7 @@ size_t block_at(const TimelineRange& range, size_t blocks, double at) {
     return std::min(static_cast<size_t>(block), blocks - 1);
 }
 
-double place_of(const TimelineRange& range, size_t block) {
+double column_of(const TimelineRange& range, size_t block) {
     return (static_cast<double>(block) + 0.5 - range.first) / range.width();
 }
 

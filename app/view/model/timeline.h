@@ -61,7 +61,7 @@ TimelineRange showing(const TimelineRange& range, size_t blocks, size_t block);
 size_t block_at(const TimelineRange& range, size_t blocks, double at);
 
 /// The middle of a block, as a fraction of the width.
-double place_of(const TimelineRange& range, size_t block);
+double column_of(const TimelineRange& range, size_t block);
 
 /// A cell for each pixel with the least value of all blocks that it covers, so that no block is
 /// lost.

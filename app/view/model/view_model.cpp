@@ -24,12 +24,12 @@ struct ShownLength {
 };
 
 /// Drops what applies to one program only, before another one is opened.
-void forget_place(ViewModel& model) {
+void forget_view_state(ViewModel& model) {
     model.resume.reset();
     model.cursor = {};
     model.bookmarks.clear();
     model.section.reset();
-    model.measuring.places.clear();
+    model.measuring.positions.clear();
     model.follows_timeline = true;
     model.camera_placed = false;
 }
@@ -37,7 +37,7 @@ void forget_place(ViewModel& model) {
 /// Prepares for a new opening. If it is the same program, what the user has entered stays.
 void start_anew(ViewModel& model, uint64_t opening) {
     if (model.opening != 0 && model.has_rows()) model.resume = model.row();
-    if (std::exchange(model.opens_another, false)) forget_place(model);
+    if (std::exchange(model.opens_another, false)) forget_view_state(model);
     model.opening = opening;
     model.program = nullptr;
     model.rows.clear();
@@ -49,14 +49,14 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.offending.clear();
     model.filtered.clear();
     model.path = nullptr;
-    model.place = nullptr;
+    model.block_state = nullptr;
     model.changes.clear();
     model.failure.reset();
     model.stopped.reset();
     model.walk.reset();
     stay(model);
     model.playback.running = false;
-    model.share = 0.0;
+    model.fraction = 0.0;
     model.is_recorded = false;
     model.device.study = nullptr;
 }
@@ -171,7 +171,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
             model.groups = grouped(model.rows, model.findings);
     }
     if (news.path) model.path = news.path;
-    if (news.place) model.place = news.place;
+    if (news.block_state) model.block_state = news.block_state;
     if (news.breakpoints) model.breakpoints = *std::move(news.breakpoints);
     if (news.changes) {
         model.changes = *std::move(news.changes);
@@ -179,13 +179,13 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     }
     if (news.failure) model.failure = news.failure;
     if (news.stopped) model.stopped = news.stopped;
-    model.share = news.share;
+    model.fraction = news.fraction;
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
     if (news.saved) model.saved = news.saved;
     if (news.refusal) say(model, *news.refusal, now);
     if (is_first) resume(model);
-    if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.share);
+    if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.fraction);
     if (news.walk) end_walk(model, *news.walk, now);
     if (!await_offending(model)) say(model, no_violation(model), now);
 }
@@ -270,7 +270,7 @@ void switch_off_device(ViewModel& model) {
 void take_in(ViewModel& model, DeviceUpdate news) {
     DeviceModel& device = model.device;
     if (!news.has_news || news.run != device.run || device.run == 0) return;
-    device.share = news.share;
+    device.fraction = news.fraction;
     device.blocks = news.blocks;
     device.is_fitting = news.is_fitting;
     device.is_running = !news.is_done;

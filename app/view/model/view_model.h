@@ -35,7 +35,7 @@ struct DeviceModel {
     uint64_t run = 0;     // number of the run
     bool is_running = false;
     bool is_fitting = false; // all blocks are answered; trying other devices
-    double share = 0.0;
+    double fraction = 0.0;
     size_t blocks = 0; // answered so far
     std::shared_ptr<const DeviceStudy> study;
     std::optional<core::Error> failure;
@@ -63,7 +63,7 @@ bool go_to_stop(ViewModel& model, bool forward);
 /// The current block, and the fraction of its time, 0..1.
 struct Cursor {
     size_t block = 0;
-    double share = 1.0;
+    double fraction = 1.0;
 
     bool operator==(const Cursor&) const = default;
 };
@@ -99,7 +99,7 @@ struct SetupRequest {
 /// Measuring between two clicked points.
 struct Measuring {
     bool on = false;
-    std::vector<core::Vec3> places; // at most two, frame of the stock
+    std::vector<core::Vec3> positions; // at most two, frame of the stock
 };
 
 /// Everything the window shows, and the input of the user, independent of a window. Functions that
@@ -115,13 +115,13 @@ struct ViewModel {
     std::vector<FindingGroup> groups; // of `findings`
     std::vector<size_t> offending;    // blocks, in program order
     std::shared_ptr<const render::ToolPath> path;
-    std::shared_ptr<const PlaceView> place;
+    std::shared_ptr<const BlockState> block_state;
     std::vector<std::string> changes;
     std::shared_ptr<const SetupEdits> edits; // of the set-up, as last opened; null: none
     std::optional<SetupSaved> saved;         // result of the last request to save the set-up
     std::optional<core::Error> failure, stopped;
     std::string missing; // a file that was read, but has since been deleted or emptied
-    double share = 0.0;
+    double fraction = 0.0;
     bool is_recorded = false, is_busy = false;
     DeviceModel device;
 
@@ -134,7 +134,7 @@ struct ViewModel {
     std::vector<Breakpoint> breakpoints;
     std::set<size_t> bookmarks;
     std::vector<FindingNote> notes;            // of all programs
-    std::optional<StretchPlace> selected = {}; // in the list of findings
+    std::optional<StretchIndex> selected = {}; // in the list of findings
     bool shows_findings = false, note_wants_focus = false;
     Settings settings;
     TimelineRange range;

@@ -53,25 +53,25 @@ constexpr KeyBinding bindings[] = {
     {C::what_if, G::stops, key::of('W'), 0, "W",
      "What if: change lengths, offsets, minimum clearance"},
 
-    {C::frame_witness, G::look, key::of('F'), 0, "F", "Show the closest pair"},
-    {C::frame_all, G::look, key::of('A'), 0, "A", "Show everything"},
-    {C::view_iso, G::look, key::of('0'), 0, "0", "Isometric view"},
-    {C::view_top, G::look, key::of('1'), 0, "1", "Top view"},
-    {C::view_front, G::look, key::of('2'), 0, "2", "Front view"},
-    {C::view_right, G::look, key::of('3'), 0, "3", "Right view"},
-    {C::view_back, G::look, key::of('4'), 0, "4", "Back view"},
-    {C::view_left, G::look, key::of('5'), 0, "5", "Left view"},
-    {C::view_bottom, G::look, key::of('6'), 0, "6", "Bottom view"},
-    {C::projection, G::look, key::of('P'), 0, "P", "Perspective on or off"},
-    {C::orbit_left, G::look, key::left, alt, "Alt+Left", "Turn the view left"},
-    {C::orbit_right, G::look, key::right, alt, "Alt+Right", "Turn the view right"},
-    {C::orbit_up, G::look, key::up, alt, "Alt+Up", "Turn the view up"},
-    {C::orbit_down, G::look, key::down, alt, "Alt+Down", "Turn the view down"},
-    {C::zoom_in, G::look, key::equal, 0, "+", "Zoom in"},
-    {C::zoom_in, G::look, key::equal, shift, "+", ""},
-    {C::zoom_in, G::look, key::keypad_add, 0, "+", ""},
-    {C::zoom_out, G::look, key::minus, 0, "-", "Zoom out"},
-    {C::zoom_out, G::look, key::keypad_subtract, 0, "-", ""},
+    {C::frame_witness, G::camera, key::of('F'), 0, "F", "Show the closest pair"},
+    {C::frame_all, G::camera, key::of('A'), 0, "A", "Show everything"},
+    {C::view_iso, G::camera, key::of('0'), 0, "0", "Isometric view"},
+    {C::view_top, G::camera, key::of('1'), 0, "1", "Top view"},
+    {C::view_front, G::camera, key::of('2'), 0, "2", "Front view"},
+    {C::view_right, G::camera, key::of('3'), 0, "3", "Right view"},
+    {C::view_back, G::camera, key::of('4'), 0, "4", "Back view"},
+    {C::view_left, G::camera, key::of('5'), 0, "5", "Left view"},
+    {C::view_bottom, G::camera, key::of('6'), 0, "6", "Bottom view"},
+    {C::projection, G::camera, key::of('P'), 0, "P", "Perspective on or off"},
+    {C::orbit_left, G::camera, key::left, alt, "Alt+Left", "Turn the view left"},
+    {C::orbit_right, G::camera, key::right, alt, "Alt+Right", "Turn the view right"},
+    {C::orbit_up, G::camera, key::up, alt, "Alt+Up", "Turn the view up"},
+    {C::orbit_down, G::camera, key::down, alt, "Alt+Down", "Turn the view down"},
+    {C::zoom_in, G::camera, key::equal, 0, "+", "Zoom in"},
+    {C::zoom_in, G::camera, key::equal, shift, "+", ""},
+    {C::zoom_in, G::camera, key::keypad_add, 0, "+", ""},
+    {C::zoom_out, G::camera, key::minus, 0, "-", "Zoom out"},
+    {C::zoom_out, G::camera, key::keypad_subtract, 0, "-", ""},
 
     {C::show_stock, G::show, key::of('S'), shift, "Shift+S", "Stock"},
     {C::show_fixtures, G::show, key::of('C'), shift, "Shift+C", "Fixtures and clamps"},
@@ -107,7 +107,7 @@ const char* title_of(CommandGroup group) {
         return "Step through the program";
     case CommandGroup::stops:
         return "Find and stop";
-    case CommandGroup::look:
+    case CommandGroup::camera:
         return "View";
     case CommandGroup::show:
         return "Show or hide";

@@ -84,7 +84,7 @@ enum class Command : uint8_t {
 };
 
 /// The heading in the list of keys.
-enum class CommandGroup : uint8_t { walk, stops, look, show, window };
+enum class CommandGroup : uint8_t { walk, stops, camera, show, window };
 
 const char* title_of(CommandGroup group);
 

@@ -12,22 +12,22 @@ using render::Role;
 ImU32 color_of(const Frame& frame, Tone tone) {
     switch (tone) {
     case Tone::bad:
-        return frame.look.color(Role::violation);
+        return frame.palette.color(Role::violation);
     case Tone::near:
-        return frame.look.ink(Role::near);
+        return frame.palette.ink(Role::near);
     case Tone::dim:
-        return frame.look.color(Role::dim);
+        return frame.palette.color(Role::dim);
     case Tone::plain:
         break;
     }
-    return frame.look.color(Role::text);
+    return frame.palette.color(Role::text);
 }
 
 /// Draws the panel's title, and the button that hides the panel.
 void draw_head(Frame& frame) {
     const float right = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
     const float top = ImGui::GetCursorPosY();
-    text(frame.fonts.small, frame.look.color(Role::dim), "COPROCESSOR: SLACK");
+    text(frame.fonts.small, frame.palette.color(Role::dim), "COPROCESSOR: SLACK");
     ImGui::SameLine(right - frame.px(22));
     ImGui::SetCursorPosY(top - frame.px(3));
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, 0));
@@ -45,24 +45,24 @@ void draw_status(Frame& frame) {
     if (status.empty()) return;
     const DeviceModel& device = frame.model.device;
     if (device.failure)
-        text(frame.fonts.strong, frame.look.color(Role::violation),
+        text(frame.fonts.strong, frame.palette.color(Role::violation),
              std::string(frame.fonts.icon(Icon::warning)) + "  The coprocessor cannot be run");
-    wrapped_text(frame.fonts.text, frame.look.color(device.failure ? Role::text : Role::dim),
+    wrapped_text(frame.fonts.text, frame.palette.color(device.failure ? Role::text : Role::dim),
                  status);
     if (device.is_running)
-        ImGui::ProgressBar(static_cast<float>(device.share), ImVec2(-1.0F, frame.px(4)), "");
+        ImGui::ProgressBar(static_cast<float>(device.fraction), ImVec2(-1.0F, frame.px(4)), "");
 }
 
 void draw_line(Frame& frame, const DeviceLine& line, double name_width) {
     ImGui::BeginGroup();
     const float left = ImGui::GetCursorPosX();
-    text(frame.fonts.text, frame.look.color(Role::dim), line.name);
+    text(frame.fonts.text, frame.palette.color(Role::dim), line.name);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + frame.px(name_width));
     const std::string shown =
         shortened(frame.fonts.mono, line.value, ImGui::GetContentRegionAvail().x);
     ImU32 color = color_of(frame, line.tone);
-    if (line.block && line.tone != Tone::bad) color = frame.look.color(Role::accent);
+    if (line.block && line.tone != Tone::bad) color = frame.palette.color(Role::accent);
     text(frame.fonts.mono, color, shown);
     ImGui::EndGroup();
     if (!line.block) {
@@ -92,7 +92,7 @@ void draw_part(Frame& frame, const DevicePart& part) {
 
 void draw_answer(Frame& frame, const DeviceSheet& sheet) {
     text(frame.fonts.big, color_of(frame, sheet.tone), sheet.number);
-    wrapped_text(frame.fonts.text, frame.look.color(Role::text), sheet.answer);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), sheet.answer);
     if (!sheet.exact.empty())
         wrapped_text(frame.fonts.small, color_of(frame, sheet.exact_tone), sheet.exact);
 }

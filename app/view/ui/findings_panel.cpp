@@ -28,7 +28,7 @@ std::string blocks_text(size_t count) {
 }
 
 /// "lines 188 ... 194", and the file of a subprogram.
-std::string place_text(const ViewModel& model, const FindingStretch& stretch) {
+std::string location_text(const ViewModel& model, const FindingStretch& stretch) {
     const BlockRow& first = model.rows[stretch.first];
     const BlockRow& last = model.rows[stretch.last];
     std::string text = first.line == last.line
@@ -48,25 +48,25 @@ std::string worst_text(const ViewModel& model, const FindingStretch& stretch) {
 void draw_group_head(Frame& frame, const FindingGroup& group) {
     const float width = ImGui::GetContentRegionAvail().x;
     const float left = ImGui::GetCursorPosX();
-    text(frame.fonts.text, frame.look.color(role_of(group.severity)),
+    text(frame.fonts.text, frame.palette.color(role_of(group.severity)),
          frame.fonts.icon(icon_of(group.severity)));
     ImGui::SameLine(0, frame.px(7));
-    text(frame.fonts.strong, frame.look.color(Role::text), group.rule);
+    text(frame.fonts.strong, frame.palette.color(Role::text), group.rule);
     const std::string count = group.stretches.empty() ? "program" : blocks_text(group.count);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + width - ImGui::CalcTextSize(count.c_str()).x - frame.px(8));
-    text(frame.fonts.text, frame.look.color(Role::dim), count);
+    text(frame.fonts.text, frame.palette.color(Role::dim), count);
     if (!group.pair[0].empty())
-        text(frame.fonts.small, frame.look.color(Role::dim),
+        text(frame.fonts.small, frame.palette.color(Role::dim),
              "     " + group.pair[0] + " \xE2\x80\x93 " + group.pair[1]);
 }
 
 void draw_words(Frame& frame, const std::string& message, const std::string& cure) {
-    wrapped_text(frame.fonts.text, frame.look.color(Role::text), message);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), message);
     if (cure.empty()) return;
-    text(frame.fonts.text, frame.look.color(Role::accent), frame.fonts.icon(Icon::bulb));
+    text(frame.fonts.text, frame.palette.color(Role::accent), frame.fonts.icon(Icon::bulb));
     ImGui::SameLine(0, frame.px(7));
-    wrapped_text(frame.fonts.text, frame.look.color(Role::dim), cure);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim), cure);
 }
 
 } // namespace
@@ -75,85 +75,86 @@ void draw_list_tabs(Frame& frame) {
     ViewModel& model = frame.model;
     const auto tab = [&](const char* name, bool shows_findings) {
         const bool is_on = model.shows_findings == shows_findings;
-        text(frame.fonts.strong, frame.look.color(is_on ? Role::text : Role::dim), name);
+        text(frame.fonts.strong, frame.palette.color(is_on ? Role::text : Role::dim), name);
         if (ImGui::IsItemClicked()) show_findings(model, shows_findings);
         if (!is_on) tip(frame, tip_of(Command::show_findings));
         if (!is_on) return;
         const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
         ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y + frame.px(2)},
                                                   {high.x, high.y + frame.px(4)},
-                                                  frame.look.color(Role::accent));
+                                                  frame.palette.color(Role::accent));
     };
     tab("Program", false);
     ImGui::SameLine(0, frame.px(16));
     tab("Findings", true);
 }
 
-void FindingsPanel::draw_note(Frame& frame, const StretchPlace& place) {
+void FindingsPanel::draw_note(Frame& frame, const StretchIndex& which) {
     ViewModel& model = frame.model;
-    if (noted_ != place || typed_from_ != model.opening) {
-        noted_ = place;
+    if (noted_ != which || typed_from_ != model.opening) {
+        noted_ = which;
         typed_from_ = model.opening;
-        typed_ = note_at(model, place);
+        typed_ = note_at(model, which);
     }
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - frame.px(10));
     if (std::exchange(model.note_wants_focus, false)) ImGui::SetKeyboardFocusHere();
     ImGui::InputTextWithHint("##note", "Comment on this finding (R)", &typed_);
-    if (ImGui::IsItemDeactivatedAfterEdit()) write_note_at(model, place, typed_);
+    if (ImGui::IsItemDeactivatedAfterEdit()) write_note_at(model, which, typed_);
 }
 
-void FindingsPanel::draw_stretch(Frame& frame, const StretchPlace& place, bool is_selected) {
+void FindingsPanel::draw_stretch(Frame& frame, const StretchIndex& which, bool is_selected) {
     ViewModel& model = frame.model;
-    const FindingGroup& group = model.groups[place.group];
-    const FindingStretch& stretch = group.stretches[place.stretch];
+    const FindingGroup& group = model.groups[which.group];
+    const FindingStretch& stretch = group.stretches[which.stretch];
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const Area row{at.x, at.y, ImGui::GetContentRegionAvail().x, frame.px(22)};
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    if (ImGui::InvisibleButton("row", row.size())) go_to_stretch(model, place);
+    if (ImGui::InvisibleButton("row", row.size())) go_to_stretch(model, which);
     if (!ImGui::IsItemVisible()) return;
     if (ImGui::IsItemHovered()) model.pointed_at = stretch.worst;
     if (is_selected || ImGui::IsItemHovered())
         list.AddRectFilled(row.corner(), row.far_corner(),
-                           frame.look.color(Role::accent, is_selected ? 0.34 : 0.12), frame.px(3));
+                           frame.palette.color(Role::accent, is_selected ? 0.34 : 0.12),
+                           frame.px(3));
     ImFont* const font = frame.fonts.mono;
     const float top = row.y + 0.5F * (row.height - font->FontSize);
-    std::string words = place_text(model, stretch);
+    std::string words = location_text(model, stretch);
     if (stretch.count > 1) words += " \xC2\xB7 " + blocks_text(stretch.count);
-    if (!note_at(model, place).empty())
+    if (!note_at(model, which).empty())
         words += std::string("  ") + frame.fonts.icon(Icon::bookmark);
     const std::string number = worst_text(model, stretch);
     const float length = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, number.c_str()).x;
     ImFont* const plain = frame.fonts.text;
     list.AddText(plain, plain->FontSize,
                  {row.x + frame.px(22), row.y + 0.5F * (row.height - plain->FontSize)},
-                 frame.look.color(Role::text),
+                 frame.palette.color(Role::text),
                  shortened(plain, words, row.width - length - frame.px(44)).c_str());
     list.AddText(
         font, font->FontSize, {row.x + row.width - length - frame.px(8), top},
-        frame.look.color(group.severity == core::Severity::error ? Role::violation : Role::dim),
+        frame.palette.color(group.severity == core::Severity::error ? Role::violation : Role::dim),
         number.c_str());
 }
 
 void FindingsPanel::draw_group(Frame& frame, size_t index,
-                               const std::optional<StretchPlace>& selected) {
+                               const std::optional<StretchIndex>& selected) {
     const FindingGroup& group = frame.model.groups[index];
     ImGui::PushID(static_cast<int>(index));
     draw_group_head(frame, group);
     if (group.stretches.empty()) draw_words(frame, group.message, group.cure);
     for (size_t i = 0; i < group.stretches.size(); ++i) {
-        const StretchPlace place{index, i};
-        const bool is_selected = selected == place;
+        const StretchIndex which{index, i};
+        const bool is_selected = selected == which;
         ImGui::PushID(static_cast<int>(i));
-        draw_stretch(frame, place, is_selected);
+        draw_stretch(frame, which, is_selected);
         if (is_selected) {
             if (scrolled_to_ != selected) ImGui::SetScrollHereY(0.4F);
             ImGui::Indent(frame.px(22));
             draw_words(frame, group.stretches[i].message, group.stretches[i].cure);
-            draw_note(frame, place);
+            draw_note(frame, which);
             ImGui::Unindent(frame.px(22));
-        } else if (const std::string note = note_at(frame.model, place); !note.empty()) {
+        } else if (const std::string note = note_at(frame.model, which); !note.empty()) {
             ImGui::Indent(frame.px(22));
-            wrapped_text(frame.fonts.small, frame.look.color(Role::accent), note);
+            wrapped_text(frame.fonts.small, frame.palette.color(Role::accent), note);
             ImGui::Unindent(frame.px(22));
         }
         ImGui::PopID();
@@ -166,14 +167,14 @@ void FindingsPanel::draw(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
     draw_list_tabs(frame);
     ImGui::Dummy(ImVec2(0, frame.px(6)));
-    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  "Ctrl+Down, Ctrl+Up: next, previous \xC2\xB7 R: comment \xC2\xB7 V: lines");
     ImGui::BeginChild("groups", ImVec2(area.width - frame.px(18), 0), false,
                       ImGuiWindowFlags_NoNav);
     if (model.groups.empty())
-        wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      model.is_recorded ? "No findings." : "No findings so far.");
-    const std::optional<StretchPlace> selected = selected_stretch(model);
+    const std::optional<StretchIndex> selected = selected_stretch(model);
     for (size_t i = 0; i < model.groups.size(); ++i) draw_group(frame, i, selected);
     scrolled_to_ = selected;
     ImGui::EndChild();

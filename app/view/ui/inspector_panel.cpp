@@ -17,21 +17,22 @@ using render::Role;
 void draw_number(Frame& frame) {
     const ViewModel& model = frame.model;
     const BlockRow& row = model.row();
-    text(frame.fonts.small, frame.look.color(Role::dim), "CLEARANCE");
+    text(frame.fonts.small, frame.palette.color(Role::dim), "CLEARANCE");
     std::string number = "\xE2\x80\x94";
     if (row.is_known && row.lower)
         number = (row.upper ? "" : ">") + length_at_least(model, *row.lower, row.upper ? 2 : 0);
     const ImVec2 at = ImGui::GetCursorPos();
-    text(frame.fonts.big, frame.look.of(row, Role::text), number);
+    text(frame.fonts.big, frame.palette.of(row, Role::text), number);
     if (!row.lower || !row.is_known) return;
     const float width =
         frame.fonts.big->CalcTextSizeA(frame.fonts.big->FontSize, 1e9F, 0.0F, number.c_str()).x;
     ImGui::SameLine(at.x + width + frame.px(9));
     ImGui::SetCursorPosY(at.y + frame.px(21));
-    text(frame.fonts.text, frame.look.color(Role::dim), length_unit(model));
+    text(frame.fonts.text, frame.palette.color(Role::dim), length_unit(model));
     if (is_offending(row)) {
         ImGui::SameLine(0, frame.px(10));
-        text(frame.fonts.text, frame.look.color(Role::violation), frame.fonts.icon(Icon::warning));
+        text(frame.fonts.text, frame.palette.color(Role::violation),
+             frame.fonts.icon(Icon::warning));
     }
     ImGui::SetCursorPosY(at.y + frame.px(46));
 }
@@ -62,24 +63,24 @@ void draw_scale(Frame& frame) {
     const auto part = [&](double from, double to, Role role) {
         list.AddRectFilled({at.x + width * static_cast<float>(from), top},
                            {at.x + width * static_cast<float>(to), top + height},
-                           frame.look.color(role, 0.9));
+                           frame.palette.color(role, 0.9));
     };
     const bool has_scale = row.is_known && row.upper && *row.allowance > 0.0;
     if (has_scale) {
         part(0.0, 1.0 / 6.0, Role::violation);
         part(1.0 / 6.0, 2.0 / 6.0, Role::near);
         part(2.0 / 6.0, 1.0, Role::clear);
-        const double share = std::clamp(*row.lower / (6.0 * *row.allowance), 0.0, 1.0);
-        const float x = at.x + width * static_cast<float>(share), half = frame.px(5);
+        const double fraction = std::clamp(*row.lower / (6.0 * *row.allowance), 0.0, 1.0);
+        const float x = at.x + width * static_cast<float>(fraction), half = frame.px(5);
         list.AddTriangleFilled({x - half, at.y}, {x + half, at.y}, {x, at.y + frame.px(8)},
-                               frame.look.color(Role::text));
+                               frame.palette.color(Role::text));
         ImGui::Dummy(ImVec2(width, frame.px(24)));
     } else {
         list.AddRectFilled({at.x, top}, {at.x + width, top + height},
-                           frame.look.color(Role::raised));
+                           frame.palette.color(Role::raised));
         ImGui::Dummy(ImVec2(width, frame.px(24)));
     }
-    wrapped_text(frame.fonts.small, frame.look.color(Role::dim), sentence_of(frame.model, row));
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), sentence_of(frame.model, row));
 }
 
 void draw_pair(Frame& frame) {
@@ -105,14 +106,14 @@ void draw_finding(Frame& frame, const core::Finding& finding) {
                           : (finding.severity == core::Severity::warning ? Role::near : Role::dim);
     const Icon icon = bad ? Icon::warning
                           : (finding.severity == core::Severity::warning ? Icon::near : Icon::note);
-    text(frame.fonts.text, frame.look.color(role), frame.fonts.icon(icon));
+    text(frame.fonts.text, frame.palette.color(role), frame.fonts.icon(icon));
     ImGui::SameLine(0, frame.px(7));
-    text(frame.fonts.strong, frame.look.color(Role::text), finding.rule);
-    wrapped_text(frame.fonts.text, frame.look.color(Role::text), finding.message);
+    text(frame.fonts.strong, frame.palette.color(Role::text), finding.rule);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), finding.message);
     if (finding.cure.empty()) return;
-    text(frame.fonts.text, frame.look.color(Role::accent), frame.fonts.icon(Icon::bulb));
+    text(frame.fonts.text, frame.palette.color(Role::accent), frame.fonts.icon(Icon::bulb));
     ImGui::SameLine(0, frame.px(7));
-    wrapped_text(frame.fonts.text, frame.look.color(Role::dim), finding.cure);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim), finding.cure);
 }
 
 void draw_findings(Frame& frame) {
@@ -125,8 +126,8 @@ void draw_findings(Frame& frame) {
 /// The kind of motion, and its code.
 std::string motion_text(const ViewModel& model) {
     std::string words = core::name_of(model.row().motion);
-    if (!model.place) return words;
-    for (const ShownValue& value : model.place->modal)
+    if (!model.block_state) return words;
+    for (const ShownValue& value : model.block_state->modal)
         if (value.name == "motion" && value.text != words) words += "  " + value.text;
     return words;
 }
@@ -146,8 +147,8 @@ void draw_block(Frame& frame) {
               104.0);
     value_row(frame, "motion", motion_text(model), 104.0);
     if (row.duration > 0.0) value_row(frame, "time", fmt::format("{:.2f} s", row.duration), 104.0);
-    if (!model.place) return;
-    for (const ShownValue& value : model.place->modal)
+    if (!model.block_state) return;
+    for (const ShownValue& value : model.block_state->modal)
         if (value.name != "motion")
             value_row(frame, plain_name(value.name).c_str(), value.text, 104.0, value.changed);
 }
@@ -161,8 +162,8 @@ void draw_values(Frame& frame, const char* title, const std::vector<ShownValue>&
 void draw_watches(Frame& frame, std::string& typed) {
     ViewModel& model = frame.model;
     if (!ImGui::CollapsingHeader("Watch")) return;
-    if (model.place)
-        for (const ShownValue& value : model.place->watched)
+    if (model.block_state)
+        for (const ShownValue& value : model.block_state->watched)
             value_row(frame, value.name.c_str(), value.text, 104.0);
     ImGui::SetNextItemWidth(-1.0F);
     if (ImGui::InputTextWithHint("##watch", "#100, machine.z, G54.x, H3 \xE2\x80\xA6", &typed,
@@ -202,7 +203,7 @@ void draw_assumptions(Frame& frame) {
     if (!program) return;
     heading(frame, program->is_inferred ? "Inferred set-up" : "Set-up");
     if (program->is_inferred)
-        wrapped_text(frame.fonts.small, frame.look.color(Role::near),
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::near),
                      "No set-up file was given: this set-up is inferred from the program. Drop a "
                      "set-up file here to replace it.");
     else
@@ -211,9 +212,9 @@ void draw_assumptions(Frame& frame) {
         frame.perform(Command::edit_setup);
     tip(frame, tip_of(Command::edit_setup));
     for (const std::string& words : program->assumptions) {
-        text(frame.fonts.small, frame.look.color(Role::dim), "\xC2\xB7");
+        text(frame.fonts.small, frame.palette.color(Role::dim), "\xC2\xB7");
         ImGui::SameLine(0, frame.px(6));
-        wrapped_text(frame.fonts.small, frame.look.color(Role::dim), words);
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), words);
     }
 }
 
@@ -223,9 +224,9 @@ void draw_whole(Frame& frame) {
     if (whole.empty() && !model.stopped && model.changes.empty()) return;
     heading(frame, "Program");
     for (const std::string& change : model.changes)
-        wrapped_text(frame.fonts.text, frame.look.color(Role::accent), "what if: " + change);
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::accent), "what if: " + change);
     if (model.stopped)
-        wrapped_text(frame.fonts.text, frame.look.color(Role::violation),
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::violation),
                      fmt::format("Line {}: {}", model.stopped->where.line, model.stopped->message));
     for (const core::Finding* finding : whole) draw_finding(frame, *finding);
 }
@@ -239,11 +240,11 @@ void InspectorPanel::draw(Frame& frame, const Area&) {
     draw_findings(frame);
     draw_pair(frame);
     draw_block(frame);
-    if (frame.model.place) {
-        const PlaceView& place = *frame.model.place;
-        draw_values(frame, "Axes", place.axes);
-        draw_values(frame, "Offsets", place.offsets);
-        draw_values(frame, "Parameters", place.parameters);
+    if (frame.model.block_state) {
+        const BlockState& block_state = *frame.model.block_state;
+        draw_values(frame, "Axes", block_state.axes);
+        draw_values(frame, "Offsets", block_state.offsets);
+        draw_values(frame, "Parameters", block_state.parameters);
         draw_watches(frame, watch_);
     }
     if (ImGui::Button("What if \xE2\x80\xA6", ImVec2(ImGui::GetContentRegionAvail().x, 0)))

@@ -36,7 +36,7 @@ float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
     if (ImGui::IsItemHovered() || is_dragged) {
         ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
         ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), area.far_corner(),
-                                                  frame.look.color(Role::accent, 0.6));
+                                                  frame.palette.color(Role::accent, 0.6));
     }
     ImGui::EndChild();
     if (!is_dragged) return 0.0F;
@@ -44,8 +44,8 @@ float splitter(Frame& frame, const char* name, const Area& area, bool upright) {
 }
 
 /// The width of a column, pixels: limited in a small window, so that the 3D view stays larger.
-float width_of(const Frame& frame, const Area& area, double wanted, double share) {
-    return std::min(frame.px(wanted), static_cast<float>(share) * area.width);
+float width_of(const Frame& frame, const Area& area, double wanted, double fraction) {
+    return std::min(frame.px(wanted), static_cast<float>(fraction) * area.width);
 }
 
 /// Adds a splitter's drag to a setting, within limits.

@@ -168,17 +168,19 @@ core::Result<void> OffscreenViewer::run_device(const std::string& file) {
 
 void OffscreenViewer::settle() {
     if (!model.has_rows()) return;
-    model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
+    model.wanted = ShowRequest{model.cursor.block, model.cursor.fraction >= 1.0};
     const bool at_end = model.wanted->at_end;
-    const uint64_t before = model.place ? model.place->serial : 0;
-    if (model.place && model.place->block == model.cursor.block && model.place->at_end == at_end) {
+    const uint64_t before = model.block_state ? model.block_state->serial : 0;
+    if (model.block_state && model.block_state->block == model.cursor.block
+        && model.block_state->at_end == at_end) {
         model.wanted.reset();
         return;
     }
     update();
     const auto is_there = [&] {
-        return model.place && model.place->serial > before
-               && model.place->block == model.cursor.block && model.place->at_end == at_end;
+        return model.block_state && model.block_state->serial > before
+               && model.block_state->block == model.cursor.block
+               && model.block_state->at_end == at_end;
     };
     while (!is_there()) {
         state_->wait();
@@ -186,7 +188,7 @@ void OffscreenViewer::settle() {
     }
 }
 
-void OffscreenViewer::look(ShotView view, const render::Viewport& size) {
+void OffscreenViewer::set_view(ShotView view, const render::Viewport& size) {
     const auto from = [&](render::StandardView side) {
         model.camera = render::seen_from(model.camera, side);
         model.camera = render::framing(model.camera, size, render::work_bounds(scene_of(model)));
@@ -224,7 +226,7 @@ core::Result<render::Image> OffscreenViewer::sheet(const std::vector<Print>& pri
                                 rows * (first.height + foot + gap) + gap};
     std::vector<Texture> textures;
     for (const Print& print : prints) textures.emplace_back(print.image);
-    const Theme look{model.settings.theme};
+    const Theme palette{model.settings.theme};
     const Fonts& fonts = *state_->fonts_;
     return state_->drawn(size, model.settings.theme, 1, [&] {
         ImDrawList& list = *ImGui::GetBackgroundDrawList();
@@ -237,7 +239,7 @@ core::Result<render::Image> OffscreenViewer::sheet(const std::vector<Print>& pri
             const auto bottom = y + static_cast<float>(first.height);
             list.AddImage(textures[i].id(), {x, y}, {x + width, bottom});
             list.AddText(fonts.small, fonts.small->FontSize, {x + 2, bottom + 6},
-                         look.color(Role::text),
+                         palette.color(Role::text),
                          shortened(fonts.small, prints[i].caption, width - 4).c_str());
         }
     });

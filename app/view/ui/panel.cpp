@@ -18,38 +18,38 @@ using render::Role;
 
 ImU32 packed(const render::Color& color) { return IM_COL32(color.r, color.g, color.b, color.a); }
 
-void set_colors(const Theme& look, ImVec4* colors) {
+void set_colors(const Theme& palette, ImVec4* colors) {
     const ImVec4 clear(0, 0, 0, 0);
-    colors[ImGuiCol_Text] = look.vector(Role::text);
-    colors[ImGuiCol_TextDisabled] = look.vector(Role::dim);
-    colors[ImGuiCol_TextSelectedBg] = look.vector(Role::accent, 0.35);
-    colors[ImGuiCol_WindowBg] = look.vector(Role::panel);
+    colors[ImGuiCol_Text] = palette.vector(Role::text);
+    colors[ImGuiCol_TextDisabled] = palette.vector(Role::dim);
+    colors[ImGuiCol_TextSelectedBg] = palette.vector(Role::accent, 0.35);
+    colors[ImGuiCol_WindowBg] = palette.vector(Role::panel);
     colors[ImGuiCol_ChildBg] = clear;
-    colors[ImGuiCol_PopupBg] = look.vector(Role::panel, 0.98);
-    colors[ImGuiCol_Border] = look.vector(Role::line);
-    colors[ImGuiCol_FrameBg] = look.vector(Role::raised);
-    colors[ImGuiCol_FrameBgHovered] = look.vector(Role::line);
-    colors[ImGuiCol_FrameBgActive] = look.vector(Role::line);
+    colors[ImGuiCol_PopupBg] = palette.vector(Role::panel, 0.98);
+    colors[ImGuiCol_Border] = palette.vector(Role::line);
+    colors[ImGuiCol_FrameBg] = palette.vector(Role::raised);
+    colors[ImGuiCol_FrameBgHovered] = palette.vector(Role::line);
+    colors[ImGuiCol_FrameBgActive] = palette.vector(Role::line);
     colors[ImGuiCol_ScrollbarBg] = clear;
-    colors[ImGuiCol_ScrollbarGrab] = look.vector(Role::line);
-    colors[ImGuiCol_ScrollbarGrabHovered] = look.vector(Role::dim, 0.7);
-    colors[ImGuiCol_ScrollbarGrabActive] = look.vector(Role::dim);
-    colors[ImGuiCol_CheckMark] = look.vector(Role::accent);
-    colors[ImGuiCol_SliderGrab] = look.vector(Role::accent);
-    colors[ImGuiCol_SliderGrabActive] = look.vector(Role::accent);
-    colors[ImGuiCol_Button] = look.vector(Role::raised);
-    colors[ImGuiCol_ButtonHovered] = look.vector(Role::line);
-    colors[ImGuiCol_ButtonActive] = look.vector(Role::accent, 0.45);
-    colors[ImGuiCol_Header] = look.vector(Role::raised);
-    colors[ImGuiCol_HeaderHovered] = look.vector(Role::line);
-    colors[ImGuiCol_HeaderActive] = look.vector(Role::line);
-    colors[ImGuiCol_Separator] = look.vector(Role::line);
-    colors[ImGuiCol_SeparatorHovered] = look.vector(Role::accent, 0.6);
-    colors[ImGuiCol_SeparatorActive] = look.vector(Role::accent);
-    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = look.vector(Role::raised);
-    colors[ImGuiCol_NavHighlight] = look.vector(Role::accent);
+    colors[ImGuiCol_ScrollbarGrab] = palette.vector(Role::line);
+    colors[ImGuiCol_ScrollbarGrabHovered] = palette.vector(Role::dim, 0.7);
+    colors[ImGuiCol_ScrollbarGrabActive] = palette.vector(Role::dim);
+    colors[ImGuiCol_CheckMark] = palette.vector(Role::accent);
+    colors[ImGuiCol_SliderGrab] = palette.vector(Role::accent);
+    colors[ImGuiCol_SliderGrabActive] = palette.vector(Role::accent);
+    colors[ImGuiCol_Button] = palette.vector(Role::raised);
+    colors[ImGuiCol_ButtonHovered] = palette.vector(Role::line);
+    colors[ImGuiCol_ButtonActive] = palette.vector(Role::accent, 0.45);
+    colors[ImGuiCol_Header] = palette.vector(Role::raised);
+    colors[ImGuiCol_HeaderHovered] = palette.vector(Role::line);
+    colors[ImGuiCol_HeaderActive] = palette.vector(Role::line);
+    colors[ImGuiCol_Separator] = palette.vector(Role::line);
+    colors[ImGuiCol_SeparatorHovered] = palette.vector(Role::accent, 0.6);
+    colors[ImGuiCol_SeparatorActive] = palette.vector(Role::accent);
+    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = palette.vector(Role::raised);
+    colors[ImGuiCol_NavHighlight] = palette.vector(Role::accent);
     colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0, 0, 0, 0.45F);
-    colors[ImGuiCol_PlotHistogram] = look.vector(Role::accent);
+    colors[ImGuiCol_PlotHistogram] = palette.vector(Role::accent);
 }
 
 } // namespace
@@ -68,8 +68,8 @@ ImU32 Theme::ink(Role role) const {
     return is_pale ? mixed(role, Role::text, 0.55) : color(role);
 }
 
-ImU32 Theme::mixed(Role a, Role b, double share) const {
-    return packed(render::mixed(render::color(theme, a), render::color(theme, b), share));
+ImU32 Theme::mixed(Role a, Role b, double fraction) const {
+    return packed(render::mixed(render::color(theme, a), render::color(theme, b), fraction));
 }
 
 ImU32 Theme::of(const BlockRow& row, Role otherwise) const {
@@ -78,7 +78,7 @@ ImU32 Theme::of(const BlockRow& row, Role otherwise) const {
     return color(otherwise);
 }
 
-void apply_style(const Theme& look, double scale) {
+void apply_style(const Theme& palette, double scale) {
     ImGuiStyle style;
     style.WindowRounding = 6.0F;
     style.ChildRounding = 0.0F;
@@ -94,7 +94,7 @@ void apply_style(const Theme& look, double scale) {
     style.ItemSpacing = ImVec2(7, 7);
     style.ItemInnerSpacing = ImVec2(6, 4);
     style.DisabledAlpha = 0.4F;
-    set_colors(look, style.Colors);
+    set_colors(palette, style.Colors);
     style.ScaleAllSizes(static_cast<float>(scale));
     ImGui::GetStyle() = style;
 }
@@ -248,7 +248,7 @@ void tip(const Frame& frame, const std::string& words) {
 bool icon_button(Frame& frame, Icon icon, Command command, bool is_on) {
     const float side = frame.px(32);
     ImGui::PushID(static_cast<int>(command));
-    if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, frame.look.color(Role::accent, 0.42));
+    if (is_on) ImGui::PushStyleColor(ImGuiCol_Button, frame.palette.color(Role::accent, 0.42));
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, 0));
     const bool pressed = ImGui::Button(frame.fonts.icon(icon), ImVec2(side, side));
     ImGui::PopStyleVar();
@@ -288,11 +288,11 @@ std::string shortened(ImFont* font, const std::string& words, float width) {
 void value_row(Frame& frame, const char* name, const std::string& value, double name_width,
                bool is_changed) {
     const float left = ImGui::GetCursorPosX();
-    text(frame.fonts.text, frame.look.color(Role::dim), name);
+    text(frame.fonts.text, frame.palette.color(Role::dim), name);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + frame.px(name_width));
     const float width = ImGui::GetContentRegionAvail().x;
-    const ImU32 color = frame.look.color(is_changed ? Role::accent : Role::text);
+    const ImU32 color = frame.palette.color(is_changed ? Role::accent : Role::text);
     text(frame.fonts.mono, color, shortened(frame.fonts.mono, value, width));
     if (frame.fonts.mono->CalcTextSizeA(frame.fonts.mono->FontSize, 1e9F, 0.0F, value.c_str()).x
         > width)
@@ -303,7 +303,7 @@ void heading(Frame& frame, const char* words) {
     ImGui::Dummy(ImVec2(0, frame.px(1)));
     ImGui::Separator();
     ImGui::Dummy(ImVec2(0, frame.px(1)));
-    text(frame.fonts.strong, frame.look.color(Role::text), words);
+    text(frame.fonts.strong, frame.palette.color(Role::text), words);
 }
 
 void text(ImFont* font, ImU32 color, const std::string& words) {

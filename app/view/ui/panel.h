@@ -22,13 +22,13 @@ struct Theme {
     /// A role's colour for text: darker if it would be too pale on white.
     ImU32 ink(render::Role role) const;
     /// A mixture of two roles; at share 0 it is the first.
-    ImU32 mixed(render::Role a, render::Role b, double share) const;
+    ImU32 mixed(render::Role a, render::Role b, double fraction) const;
     /// The colour of a block's clearance; `otherwise` if it is clear.
     ImU32 of(const BlockRow& row, render::Role otherwise) const;
 };
 
 /// Sets the colours and sizes of a theme in ImGui's current context.
-void apply_style(const Theme& look, double scale);
+void apply_style(const Theme& palette, double scale);
 
 } // namespace app::viewer
 
@@ -100,7 +100,7 @@ struct Area {
 struct Frame {
     ViewModel& model;
     const Fonts& fonts;
-    Theme look;
+    Theme palette;
     double now = 0.0; // seconds
 
     float px(double length) const { return static_cast<float>(length * fonts.scale); }

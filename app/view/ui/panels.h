@@ -48,11 +48,11 @@ public:
     void draw(Frame& frame, const Area& area) override;
 
 private:
-    void draw_group(Frame& frame, size_t index, const std::optional<StretchPlace>& selected);
-    void draw_stretch(Frame& frame, const StretchPlace& place, bool is_selected);
-    void draw_note(Frame& frame, const StretchPlace& place);
+    void draw_group(Frame& frame, size_t index, const std::optional<StretchIndex>& selected);
+    void draw_stretch(Frame& frame, const StretchIndex& which, bool is_selected);
+    void draw_note(Frame& frame, const StretchIndex& which);
 
-    std::optional<StretchPlace> scrolled_to_, noted_;
+    std::optional<StretchIndex> scrolled_to_, noted_;
     uint64_t typed_from_ = 0; // number of the opened program
     std::string typed_;
 };

@@ -17,7 +17,7 @@ constexpr render::Viewport any_view{800, 600};
 
 void toggle(bool& value) { value = !value; }
 
-void look_from(ViewModel& model, render::StandardView view) {
+void set_view(ViewModel& model, render::StandardView view) {
     model.camera = render::seen_from(model.camera, view);
 }
 
@@ -62,7 +62,7 @@ void toggle_section(ViewModel& model) {
 
 void toggle_measuring(ViewModel& model, double now) {
     toggle(model.measuring.on);
-    model.measuring.places.clear();
+    model.measuring.positions.clear();
     if (model.measuring.on) say(model, "Click two points on surfaces; M ends measuring", now);
 }
 
@@ -168,7 +168,7 @@ bool walk(ViewModel& model, Command command, double now) {
     }
 }
 
-bool look(ViewModel& model, Command command, double now) {
+bool change_view(ViewModel& model, Command command, double now) {
     switch (command) {
     case Command::frame_witness:
         frame_witness(model);
@@ -177,25 +177,25 @@ bool look(ViewModel& model, Command command, double now) {
         model.camera_placed = false;
         return true;
     case Command::view_iso:
-        look_from(model, render::StandardView::iso);
+        set_view(model, render::StandardView::iso);
         return true;
     case Command::view_top:
-        look_from(model, render::StandardView::top);
+        set_view(model, render::StandardView::top);
         return true;
     case Command::view_front:
-        look_from(model, render::StandardView::front);
+        set_view(model, render::StandardView::front);
         return true;
     case Command::view_right:
-        look_from(model, render::StandardView::right);
+        set_view(model, render::StandardView::right);
         return true;
     case Command::view_back:
-        look_from(model, render::StandardView::back);
+        set_view(model, render::StandardView::back);
         return true;
     case Command::view_left:
-        look_from(model, render::StandardView::left);
+        set_view(model, render::StandardView::left);
         return true;
     case Command::view_bottom:
-        look_from(model, render::StandardView::bottom);
+        set_view(model, render::StandardView::bottom);
         return true;
     case Command::orbit_left:
         turn(model, -1.0, 0.0);
@@ -275,7 +275,8 @@ bool show(ViewModel& model, Command command) {
 void Frame::perform(Command command) { viewer::perform(model, command, now); }
 
 void perform(ViewModel& model, Command command, double now) {
-    if (walk(model, command, now) || look(model, command, now) || show(model, command)) return;
+    if (walk(model, command, now) || change_view(model, command, now) || show(model, command))
+        return;
     switch (command) {
     case Command::play:
         toggle(model.playback.running);
@@ -346,7 +347,7 @@ bool send_requests(ViewModel& model, SessionWorker& worker) {
     }
     if (std::exchange(model.watches_changed, false)) {
         worker.watch(model.watches);
-        model.wanted = ShowRequest{model.cursor.block, model.cursor.share >= 1.0};
+        model.wanted = ShowRequest{model.cursor.block, model.cursor.fraction >= 1.0};
     }
     if (const auto change = std::exchange(model.wanted_change, {})) {
         worker.change(*change, model.cursor.block);

@@ -17,29 +17,29 @@ namespace {
 using render::Role;
 
 void draw_shortcuts(Frame& frame) {
-    constexpr std::array columns = {CommandGroup::walk, CommandGroup::look, CommandGroup::show,
+    constexpr std::array columns = {CommandGroup::walk, CommandGroup::camera, CommandGroup::show,
                                     CommandGroup::stops, CommandGroup::window};
     if (!ImGui::BeginTable("keys", 3)) return;
     for (const CommandGroup group : columns) {
         if (group != CommandGroup::show && group != CommandGroup::window) ImGui::TableNextColumn();
-        text(frame.fonts.strong, frame.look.color(Role::accent), title_of(group));
+        text(frame.fonts.strong, frame.palette.color(Role::accent), title_of(group));
         for (const KeyBinding& binding : key_bindings()) {
             if (binding.group != group || binding.help[0] == 0) continue;
             const float left = ImGui::GetCursorPosX();
-            text(frame.fonts.text, frame.look.color(Role::dim), binding.keys);
+            text(frame.fonts.text, frame.palette.color(Role::dim), binding.keys);
             ImGui::SameLine();
             ImGui::SetCursorPosX(left + frame.px(100));
-            text(frame.fonts.text, frame.look.color(Role::text), binding.help);
+            text(frame.fonts.text, frame.palette.color(Role::text), binding.help);
         }
         ImGui::Dummy(ImVec2(0, frame.px(6)));
     }
     ImGui::EndTable();
     wrapped_text(
-        frame.fonts.small, frame.look.color(Role::dim),
+        frame.fonts.small, frame.palette.color(Role::dim),
         "Mouse: drag to turn, right drag to move, wheel to zoom towards the cursor; click "
         "the path or a cut surface to go to its line; click next to a line number to set a "
         "breakpoint; drag the timeline to scrub, turn the wheel there to zoom.");
-    wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  "Filter and breakpoints take conditions: clearance < 1 and rapid; T3 or T4; near; "
                  "error; rule = near-miss; \"clamp-1\"; line > 200; ~ \"G81\". The filter searches "
                  "the lines for any other text.");
@@ -96,7 +96,7 @@ const char* title_of(Popup popup) {
 /// Draws the label of a row of the what-if dialog; its fields follow on the same line.
 void row_name(Frame& frame, const std::string& name) {
     ImGui::AlignTextToFramePadding();
-    text(frame.fonts.text, frame.look.color(Role::dim), name);
+    text(frame.fonts.text, frame.palette.color(Role::dim), name);
     ImGui::SameLine(frame.px(150));
 }
 
@@ -126,7 +126,7 @@ void PopupPanel::draw_go_to_line(Frame& frame) {
                                                ImGuiInputTextFlags_EnterReturnsTrue);
     const auto found = find_line(model, line_);
     if (!line_.empty() && !found)
-        text(frame.fonts.small, frame.look.color(Role::violation),
+        text(frame.fonts.small, frame.palette.color(Role::violation),
              "No block of this line is executed.");
     if (!done || !found) return;
     go_to(model, *found);
@@ -138,7 +138,8 @@ void PopupPanel::draw_open_file(Frame& frame) {
     ImGui::SetNextItemWidth(frame.px(460));
     const bool done = ImGui::InputTextWithHint("##path", "Program, set-up (.toml)", &path_,
                                                ImGuiInputTextFlags_EnterReturnsTrue);
-    text(frame.fonts.small, frame.look.color(Role::dim), "You can also drop files on the window.");
+    text(frame.fonts.small, frame.palette.color(Role::dim),
+         "You can also drop files on the window.");
     if (!done || path_.empty()) return;
     frame.model.wanted_path = path_;
     frame.model.popup = Popup::none;
@@ -152,14 +153,14 @@ void PopupPanel::draw_breakpoint(Frame& frame) {
                                                &condition_, ImGuiInputTextFlags_EnterReturnsTrue);
     const auto condition = Condition::read(condition_);
     if (!condition_.empty() && !condition)
-        wrapped_text(frame.fonts.small, frame.look.color(Role::violation),
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::violation),
                      condition.error().message);
     std::optional<size_t> gone;
     for (size_t i = 0; i < model.breakpoints.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         if (ImGui::SmallButton(frame.fonts.icon(Icon::close))) gone = i;
         ImGui::SameLine();
-        text(frame.fonts.mono, frame.look.color(Role::text), text_of(model.breakpoints[i]));
+        text(frame.fonts.mono, frame.palette.color(Role::text), text_of(model.breakpoints[i]));
         ImGui::PopID();
     }
     if (gone) model.breakpoints.erase(model.breakpoints.begin() + static_cast<ptrdiff_t>(*gone));
@@ -176,7 +177,7 @@ void PopupPanel::draw_breakpoint(Frame& frame) {
 
 void PopupPanel::draw_lengths(Frame& frame, const core::Setup& setup) {
     ViewModel& model = frame.model;
-    const auto tool = model.place->tool;
+    const auto tool = model.block_state->tool;
     if (tool && setup.tools.contains(*tool)) {
         if (ImGui::IsWindowAppearing()) length_ = setup.tools.at(*tool).length;
         row_name(frame, fmt::format("Length of T{}", core::value_of(*tool)));
@@ -221,9 +222,9 @@ void PopupPanel::draw_fixture(Frame& frame, const core::Setup& setup) {
 
 void PopupPanel::draw_what_if(Frame& frame) {
     ViewModel& model = frame.model;
-    if (!model.place) return;
-    const core::Setup& setup = model.place->scene->setup;
-    wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+    if (!model.block_state) return;
+    const core::Setup& setup = model.block_state->scene->setup;
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                  fmt::format("Takes effect from block {} on; earlier blocks do not change.",
                              model.cursor.block));
     draw_lengths(frame, setup);
@@ -232,7 +233,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
         model.wanted_change = OtherAllowance{allowance_};
     if (!setup.fixtures.empty()) draw_fixture(frame, setup);
     for (const std::string& change : model.changes)
-        text(frame.fonts.text, frame.look.color(Role::accent), change);
+        text(frame.fonts.text, frame.palette.color(Role::accent), change);
     if (!model.changes.empty() && ImGui::Button("Undo the last change"))
         model.wants_take_back = true;
 }
@@ -251,7 +252,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.look.color(Role::panel, 0.98));
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.palette.color(Role::panel, 0.98));
     bool open = true;
     ImGui::Begin(title_of(model.popup), &open,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize
@@ -292,19 +293,19 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
 
 void WelcomePanel::draw(Frame& frame, const Area& area) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    const Theme& look = frame.look;
-    list.AddRectFilledMultiColor(area.corner(), area.far_corner(), look.color(Role::view_top),
-                                 look.color(Role::view_top), look.color(Role::view_bottom),
-                                 look.color(Role::view_bottom));
+    const Theme& palette = frame.palette;
+    list.AddRectFilledMultiColor(area.corner(), area.far_corner(), palette.color(Role::view_top),
+                                 palette.color(Role::view_top), palette.color(Role::view_bottom),
+                                 palette.color(Role::view_bottom));
     const float width = std::min(frame.px(520), area.width - frame.px(40)), height = frame.px(220);
     const Area box{area.x + 0.5F * (area.width - width), area.y + 0.42F * (area.height - height),
                    width, height};
-    list.AddRect(box.corner(), box.far_corner(), look.color(Role::dim, 0.7), frame.px(12), 0,
+    list.AddRect(box.corner(), box.far_corner(), palette.color(Role::dim, 0.7), frame.px(12), 0,
                  frame.px(1.5));
     const auto put = [&](ImFont* font, const char* words, float y, Role role) {
         const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words);
         list.AddText(font, font->FontSize, {box.x + 0.5F * (box.width - size.x), box.y + y},
-                     look.color(role), words);
+                     palette.color(role), words);
     };
     put(frame.fonts.big, "feeler", frame.px(26), Role::text);
     put(frame.fonts.strong, "Drop an NC program here", frame.px(90), Role::text);
@@ -326,25 +327,26 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
     const float width = std::min(frame.px(680), area.width - frame.px(40));
     const float left = area.x + 0.5F * (area.width - width), top = area.y + 0.22F * area.height;
     ImGui::GetWindowDrawList()->AddRectFilled(area.corner(), area.far_corner(),
-                                              frame.look.color(Role::background));
+                                              frame.palette.color(Role::background));
     ImGui::SetCursorScreenPos({left, top});
-    ImGui::PushStyleColor(ImGuiCol_ChildBg, frame.look.color(Role::panel));
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, frame.palette.color(Role::panel));
     ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, frame.px(10));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(26), frame.px(22)));
     ImGui::BeginChild("error", ImVec2(width, frame.px(270)), true);
-    text(frame.fonts.strong, frame.look.color(Role::violation),
+    text(frame.fonts.strong, frame.palette.color(Role::violation),
          std::string(frame.fonts.icon(Icon::warning)) + "  The program could not be "
              + (model.failure ? "opened" : "run"));
-    std::string place = error.file.empty() && model.program ? model.program->program : error.file;
-    if (error.where.line > 0) place += fmt::format(":{}", error.where.line);
+    std::string location =
+        error.file.empty() && model.program ? model.program->program : error.file;
+    if (error.where.line > 0) location += fmt::format(":{}", error.where.line);
     if (error.where.line > 0 && error.where.column > 0)
-        place += fmt::format(":{}", error.where.column);
+        location += fmt::format(":{}", error.where.column);
     ImGui::Dummy(ImVec2(0, frame.px(6)));
-    wrapped_text(frame.fonts.mono, frame.look.color(Role::accent), place);
+    wrapped_text(frame.fonts.mono, frame.palette.color(Role::accent), location);
     ImGui::Dummy(ImVec2(0, frame.px(2)));
-    wrapped_text(frame.fonts.text, frame.look.color(Role::text), error.message);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), error.message);
     ImGui::Dummy(ImVec2(0, frame.px(10)));
-    wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                  "Correct the file and save it; it is then reloaded automatically. Or drop another "
                  "program or set-up here.");
     ImGui::Dummy(ImVec2(0, frame.px(6)));

@@ -22,7 +22,7 @@ using render::Role;
 /// Draws the words of a line in their colours: N numbers and comments dim, G, M and T words
 /// accented.
 void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, float end) {
-    const Theme& look = frame.look;
+    const Theme& palette = frame.palette;
     ImFont* const font = frame.fonts.mono;
     const float letter = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, "0").x;
     const std::string& text = row.text;
@@ -52,7 +52,7 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
             const std::string_view word(&text[i], stop - i);
             if (word == "G0" || word == "G00" || word == "g0") role = Role::clamp;
         }
-        list.AddText(font, font->FontSize, at, look.color(role), &text[i], &text[0] + stop);
+        list.AddText(font, font->FontSize, at, palette.color(role), &text[i], &text[0] + stop);
         at.x += letter * static_cast<float>(stop - i);
         i = stop;
     }
@@ -68,39 +68,39 @@ std::string clearance_text(const ViewModel& model, const BlockRow& row) {
 
 void draw_background(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
                      bool is_current, bool is_odd) {
-    const Theme& look = frame.look;
+    const Theme& palette = frame.palette;
     const ImVec2 a = row.corner(), b = row.far_corner();
     const float round = frame.px(3);
     if (is_current)
-        list.AddRectFilled(a, b, look.color(Role::accent, 0.34), round);
+        list.AddRectFilled(a, b, palette.color(Role::accent, 0.34), round);
     else if (is_offending(block))
-        list.AddRectFilled(a, b, look.color(Role::violation, 0.17), round);
+        list.AddRectFilled(a, b, palette.color(Role::violation, 0.17), round);
     else if (is_near(block))
-        list.AddRectFilled(a, b, look.color(Role::near, 0.12), round);
+        list.AddRectFilled(a, b, palette.color(Role::near, 0.12), round);
     else if (is_odd)
-        list.AddRectFilled(a, b, look.color(Role::raised, 0.35), round);
+        list.AddRectFilled(a, b, palette.color(Role::raised, 0.35), round);
 }
 
 /// Draws the bar on the left, whose colour and width show the state, the breakpoint and the
 /// bookmark.
 void draw_gutter(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
                  size_t index) {
-    const Theme& look = frame.look;
+    const Theme& palette = frame.palette;
     const float middle = row.y + 0.5F * row.height;
     if (is_offending(block) || is_near(block)) {
         const float width = frame.px(is_offending(block) ? 4 : 2);
         list.AddRectFilled({row.x, row.y + 1}, {row.x + width, row.y + row.height - 1},
-                           look.of(block, Role::clear));
+                           palette.of(block, Role::clear));
     }
     if (has_breakpoint(frame.model, block)) {
         list.AddCircleFilled({row.x + frame.px(12), middle}, frame.px(5),
-                             look.color(Role::violation));
-        list.AddCircle({row.x + frame.px(12), middle}, frame.px(5), look.color(Role::panel), 0,
+                             palette.color(Role::violation));
+        list.AddCircle({row.x + frame.px(12), middle}, frame.px(5), palette.color(Role::panel), 0,
                        1.5F);
     }
     if (frame.model.bookmarks.contains(index))
         list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
-                     {row.x + frame.px(6), row.y + frame.px(3)}, look.color(Role::accent),
+                     {row.x + frame.px(6), row.y + frame.px(3)}, palette.color(Role::accent),
                      frame.fonts.icon(Icon::bookmark));
 }
 
@@ -114,18 +114,19 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
         return right - length;
     };
     const float line_end = area.x + frame.px(62);
-    put_right(std::to_string(row.line), line_end, frame.look.color(Role::dim));
+    put_right(std::to_string(row.line), line_end, frame.palette.color(Role::dim));
     const float code =
         line_end + frame.px(14) + frame.px(12) * static_cast<float>(std::min(row.depth, 6U));
     const float end = area.x + area.width - frame.px(70);
     list.PushClipRect({code, area.y}, {end, area.y + area.height}, true);
     draw_code(frame, list, {code, top}, row, end);
     list.PopClipRect();
-    const float left = put_right(clearance_text(frame.model, row),
-                                 area.x + area.width - frame.px(8), frame.look.of(row, Role::dim));
+    const float left =
+        put_right(clearance_text(frame.model, row), area.x + area.width - frame.px(8),
+                  frame.palette.of(row, Role::dim));
     if (!is_offending(row)) return;
     list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
-                 {left - frame.px(17), area.y + frame.px(3)}, frame.look.color(Role::violation),
+                 {left - frame.px(17), area.y + frame.px(3)}, frame.palette.color(Role::violation),
                  frame.fonts.icon(Icon::warning));
 }
 
@@ -149,15 +150,15 @@ void draw_counts(Frame& frame, const Area& area) {
     };
     const bool warnings_fit = fits(doubtful), blocks_fit = warnings_fit && fits(blocks);
     ImGui::SameLine(area.width - width - frame.px(14));
-    text(frame.fonts.text, frame.look.color(errors == 0 ? Role::dim : Role::violation), bad);
+    text(frame.fonts.text, frame.palette.color(errors == 0 ? Role::dim : Role::violation), bad);
     tip(frame, "Errors, as in the report");
     if (!warnings_fit) return;
     ImGui::SameLine(0, gap);
-    text(frame.fonts.text, frame.look.color(warnings == 0 ? Role::dim : Role::near), doubtful);
+    text(frame.fonts.text, frame.palette.color(warnings == 0 ? Role::dim : Role::near), doubtful);
     tip(frame, "Warnings, as in the report");
     if (!blocks_fit) return;
     ImGui::SameLine(0, gap);
-    text(frame.fonts.text, frame.look.color(Role::dim), blocks);
+    text(frame.fonts.text, frame.palette.color(Role::dim), blocks);
 }
 
 } // namespace
@@ -180,9 +181,9 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
 void ProgramPanel::draw_filter_note(Frame& frame) {
     const RowFilter& filter = frame.model.filter;
     if (!filter.refusal().empty())
-        wrapped_text(frame.fonts.small, frame.look.color(Role::violation), filter.refusal());
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::violation), filter.refusal());
     if (!filter.wanted_text().empty())
-        wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                      fmt::format("Blocks that contain \"{}\": {}", filter.wanted_text(),
                                  frame.model.filtered.size()));
 }
@@ -205,7 +206,7 @@ void ProgramPanel::draw_row(Frame& frame, size_t block, float width) {
     }
     draw_background(frame, list, area, row, block == model.cursor.block, block % 2 == 1);
     if (is_hovered)
-        list.AddRectFilled(area.corner(), area.far_corner(), frame.look.color(Role::text, 0.05));
+        list.AddRectFilled(area.corner(), area.far_corner(), frame.palette.color(Role::text, 0.05));
     draw_gutter(frame, list, area, row, block);
     draw_words(frame, list, area, row);
 }
@@ -233,7 +234,7 @@ void ProgramPanel::draw_rows(Frame& frame) {
     scroll_ = ImGui::GetScrollY();
     room_ = ImGui::GetWindowHeight();
     if (count == 0) {
-        wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      filtering ? "No block matches the filter." : "Reading \xE2\x80\xA6");
         return;
     }

@@ -55,9 +55,9 @@ void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::s
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
     const float x = frame.px(11), y = frame.px(6);
     list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
-                       frame.look.color(Role::panel, 0.86), frame.px(5));
-    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, frame.look.color(Role::text),
-                 words.c_str());
+                       frame.palette.color(Role::panel, 0.86), frame.px(5));
+    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y},
+                 frame.palette.color(Role::text), words.c_str());
 }
 
 /// Draws the summary of an inferred set-up over the view, so that it cannot be overlooked.
@@ -72,21 +72,21 @@ void draw_summary(const Frame& frame, ImDrawList& list, const Area& area) {
     const float height = step * static_cast<float>(lines.size()) + 2 * y;
     const ImVec2 corner(area.x + frame.px(14), area.y + area.height - frame.px(56) - height);
     list.AddRectFilled(corner, {corner.x + width + 2 * x, corner.y + height},
-                       frame.look.color(Role::panel, 0.86), frame.px(5));
+                       frame.palette.color(Role::panel, 0.86), frame.px(5));
     list.AddRectFilled(corner, {corner.x + frame.px(3), corner.y + height},
-                       frame.look.color(Role::near), frame.px(1));
+                       frame.palette.color(Role::near), frame.px(1));
     for (size_t i = 0; i < lines.size(); ++i)
         list.AddText(font, font->FontSize,
                      {corner.x + x, corner.y + y + step * static_cast<float>(i)},
-                     frame.look.color(i == 0 ? Role::text : Role::dim), lines[i].c_str());
+                     frame.palette.color(i == 0 ? Role::text : Role::dim), lines[i].c_str());
 }
 
-std::string place_text(const ViewModel& model) {
+std::string location_text(const ViewModel& model) {
     const BlockRow& row = model.row();
     const BlockRow& last = model.rows.back();
     return fmt::format("Block {} of {}   \xC2\xB7   {} / {}", model.cursor.block,
                        model.rows.size() - 1,
-                       clock_text(row.time + model.cursor.share * row.duration),
+                       clock_text(row.time + model.cursor.fraction * row.duration),
                        clock_text(last.time + last.duration));
 }
 
@@ -111,11 +111,11 @@ void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
     ImFont* const font = frame.fonts.text;
     const float x = frame.px(11), y = frame.px(7);
     const ImVec2 corner(area.x + frame.px(14), area.y + frame.px(52));
-    const float beside_axes = area.width - frame.px(128) - 2 * x;
-    const float room = std::max(beside_axes, frame.px(200));
+    const float room_next_to_axes = area.width - frame.px(128) - 2 * x;
+    const float room = std::max(room_next_to_axes, frame.px(200));
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, room, words.c_str());
     list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
-                       frame.look.color(Role::violation), frame.px(5));
+                       frame.palette.color(Role::violation), frame.px(5));
     list.AddText(font, font->FontSize, {corner.x + x, corner.y + y}, IM_COL32(255, 255, 255, 255),
                  words.c_str(), nullptr, room);
 }
@@ -194,7 +194,7 @@ void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& s
     if (is_first) model.camera = render::seen_from(model.camera, render::StandardView::iso);
     model.camera = render::framing(model.camera, size, box);
     // The first picture lacks the tool: place the camera once more when the tool is known.
-    model.camera_placed = model.place != nullptr;
+    model.camera_placed = model.block_state != nullptr;
     framed_ = model.camera_placed ? model.opening : 0;
 }
 
@@ -213,7 +213,7 @@ void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& size)
     }
     scene_ = scene_of(frame.model);
     render::DrawOptions options;
-    options.theme = frame.look.theme;
+    options.theme = frame.palette.theme;
     options.scale = frame.fonts.scale;
     renderer_.draw(scene_, frame.model.camera, options, *canvas_);
     drawn_ = key;
@@ -245,8 +245,8 @@ void ScenePanel::State::take_click(Frame& frame, const Area& area, const render:
     if (model.measuring.on) {
         const auto surface = found.surface();
         if (!surface) return;
-        if (model.measuring.places.size() == 2) model.measuring.places.clear();
-        model.measuring.places.push_back(surface->point);
+        if (model.measuring.positions.size() == 2) model.measuring.positions.clear();
+        model.measuring.positions.push_back(surface->point);
         return;
     }
     if (found.path) return go_to(model, found.path->block);
@@ -294,12 +294,12 @@ void ScenePanel::State::draw_witness(Frame& frame, const Area& area, const rende
     if (!seen) return;
     const BlockRow& row = model.row();
     const bool loud = is_offending(row) || is_near(row);
-    const ImVec2 at(area.x + static_cast<float>(seen->place.x),
-                    area.y + static_cast<float>(seen->place.y));
+    const ImVec2 at(area.x + static_cast<float>(seen->position.x),
+                    area.y + static_cast<float>(seen->position.y));
     const ImVec2 middle(at.x + frame.px(62), at.y - frame.px(58));
     const ImU32 fill =
-        loud ? frame.look.of(row, Role::clear) : frame.look.color(Role::raised, 0.95);
-    ImU32 ink = frame.look.color(Role::text);
+        loud ? frame.palette.of(row, Role::clear) : frame.palette.color(Role::raised, 0.95);
+    ImU32 ink = frame.palette.color(Role::text);
     if (is_near(row)) ink = IM_COL32(20, 23, 28, 255);
     if (is_offending(row)) ink = IM_COL32(255, 255, 255, 255);
     ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -309,18 +309,18 @@ void ScenePanel::State::draw_witness(Frame& frame, const Area& area, const rende
 
 void ScenePanel::State::draw_measure(Frame& frame, const Area& area, const render::Viewport& size) {
     const ViewModel& model = frame.model;
-    const std::vector<core::Vec3>& places = model.measuring.places;
-    if (places.size() != 2) return;
-    const core::Vec3 way = places[1] - places[0];
-    const auto seen = render::project(model.camera, size, 0.5 * (places[0] + places[1]));
+    const std::vector<core::Vec3>& positions = model.measuring.positions;
+    if (positions.size() != 2) return;
+    const core::Vec3 way = positions[1] - positions[0];
+    const auto seen = render::project(model.camera, size, 0.5 * (positions[0] + positions[1]));
     if (!seen) return;
     draw_tag(frame, *ImGui::GetWindowDrawList(),
-             {area.x + static_cast<float>(seen->place.x),
-              area.y + static_cast<float>(seen->place.y) - frame.px(26)},
+             {area.x + static_cast<float>(seen->position.x),
+              area.y + static_cast<float>(seen->position.y) - frame.px(26)},
              fmt::format("{} {}   X {}  Y {}  Z {}", length_text(model, glm::length(way)),
                          length_unit(model), length_text(model, way.x), length_text(model, way.y),
                          length_text(model, way.z)),
-             frame.look.color(Role::accent), IM_COL32(255, 255, 255, 255));
+             frame.palette.color(Role::accent), IM_COL32(255, 255, 255, 255));
 }
 
 void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render::Viewport& size) {
@@ -330,12 +330,13 @@ void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render
     draw_witness(frame, area, size);
     draw_measure(frame, area, size);
     if (model.has_rows())
-        draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)}, place_text(model));
+        draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)},
+                  location_text(model));
     draw_warning(frame, list, area);
     draw_summary(frame, list, area);
     std::string words;
     if (frame.now < model.message_until) words = model.message;
-    if (model.is_busy && !model.place)
+    if (model.is_busy && !model.block_state)
         words = model.has_rows() ? "Modelling the stock \xE2\x80\xA6" : "Reading \xE2\x80\xA6";
     if (!words.empty())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + area.height - frame.px(44)}, words);
@@ -347,7 +348,7 @@ void ScenePanel::State::draw_axes(Frame& frame, const Area& area) {
     const float radius = frame.px(43);
     const ImVec2 middle(area.x + area.width - radius - frame.px(14),
                         area.y + radius + frame.px(14));
-    list.AddCircleFilled(middle, radius, frame.look.color(Role::panel, 0.6), 48);
+    list.AddCircleFilled(middle, radius, frame.palette.color(Role::panel, 0.6), 48);
     const render::CameraAxes seen = render::axes(frame.model.camera);
     std::array<AxisBall, 6> balls = axis_balls;
     std::sort(balls.begin(), balls.end(), [&](const AxisBall& a, const AxisBall& b) {

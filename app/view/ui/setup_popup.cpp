@@ -81,7 +81,7 @@ void draw_size(Frame& frame, const core::ToolSize& field, core::ToolDescription&
     if (changed) field.put(tool, value == 0.0 ? std::nullopt : std::optional(value));
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    text(frame.fonts.small, frame.look.color(Role::dim),
+    text(frame.fonts.small, frame.palette.color(Role::dim),
          is_angle ? "\xC2\xB0" : length_unit(frame.model));
 }
 
@@ -135,7 +135,7 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
     const core::ToolNumber number = tool.number;
     ImGui::PushID(core::value_of(number));
     if (tool.shape == core::ToolShape::profile) {
-        wrapped_text(frame.fonts.text, frame.look.color(Role::dim),
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      "Edit its outline in the set-up file.");
         ImGui::PopID();
         return;
@@ -156,7 +156,7 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
         ImGui::PopID();
     }
     if (has_cones)
-        wrapped_text(frame.fonts.small, frame.look.color(Role::dim),
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                      "Its shank is described by cones, which determine the stick-out.");
     field_name(frame, "Holder", 130.0);
     draw_holder(frame, shown.tool, tool);
@@ -164,14 +164,14 @@ void SetupPopup::State::draw_tool(Frame& frame, size_t index) {
     for (const char* key : {"holder", "gauge_length", "neck_length", "teeth", "thread_deg", ""})
         field_refusal(frame, refused_, number, key);
     if (!shown.why.empty())
-        wrapped_text(frame.fonts.small, frame.look.color(Role::dim), "Inferred: " + shown.why);
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), "Inferred: " + shown.why);
     ImGui::PopID();
 }
 
 void SetupPopup::State::draw_tools(Frame& frame) {
-    text(frame.fonts.strong, frame.look.color(Role::text), "Tools");
+    text(frame.fonts.strong, frame.palette.color(Role::text), "Tools");
     if (wanted_.tools.empty()) {
-        text(frame.fonts.text, frame.look.color(Role::dim), "The program uses no tools.");
+        text(frame.fonts.text, frame.palette.color(Role::dim), "The program uses no tools.");
         return;
     }
     const float height = std::min(frame.px(270), 0.3F * ImGui::GetIO().DisplaySize.y);
@@ -207,7 +207,7 @@ void SetupPopup::State::draw_saving(Frame& frame) {
     ImGui::SameLine();
     save = ImGui::Button(asks_to_replace_ ? "Replace" : "Save") || save;
     if (!refusal_.empty())
-        wrapped_text(frame.fonts.small, frame.look.color(Role::violation),
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::violation),
                      asks_to_replace_ ? "This file already exists. Replace it, or enter another "
                                         "name."
                                       : refusal_);
@@ -241,7 +241,7 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
     ImGui::EndDisabled();
     if (!refused_.empty()) {
         ImGui::SameLine();
-        text(frame.fonts.text, frame.look.color(Role::violation),
+        text(frame.fonts.text, frame.palette.color(Role::violation),
              "Nothing was changed: correct the marked fields.");
     }
     if (is_saving_) draw_saving(frame);
@@ -250,7 +250,7 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
 void SetupPopup::State::draw(Frame& frame) {
     const ViewModel& model = frame.model;
     if (!model.program || !model.program->sheet) {
-        text(frame.fonts.text, frame.look.color(Role::dim),
+        text(frame.fonts.text, frame.palette.color(Role::dim),
              "The set-up is being read \xE2\x80\xA6");
         return;
     }
@@ -260,7 +260,7 @@ void SetupPopup::State::draw(Frame& frame) {
         path_ = model.program->proposed_path;
     }
     if (std::exchange(frame.model.wants_saving, false)) is_saving_ = true;
-    text(frame.fonts.text, frame.look.color(Role::dim),
+    text(frame.fonts.text, frame.palette.color(Role::dim),
          sheet->path.empty()
              ? "No set-up file was given: all values are inferred from the program. "
                "Enter those that you know."
@@ -296,10 +296,10 @@ bool place_field(const Frame& frame, const char* id, core::Vec3& mm) {
     return changed;
 }
 
-void unit_behind(Frame& frame, const char* more = "") {
+void unit_label(Frame& frame, const char* more = "") {
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    text(frame.fonts.small, frame.look.color(Role::dim),
+    text(frame.fonts.small, frame.palette.color(Role::dim),
          std::string(length_unit(frame.model)) + more);
 }
 
@@ -309,20 +309,20 @@ void draw_box(Frame& frame, core::SolidBox& stock) {
     field_name(frame, "Lower corner");
     core::Vec3 corner = box.min;
     if (place_field(frame, "corner", corner)) box = {corner, corner + size};
-    unit_behind(frame, "   X Y Z");
+    unit_label(frame, "   X Y Z");
     field_name(frame, "Size");
     if (place_field(frame, "size", size)) box.max = box.min + size;
-    unit_behind(frame);
+    unit_label(frame);
 }
 
 void draw_cylinder(Frame& frame, core::SolidCylinder& round) {
     field_name(frame, "Base centre");
     place_field(frame, "foot", round.base);
-    unit_behind(frame, "   X Y Z");
+    unit_label(frame, "   X Y Z");
     field_name(frame, "Diameter");
     double diameter = 2.0 * round.radius;
     if (length_field(frame, "##diameter", diameter)) round.radius = 0.5 * diameter;
-    unit_behind(frame);
+    unit_label(frame);
     field_name(frame, "Height");
     length_field(frame, "##height", round.height);
     ImGui::SameLine();
@@ -342,13 +342,13 @@ void reshape(core::Solid& stock, int kind) {
 }
 
 void why_it_is_so(Frame& frame, const std::string& why) {
-    if (!why.empty()) wrapped_text(frame.fonts.small, frame.look.color(Role::dim), why);
+    if (!why.empty()) wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), why);
 }
 
 void field_name(Frame& frame, const std::string& name, double width) {
     const float left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
-    text(frame.fonts.text, frame.look.color(Role::dim), name);
+    text(frame.fonts.text, frame.palette.color(Role::dim), name);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + frame.px(width)); // also in a group
 }
@@ -368,7 +368,7 @@ void source_mark(Frame& frame, SetupSource source, bool is_in_heading) {
                                                         : Role::dim;
     ImGui::SameLine(0, frame.px(10));
     if (!is_in_heading) ImGui::AlignTextToFramePadding();
-    text(frame.fonts.small, frame.look.ink(role),
+    text(frame.fonts.small, frame.palette.ink(role),
          source == SetupSource::stated ? "entered by you" : name_of(source));
 }
 
@@ -376,7 +376,7 @@ void field_refusal(Frame& frame, const std::vector<EditRefusal>& refused,
                    std::optional<core::ToolNumber> tool, std::string_view key) {
     for (const EditRefusal& one : refused)
         if (one.tool == tool && one.key == key)
-            wrapped_text(frame.fonts.small, frame.look.color(Role::violation),
+            wrapped_text(frame.fonts.small, frame.palette.color(Role::violation),
                          std::string(frame.fonts.icon(Icon::warning)) + " " + one.why);
 }
 
@@ -384,7 +384,7 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
                        const std::vector<EditRefusal>& refused) {
     core::Solid& stock = wanted.stock;
     const auto kind = static_cast<int>(stock.shape.index());
-    text(frame.fonts.strong, frame.look.color(Role::text), "Stock");
+    text(frame.fonts.strong, frame.palette.color(Role::text), "Stock");
     source_mark(frame, shown.stock_source, true);
     ImGui::PushID("stock");
     int wish = kind;
@@ -394,7 +394,7 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
     ImGui::RadioButton("Cylinder", &wish, 1);
     if (kind > 1) {
         ImGui::SameLine();
-        text(frame.fonts.small, frame.look.color(Role::dim),
+        text(frame.fonts.small, frame.palette.color(Role::dim),
              "now a mesh from the set-up; a box or cylinder replaces it");
     }
     if (wish != kind) reshape(stock, wish);
@@ -410,7 +410,7 @@ void draw_stock_fields(Frame& frame, const SetupSheet& shown, SetupSheet& wanted
 
 void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wanted,
                           const std::vector<EditRefusal>& refused) {
-    text(frame.fonts.strong, frame.look.color(Role::text), "Clearance");
+    text(frame.fonts.strong, frame.palette.color(Role::text), "Clearance");
     source_mark(frame, shown.allowance_source, true);
     field_name(frame, "Minimum clearance");
     bool is_usual = !wanted.allowance;
@@ -424,10 +424,10 @@ void draw_allowance_field(Frame& frame, const SetupSheet& shown, SetupSheet& wan
     ImGui::SameLine();
     if (wanted.allowance) {
         length_field(frame, "##allowance", *wanted.allowance);
-        unit_behind(frame);
+        unit_label(frame);
     } else {
         const std::string unit = std::string(" ") + length_unit(frame.model);
-        text(frame.fonts.small, frame.look.color(Role::dim),
+        text(frame.fonts.small, frame.palette.color(Role::dim),
              fmt::format("{}{} to the stock, {}{} to fixtures and machine",
                          length_text(frame.model, 1.0), unit, length_text(frame.model, 2.0), unit));
     }

@@ -32,27 +32,27 @@ constexpr std::array<Mark, 2> marks = {{{1e-2, "10 ms", 3.3F}, {1.0, "1 s", 1.8F
 
 void draw_mark(Frame& frame, ImDrawList& list, const Area& area, const Mark& mark) {
     const float y = area.y + area.height * static_cast<float>(1.0 - slack_height(mark.seconds));
-    list.AddLine({area.x, y}, {area.x + area.width, y}, frame.look.color(Role::line));
+    list.AddLine({area.x, y}, {area.x + area.width, y}, frame.palette.color(Role::line));
     ImFont* const font = frame.fonts.small;
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, mark.name);
     const bool has_room = y - area.y > 0.4F * size.y && mark.least_lines * size.y < area.height;
     if (!has_room) return;
     const ImVec2 at(area.x + frame.px(6), y - 0.5F * size.y);
     list.AddRectFilled({at.x - 3, at.y}, {at.x + size.x + 3, at.y + size.y},
-                       frame.look.color(Role::background, 0.75), 3.0F);
-    list.AddText(font, font->FontSize, at, frame.look.color(Role::dim), mark.name);
+                       frame.palette.color(Role::background, 0.75), 3.0F);
+    list.AddText(font, font->FontSize, at, frame.palette.color(Role::dim), mark.name);
 }
 
 void draw_bar(Frame& frame, ImDrawList& list, const Area& area, const TimelineCell& cell, float x,
               float width) {
     if (!cell.known || !cell.moves) return;
-    const Theme& look = frame.look;
-    ImU32 color = look.mixed(Role::panel, Role::accent, 0.5);
-    if (cell.near) color = look.color(Role::near);
+    const Theme& palette = frame.palette;
+    ImU32 color = palette.mixed(Role::panel, Role::accent, 0.5);
+    if (cell.near) color = palette.color(Role::near);
     // A block that stops the machine gets a full-height bar, so that it cannot be missed.
     double height = slack_height(cell.least);
     if (cell.offending) {
-        color = look.color(Role::violation);
+        color = palette.color(Role::violation);
         height = 1.0;
     }
     const float bottom = area.y + area.height;
@@ -65,8 +65,8 @@ void draw_bar(Frame& frame, ImDrawList& list, const Area& area, const TimelineCe
 void draw_slack(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(area.corner(), area.far_corner(), frame.look.color(Role::background, 0.75),
-                       frame.px(4));
+    list.AddRectFilled(area.corner(), area.far_corner(),
+                       frame.palette.color(Role::background, 0.75), frame.px(4));
     const auto blocks = static_cast<float>(model.range.width());
     const auto count = static_cast<size_t>(std::max(1.0F, std::min(area.width, blocks)));
     const float width = area.width / static_cast<float>(count);
@@ -103,15 +103,15 @@ struct Bars {
 
 void draw_bar(Frame& frame, ImDrawList& list, const Bars& bars, const TimelineCell& cell, float x,
               float width) {
-    const Theme& look = frame.look;
+    const Theme& palette = frame.palette;
     const float bottom = bars.area.y + bars.area.height;
-    ImU32 color = look.mixed(Role::panel, Role::clear, 0.55);
-    if (cell.near) color = look.color(Role::near);
-    if (cell.offending) color = look.color(Role::violation);
+    ImU32 color = palette.mixed(Role::panel, Role::clear, 0.55);
+    if (cell.near) color = palette.color(Role::near);
+    if (cell.offending) color = palette.color(Role::violation);
     if (!cell.known) {
         if (cell.moves)
             list.AddRectFilled({x, bottom - frame.px(2)}, {x + width, bottom},
-                               look.color(Role::line));
+                               palette.color(Role::line));
         return;
     }
     if (!cell.moves && !cell.offending) return;
@@ -124,7 +124,7 @@ void draw_bar(Frame& frame, ImDrawList& list, const Bars& bars, const TimelineCe
 void draw_tick(Frame& frame, ImDrawList& list, const Bars& bars, float x) {
     const float half = frame.px(5), top = bars.area.y;
     list.AddTriangleFilled({x - half, top}, {x + half, top}, {x, top + frame.px(8)},
-                           frame.look.color(Role::violation));
+                           frame.palette.color(Role::violation));
 }
 
 void draw_bars(Frame& frame, ImDrawList& list, const Bars& bars) {
@@ -148,7 +148,7 @@ void draw_bars(Frame& frame, ImDrawList& list, const Bars& bars) {
 
 void draw_allowance(Frame& frame, ImDrawList& list, const Bars& bars, double allowance) {
     const float y = bars.area.y + bars.area.height - bars.height_of(allowance);
-    const ImU32 color = frame.look.color(Role::violation, 0.85);
+    const ImU32 color = frame.palette.color(Role::violation, 0.85);
     for (float x = bars.area.x; x < bars.area.x + bars.area.width; x += frame.px(8))
         list.AddLine({x, y}, {std::min(x + frame.px(4.5), bars.area.x + bars.area.width), y}, color,
                      1.2F);
@@ -157,7 +157,7 @@ void draw_allowance(Frame& frame, ImDrawList& list, const Bars& bars, double all
     const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
     const ImVec2 at(bars.area.x + frame.px(6), y - size.y - frame.px(1));
     list.AddRectFilled({at.x - 3, at.y}, {at.x + size.x + 3, at.y + size.y},
-                       frame.look.color(Role::background, 0.75), 3.0F);
+                       frame.palette.color(Role::background, 0.75), 3.0F);
     list.AddText(font, font->FontSize, at, color, words.c_str());
 }
 
@@ -176,30 +176,30 @@ std::string name_of_tool(const ViewModel& model, const ToolBand& band) {
 void draw_bands(Frame& frame, ImDrawList& list, const Area& area) {
     const ViewModel& model = frame.model;
     for (const ToolBand& band : model.bands) {
-        const auto share = [&](size_t block) {
+        const auto fraction = [&](size_t block) {
             return static_cast<float>((static_cast<double>(block) - model.range.first)
                                       / model.range.width());
         };
-        const float left = area.x + area.width * std::clamp(share(band.first), 0.0F, 1.0F);
-        const float right = area.x + area.width * std::clamp(share(band.last), 0.0F, 1.0F);
+        const float left = area.x + area.width * std::clamp(fraction(band.first), 0.0F, 1.0F);
+        const float right = area.x + area.width * std::clamp(fraction(band.last), 0.0F, 1.0F);
         if (right - left < 2.0F) continue;
         list.AddRectFilled({left + 1, area.y}, {right - 1, area.y + area.height},
-                           frame.look.color(Role::raised), frame.px(3));
+                           frame.palette.color(Role::raised), frame.px(3));
         ImFont* const font = frame.fonts.small;
         const std::string words =
             shortened(font, name_of_tool(model, band), right - left - frame.px(12));
         if (words.size() <= 3) continue;
         list.AddText(font, font->FontSize, {left + frame.px(7), area.y + frame.px(2)},
-                     frame.look.color(Role::dim), words.c_str());
+                     frame.palette.color(Role::dim), words.c_str());
     }
 }
 
 void draw_cursor(Frame& frame, ImDrawList& list, const Bars& bars, float bottom) {
     const ViewModel& model = frame.model;
-    const auto at = static_cast<float>(place_of(model.range, model.cursor.block));
+    const auto at = static_cast<float>(column_of(model.range, model.cursor.block));
     if (at < 0.0F || at > 1.0F) return;
     const float x = std::round(bars.area.x + at * bars.area.width);
-    const ImU32 color = frame.look.color(Role::text);
+    const ImU32 color = frame.palette.color(Role::text);
     list.AddLine({x, bars.area.y - frame.px(5)}, {x, bottom}, color, frame.px(1.6));
     list.AddCircleFilled({x, bars.area.y - frame.px(6)}, frame.px(5), color);
 }
@@ -207,16 +207,16 @@ void draw_cursor(Frame& frame, ImDrawList& list, const Bars& bars, float bottom)
 void show_hovered(Frame& frame, size_t block) {
     const BlockRow& row = frame.model.rows[block];
     ImGui::BeginTooltip();
-    text(frame.fonts.strong, frame.look.color(Role::text), fmt::format("Block {}", block));
-    text(frame.fonts.mono, frame.look.color(Role::dim), row.text);
+    text(frame.fonts.strong, frame.palette.color(Role::text), fmt::format("Block {}", block));
+    text(frame.fonts.mono, frame.palette.color(Role::dim), row.text);
     if (row.lower && row.is_known)
-        text(frame.fonts.text, frame.look.of(row, Role::text),
+        text(frame.fonts.text, frame.palette.of(row, Role::text),
              fmt::format("{} {} {}", length_at_least(frame.model, *row.lower),
                          length_unit(frame.model),
                          row.part.empty() ? "" : row.part + " \xE2\x80\x93 " + row.body));
     if (const std::string slack = slack_words(frame.model, block); !slack.empty()) {
         const bool stops = stops_machine(answer_of(frame.model.device.study.get(), block));
-        text(frame.fonts.text, frame.look.color(stops ? Role::violation : Role::text), slack);
+        text(frame.fonts.text, frame.palette.color(stops ? Role::violation : Role::text), slack);
     }
     ImGui::EndTooltip();
 }
@@ -255,11 +255,11 @@ void draw_title(Frame& frame) {
     const ViewModel& model = frame.model;
     std::string title = fmt::format("MIN CLEARANCE PER BLOCK ({})", length_unit(model));
     if (model.device.study) title += "  \xC2\xB7  BELOW: SLACK OF THE COPROCESSOR";
-    text(frame.fonts.small, frame.look.color(Role::dim), title);
+    text(frame.fonts.small, frame.palette.color(Role::dim), title);
     if (!model.is_recorded && model.has_rows()) {
         ImGui::SameLine(0, frame.px(14));
-        text(frame.fonts.small, frame.look.color(Role::accent),
-             fmt::format("checking \xE2\x80\xA6 {:.0f} %", 100.0 * model.share));
+        text(frame.fonts.small, frame.palette.color(Role::accent),
+             fmt::format("checking \xE2\x80\xA6 {:.0f} %", 100.0 * model.fraction));
     }
 }
 
@@ -280,7 +280,7 @@ void TimelinePanel::draw(Frame& frame, const Area& area) {
     bars.allowance = allowance;
     bars.top = 5.5 * allowance;
     list.AddRectFilled(bars.area.corner(), bars.area.far_corner(),
-                       frame.look.color(Role::background, 0.75), frame.px(4));
+                       frame.palette.color(Role::background, 0.75), frame.px(4));
     ImGui::SetCursorScreenPos(room.corner());
     ImGui::InvisibleButton("bars", ImVec2(room.width, room.height + bands));
     take_mouse(frame, room, scrubbing_);

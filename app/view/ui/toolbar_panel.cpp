@@ -14,8 +14,8 @@ using render::Role;
 
 std::string work_offset(const ViewModel& model) {
     if (model.program && model.program->counts_blocks) return {}; // Klartext has no G54
-    if (!model.place) return {};
-    for (const ShownValue& value : model.place->modal)
+    if (!model.block_state) return {};
+    for (const ShownValue& value : model.block_state->modal)
         if (value.name == "offset") return value.text;
     return {};
 }
@@ -23,12 +23,12 @@ std::string work_offset(const ViewModel& model) {
 void draw_name(Frame& frame, float width) {
     const ViewModel& model = frame.model;
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + frame.px(7));
-    text(frame.fonts.text, frame.look.color(Role::text), frame.fonts.icon(Icon::program));
+    text(frame.fonts.text, frame.palette.color(Role::text), frame.fonts.icon(Icon::program));
     ImGui::SameLine();
     const std::string name = model.program
                                  ? std::filesystem::path(model.program->program).filename().string()
                                  : "feeler";
-    text(frame.fonts.strong, frame.look.color(Role::text),
+    text(frame.fonts.strong, frame.palette.color(Role::text),
          shortened(frame.fonts.strong, name, 0.55F * width));
     if (!model.program) return;
     std::string more = model.program->dialect;
@@ -37,7 +37,7 @@ void draw_name(Frame& frame, float width) {
         more += " \xC2\xB7 " + offset;
     ImGui::SameLine();
     const float left = width - ImGui::GetCursorPosX();
-    text(frame.fonts.text, frame.look.color(Role::dim), shortened(frame.fonts.text, more, left));
+    text(frame.fonts.text, frame.palette.color(Role::dim), shortened(frame.fonts.text, more, left));
 }
 
 void draw_walk(Frame& frame) {

@@ -154,7 +154,7 @@ private:
     void rebuild_fonts();
     void save_picture();
     void work_with_saved();
-    void remember_place();
+    void remember_geometry();
     void set_title();
     double wanted_scale() const;
 
@@ -337,7 +337,7 @@ void Window::draw() {
     log_.end_frame(model);
 }
 
-void Window::remember_place() {
+void Window::remember_geometry() {
     Settings& settings = model.settings;
     settings.maximised = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
     if (settings.maximised) return;
@@ -364,7 +364,7 @@ void Window::run() {
         else
             glfwWaitEventsTimeout(watch_interval);
     }
-    remember_place();
+    remember_geometry();
     write_settings(model.settings, job_.settings_file);
 }
 
@@ -516,7 +516,7 @@ void FrameLog::begin_frame() { begin_ = now(); }
 
 void FrameLog::end_frame(const ViewModel& model) {
     if (!file_.is_open()) return;
-    const long shown = model.place ? static_cast<long>(model.place->block) : -1L;
+    const long shown = model.block_state ? static_cast<long>(model.block_state->block) : -1L;
     const size_t points = model.path ? model.path->points.size() : 0;
     file_ << fmt::format("frame {:.4f} {:.4f} {} {} {}\n", begin_, now(), model.cursor.block, shown,
                          points)

@@ -71,7 +71,7 @@ public:
 
     /// Runs the whole open program with a coprocessor, and shows its panel.
     ///
-    /// Errors: those of read_device_file and run_beside_coprocessor.
+    /// Errors: those of read_device_file and run_with_coprocessor.
     core::Result<void> run_device(const std::string& file);
 
     ViewModel model;
@@ -79,7 +79,7 @@ public:
     /// Waits until the view of the current block is loaded.
     void settle();
     /// Sets the camera. The view of the current block must be loaded: call settle() first.
-    void look(ShotView view, const render::Viewport& size);
+    void set_view(ShotView view, const render::Viewport& size);
     /// A picture of the whole window, or of the 3D view alone.
     core::Result<render::Image> picture(const render::Viewport& size, bool with_ui);
 

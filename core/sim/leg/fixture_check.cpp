@@ -7,9 +7,9 @@ namespace core {
 namespace {
 
 /// Axis values at a fraction of a leg; at its start if the path is unknown.
-AxisValues values_at(const Leg& leg, double share) {
-    return leg.straight && leg.places.size() == 2 ? stretch(leg, 0.0, share).places[1]
-                                                  : leg.places[0];
+AxisValues values_at(const Leg& leg, double fraction) {
+    return leg.straight && leg.positions.size() == 2 ? stretch(leg, 0.0, fraction).positions[1]
+                                                     : leg.positions[0];
 }
 
 } // namespace
@@ -41,17 +41,17 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
             now.verdict = judge_contact(allowance, now.lower, now.upper);
         return now;
     }
-    const auto look = [&](const RevolvedProfile& part) {
+    const auto clearance_of = [&](const RevolvedProfile& part) {
         return distance_over(relative, part, fixture.body, context_.setup.search_limit,
                              context_.statistics.shape_tests);
     };
     if (seen.upper == 0.0 && relative.error > 0.0) {
         const RevolvedProfile sure = surely_passing(*body.profile, relative);
-        if (!sure.empty() && look(sure).upper == 0.0) now.upper = 0.0;
+        if (!sure.empty() && clearance_of(sure).upper == 0.0) now.upper = 0.0;
     }
     if (now.upper > 0.0 && !may_touch) return now;
     const Separation inner =
-        look(shrunk_around(*body.profile, contact_shrink(allowance, *body.profile)));
+        clearance_of(shrunk_around(*body.profile, contact_shrink(allowance, *body.profile)));
     const bool collides = inner.upper == 0.0 && now.upper == 0.0;
     const Separation shrunk = widened(inner, relative);
     now.verdict = judge_contact(allowance, shrunk.lower, collides ? 0.0 : shrunk.upper);
@@ -81,7 +81,7 @@ void FixtureCheck::check_passage(const Leg& leg, double start, size_t fixture,
 
 void FixtureCheck::resolve(const Doubt& doubt, PairClearance& known) {
     const Mount& mount = context_.setup.fixtures[doubt.fixture].mount;
-    const auto look = [&](const Leg& leg) {
+    const auto clearance_of = [&](const Leg& leg) {
         const RelativeLeg relative =
             relative_leg(context_.setup.machine, mount, doubt.body->mover, leg);
         return measure(leg, doubt.start, relative, *doubt.body, known);
@@ -90,11 +90,11 @@ void FixtureCheck::resolve(const Doubt& doubt, PairClearance& known) {
     if (is_settled(doubt.seen, known) || doubt.leg.path_error <= finest)
         return merge(known, doubt.seen);
     if (doubt.seen.lower <= 0.0) {
-        const PairClearance there = look(still_half_way(doubt.leg));
+        const PairClearance there = clearance_of(still_half_way(doubt.leg));
         if (there.verdict == Verdict::collision) return merge(known, there);
     }
     for (const Leg& half : halves(doubt.leg))
-        resolve({half, doubt.start, doubt.fixture, doubt.body, look(half)}, known);
+        resolve({half, doubt.start, doubt.fixture, doubt.body, clearance_of(half)}, known);
 }
 
 void FixtureCheck::resolve_doubts(std::vector<TrackedPair>& pairs) {

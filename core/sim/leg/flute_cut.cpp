@@ -54,8 +54,8 @@ double FluteCut::along(const Leg& leg, CutModel& stock) {
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     ++context_.statistics.sweeps;
     return cut(stock, {.cutter = cutter_for(way),
-                       .from = way.places.front(),
-                       .to = way.places.back(),
+                       .from = way.positions.front(),
+                       .to = way.positions.back(),
                        .orientation = way.orientation,
                        .block = value_of(context_.block)});
 }
@@ -72,13 +72,13 @@ double FluteCut::along_turning(const Leg& leg, CutModel& stock) {
 }
 
 void FluteCut::note_cut(const Leg& leg, size_t fixture) {
-    if (!leg.straight || leg.places.size() < 2) return;
+    if (!leg.straight || leg.positions.size() < 2) return;
     const auto box = box_in_stock(context_.setup, fixture);
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     if (!box || way.turns || !overlaps(bounds(context_.bodies[0], way), *box)) return;
     context_.memory.cuts[fixture].push_back({.cutter = cutter_for(way),
-                                             .from = way.places.front(),
-                                             .to = way.places.back(),
+                                             .from = way.positions.front(),
+                                             .to = way.positions.back(),
                                              .orientation = way.orientation,
                                              .block = value_of(context_.block)});
 }
@@ -87,7 +87,7 @@ bool FluteCut::is_in_own_cut(const Leg& leg, size_t fixture) const {
     const auto cuts = context_.memory.cuts.find(fixture);
     if (cuts == context_.memory.cuts.end() || !leg.straight) return false;
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
-    if (way.turns || way.places.size() > 2) return false;
+    if (way.turns || way.positions.size() > 2) return false;
     const auto box = box_in_stock(context_.setup, fixture);
     const Allowance contact = allowance_of(context_.setup, {PartKind::flutes});
     // Rounded corners may have left material.
@@ -95,8 +95,8 @@ bool FluteCut::is_in_own_cut(const Leg& leg, size_t fixture) const {
     return box
            && runs_in_own_cut(cuts->second, *box,
                               {.flutes = context_.tool.parts[0].profile,
-                               .from = way.places.front(),
-                               .to = way.places.back(),
+                               .from = way.positions.front(),
+                               .to = way.positions.back(),
                                .sideways = 0.5 * contact_depth(contact) - way.error,
                                .orientation = way.orientation});
 }

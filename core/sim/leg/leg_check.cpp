@@ -45,7 +45,7 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     fixtures_.check(leg, start, anywhere);
     stock_.check_bodies(leg, start, stock, anywhere);
     std::vector<TrackedPair> certain;
-    for (const AxisValues& place : leg.certain) rest(place, 0.0, stock, certain);
+    for (const AxisValues& position : leg.certain) rest(position, 0.0, stock, certain);
     for (const TrackedPair& pair : anywhere) {
         const bool safe = pair.verdict == Verdict::clear;
         PairClearance now{.pair = pair.pair, .allowance = pair.allowance, .lower = pair.lower};
@@ -58,9 +58,9 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     }
 }
 
-void LegCheck::rest(const AxisValues& place, double time, const CutModel& stock,
+void LegCheck::rest(const AxisValues& position, double time, const CutModel& stock,
                     std::vector<TrackedPair>& pairs) {
-    const Leg leg{.places = {place}};
+    const Leg leg{.positions = {position}};
     // The body may have come from anywhere.
     for (TrackedPair& pair : pairs) pair.at_end = -infinity;
     fixtures_.check(leg, time, pairs);

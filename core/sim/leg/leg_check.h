@@ -144,7 +144,7 @@ public:
     void finish(std::vector<TrackedPair>& pairs) { fixtures_.resolve_doubts(pairs); }
 
     /// Checks all bodies at rest, `time` seconds after the block's start, without cutting.
-    void rest(const AxisValues& place, double time, const CutModel& stock,
+    void rest(const AxisValues& position, double time, const CutModel& stock,
               std::vector<TrackedPair>& pairs);
 
     /// Cuts the stock along a leg without a check; the volume removed, mm3.

@@ -39,15 +39,15 @@ double LegContext::finest_error(const MovingBody& body) const {
 }
 
 bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
-    return relative.error <= std::max(finest_error(body), sharp_share * lower);
+    return relative.error <= std::max(finest_error(body), sharp_fraction * lower);
 }
 
 bool LegContext::is_too_vague(const RelativeLeg& relative) const {
-    return relative.turns && relative.error > sharp_share * setup.search_limit;
+    return relative.turns && relative.error > sharp_fraction * setup.search_limit;
 }
 
 bool LegContext::turns_too_far(const Leg& leg) const {
-    if (!setup.machine.has_rotary() || leg.places.size() != 2) return false;
+    if (!setup.machine.has_rotary() || leg.positions.size() != 2) return false;
     for (const MovingBody& body : bodies) {
         if (body.body) continue;
         const RelativeLeg relative = against_stock(body, leg);

@@ -18,7 +18,7 @@ enum class FluteUse : uint8_t { cutting, not_cutting };
 
 /// The position of a turning body is accurate enough if its error is at most this fraction of its
 /// clearance.
-constexpr double sharp_share = 0.02;
+constexpr double sharp_fraction = 0.02;
 
 /// The pair of a moving body and a fixture; without `fixture`, the stock.
 Pair pair_of(const MovingBody& body, std::optional<size_t> fixture = {});

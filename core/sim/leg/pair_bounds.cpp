@@ -50,7 +50,7 @@ double greatest_travel(const Machine& machine, const Leg& leg) {
     if (!leg.straight) return infinity;
     Vec3 by(0.0);
     for (size_t i = 0; i < axis_count; ++i) {
-        const double travel = std::abs(leg.places.back()[i] - leg.places.front()[i]);
+        const double travel = std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
         if (travel == 0.0) continue;
         if (is_rotary(i)) return infinity;
         by += travel * glm::abs(machine.axes[i].direction);

@@ -9,7 +9,7 @@ namespace {
 double length(const Leg& leg) {
     double sum = 0.0;
     for (size_t i = 0; i < axis_count; ++i) {
-        const double by = leg.places.back()[i] - leg.places.front()[i];
+        const double by = leg.positions.back()[i] - leg.positions.front()[i];
         if (!is_rotary(i)) sum += by * by;
     }
     return std::sqrt(sum);
@@ -70,8 +70,8 @@ void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
         known.drift = bounds_.travel();
         return;
     }
-    const bool is_told = check.before.whole && !cut;
-    const StockObservation after = is_told ? check.before : observe_after(check, leg, stock);
+    const bool is_known = check.before.whole && !cut;
+    const StockObservation after = is_known ? check.before : observe_after(check, leg, stock);
     PairClearance now = probe_.clearance(check.body, leg, start, check.before, after);
     probe_.settle_time(now, leg, start, stock);
     merge(known, now);
@@ -150,8 +150,8 @@ double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& sto
     const bool gouged = check_bodies(leg, start, stock, pairs);
     if (gouged) {
         TrackedPair& flutes = entry(pairs, {PartKind::flutes}, context_.setup);
-        const double share = probe_.earliest(leg, flutes.pair, 0.0, stock);
-        flutes.time = std::min(flutes.time, start + leg.begin + share * (leg.end - leg.begin));
+        const double fraction = probe_.earliest(leg, flutes.pair, 0.0, stock);
+        flutes.time = std::min(flutes.time, start + leg.begin + fraction * (leg.end - leg.begin));
     }
     // Remove the material after the finding, so that one crash gives one finding.
     return gouged ? flutes_.along(leg, stock) : 0.0;
@@ -176,13 +176,14 @@ bool StockCheck::is_clear_from_afar(const Leg& leg, double start, const CutModel
         for (const TrackedPair& pair : pairs)
             if (pair.pair == pair_of(body)) known = &pair;
         const double nearest = known && !chips ? known->upper : infinity;
-        StockObservation look{.travel = relative.travel};
+        StockObservation observation{.travel = relative.travel};
         const double limit = std::min(context_.setup.search_limit, nearest) + relative.error;
-        look.plain = widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
-        const double lower = look.plain.lower;
+        observation.plain =
+            widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
+        const double lower = observation.plain.lower;
         if (lower <= 0.0) return false;
         if (chips) continue;
-        const PairClearance now = probe_.clearance(body, leg, start, look, look);
+        const PairClearance now = probe_.clearance(body, leg, start, observation, observation);
         if (now.verdict != Verdict::clear) return false;
         if (lower < std::min(nearest, context_.setup.search_limit)
             && !context_.is_sharp(body, relative, lower))
@@ -239,8 +240,8 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
 
 double StockCheck::check(const Leg& leg, double start, CutModel& stock,
                          std::vector<TrackedPair>& pairs) {
-    const bool turns = context_.setup.machine.has_rotary() && leg.places.size() == 2
-                       && turn_of(context_.setup.machine, leg.places[0], leg.places[1]) > 0.0;
+    const bool turns = context_.setup.machine.has_rotary() && leg.positions.size() == 2
+                       && turn_of(context_.setup.machine, leg.positions[0], leg.positions[1]) > 0.0;
     if (turns) {
         // Machine bodies are large: they would divide the leg far more finely than the tool needs.
         for (const MovingBody& body : context_.bodies)

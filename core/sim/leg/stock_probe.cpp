@@ -84,16 +84,16 @@ bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const 
                           const Allowance& allowance) const {
     // A shank does not cut, so it may have been inside the stock on the same path.
     if (context_.tool.parts.empty() || body.kind != PartKind::flutes) return false;
-    if (leg.turns || leg.places.size() > 2) return false;
+    if (leg.turns || leg.positions.size() > 2) return false;
     return runs_in_own_cut(stock, {.flutes = context_.tool.parts[0].profile,
-                                   .from = leg.places.front(),
-                                   .to = leg.places.back(),
+                                   .from = leg.positions.front(),
+                                   .to = leg.positions.back(),
                                    .sideways = 0.5 * contact_depth(allowance) - leg.error,
                                    .orientation = leg.orientation});
 }
 
-void StockProbe::look_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                               const CutModel& stock, double nearest) {
+void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                                  const CutModel& stock, double nearest) {
     // The body is certainly at this position at one moment.
     const StockObservation here = observe(body, still_half_way(leg), stock, nearest);
     seen.shrunk.upper = here.shrunk.upper;
@@ -110,9 +110,9 @@ void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const
     const bool overlaps_shrunk = seen.shrunk.upper == 0.0;
     seen.plain = widened(seen.plain, relative);
     seen.shrunk = widened(seen.shrunk, relative);
-    const bool has_way = leg.places.size() > 1;
+    const bool has_way = leg.positions.size() > 1;
     if ((relative.turns || !body.profile) && near && has_way)
-        look_half_way(seen, body, leg, stock, nearest);
+        observe_half_way(seen, body, leg, stock, nearest);
     if (!overlaps || !body.profile) return;
     const RevolvedProfile sure = surely_passing(*body.profile, relative);
     if (sure.empty()) return;
@@ -166,13 +166,13 @@ double StockProbe::room_of_flutes(const Leg& leg, const CutModel& stock, double 
 
 double StockProbe::earliest(const Leg& leg, const Pair& pair, double distance,
                             const CutModel& stock, std::optional<double> seen) {
-    if (!leg.straight || leg.places.size() < 2) return 0.0;
+    if (!leg.straight || leg.positions.size() < 2) return 0.0;
     const MovingBody& body = context_.body_of(pair);
     const Mount& target =
         pair.fixture ? context_.setup.fixtures[*pair.fixture].mount : context_.setup.stock_mount;
-    const auto reached = [&](double share) {
+    const auto reached = [&](double fraction) {
         const RelativeLeg moved =
-            relative_leg(context_.setup.machine, target, body.mover, stretch(leg, 0.0, share));
+            relative_leg(context_.setup.machine, target, body.mover, stretch(leg, 0.0, fraction));
         if (moved.error == infinity) return true;
         const double limit = distance + moved.error + resolution;
         const Separation found =

@@ -62,8 +62,8 @@ public:
 private:
     /// Measures at the body's position half way along the leg, which gives a witness that certainly
     /// exists.
-    void look_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                       const CutModel& stock, double nearest);
+    void observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                          const CutModel& stock, double nearest);
     /// Adds the error of the leg. An overlap is kept only if it exists at a position that the body
     /// really takes.
     void add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,

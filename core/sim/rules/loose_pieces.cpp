@@ -53,7 +53,7 @@ Finding finding_of(const Setup& setup, const StockPiece& piece, double spacing,
     finding.message = fmt::format(
         "A piece of {:.1f} x {:.1f} x {:.1f} mm, {:.0f} mm3, is cut loose at X {:.1f} Y {:.1f} Z "
         "{:.1f} in stock coordinates. {}",
-        size.x, size.y, size.z, piece.volume, piece.place.x, piece.place.y, piece.place.z,
+        size.x, size.y, size.z, piece.volume, piece.position.x, piece.position.y, piece.position.z,
         holding_text(setup, holders));
     finding.cure = "Leave tabs that are cut later, or clamp the piece before this cut.";
     return finding;
@@ -67,31 +67,32 @@ Aabb box_of_cuts(const CutModel& stock, size_t first) {
 
 } // namespace
 
-PieceWatch watch_of(const CutModel& stock) {
-    PieceWatch watch;
+PieceTracker piece_tracker(const CutModel& stock) {
+    PieceTracker tracker;
     // A box or a cylinder is one piece; a mesh or a stock with earlier cuts may be several.
     const bool uncut = stock.log.size() == 0;
-    if (uncut && !std::holds_alternative<SolidMesh>(stock.solid.shape)) return watch;
-    watch.known = watch.map.pieces(stock).size();
-    return watch;
+    if (uncut && !std::holds_alternative<SolidMesh>(stock.solid.shape)) return tracker;
+    tracker.known = tracker.map.pieces(stock).size();
+    return tracker;
 }
 
-std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
-                                  const CutModel& stock, size_t first, PieceWatch& watch) {
+std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
+                                  const CutModel& stock, size_t first, PieceTracker& tracker) {
     std::vector<Finding> findings;
     if (first == stock.log.size() || severity_of(setup, rule_id("loose-piece")) == Severity::off)
         return findings;
     const Aabb box = box_of_cuts(stock, first);
-    watch.map.note_cut(stock, box);
+    tracker.map.note_cut(stock, box);
     if (cannot_have_parted(stock, box)) return findings;
-    const std::vector<StockPiece> pieces = watch.map.pieces(stock);
-    size_t fresh = pieces.size() > watch.known ? pieces.size() - watch.known : 0;
-    watch.known = pieces.size();
+    const std::vector<StockPiece> pieces = tracker.map.pieces(stock);
+    size_t fresh = pieces.size() > tracker.known ? pieces.size() - tracker.known : 0;
+    tracker.known = pieces.size();
     const Aabb near = box.grown(2.0 * stock.lines.grid.spacing);
     // New pieces are next to the cut, and the smaller ones are the ones that come loose.
     for (size_t i = pieces.size(); i-- > 1 && fresh > 0;) {
         if (!overlaps(pieces[i].box, near)) continue;
-        const auto holders = holders_of(setup, fixtures_there, stock, watch.map, i, pieces[i].box);
+        const auto holders =
+            holders_of(setup, fixtures_there, stock, tracker.map, i, pieces[i].box);
         findings.push_back(finding_of(setup, pieces[i], stock.lines.grid.spacing, holders));
         --fresh;
     }

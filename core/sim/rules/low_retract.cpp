@@ -21,7 +21,7 @@ Setup with_every_pair(Setup setup) {
 }
 
 /// Measures every pair, whatever detail the report has.
-struct Look {
+struct LinkCheck {
     const LegAsRun& link;
     Setup setup = with_every_pair(link.setup);
     CheckMemory memory = {};
@@ -32,15 +32,15 @@ struct Look {
                 memory, statistics};
     }
 
-    std::vector<TrackedPair> at(const AxisValues& place) {
+    std::vector<TrackedPair> at(const AxisValues& position) {
         std::vector<TrackedPair> pairs;
-        check().rest(place, 0.0, link.stock, pairs);
+        check().rest(position, 0.0, link.stock, pairs);
         return pairs;
     }
 
     std::vector<TrackedPair> along(double higher) {
         Leg leg = link.leg;
-        for (AxisValues& place : leg.places) place[2] += higher;
+        for (AxisValues& position : leg.positions) position[2] += higher;
         CutModel stock = link.stock;
         std::vector<TrackedPair> pairs;
         check().run(leg, 0.0, stock, pairs);
@@ -94,9 +94,9 @@ bool is_doubtful(const LegAsRun& link, const std::vector<TrackedPair>& known) {
 
 /// Increase in height at which the leg is clear of everything, to within `retract_step`, mm; empty
 /// if there is none.
-std::optional<double> lift(Look& look) {
+std::optional<double> lift(LinkCheck& probe) {
     const auto passes = [&](double higher) {
-        const auto pairs = look.along(higher);
+        const auto pairs = probe.along(higher);
         return are_clear(pairs) && flutes_to_stock(pairs) >= room;
     };
     double low = 0.0, high = 1.0;
@@ -115,8 +115,8 @@ std::optional<double> lift(Look& look) {
 } // namespace
 
 bool goes_across(const Leg& leg) {
-    if (!leg.straight || !leg.start_known || leg.places.size() < 2) return false;
-    const AxisValues &from = leg.places.front(), &to = leg.places.back();
+    if (!leg.straight || !leg.start_known || leg.positions.size() < 2) return false;
+    const AxisValues &from = leg.positions.front(), &to = leg.positions.back();
     for (size_t i = 3; i < axis_count; ++i)
         if (from[i] != to[i]) return false;
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
@@ -124,17 +124,17 @@ bool goes_across(const Leg& leg) {
 
 std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known) {
     if (!is_doubtful(link, known)) return std::nullopt;
-    Look look{link};
-    const std::vector<TrackedPair> pairs = look.along(0.0);
+    LinkCheck probe{link};
+    const std::vector<TrackedPair> pairs = probe.along(0.0);
     const PairClearance* near = in_the_way(link, pairs);
     if (!near) return std::nullopt;
-    for (const AxisValues& place : {link.leg.places.front(), link.leg.places.back()}) {
-        const auto there = look.at(place);
+    for (const AxisValues& position : {link.leg.positions.front(), link.leg.positions.back()}) {
+        const auto there = probe.at(position);
         if (!are_clear(there)) return std::nullopt;
         if (near->verdict == Verdict::clear && flutes_to_stock(there) < near->upper + room)
             return std::nullopt;
     }
-    const std::optional<double> higher = lift(look);
+    const std::optional<double> higher = lift(probe);
     if (!higher) return std::nullopt;
     Finding finding;
     finding.rule = rule_id("low-retract");

@@ -47,8 +47,8 @@ struct ToolReach {
     std::optional<BlockIndex> shank_block;  // first block in which the shank meets the stock
     double more_flute = 0.0;                // required additional flute length, mm
     std::optional<BlockIndex> rub_block;    // first block in which the shank only rubs
-    size_t blocks = 0; // number of blocks in which holder or shank meet the stock
-    size_t looks = 0;  // number of computations of the required length, which is limited
+    size_t blocks = 0;       // number of blocks in which holder or shank meet the stock
+    size_t computations = 0; // number of computations of the required length, which is limited
     std::optional<BlockIndex> last;
 };
 
@@ -77,7 +77,7 @@ void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<Tra
 std::vector<Finding> findings_of(const ToolReaches& reaches, const Setup& setup);
 
 /// State of the rules that span several blocks. A plain value.
-struct RunWatch {
+struct RunRules {
     AirSeries air;
     ToolReaches reaches;
     bool has_fed = false;           // since the last tool change
@@ -98,13 +98,13 @@ bool goes_across(const Leg& leg);
 std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known);
 
 /// The pieces of a stock while it is cut. A plain value.
-struct PieceWatch {
+struct PieceTracker {
     PieceMap map;
     size_t known = 1; // number of pieces, without crumbs
 };
 
 /// The pieces of a stock at the start of a run.
-PieceWatch watch_of(const CutModel& stock);
+PieceTracker piece_tracker(const CutModel& stock);
 
 /// Checks whether the cuts from number `first` in the log on have parted the stock.
 /// `fixtures_there` says which fixtures are mounted.
@@ -112,14 +112,14 @@ PieceWatch watch_of(const CutModel& stock);
 /// Result: a finding `loose-piece`, without its block, for each new piece but the largest: its
 ///         size, its position, and whether a fixture touches it, to within a mesh size.
 /// Cost:   some microseconds for cuts above solid material, else that of PieceMap::pieces().
-std::vector<Finding> watch_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
-                                  const CutModel& stock, size_t first, PieceWatch& watch);
+std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
+                                  const CutModel& stock, size_t first, PieceTracker& tracker);
 
 /// State of a tool that does not cut at its centre, while it goes down: the stock before that, and
 /// the positions of the tool since.
 ///
 /// Frame: positions are those of the tip, with axes fixed to the tool, Z along its axis.
-struct CentreWatch {
+struct CentreTracker {
     std::optional<CutModel> before;
     Mat3 orientation = Mat3(1.0);
     double top = 0.0;        // height at which the descent began
@@ -128,8 +128,8 @@ struct CentreWatch {
 
 /// First contact on a leg of a tool's centre with material that its edges have not removed.
 struct CentreContact {
-    double share = 0.0;     // fraction of the leg
-    Vec3 place = Vec3(0.0); // of the tool's face, in the stock's frame
+    double fraction = 0.0;     // fraction of the leg
+    Vec3 position = Vec3(0.0); // of the tool's face, in the stock's frame
 };
 
 /// Assumed recess of the face of such a tool behind its edges, mm. With it, the steepest ramp that
@@ -141,7 +141,7 @@ double centre_recess(const ToolDescription& tool);
 ///
 /// Proof: a tool that goes down meets a point at the height of its face for the first time when its
 /// tip passes there. If the point has been under the centre ever since, no edge has passed it.
-std::optional<CentreContact> follow(CentreWatch& watch, const ToolDescription& tool,
+std::optional<CentreContact> follow(CentreTracker& tracker, const ToolDescription& tool,
                                     const RelativeLeg& leg, const CutModel& stock);
 
 /// The finding `singular-orientation` about a feed in which rotary axes turn: near the pole, an

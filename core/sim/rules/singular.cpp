@@ -29,41 +29,42 @@ struct Seen {
 
 /// Direction of the tool in the table's frame.
 Vec3 direction(const Machine& machine, const AxisValues& values) {
-    const Vec3 tip = tip_place(machine, values, 1.0), gauge = tip_place(machine, values, 0.0);
+    const Vec3 tip = tip_position(machine, values, 1.0), gauge = tip_position(machine, values, 0.0);
     return gauge - tip;
 }
 
 /// Positions at start, middle and end; empty if an end is unknown.
-std::optional<std::array<AxisValues, 3>> places_of(const Motion& motion) {
-    std::array<AxisValues, 3> places{};
+std::optional<std::array<AxisValues, 3>> positions_of(const Motion& motion) {
+    std::array<AxisValues, 3> positions{};
     for (size_t i = 0; i < axis_count; ++i) {
         if (!motion.from[i] && !motion.to[i] && i >= 3) continue;
         if (!motion.from[i] || !motion.to[i]) return std::nullopt;
-        places[0][i] = *motion.from[i];
-        places[2][i] = *motion.to[i];
-        places[1][i] = 0.5 * (places[0][i] + places[2][i]);
+        positions[0][i] = *motion.from[i];
+        positions[2][i] = *motion.to[i];
+        positions[1][i] = 0.5 * (positions[0][i] + positions[2][i]);
     }
-    return places;
+    return positions;
 }
 
-Seen look(const Machine& machine, const Motion& motion, const std::array<AxisValues, 3>& places,
-          double length) {
+Seen measure(const Machine& machine, const Motion& motion,
+             const std::array<AxisValues, 3>& positions, double length) {
     Seen seen;
     for (size_t i = 3; i < 6; ++i) {
-        const double turn = std::abs(places[2][i] - places[0][i]);
+        const double turn = std::abs(positions[2][i] - positions[0][i]);
         seen.turning += turn > 1.0;
         if (turn <= seen.turn) continue;
         seen.turn = turn;
         seen.axis = i;
     }
-    const double cosine = glm::dot(direction(machine, places[0]), direction(machine, places[2]));
+    const double cosine =
+        glm::dot(direction(machine, positions[0]), direction(machine, positions[2]));
     seen.lean = std::acos(std::clamp(cosine, -1.0, 1.0)) * degrees_per_radian;
-    const Vec3 from = tip_place(machine, places[0], length);
-    const Vec3 to = tip_place(machine, places[2], length);
+    const Vec3 from = tip_position(machine, positions[0], length);
+    const Vec3 to = tip_position(machine, positions[2], length);
     seen.way =
         motion.tip ? glm::distance(motion.tip->from, motion.tip->to) : glm::distance(from, to);
     if (motion.tip) return seen;
-    seen.off = glm::distance(tip_place(machine, places[1], length), 0.5 * (from + to));
+    seen.off = glm::distance(tip_position(machine, positions[1], length), 0.5 * (from + to));
     seen.way = std::max(seen.way, 2.0 * seen.off);
     return seen;
 }
@@ -74,9 +75,9 @@ std::optional<Finding> singular_orientation(const Machine& machine, const Motion
                                             double tool_length) {
     if (motion.kind == MotionKind::rapid || motion.arc || !machine.has_rotary())
         return std::nullopt;
-    const auto places = places_of(motion);
-    if (!places) return std::nullopt;
-    const Seen seen = look(machine, motion, *places, tool_length);
+    const auto positions = positions_of(motion);
+    if (!positions) return std::nullopt;
+    const Seen seen = measure(machine, motion, *positions, tool_length);
     Finding finding;
     finding.rule = rule_id("singular-orientation");
     if (seen.turn >= far_turn && seen.turn > turn_per_lean * seen.lean

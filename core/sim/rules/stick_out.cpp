@@ -84,7 +84,8 @@ double stick_out_of(const ToolAssembly& tool) {
 double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0; }
 
 std::string in_blocks(const ToolReach& reach) {
-    if (reach.looks > enough) return " in the first of these blocks (the others were not tried)";
+    if (reach.computations > enough)
+        return " in the first of these blocks (the others were not tried)";
     if (reach.blocks == 2) return " in both blocks";
     return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
 }
@@ -159,7 +160,7 @@ Finding rubbing(const ToolAssembly& tool, const ToolReach& reach) {
 }
 
 bool goes_sideways(const Leg& leg) {
-    const AxisValues &from = leg.places.front(), &to = leg.places.back();
+    const AxisValues &from = leg.positions.front(), &to = leg.positions.back();
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
@@ -184,7 +185,7 @@ void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<Tra
         auto& first = is_shank ? reach.shank_block : reach.holder_block;
         if (!first) first = cut.block;
         double& more = is_shank ? reach.more_flute : reach.more_stick_out;
-        if (reach.looks++ < enough) more = needed(cut, pair.pair.part, more);
+        if (reach.computations++ < enough) more = needed(cut, pair.pair.part, more);
     }
 }
 

@@ -74,10 +74,10 @@ void give_out(BlockClock& clock, std::vector<BlockTime>& done) {
 
 } // namespace
 
-double BlockTime::moment(double share) const {
+double BlockTime::moment(double fraction) const {
     double whole = 0.0;
     for (const BlockStretch& stretch : stretches) whole += stretch.at_full_speed;
-    double left = share * whole, before = 0.0;
+    double left = fraction * whole, before = 0.0;
     for (const BlockStretch& stretch : stretches) {
         if (left <= stretch.at_full_speed && stretch.at_full_speed > 0.0) {
             const double part = left / stretch.at_full_speed;

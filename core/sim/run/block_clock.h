@@ -27,7 +27,7 @@ struct BlockTime {
 
     /// Time from the block's start, seconds, of the event that occurs after this fraction of the
     /// block's time without accelerations.
-    double moment(double share) const;
+    double moment(double fraction) const;
 };
 
 /// Blocks whose times are being computed. A plain value: copy it to step back.

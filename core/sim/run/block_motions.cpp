@@ -75,7 +75,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
         }
     }
     result.checked = false;
-    if (std::exchange(state.told_unknown_start, true)) return;
+    if (std::exchange(state.reported_unknown_start, true)) return;
     find(rule_id("first-move"),
          "The start position of the machine is unknown, so this motion cannot be checked.",
          "State the axis positions at the first block: `start` under [program] in the set-up, or "
@@ -110,7 +110,7 @@ void BlockRun::carry_out(const Motion& motion) {
     result.duration += path.duration;
 }
 
-void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
+void BlockRun::track_centre(const Motion& motion, const Leg& leg) {
     if (!tool() || tool()->description.cuts_at_centre) return;
     if (use(motion) != FluteUse::cutting || !leg.straight) {
         state.centre = {};
@@ -125,47 +125,47 @@ void BlockRun::watch_centre(const Motion& motion, const Leg& leg) {
     pushes_centre = true;
     flutes.lower = flutes.upper = 0.0;
     flutes.verdict = Verdict::collision;
-    flutes.on_tool = flutes.on_body = contact->place;
-    flutes.time = result.duration + leg.begin + contact->share * (leg.end - leg.begin);
+    flutes.on_tool = flutes.on_body = contact->position;
+    flutes.time = result.duration + leg.begin + contact->fraction * (leg.end - leg.begin);
 }
 
 void BlockRun::check_path(const Motion& motion, const Path& path) {
     const bool rapid = motion.kind == MotionKind::rapid;
     const bool dog_leg = rapid && (path.legs.size() > 1 || !path.legs[0].straight);
-    const bool links = rapid && tool() && state.watch.has_fed && goes_across(path.legs[0]);
+    const bool links = rapid && tool() && state.rules.has_fed && goes_across(path.legs[0]);
     std::optional<CutModel> before;
     if (dog_leg || links) before = state.stock;
     LegCheck check = leg_check(use(motion));
     double removed = 0.0;
     for (const Leg& leg : path.legs) {
-        watch_centre(motion, leg);
+        track_centre(motion, leg);
         removed += check.run(leg, result.duration, state.stock, pairs);
         legs.push_back({leg, result.duration});
-        if (use(motion) == FluteUse::cutting && !state.watch.length_in_doubt)
-            note_reach(state.watch.reaches,
+        if (use(motion) == FluteUse::cutting && !state.rules.length_in_doubt)
+            note_reach(state.rules.reaches,
                        {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
                        pairs);
     }
     check.finish(pairs);
     note_worst(motion.kind);
     result.removed += removed;
-    if (before) look_at_rapid(motion, path, *before);
-    if (!rapid) look_at_feed(motion, path, removed);
+    if (before) check_rapid(motion, path, *before);
+    if (!rapid) check_feed(motion, path, removed);
 }
 
 void BlockRun::follow_path(const Motion& motion, const Path& path) {
     const bool cuts = use(motion) == FluteUse::cutting;
     LegCheck check = leg_check(use(motion));
     for (const Leg& leg : path.legs) {
-        watch_centre(motion, leg);
+        track_centre(motion, leg);
         // If rotary axes move, the position at which the tool meets the stock is unknown.
         if (cuts || (block.judgement->runs_into_stock && !turns))
             result.removed += check.only_cut(leg, state.stock);
     }
-    state.watch.has_fed = state.watch.has_fed || motion.kind != MotionKind::rapid;
+    state.rules.has_fed = state.rules.has_fed || motion.kind != MotionKind::rapid;
 }
 
-void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutModel& before) {
+void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutModel& before) {
     const bool straight = path.legs.size() == 1 && path.legs[0].straight;
     if (straight && tool())
         return tell(low_retract(
@@ -183,21 +183,21 @@ void BlockRun::look_at_rapid(const Motion& motion, const Path& path, const CutMo
     only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;
 }
 
-void BlockRun::look_at_feed(const Motion& motion, const Path& path, double removed) {
-    state.watch.has_fed = true;
+void BlockRun::check_feed(const Motion& motion, const Path& path, double removed) {
+    state.rules.has_fed = true;
     if (!tool() || use(motion) != FluteUse::cutting) return;
     LegCheck check = leg_check(FluteUse::cutting);
     bool in_air = removed <= 0.0;
     for (const Leg& leg : path.legs)
         in_air = in_air && check.room_of_flutes(leg, state.stock, air_gap) >= air_gap;
     if (in_air)
-        add_air(state.watch.air, block.block, path.duration * motion.feed / 60.0);
+        add_air(state.rules.air, block.block, path.duration * motion.feed / 60.0);
     else
-        tell(end_air(state.watch.air, tool()->description.diameter));
+        tell(end_air(state.rules.air, tool()->description.diameter));
     if (in_air) return;
     auto found = singular_orientation(setup.machine, motion, tool()->length);
     const bool swings = found && !motion.tip && removed <= 0.0;
-    if (!found || swings || std::exchange(state.watch.singular_reported, true)) return;
+    if (!found || swings || std::exchange(state.rules.singular_reported, true)) return;
     tell(std::move(found));
 }
 
@@ -208,7 +208,7 @@ void BlockRun::move_without_tool(const Motion& motion) {
         return;
     }
     result.checked = false;
-    if (std::exchange(state.told_unchecked_tool, true)) return;
+    if (std::exchange(state.reported_unchecked_tool, true)) return;
     if (state.tool)
         find(
             rule_id("undecided"),

@@ -18,8 +18,9 @@ void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
         if (pair.time <= begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
-        const double share = check.earliest(timed.leg, pair.pair, nearest, run.state.stock, seen);
-        pair.time = std::min(pair.time, begin + share * (end - begin));
+        const double fraction =
+            check.earliest(timed.leg, pair.pair, nearest, run.state.stock, seen);
+        pair.time = std::min(pair.time, begin + fraction * (end - begin));
         return;
     }
 }
@@ -37,13 +38,13 @@ void BlockRun::carry_out(const ToolChange& change) {
     if (const TrackedPair* worst = deciding_pair(pairs))
         settle_time(*this, pairs[static_cast<size_t>(worst - pairs.data())], worst->upper);
     legs.clear();
-    if (tool()) tell(end_air(state.watch.air, tool()->description.diameter));
-    state.watch.air = {};
-    state.watch.has_fed = state.watch.singular_reported = false;
+    if (tool()) tell(end_air(state.rules.air, tool()->description.diameter));
+    state.rules.air = {};
+    state.rules.has_fed = state.rules.singular_reported = false;
     forget_bounds();
     state.tool = change.tool;
     state.tool_known = true;
-    state.told_unchecked_tool = false;
+    state.reported_unchecked_tool = false;
     result.tool = change.tool;
     if (tool()) return check_tool_change();
     if (change.tool)
@@ -67,7 +68,7 @@ void BlockRun::carry_out(const FixtureChange& change) {
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
         return;
     leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].places[0], result.duration, state.stock, pairs);
+        .rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
 }
 
 void BlockRun::check_tool_change() {
@@ -77,7 +78,7 @@ void BlockRun::check_tool_change() {
     if (path.legs.empty() || !path.legs[0].start_known) return;
     std::vector<TrackedPair> there;
     leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].places[0], result.duration, state.stock, there);
+        .rest(path.legs[0].positions[0], result.duration, state.stock, there);
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;

@@ -91,10 +91,10 @@ struct BlockRun {
     void check_path(const Motion& motion, const Path& path);
     /// Cuts the stock along a path without measuring, for a block with a `Judgement`.
     void follow_path(const Motion& motion, const Path& path);
-    void look_at_rapid(const Motion& motion, const Path& path, const CutModel& before);
-    void look_at_feed(const Motion& motion, const Path& path, double removed);
+    void check_rapid(const Motion& motion, const Path& path, const CutModel& before);
+    void check_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
-    void watch_centre(const Motion& motion, const Leg& leg);
+    void track_centre(const Motion& motion, const Leg& leg);
     void note_worst(MotionKind kind);
     /// The motion to name in a finding about the pair.
     BlockMove move_of(const PairClearance& pair) const;

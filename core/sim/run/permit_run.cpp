@@ -13,11 +13,11 @@ constexpr double same_speed = 1e-9;
 /// A machine that brakes towards a point has reached it below this speed, mm/s.
 constexpr double creeping = 1e-6;
 
-bool stands_still(const MotionTime& time) { return !(time.length > 0.0); }
+bool has_no_length(const MotionTime& time) { return !(time.length > 0.0); }
 
 /// Planned speed after a length `along` of a motion.
 double planned_speed(const MotionTime& time, double along) {
-    if (stands_still(time)) return 0.0;
+    if (has_no_length(time)) return 0.0;
     const double a = time.acceleration;
     if (!std::isfinite(a)) return time.cruise;
     const double up = time.enter * time.enter + 2.0 * a * along;
@@ -27,7 +27,7 @@ double planned_speed(const MotionTime& time, double along) {
 
 /// Length of a motion that is covered after `seconds` by plan.
 double covered(const MotionTime& time, double seconds) {
-    if (stands_still(time)) return 0.0;
+    if (has_no_length(time)) return 0.0;
     const double a = time.acceleration;
     const double rising = (time.cruise - time.enter) / a, falling = (time.cruise - time.leave) / a;
     const double left = time.duration - seconds;
@@ -40,7 +40,7 @@ double covered(const MotionTime& time, double seconds) {
 
 /// Planned time after a length `along` of a motion, seconds from its start.
 double moment_of(const MotionTime& time, double along) {
-    return stands_still(time) ? 0.0 : time.moment(along);
+    return has_no_length(time) ? 0.0 : time.moment(along);
 }
 
 /// Advances a machine by one set point.
@@ -51,12 +51,12 @@ public:
     void go(uint32_t permitted) {
         note_permits(permitted);
         note_due();
-        if (run_.is_behind && !must_brake() && run_.speed >= planned() - same_speed) catch_up();
-        if (!run_.is_behind && must_brake()) fall_behind();
+        if (run_.is_delayed && !must_brake() && run_.speed >= planned() - same_speed) catch_up();
+        if (!run_.is_delayed && must_brake()) start_braking();
         if (run_.motion < run_.seen) {
             double& entered = run_.entries[run_.motion].entered;
             entered = std::min(entered, run_.time());
-            run_.is_behind ? follow() : keep_to_plan();
+            run_.is_delayed ? follow() : keep_to_plan();
         }
         ++run_.ticks;
     }
@@ -69,7 +69,7 @@ private:
     /// Planned speed at the current position.
     double planned() const {
         return run_.servo.feed
-               * planned_speed(motion(run_.motion), run_.place() - run_.starts[run_.motion]);
+               * planned_speed(motion(run_.motion), run_.position() - run_.starts[run_.motion]);
     }
     bool must_brake() const { return is_late() && bearable_speed() < planned(); }
 
@@ -82,18 +82,18 @@ private:
     void note_due() {
         if (run_.is_held()) return fall_due(run_.motion);
         const MotionTime& now = motion(run_.motion);
-        if (stands_still(now)) {
+        if (has_no_length(now)) {
             if (now.duration - run_.into <= run_.servo.feed * lag()) fall_due(run_.motion + 1);
             return;
         }
-        const double place = run_.place(), speed = run_.speed_now();
+        const double position = run_.position(), speed = run_.speed_now();
         const auto way_to_stop = [&](double a) { return speed * (0.5 * speed / a + lag()); };
         double weakest = now.acceleration; // from here to motion i
         for (size_t i = run_.motion + 1; i < run_.motions.size(); ++i) {
-            const double left = run_.starts[i] - place;
+            const double left = run_.starts[i] - position;
             if (left > way_to_stop(run_.weakest)) return;
             if (left <= way_to_stop(weakest)) fall_due(i);
-            if (stands_still(motion(i))) return; // the machine stops there anyway
+            if (has_no_length(motion(i))) return; // the machine stops there anyway
             weakest = std::min(weakest, motion(i).acceleration);
         }
     }
@@ -104,14 +104,14 @@ private:
             if (run_.due > 0) run_.entries[run_.due].due = run_.time();
     }
 
-    void fall_behind() {
+    void start_braking() {
         run_.along = covered(motion(run_.motion), run_.into);
         run_.speed = run_.speed_now();
-        run_.is_behind = true;
+        run_.is_delayed = true;
     }
     void catch_up() {
         run_.into = moment_of(motion(run_.motion), run_.along);
-        run_.is_behind = false;
+        run_.is_delayed = false;
     }
 
     /// Begins the next motion; false if there is none or its permit is missing.
@@ -123,7 +123,7 @@ private:
             run_.entries[run_.motion].entered = when;
             return true;
         }
-        run_.is_behind = true;
+        run_.is_delayed = true;
         run_.speed = 0.0;
         return false;
     }
@@ -145,7 +145,7 @@ private:
     /// permit.
     double bearable_speed() const {
         if (!is_late()) return infinity;
-        const double left = std::max(0.0, run_.starts[run_.seen] - run_.place());
+        const double left = std::max(0.0, run_.starts[run_.seen] - run_.position());
         double a = infinity;
         for (size_t i = run_.motion; i < run_.seen; ++i) a = std::min(a, motion(i).acceleration);
         if (!std::isfinite(a)) return left / lag();
@@ -170,10 +170,10 @@ private:
                 return;
             }
             way -= rest;
-            const double share = run_.speed > 0.0 ? way / run_.speed : 0.0;
-            if (!enter_next(run_.time() + period - share)) return;
-            if (stands_still(motion(run_.motion))) {
-                run_.is_behind = false;
+            const double fraction = run_.speed > 0.0 ? way / run_.speed : 0.0;
+            if (!enter_next(run_.time() + period - fraction)) return;
+            if (has_no_length(motion(run_.motion))) {
+                run_.is_delayed = false;
                 return;
             }
         }
@@ -184,14 +184,14 @@ private:
 
 } // namespace
 
-double PermitRun::place() const {
+double PermitRun::position() const {
     if (is_done()) return starts.back();
-    return starts[motion] + (is_behind ? along : covered(motions[motion].time, into));
+    return starts[motion] + (is_delayed ? along : covered(motions[motion].time, into));
 }
 
 double PermitRun::speed_now() const {
-    if (is_done() || (!is_behind && motion >= seen)) return 0.0;
-    if (is_behind) return speed;
+    if (is_done() || (!is_delayed && motion >= seen)) return 0.0;
+    if (is_delayed) return speed;
     const MotionTime& now = motions[motion].time;
     return servo.feed * planned_speed(now, covered(now, into));
 }
@@ -199,7 +199,7 @@ double PermitRun::speed_now() const {
 double PermitRun::waited() const {
     if (is_done()) return 0.0;
     const MotionTime& now = motions[motion].time;
-    const double by_plan = times[motion] + (is_behind ? moment_of(now, along) : into);
+    const double by_plan = times[motion] + (is_delayed ? moment_of(now, along) : into);
     return time() - by_plan / servo.feed;
 }
 
@@ -210,7 +210,7 @@ PermitRun permit_run(std::vector<PermitMotion> motions, const ServoTiming& servo
     for (const PermitMotion& motion : motions) {
         run.starts.push_back(run.starts.back() + motion.time.length);
         run.times.push_back(run.times.back() + motion.time.duration);
-        if (!stands_still(motion.time))
+        if (!has_no_length(motion.time))
             run.weakest = std::min(run.weakest, motion.time.acceleration);
     }
     run.entries.resize(motions.size());

@@ -42,21 +42,21 @@ struct PermitRun {
     double weakest = infinity;  // lowest acceleration of all motions
     std::vector<MotionEntry> entries; // one for each motion
 
-    uint64_t ticks = 0;     // number of set points so far
-    size_t motion = 0;      // current motion, or the next one if the machine waits
-    bool is_behind = false; // it had to brake and is still below the planned speed
-    double into = 0.0;      // planned time since the motion's start, seconds, unless behind
-    double along = 0.0;     // distance from the motion's start, if behind
-    double speed = 0.0;     // speed along the path, if behind
-    size_t seen = 0;        // number of motions that have their permits
-    size_t due = 0;         // number of motions whose permits have become due
+    uint64_t ticks = 0;      // number of set points so far
+    size_t motion = 0;       // current motion, or the next one if the machine waits
+    bool is_delayed = false; // it had to brake and is still below the planned speed
+    double into = 0.0;       // planned time since the motion's start, seconds, unless behind
+    double along = 0.0;      // distance from the motion's start, if behind
+    double speed = 0.0;      // speed along the path, if behind
+    size_t seen = 0;         // number of motions that have their permits
+    size_t due = 0;          // number of motions whose permits have become due
 
     double time() const { return static_cast<double>(ticks) * servo.period; }
     bool is_done() const { return motion == motions.size(); }
     /// Whether the machine waits for the permit of the next motion.
     bool is_held() const { return motion == seen && !is_done(); }
     /// Position along the path, as a length.
-    double place() const;
+    double position() const;
     double speed_now() const;
     /// Delay against the plan so far, seconds.
     double waited() const;

@@ -15,7 +15,7 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
     for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
-    state.pieces = watch_of(state.stock);
+    state.pieces = piece_tracker(state.stock);
     state.corners = corners_at_start(setup.machine);
     return state;
 }
@@ -30,7 +30,7 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
     for (Finding& finding :
-         watch_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
+         track_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
         run.add(std::move(finding));
     if (block.judgement)
         run.conclude(*block.judgement);
@@ -42,10 +42,10 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
 }
 
 std::vector<Finding> end_of_run(const Setup& setup, SimulatorState& state) {
-    std::vector<Finding> findings = findings_of(state.watch.reaches, setup);
+    std::vector<Finding> findings = findings_of(state.rules.reaches, setup);
     const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
     if (tool != setup.tools.end())
-        if (auto air = end_air(state.watch.air, tool->second.description.diameter))
+        if (auto air = end_air(state.rules.air, tool->second.description.diameter))
             findings.push_back(*std::move(air));
     for (Finding& finding : findings) settle_severity(setup, finding);
     std::erase_if(findings,

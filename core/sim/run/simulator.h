@@ -27,16 +27,16 @@ struct SimulatorState {
     std::vector<bool> fixtures_there; // whether each fixture of the set-up is mounted
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    PieceWatch pieces;  // of the stock
-    CentreWatch centre; // of a tool that does not cut at its centre
-    RunWatch watch;
+    PieceTracker pieces;  // of the stock
+    CentreTracker centre; // of a tool that does not cut at its centre
+    RunRules rules;
     double time = 0.0; // seconds since the program's start, without accelerations
     Statistics statistics;
     CheckMemory memory;
     RoundedCorners corners;
     std::set<std::string> assumptions; // assumptions made so far
-    bool told_unknown_start = false;
-    bool told_unchecked_tool = false; // for the tool now in the spindle
+    bool reported_unknown_start = false;
+    bool reported_unchecked_tool = false; // for the tool now in the spindle
 };
 
 /// Whether the spindle turns in the cutting direction of the tool, at more than 0 rev/min.

@@ -33,29 +33,30 @@ struct OffsetUse {
 };
 
 /// The uses of all work offsets so far, by index; 0 is G54. A plain value.
-using OffsetWatch = std::map<size_t, OffsetUse>;
+using OffsetUses = std::map<size_t, OffsetUse>;
 
 /// Updates the watch after a block; `state` is the state after it.
-void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::InterpreterState& at,
+void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::InterpreterState& at,
                    const core::BlockEvents& block, const core::SimulatorState& state);
 
 /// The findings `offset-implausible`: work offsets in which nearly all feeds are above the stock,
 /// or below it by more than cutting through needs or together with rapids at its height. The datum
 /// was probably set elsewhere.
-std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const core::Setup& setup);
+std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const core::Setup& setup);
 
 /// The box around all feed moves. A plain value.
-struct UnitsWatch {
+struct UnitsTracker {
     core::Aabb box;
     std::optional<core::BlockIndex> first;
 };
 
 /// Updates the box with a block.
-void watch_units(UnitsWatch& watch, const core::BlockEvents& block);
+void track_units(UnitsTracker& tracker, const core::BlockEvents& block);
 
 /// The finding `units-jump`: the feeds span about 25.4 times the stock or, if the program states no
 /// unit, 1/25.4 of it.
-std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const core::Setup& setup,
-                                                 const core::Aabb& stock, bool unit_said);
+std::optional<core::Finding> units_off_the_stock(const UnitsTracker& tracker,
+                                                 const core::Setup& setup, const core::Aabb& stock,
+                                                 bool unit_said);
 
 } // namespace app

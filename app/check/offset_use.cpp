@@ -1,4 +1,4 @@
-#include "app/check/offset_watch.h"
+#include "app/check/offset_use.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,18 +32,18 @@ struct TipWay {
 };
 
 std::optional<TipWay> tip_way(const core::Setup& setup, const core::Motion& motion, double length) {
-    core::AxisValues places[2] = {};
+    core::AxisValues positions[2] = {};
     for (size_t i = 0; i < core::axis_count; ++i) {
         if (!setup.machine.axes[i].present) continue;
         if (!motion.from[i] || !motion.to[i]) return std::nullopt;
-        places[0][i] = *motion.from[i];
-        places[1][i] = *motion.to[i];
+        positions[0][i] = *motion.from[i];
+        positions[1][i] = *motion.to[i];
     }
     const core::Mount tip{setup.machine.spindle, core::translation({0.0, 0.0, -length})};
     TipWay way;
     for (int end = 0; end < 2; ++end) {
         const core::Transform pose =
-            core::target_from_mover(setup.machine, setup.stock_mount, tip, places[end]);
+            core::target_from_mover(setup.machine, setup.stock_mount, tip, positions[end]);
         (end == 0 ? way.from : way.to) = pose.translation;
         way.upright = way.upright && pose.rotation[2].z > 0.9999;
     }
@@ -95,7 +95,7 @@ core::Finding finding_of(const core::Setup& setup, size_t index, const OffsetUse
 
 } // namespace
 
-void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::InterpreterState& at,
+void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::InterpreterState& at,
                    const core::BlockEvents& block, const core::SimulatorState& state) {
     const size_t index = at.modal.offsets.active;
     const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
@@ -106,7 +106,7 @@ void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::In
         const auto way = motion ? tip_way(setup, *motion, tool->second.length) : std::nullopt;
         const double radius = 0.5 * tool->second.description.diameter;
         if (!way || !crosses(*way, stock, radius)) continue;
-        OffsetUse& use = watch[index];
+        OffsetUse& use = uses[index];
         use.is_judged = use.is_judged && way->upright;
         if (motion->kind == core::MotionKind::rapid) {
             // A rapid may retract upwards out of a cut that goes through the stock.
@@ -123,9 +123,9 @@ void watch_offsets(OffsetWatch& watch, const core::Setup& setup, const gcode::In
     }
 }
 
-std::vector<core::Finding> implausible_offsets(const OffsetWatch& watch, const core::Setup& setup) {
+std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const core::Setup& setup) {
     std::vector<core::Finding> findings;
-    for (const auto& [index, use] : watch) {
+    for (const auto& [index, use] : uses) {
         if (!use.is_judged || use.way <= 0.0) continue;
         const bool above =
             use.above >= nearly_all * use.way && use.highest > use.stock_top + in_the_air;
@@ -149,22 +149,23 @@ bool is_units_apart(double ratio) { return ratio > inch / doubt && ratio < inch 
 
 } // namespace
 
-void watch_units(UnitsWatch& watch, const core::BlockEvents& block) {
+void track_units(UnitsTracker& tracker, const core::BlockEvents& block) {
     for (const core::Event& event : block.events) {
         const auto* motion = std::get_if<core::Motion>(&event);
         if (!motion || motion->kind == core::MotionKind::rapid) continue;
         for (const core::AxisPosition& end : {motion->from, motion->to}) {
             if (!end[0] || !end[1] || !end[2]) continue;
-            watch.box.extend(core::Vec3(*end[0], *end[1], *end[2]));
-            if (!watch.first) watch.first = block.block;
+            tracker.box.extend(core::Vec3(*end[0], *end[1], *end[2]));
+            if (!tracker.first) tracker.first = block.block;
         }
     }
 }
 
-std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const core::Setup& setup,
-                                                 const core::Aabb& stock, bool unit_said) {
-    if (!watch.first) return std::nullopt;
-    const core::Vec3 path = watch.box.size(), size = stock.size();
+std::optional<core::Finding> units_off_the_stock(const UnitsTracker& tracker,
+                                                 const core::Setup& setup, const core::Aabb& stock,
+                                                 bool unit_said) {
+    if (!tracker.first) return std::nullopt;
+    const core::Vec3 path = tracker.box.size(), size = stock.size();
     const double longest = std::max(path.x, path.y), widest = std::max(size.x, size.y);
     if (!(longest > 0.0 && widest > 0.0)) return std::nullopt;
     const bool large = is_units_apart(longest / widest);
@@ -173,7 +174,7 @@ std::optional<core::Finding> units_off_the_stock(const UnitsWatch& watch, const 
     core::Finding finding;
     finding.rule = core::rule_id("units-jump");
     finding.severity = core::severity_of(setup, finding.rule);
-    finding.block = watch.first;
+    finding.block = tracker.first;
     finding.message = fmt::format("The feed moves span {:.1f} mm and the stock {:.1f} mm, about "
                                   "25.4 times as {}: mm and inches may be mixed up.",
                                   longest, widest, large ? "much" : "little");
