@@ -129,7 +129,7 @@ TEST_F(BadInput, OfATruncatedMesh) {
     expect_mesh_refused("", {});
 }
 
-TEST_F(BadInput, OfAMeshWithACornerThatIsNoNumber) {
+TEST_F(BadInput, OfAMeshWithACornerThatIsNotANumber) {
     std::string bytes = clamp;
     bytes.replace(84 + 12, 4, std::string("\x00\x00\xc0\x7f", 4));
     expect_mesh_refused(bytes, {});

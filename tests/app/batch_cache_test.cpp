@@ -158,7 +158,7 @@ protected:
     const test_support::ScopedFolder folder;
 };
 
-TEST_F(Library, IsCheckedOnceFromWhereverItIsNamed) {
+TEST_F(Library, IsCheckedOnceFromAnyWorkingFolder) {
     from(".", {"lib", "--format", "jsonl", "-o", "1"});
     const auto inside = from("lib", {".", "--format", "jsonl"});
     EXPECT_NE(inside.err.find("2 of 2 results come from earlier"), std::string::npos) << inside.err;

@@ -69,7 +69,7 @@ TEST_F(BatchRun, GivesTheSameForAnyNumberOfJobs) {
     EXPECT_EQ(batch_text(one, {.verbose = true}), batch_text(four, {.verbose = true}));
 }
 
-TEST_F(BatchRun, GoesOnAfterABadProgram) {
+TEST_F(BatchRun, ContinuesAfterABadProgram) {
     const BatchResult batch = run_batch(plan(), {}, {});
     EXPECT_EQ(status_of(of(batch, "clear0.nc")), 0);
     EXPECT_EQ(status_of(of(batch, "near0.nc")), 1);

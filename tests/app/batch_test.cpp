@@ -73,7 +73,7 @@ TEST_F(Batch, SaysThatItFoundTheSetup) {
                 HasSubstr("because it is next to the program"));
 }
 
-TEST_F(Batch, EndsWithTwoAndGoesOnAfterABadProgram) {
+TEST_F(Batch, ContinuesAfterABadProgramAndEndsWithTwo) {
     folder.write("a bad one.nc", program({"G999"}));
     const Ran ran = check({all(), folder / "none.nc", folder / "*.tap", "-j", "2"});
     EXPECT_EQ(ran.status, 2);

@@ -24,7 +24,7 @@ core::MotionTime hop(double seconds, double length) {
             .acceleration = 2.0 * peak / seconds};
 }
 
-TEST(PermitTiming, WaitsForALateDeviceAndGoesOnByItself) {
+TEST(PermitTiming, WaitsForALateDeviceAndContinues) {
     const std::vector<core::PermitMotion> plan = {
         {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
     const PermitTiming quick = timed_with_permits(plan, {{1e-6}, {1e-6}, {1e-6}}, {});
@@ -339,7 +339,7 @@ TEST(CoprocessorReport, SaysWhyABlockIsRefused) {
     EXPECT_NE(coprocessor_csv(result).find("too-long: "), std::string::npos);
 }
 
-TEST(DeviceFile, SaysWhatIsWrongAndWhere) {
+TEST(DeviceFile, ReportsMistakesWithTheirLine) {
     const test_support::ScopedFolder folder;
     const auto error_of = [&](const std::string& text) {
         const auto file = read_device_file(folder.write("device.toml", text));

@@ -86,7 +86,7 @@ TEST(CycleTime, IsTheEndOfTheLastBlock) {
     }
 }
 
-TEST(CycleTime, SaysWhatIsNotKnown) {
+TEST(CycleTime, NamesUnknownValues) {
     const auto says = [](const std::string& machine, const std::string& words) {
         const Checked checked = check(SetupWriter().machine(machine), program({"G0 Z100."}));
         for (const std::string& assumption : checked.assumptions)
@@ -99,7 +99,7 @@ TEST(CycleTime, SaysWhatIsNotKnown) {
     EXPECT_TRUE(says(SetupWriter::axis("X", "acceleration = 100\n"), "at once: Y, Z"));
 }
 
-TEST(CycleTime, RefusesAnAccelerationThatIsNone) {
+TEST(CycleTime, RefusesAnInvalidAcceleration) {
     const test_support::ScopedFolder folder;
     const SetupWriter setup = SetupWriter().machine(SetupWriter::axis("X", "acceleration = 0\n"));
     const auto ran = feeler({"check", folder.write("part.nc", program({})), "--setup",

@@ -11,7 +11,7 @@ const std::string plate = assets + "programs/clamped_plate.nc";
 const std::string plate_low = assets + "programs/clamped_plate_low.nc";
 const std::string setup = assets + "setups/clamped_plate.toml";
 
-TEST(Diff, SaysWhatCameNearerAndEndsWithOneWhenItIsWorse) {
+TEST(Diff, ReportsWhatCameNearerAndEndsWithOneIfItIsWorse) {
     const auto ran = feeler({"diff", plate, plate_low, "--setup", setup});
     EXPECT_EQ(ran.status, 1) << ran.err;
     EXPECT_NE(ran.out.find("Nearer:\n  line 44            Y75."), std::string::npos) << ran.out;

@@ -171,7 +171,7 @@ TEST(Distance, IsReportedInWords) {
     EXPECT_NE(paper.out.find(" at 0.0 % of the sweep"), std::string::npos) << paper.out;
 }
 
-TEST(Distance, RefusesWhatIsNoBody) {
+TEST(Distance, RefusesInvalidBodies) {
     for (const char* body :
          {"sphere:0", "sphere:-1", "sphere:nan", "sphere:", "sphere:1,2", "sphere:5mm", "box:1,2",
           "box:1,2,0", "cylinder:5", "cone:3", "nope.stl", "", "sphere:1e9"}) {
@@ -182,7 +182,7 @@ TEST(Distance, RefusesWhatIsNoBody) {
     }
 }
 
-TEST(Distance, RefusesAnEngineThatIsNone) {
+TEST(Distance, RefusesAnUnknownEngine) {
     for (const char* engine : {"coproc", "Fast", ""}) {
         const Ran ran = feeler({"distance", "sphere:5", "sphere:5", "--engine", engine});
         EXPECT_EQ(ran.status, 2) << engine;
@@ -191,7 +191,7 @@ TEST(Distance, RefusesAnEngineThatIsNone) {
     }
 }
 
-TEST(Distance, RefusesVectorsThatAreNone) {
+TEST(Distance, RefusesInvalidVectors) {
     for (const char* option : {"--move", "--rotate", "--sweep"})
         for (const char* value : {"1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "1,2,x", ""}) {
             const Ran ran = feeler({"distance", "sphere:5", "sphere:5", option, value});

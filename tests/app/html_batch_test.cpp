@@ -55,7 +55,7 @@ TEST(SkippedGroups, HaveTheReasonOfMostFilesFirst) {
     EXPECT_EQ(groups[1].files, (std::vector<std::string>{"a"}));
 }
 
-TEST(HtmlBatchColumns, SayWhatTheResultsSay) {
+TEST(HtmlBatchColumns, AgreeWithTheResults) {
     BatchResult batch = large_batch(60, 4);
     batch.unchecked = {"parts/late.nc"};
     const json data = json::parse(batch_columns_json(batch));

@@ -75,7 +75,7 @@ TEST(NumberRuns, HoldEachRunOnce) {
     EXPECT_EQ(NumberRuns().json(), "[]");
 }
 
-TEST(HtmlBlocks, SayWhatTheRunSays) {
+TEST(HtmlBlocks, AgreeWithTheRun) {
     const CheckRun run = clamped_plate();
     const json data = json::parse(blocks_json(run));
     ASSERT_EQ(data["count"], run.blocks.size());

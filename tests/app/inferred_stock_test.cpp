@@ -153,7 +153,7 @@ TEST(StatedStock, LiesWhereItsSizeHoldsWhatIsCut) {
     EXPECT_FALSE(stated(vectric)); // no cutting
 }
 
-TEST(StatedStock, IsNoneWithoutABody) {
+TEST(StatedStock, IsEmptyWithoutABody) {
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n"));
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n2 BLK FORM 0.2 X+0 Y+3 Z+0\n"));
     EXPECT_FALSE(

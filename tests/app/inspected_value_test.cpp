@@ -112,7 +112,7 @@ TEST(InspectedValue, ReadsParametersAsTheControlNamesThem) {
     EXPECT_EQ(heidenhain.text("plane"), "XY"); // Klartext has no G17
 }
 
-TEST(InspectedValue, NamesTheNearestNameWhereThereIsNone) {
+TEST(InspectedValue, NamesTheNearestNameIfThereIsNoSuchValue) {
     const Control control("G0 X1\n", DialectId::fanuc);
     EXPECT_THAT(control.text("plain"), HasSubstr("nearest name is 'plane'"));
     EXPECT_THAT(control.text("G60.x"), HasSubstr("nearest name is"));

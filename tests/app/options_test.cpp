@@ -31,7 +31,7 @@ TEST(CommandLine, NeedsAProgram) {
     expect_misuse({"distance", "sphere:5"}, "b is required");
 }
 
-TEST(CommandLine, RefusesWhatIsNoOptionAndNoValue) {
+TEST(CommandLine, RefusesUnknownOptionsAndValues) {
     expect_misuse({"check", "x.nc", "--bogus"}, "--bogus");
     expect_misuse({"bench"}, "tables is required");
     expect_misuse({"bench", "rivals"}, "rivals not in {paper}");

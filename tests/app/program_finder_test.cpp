@@ -104,7 +104,7 @@ TEST_F(ProgramFinder, FailsWhereNothingIsFound) {
     EXPECT_EQ(found.failures[2].file + " " + found.failures[2].message, "*.tap matches no file");
 }
 
-TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
+TEST_F(ProgramFinder, EntersEachFolderOnceDespiteLinks) {
     write("a/one.nc");
     fs::create_directory_symlink("..", folder / "a/up");
     fs::create_directory_symlink(".", folder / "a/self");
@@ -114,7 +114,7 @@ TEST_F(ProgramFinder, EntersEachFolderOnceWhateverLinksSay) {
     EXPECT_THAT(find({"**/*.nc"}).programs, ElementsAre("a/one.nc"));
 }
 
-TEST_F(ProgramFinder, EntersAFolderByTheFirstOfItsLinksWhateverTheDiskListsFirst) {
+TEST_F(ProgramFinder, EntersAFolderByTheFirstOfItsLinksInAnyOrderOfTheDisk) {
     const ScopedFolder other;
     other.write("far.nc", good);
     // File systems list names by hash, latest first, or in order: some of these differ.
@@ -281,7 +281,7 @@ TEST(FileKind, KnowsProgramsOfEveryDialect) {
     EXPECT_FALSE(why_no_program_text("#<depth>=5\no<cut> sub\nG1 Z-5 F100\no<cut> endsub\nM2\n"));
 }
 
-TEST(FileKind, KnowsTextsThatAreNone) {
+TEST(FileKind, RecognisesTextsThatAreNotPrograms) {
     EXPECT_TRUE(why_no_program_text("#include <stdio.h>\nint main(void) {\n    return 0;\n}\n"));
     EXPECT_TRUE(why_no_program_text("Dear customer,\nyour G0 and M30 are fine.\nYours\n"));
     EXPECT_TRUE(why_no_program_text("solid part\nfacet normal 0 0 1\nouter loop\n"));

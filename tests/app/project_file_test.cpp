@@ -40,7 +40,7 @@ protected:
     ScopedFolder folder;
 };
 
-TEST_F(ProjectFile, SaysWhatCountsForAllAndForSome) {
+TEST_F(ProjectFile, HasSettingsForAllAndForSomePrograms) {
     for (const char* name : {"a.nc", "b.nc", "special.nc"}) folder.write(name, good);
     const std::string text = R"(allowance = 1.5
 [rules]
@@ -176,7 +176,7 @@ TEST_F(NestedProject, CountsBeforeTheProjectThatReachesIntoItsFolder) {
     EXPECT_THAT(skips(found), ElementsAre("job/sub/c.nc"));
 }
 
-TEST_F(NestedProject, CountsInWhateverOrderItsProgramsAreNamed) {
+TEST_F(NestedProject, AppliesInAnyOrderOfItsPrograms) {
     const std::string as_it_says = "job/a.nc job/vise.toml 4";
     EXPECT_THAT(jobs(plan({"job/a.nc", "."})), Contains(as_it_says));
     EXPECT_THAT(jobs(plan({"job/a.nc", "**/a.nc"})), ElementsAre(as_it_says));
@@ -249,7 +249,7 @@ TEST_F(NestedProject, FailsWhereItCannotBeRead) {
     EXPECT_THAT(named.error().message, HasSubstr("is a link that leads nowhere"));
 }
 
-TEST_F(ProjectFile, SearchesItsFolderWhateverThatIsCalled) {
+TEST_F(ProjectFile, SearchesItsFolderOfAnyName) {
     const std::string name = folder / "jobs[1]";
     std::filesystem::create_directory(name);
     folder.write("jobs[1]/a.nc", good);

@@ -83,7 +83,7 @@ TEST(Prompt, StepsForwardsAndBack) {
     EXPECT_EQ(talk.session->at(), 0u);
 }
 
-TEST(Prompt, SaysWhatABlockComesNearAndWhatWasFound) {
+TEST(Prompt, ShowsTheClosestPairAndFindingsOfABlock) {
     const Talk talk;
     EXPECT_THAT(talk.say("next-finding"),
                 AllOf(HasSubstr("line 9: X62."), HasSubstr("feed, T1"),

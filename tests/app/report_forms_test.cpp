@@ -57,7 +57,7 @@ TEST(ErrorText, NamesTheFileUnlessTheMessageDoes) {
     EXPECT_EQ(text("", "is wrong"), "is wrong");
 }
 
-TEST(JsonLines, SayWhatJsonSays) {
+TEST(JsonLines, AgreeWithJson) {
     const CheckRun run = clamped_plate(core::Detail::deciding_pair);
     const auto whole = nlohmann::json::parse(json_report(run, false));
     nlohmann::json blocks = nlohmann::json::array(), findings = nlohmann::json::array();

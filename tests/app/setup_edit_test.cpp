@@ -337,7 +337,7 @@ TEST(SavedSetup, PutsAllowancesWhereTomlTakesThem) {
     }
 }
 
-TEST(SavedSetup, OfAnInferredOneSaysWhatIsInferredAndWhatIsStated) {
+TEST(SavedSetup, MarksInferredAndStatedValues) {
     OwnProgram own;
     own.job.edits = some_edits(sheet_of(own.job));
     const auto text = app::setup_file_text(own.job);
@@ -351,7 +351,7 @@ TEST(SavedSetup, OfAnInferredOneSaysWhatIsInferredAndWhatIsStated) {
     expect_saved_as_it_is(own.job, own.folder / "s.toml");
 }
 
-TEST(SavedSetup, IsUtf8WhateverTheProgramIsCalled) {
+TEST(SavedSetup, IsUtf8ForAnyNameOfTheProgram) {
     const test_support::ScopedFolder folder;
     CheckJob job;
     job.program = folder.write("fr\xE4s.nc", pocket);

@@ -71,7 +71,7 @@ TEST(SetupFile, SuggestsTheKeyThatWasMeant) {
     expect_error(SetupWriter().also("[rules]\nair-cuts = \"off\"\n"), {"air-cut"});
 }
 
-TEST(SetupFile, RefusesTextThatIsNoToml) {
+TEST(SetupFile, RefusesTextThatIsNotToml) {
     expect_error(SetupWriter().stock("box = [[0, 0,\n"), {"setup.toml:"});
     expect_error(SetupWriter().root("mesh_size == 1\n"), {"setup.toml:1:"});
     expect_error(SetupWriter().also("[stock]\n" + box), {"stock"});

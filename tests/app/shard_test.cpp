@@ -211,7 +211,7 @@ TEST(Shard, ComesBackFromItsText) {
         ASSERT_FALSE(app::shard_from_json(whole.substr(0, length))) << length;
 }
 
-TEST(Shard, SaysWhatATextIsThatIsNone) {
+TEST(Shard, ReportsATextThatIsNotAShard) {
     const auto why = [](const std::string& text) {
         return app::shard_from_json(text).error().message;
     };
@@ -338,7 +338,7 @@ TEST(Shard, IsRefusedWhereItIsNestedTooDeep) {
     EXPECT_EQ(why_not_with("rapids run", "\\\"" + deep.substr(0, 300) + "\\\\"), "");
 }
 
-TEST(Shard, IsRefusedWhereItsNameIsNone) {
+TEST(Shard, IsRefusedIfItsNumberIsInvalid) {
     std::string other = unsealed_share();
     other.replace(other.find("[1, 1]"), 6, "[5, 3]");
     EXPECT_THAT(app::shard_from_json(app::sealed(other)).error().message,

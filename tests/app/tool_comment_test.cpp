@@ -80,7 +80,7 @@ TEST(ToolComment, IsReadInTheFormsOfCamSystems) {
     }
 }
 
-TEST(ToolComment, IsNoneInASentence) {
+TEST(ToolComment, IsNotRecognisedInASentence) {
     for (const char* text :
          {"(Cutter does not descend more than 0.94\" below top)", "(mill four holes)",
           "(drill a bolt hole circle for 6 bolts at diameter 3 inches)", "(UGT0212 004)",
@@ -109,7 +109,7 @@ TEST(ToolComment, DescribesTheToolOfAProgramThatCallsNone) {
     EXPECT_FALSE(tools_in("(10mm ball)\nT1 M6\nG1 X1\n").in_spindle.has_value());
 }
 
-TEST(FoundTool, IsCompletedAndSaysWhatIsAssumed) {
+TEST(FoundTool, IsCompletedAndListsItsAssumptions) {
     const ProgramTools found = tools_in("(T3 D=6. CR=0. - ZMIN=-1. - BALL END MILL)\nT3 M6" + code);
     const CompleteTool whole = complete(found.tools.at(ToolNumber{3}));
     EXPECT_EQ(whole.assumed,

@@ -127,7 +127,7 @@ TEST(ToolLibrary, ReadsAToolTable) {
     EXPECT_FALSE(tools->contains(ToolNumber{99}));
 }
 
-TEST(ToolLibrary, RefusesWhatIsNone) {
+TEST(ToolLibrary, RefusesFilesThatAreNotToolLibraries) {
     for (const char* text :
          {"", "[]", "{}", "3", "{\"tools\": [3]}",
           "{\"tools\": [{\"nr\": \"1\", \"path\": \"x\"}]}", "{\"parameter\": {}, \"shape\": 3}",

@@ -119,7 +119,7 @@ TEST(ToolTable, TakesAHolderFromAMesh) {
     expect_refused(flat + "holder_mesh = \"none.stl\"\n", "none.stl");
 }
 
-TEST(ToolTable, SaysWhatItTakesForGranted) {
+TEST(ToolTable, ListsItsAssumptions) {
     EXPECT_TRUE(assumes(flat, "tool 4 has no holder"));
     EXPECT_TRUE(assumes(flat + "cuts_at_centre = false\n", "within 2.5 mm of its axis"));
     EXPECT_TRUE(assumes(flat + "cuts_at_centre = false\ncentre_diameter = 3\n", "within 1.5 mm"));

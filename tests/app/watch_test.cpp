@@ -77,7 +77,7 @@ TEST_F(Watch, SeesASetupThatChangesGoesAndComes) {
     EXPECT_EQ(end(terminal), 0);
 }
 
-TEST_F(Watch, GoesOnWhileAProgramIsNotThere) {
+TEST_F(Watch, ContinuesWhileAProgramIsMissing) {
     Terminal terminal = watching({folder / "later.nc"});
     EXPECT_THAT(pass(terminal), HasSubstr("No such file"));
     folder.write("later.nc", fine);

@@ -146,7 +146,7 @@ TEST(WhatIf, ChangesTheLengthThatComesWithTheTool) {
     EXPECT_DOUBLE_EQ(*changed->state().machine.position[2], -420.0 + 10.0 + 100.0);
 }
 
-TEST(WhatIf, DoesNotChangeAnOffsetUnderTheFeetOfRadiusCompensation) {
+TEST(WhatIf, DoesNotChangeAnOffsetDuringRadiusCompensation) {
     const Opened changed(SetupWriter(), start
                                             + "G41 D1 X20. F500.\nX30.\nX40.\nX50.\nG40 X60.\n"
                                               "M30\n");
@@ -273,7 +273,7 @@ TEST(WhatIf, OnTheWayForgetsNoBoundThatNoLongerHolds) {
     }
 }
 
-TEST(WhatIf, SaysWhatThereIsNot) {
+TEST(WhatIf, NamesWhatExistsIfTheTargetIsMissing) {
     const Opened changed(with_clamp("[80, 60, 0]"), slot);
     const auto error = [&](const WhatIf& change) {
         const auto done = changed->change(change);

@@ -44,7 +44,7 @@ TEST(BodyDistance, OfAShapeInACavityIsToItsWalls) {
     EXPECT_EQ(separation(ball_at({8, 0, 0}, 0.1), hollow, {.limit = 1.0}).upper, 0.0);
 }
 
-TEST(BodyDistance, OfMeshesInsideOneAnother) {
+TEST(BodyDistance, OfNestedMeshes) {
     const ExactBody hollow = hollow_box();
     const ExactBody small = solid_mesh(box_mesh(Vec3(-1), Vec3(1)));
     const ExactBody two = solid_mesh(

@@ -33,7 +33,7 @@ void expect_least(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const 
     EXPECT_GE(found.node_tests, found.point_tests);
 }
 
-TEST(SphereTree, RefusesNoPointsAndPointsThatAreNone) {
+TEST(SphereTree, RefusesEmptyAndInvalidPoints) {
     EXPECT_FALSE(sphere_tree({}));
     for (const double bad : {std::nan(""), infinity, -infinity, 1e200}) {
         const std::vector<Vec3> points = {Vec3(0.0), Vec3(1.0, bad, 0.0)};

@@ -40,7 +40,7 @@ TEST(OwnCut, EndsWhereTheCutEnded) {
     EXPECT_FALSE(slot.holds({60, 49.9, -5}, {60, 49.9, 30}));
 }
 
-TEST(OwnCut, GoesOnFromOneMoveToTheNext) {
+TEST(OwnCut, ContinuesFromOneMoveToTheNext) {
     Slot slot;
     const auto cutter = std::make_shared<const Cutter>(make_cutter(end_mill, 0.0));
     cut(slot.stock, {cutter, {60, 50, -5}, {60, 90, -8}});
@@ -54,7 +54,7 @@ TEST(OwnCut, IsThatOfTheSameFlutesOnly) {
     EXPECT_FALSE(Slot(slimmer).holds({60, 50, -5}, {0, 50, -5}));
 }
 
-TEST(OwnCut, IsNoneForFlutesThatGetSlimmerUpwards) {
+TEST(OwnCut, DoesNotExistForFlutesThatGetSlimmerUpwards) {
     EXPECT_FALSE(Slot(dovetail).holds({60, 50, -5}, {60, 50, 10}, dovetail));
 }
 

@@ -135,7 +135,7 @@ TEST_P(AnyEngine, FindsTheLastBitAmongPairsThatDifferByRoundingOnly) {
     }
 }
 
-TEST_P(AnyEngine, TakesSinglePointsAndPointsInOnePlace) {
+TEST_P(AnyEngine, AcceptsSingleAndCoincidentPoints) {
     const Points one = {Vec3(1.0, 2.0, 3.0)}, same(90, Vec3(1.0, 2.0, 7.0));
     const Points line = block_of_points(70, 1, 1);
     expect_least(one, one, translation({0.0, 3.0, 4.0}));
@@ -293,7 +293,7 @@ TEST_P(AnyEngine, SweepsNeverExceedDenseSamples) {
     }
 }
 
-TEST_P(AnyEngine, RefusesWhatIsNoBody) {
+TEST_P(AnyEngine, RefusesInvalidBodies) {
     EXPECT_NE(engine->add({}).error().message.find("without boundary points"), std::string::npos);
     for (const double bad : {std::nan(""), infinity, -infinity, 1e200}) {
         const Points points = {Vec3(0.0), Vec3(1.0, bad, 0.0)};
@@ -302,7 +302,7 @@ TEST_P(AnyEngine, RefusesWhatIsNoBody) {
     }
 }
 
-TEST_P(AnyEngine, SaysWhatMemoryABodyWouldTakeBeforeItTakesAny) {
+TEST_P(AnyEngine, EstimatesTheMemoryOfABodyBeforeAllocating) {
     const Points block = block_of_points(100, 100, 10);
     const auto refused = engine->add(block, 1e6);
     ASSERT_FALSE(refused);
@@ -311,7 +311,7 @@ TEST_P(AnyEngine, SaysWhatMemoryABodyWouldTakeBeforeItTakesAny) {
     EXPECT_TRUE(engine->add(block, 2e7));
 }
 
-TEST_P(AnyEngine, RefusesWhatIsNoQuestion) {
+TEST_P(AnyEngine, RefusesInvalidQueries) {
     const PointBody body = add(block_of_points(2, 2, 2));
     const auto message = [&](const Transform& pose, const PairGoal& goal, PointBody other) {
         const auto found = engine->closest_pair(body, other, pose, goal);

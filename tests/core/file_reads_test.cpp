@@ -40,7 +40,7 @@ TEST(FileReads, ReportReadFilesAndMissingFiles) {
                                         "presence b: -", "presence " + own + ": folder"}));
 }
 
-TEST(FileReads, SayWhatANameLeadsTo) {
+TEST(FileReads, ReportTheTargetOfAName) {
     const ScopedFolder folder;
     folder.write("a", "hello");
     std::filesystem::create_symlink("nowhere", folder / "gone");

@@ -139,7 +139,7 @@ TEST_P(RandomPermitRun, StopsBeforeWhatIsNeverPermitted) {
     EXPECT_EQ(run.entries[last].entered, infinity);
 }
 
-TEST_P(RandomPermitRun, ACopyGoesOnAsTheOriginalDoes) {
+TEST_P(RandomPermitRun, ACopyContinuesLikeTheOriginal) {
     PermitRun run = permit_run(motions, servo);
     for (int i = 0; i < 500; ++i) step(run, static_cast<uint32_t>(i / 3));
     PermitRun copy = run;

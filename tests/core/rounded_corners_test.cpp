@@ -98,7 +98,7 @@ TEST(RoundedCorners, LeaveNoDoubtWhereTheClearanceSufficesAnyway) {
     }
 }
 
-TEST(RoundedCorners, AreNoneAtExactStopsAndOnRapids) {
+TEST(RoundedCorners, AreAbsentAtExactStopsAndOnRapids) {
     for (const Blending blending : {Blending::exact_stop, Blending::exact_path}) {
         Corner corner(around_a_corner(2.1, true));
         corner.give({within(0.3)});

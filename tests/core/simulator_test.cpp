@@ -374,7 +374,7 @@ TEST(Simulator, FindsADrillThatIsFedSidewaysIntoTheStock) {
     EXPECT_EQ(run.feed({20, 50.2, 5}).verdict, Verdict::clear);
 }
 
-TEST(Simulator, RunsARapidOfOneAxisStraightWhateverTheSpeeds) {
+TEST(Simulator, RunsARapidOfOneAxisStraightAtAnySpeeds) {
     auto dog_leg = plain_setup();
     dog_leg.machine.rapid = RapidStyle::dogleg;
     Shift run(dog_leg);

@@ -201,7 +201,7 @@ TEST(LineOf, IsTheMatterOfAMeshOnTheLine) {
     EXPECT_GT(met, 200);
 }
 
-TEST(Holds, SaysWhatTheLineThroughThePointSays) {
+TEST(Holds, AgreesWithTheLineThroughThePoint) {
     std::mt19937 rng(54);
     std::uniform_real_distribution<double> position(-4.0, 4.0);
     for (const Named& named : meshes()) {

@@ -148,7 +148,7 @@ TEST(StockMesh, RoundsABallPocketWithinItsBound) {
     }
 }
 
-TEST(StockMesh, IsClosedWhateverIsCut) {
+TEST(StockMesh, IsClosedAfterAnyCut) {
     std::mt19937_64 random(3);
     const auto between = [&](double low, double high) {
         return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);

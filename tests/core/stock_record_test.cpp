@@ -55,7 +55,7 @@ TEST(StockRecord, KeepsCylindersMeshesAndTolerances) {
     EXPECT_EQ(kept.triangles, mesh.triangles);
 }
 
-TEST(StockRecord, WritesLittleForMovesThatGoOn) {
+TEST(StockRecord, WritesLittleForContinuedMoves) {
     CutModel model = *make_cut_model({SolidBox{{{0, 0, -10}, {50, 50, 0}}}, 0.0}, 2.0);
     const auto cutter = std::make_shared<Cutter>(make_cutter({{{0, 3, 20, 3, 0}}}, 0.0));
     Vec3 at(5, 5, -1);

@@ -198,7 +198,7 @@ TEST(Calls, LinuxCncWantsTheNumberInTheFile) {
     EXPECT_THAT(rapids_with(folder, "M98 P102\nM2\n", DialectId::linuxcnc), HasSubstr("error: "));
 }
 
-TEST(Calls, GrblHasNone) {
+TEST(Calls, AreRefusedByGrbl) {
     EXPECT_THAT(rapids("M98 P100\nM2", DialectId::grbl), HasSubstr("other controls"));
 }
 

@@ -62,7 +62,7 @@ TEST(Codes, AnUnknownGCodeIsAnErrorWithLineAndColumn) {
     EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
 }
 
-TEST(Codes, AnUnknownMCodeIsAWarningAndTheProgramGoesOn) {
+TEST(Codes, AnUnknownMCodeIsAWarningAndTheProgramContinues) {
     const Ran ran = run_text("M31 P5\nG0 X1\nM30\n");
     EXPECT_FALSE(ran.run.error);
     EXPECT_THAT(warnings_of(ran.run),

@@ -52,7 +52,7 @@ TEST(FanucContour, DoesNotBeginWithAnArc) {
     EXPECT_THAT(path_of("G41 D1\nG2 X10. Y10. I10. F9\nX20.\n"), HasSubstr("PS0034"));
 }
 
-TEST(FanucContour, GoesOnToWhereTheOffsetLinesMeetAtAnOutsideCorner) {
+TEST(FanucContour, ExtendsOutsideCornersToTheIntersectionOfTheOffsetLines) {
     // A right angle: the offset lines meet 2 beyond each side.
     EXPECT_EQ(path_of("G1 G42 D1 X10. F9\nX20.\nY20.\nG40 X0\nM30\n"),
               "10000,-2000 22000,-2000 22000,20000 0,20000 ");

@@ -82,7 +82,7 @@ TEST(FanucCycle, G88StopsForARetractByHand) {
     EXPECT_EQ(steps("S500 M3\nG99 G87 X1 Z-8 R3 P100 F50", DialectId::haas), path);
 }
 
-TEST(FanucCycle, G85FeedsOutToRAndGoesOnInARapid) {
+TEST(FanucCycle, G85FeedsOutToRAndThenRetractsInARapid) {
     EXPECT_EQ(steps("G98 G85 X1 Z-8 R3 F50"), " r1,20 r1,3 f1,-8 f1,3 r1,20");
     EXPECT_EQ(steps("G98 G89 X1 Z-8 R3 P100 F50"), " r1,20 r1,3 f1,-8 d f1,3 r1,20");
     EXPECT_EQ(steps("F50 G98 G85 X1 Z-8 R3", DialectId::linuxcnc), " r1,20 r1,3 f1,-8 f1,3 r1,20");

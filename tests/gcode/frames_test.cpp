@@ -146,7 +146,7 @@ TEST(Frames, RotationFollowsScalingAndItsCentreIsScaled) {
                      "G1 X6 Y4 F9\nX1 Y1");
 }
 
-TEST(Frames, G53AndG28GoToPlacesOfTheMachine) {
+TEST(Frames, G53AndG28GoToMachinePositions) {
     expect_same_path("G54 G0 X1 Y2\nG68 X0 Y0 R30\nG53 G0 X-5 Y-6\nG91 G28 Y0",
                      "G54 G0 X1 Y2\nG53 G0 X-5 Y-6\nG91 G28 Y0");
 }

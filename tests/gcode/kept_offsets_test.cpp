@@ -72,7 +72,7 @@ TEST(Home, IsReachedAlongTheProgramsAxesWhereTheWorkIsTurned) {
                 HasSubstr("straight_traverse x=5 y=10 z=0\nstraight_traverse x=1 y=10 z=0\n"));
 }
 
-TEST(Arcs, AreNoneInThePlanesOfSecondaryAxes) {
+TEST(Arcs, AreRefusedInThePlanesOfSecondaryAxes) {
     EXPECT_THAT(refused("G17.1 F100\nG2 U10 V0 I5 J0"),
                 HasSubstr("3:1: G2: arcs are not possible in the G17.1"));
 }
@@ -100,7 +100,7 @@ TEST(Units, AreNotMissedByWordsThatAreNoLengths) {
     EXPECT_THAT(warnings_of("G0 X1", DialectId::linuxcnc), HasSubstr("no units (G"));
 }
 
-TEST(IniValues, AreReadByNameAndMissedWhereTheFileHasNone) {
+TEST(IniValues, AreReadByNameAndMissingIfTheFileHasNone) {
     Environment environment = known_environment(DialectId::linuxcnc);
     environment.ini_values["_ini[setup]xpos"] = 3.5;
     const Ran ran = run_text("G21\nG0 X#<_ini[setup]xpos> Y[EXISTS[#<_INI[Setup]XPos>]]\n"

@@ -53,7 +53,7 @@ TEST(KlartextFormula, FunctionsOfFnComputeToo) {
     EXPECT_EQ(value_of_formula("FN 13: Q5 = -10 ANG +10"), "315000 ");
 }
 
-TEST(KlartextFormula, SaysWhatIsWrong) {
+TEST(KlartextFormula, ReportsMistakes) {
     EXPECT_THAT(klartext_error("Q1 = 5 / 0\n"), HasSubstr("2:8: this is a division by zero"));
     EXPECT_THAT(klartext_error("Q1 = FOO 5\n"), HasSubstr("there is no function 'FOO'"));
     EXPECT_THAT(klartext_error("Q2500 = 5\n"),

@@ -87,7 +87,7 @@ TEST(KlartextArc, PoleCountsFromTheToolWithI) {
               "arc_feed x=0 y=2 z=0 plane=XY centre=5,2 turns=-1 feed=100\n");
 }
 
-TEST(KlartextArc, RefusesWhatIsNoCircle) {
+TEST(KlartextArc, RefusesInvalidCircles) {
     EXPECT_THAT(
         klartext_error("L X+10 F100\nCC X+0 Y+0\nC X+0 Y+11 DR+\n"),
         HasSubstr("the radius of the arc is 10.0000 mm at its start and 11.0000 mm at its end"));
@@ -107,7 +107,7 @@ TEST(KlartextArc, SignOfTheRadiusChoosesTheShorterOrLongerArc) {
                 HasSubstr("centre=10,0 turns=-1"));
 }
 
-TEST(KlartextArc, TangentArcGoesOnInTheDirectionBeforeIt) {
+TEST(KlartextArc, TangentArcContinuesInThePreviousDirection) {
     // Along +X to (10,0), then two quarters of the circle about (10,10).
     EXPECT_EQ(klartext("L X+10 Y+0 F100\nCT X+20 Y+10\nCT IX-10 IY+10\n"),
               "straight_feed x=10 y=0 z=0 feed=100\n"

@@ -74,7 +74,7 @@ TEST(OpenProgram, HoldsShortProgramsWholeAndReadsLongOnesInWindows) {
     EXPECT_EQ(error_of(program), "");
 }
 
-TEST(OpenProgram, FindsOnItsWayWhatIsNoProgram) {
+TEST(OpenProgram, DetectsATextThatIsNotAProgram) {
     const ScopedFolder folder;
     std::string lines;
     for (int i = 0; i < 100; ++i) lines += "G1 X" + std::to_string(i) + "\n";

@@ -52,7 +52,7 @@ TEST(FeedMode, PerTurnNeedsATurningSpindle) {
     EXPECT_THAT(error_of("G95 G1 X1 F0.2"), HasSubstr("1:5: G1: G95 gives no feed rate here"));
 }
 
-TEST(FeedMode, ARateOfOneModeIsNoneInAnother) {
+TEST(FeedMode, ARateOfOneModeDoesNotCountInAnother) {
     EXPECT_THAT(error_of("G94 F100\nS100 M3\nG95 G1 X1"), HasSubstr("no feed rate"));
     EXPECT_EQ(error_of("G94 F100\nG94 G1 X1"), "");
 }

@@ -42,7 +42,7 @@ TEST(Offsets, ChangesMoveTheCoordinatesAndNotTheMachine) {
     }
 }
 
-TEST(Offsets, AxesKeepTheirPlaceWhenAnotherMoves) {
+TEST(Offsets, AxesKeepTheirPositionWhenAnotherMoves) {
     EXPECT_EQ(in_shop("G0 X0\nG55 G0 X0"), "straight_traverse x=0 y=200 z=420\n"
                                            "set_offset offset=G55 x=-100 y=-100 z=-400\n"
                                            "straight_traverse x=0 y=100 z=400\n");
@@ -71,7 +71,7 @@ TEST(Offsets, G10WritesThem) {
     EXPECT_THAT(error_of("G10 L2 P1 R5"), HasSubstr("1:11: R5"));
 }
 
-TEST(Offsets, G92NamesThePlaceWhereTheMachineStands) {
+TEST(Offsets, G92SetsTheCoordinatesOfTheCurrentPosition) {
     EXPECT_EQ(in_shop("G0 X5\nG92 X0\nG0 X1\nG92.1\nG0 X6"),
               "straight_traverse x=5 y=200 z=420\n"
               "set_offset offset=G54 x=-345 y=-200 z=-420\n"
@@ -87,7 +87,7 @@ TEST(Offsets, G92CanBeSuspendedAndRestored) {
               "set_offset offset=G54 x=10 y=0 z=0\n");
 }
 
-TEST(Offsets, G92FromAnUnknownPlaceLeavesTheMachineUnknown) {
+TEST(Offsets, G92AtAnUnknownPositionLeavesTheMachineUnknown) {
     const Ran ran = run_text("G92 X0 Y0\nG0 X5\n", Environment{.dialect = DialectId::grbl});
     EXPECT_FALSE(ran.run.error);
     EXPECT_EQ(commands_of(ran.run), "set_offset offset=G54 z=0\nstraight_traverse x=5 y=0\n");
@@ -213,7 +213,7 @@ TEST(Homing, WithoutAxisWordsMovesAllAxes) {
                                            "straight_traverse x=350 y=200 z=420\n");
 }
 
-TEST(Homing, WinsOverTheMotionCodeOfItsBlock) {
+TEST(Homing, TakesPrecedenceOverTheMotionCodeOfItsBlock) {
     EXPECT_EQ(in_shop("G1 F100\nG0 G91 G28 Z0\nG90 X1"), "straight_traverse x=350 y=200 z=420\n"
                                                          "straight_traverse x=350 y=200 z=420\n"
                                                          "straight_traverse x=1 y=200 z=420\n");
@@ -237,7 +237,7 @@ TEST(Homing, BringsAnUnknownAxisToAKnownPosition) {
     EXPECT_EQ(commands_of(ran.run), "straight_traverse\nstraight_traverse z=0\n");
 }
 
-TEST(Homing, G281StoresThePlace) {
+TEST(Homing, G281StoresThePosition) {
     EXPECT_EQ(trace("G21 G0 X5 Z7\nG28.1\nG0 X0 Z0\nG28", DialectId::linuxcnc),
               "straight_traverse x=5 y=0 z=7\n"
               "straight_traverse x=0 y=0 z=0\n"

@@ -39,7 +39,7 @@ TEST(Restart, ListsWhatTheFirstCutNeeds) {
                                                    "M8", "G1", "F200", "the tool at Y20 Z-5"));
 }
 
-TEST(Restart, ListsTheMotionCodeThatABlockOnTheWayGoesOnWith) {
+TEST(Restart, ListsTheMotionCodeThatASkippedBlockUses) {
     EXPECT_THAT(restarted(8)->missing, testing::Contains("G1"));
     // A control that has just been switched on starts with G0.
     EXPECT_THAT(restarted(6)->missing, testing::Not(testing::Contains("G0")));

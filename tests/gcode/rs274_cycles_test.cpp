@@ -34,7 +34,7 @@ TEST(Rs274Cycle, TapsWithAReversedSpindleAndWithoutOverrides) {
     EXPECT_EQ(count_of(text, "enable_override"), 4u) << text;
 }
 
-TEST(Rs274Cycle, RefusesToTapWithASpindleThatStandsOrTurnsTheOtherWay) {
+TEST(Rs274Cycle, RefusesToTapWithASpindleThatIsStoppedOrTurnsTheOtherWay) {
     EXPECT_EQ(error_of(cycle("G84 X1 Z-3 R2", "S500"), DialectId::linuxcnc),
               "3:5: G84: the spindle is stopped: start it with M3 first");
     EXPECT_EQ(error_of(cycle("G74 X1 Z-3 R2"), DialectId::linuxcnc),

@@ -25,7 +25,7 @@ TEST(SavedModes, BringBackSpindleCoolantAndWorkOffset) {
     EXPECT_THAT(traced("M8\nM70\nM9\nM72"), EndsWith("coolant mist=0 flood=1\n"));
 }
 
-TEST(SavedModes, DoNotSwitchOffWhatCameOnBesides) {
+TEST(SavedModes, DoNotSwitchOffOtherModes) {
     EXPECT_THAT(traced("M7\nM70\nM8\nM72"), EndsWith("coolant mist=1 flood=1\n"));
     EXPECT_THAT(traced("M7\nM9\nM70\nM8\nM72"), EndsWith("coolant mist=0 flood=0\n"));
     EXPECT_THAT(traced("M70\nM52 P1\nM72"), EndsWith("kind=adaptive_feed enabled=1\n"));
@@ -39,7 +39,7 @@ TEST(SavedModes, BringBackFeedAndSpeedWithFewDigits) {
     EXPECT_THAT(refused("G21 F100\nM70\nG93\nM72\nG1 X1"), HasSubstr("no feed rate"));
 }
 
-TEST(SavedModes, SayWhatIsLost) {
+TEST(SavedModes, ReportLostModes) {
     EXPECT_THAT(warned("S100 G96 D2000\nM70\nG97 S5\nM72"), HasSubstr("without its limit D2000"));
     EXPECT_THAT(warned("G43.1 Z5\nM70\nG49\nM72"), HasSubstr("that of the tool in the spindle"));
     EXPECT_THAT(warned("o1 sub\nM73\nF3\no1 endsub\nF2.25\no1 call"), HasSubstr("M73: the feed"));
@@ -69,7 +69,7 @@ TEST(LinuxcncState, ReadsWorkOffsetsSetAsParametersWhenTheyAreSelectedAnew) {
     EXPECT_THAT(traced("#5221=7\nG55\nG54\nG53 G0 X0"), EndsWith(" x=-7 y=0 z=0\n"));
 }
 
-TEST(LinuxcncState, MiscountsItsPlaceWhenG10TurnsUnderG92) {
+TEST(LinuxcncState, MiscalculatesItsPositionWhenG10TurnsUnderG92) {
     const char* program = "G92 Y-21.159\nG10 L2 P1 X-7 R13\nG0 X4";
     EXPECT_THAT(traced(program), HasSubstr("x=4 y=-22.191354 z=0"));
     EXPECT_THAT(warned(program), HasSubstr("loses its position"));

@@ -107,7 +107,7 @@ TEST(ShopMacro, AnglesOfFanucHaveNoSign) {
     EXPECT_THAT(value("ATAN[-1]/[-1]", DialectId::haas), HasSubstr("x=-135 "));
 }
 
-TEST(ShopMacro, G29PassesThePlacesOfEveryG28) {
+TEST(ShopMacro, G29PassesTheIntermediatePointsOfEveryG28) {
     // Fanuc's example: G28 X40. and G28 Y60. leave the intermediate point (40, 60).
     EXPECT_THAT(trace("G21 G0 X1. Y1. Z1.\nG28 X40.\nG28 Y60.\nG29 X2. Y3."),
                 HasSubstr("straight_traverse x=40 y=60 z=1\nstraight_traverse x=2 y=3 z=1\n"));

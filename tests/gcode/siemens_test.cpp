@@ -228,7 +228,7 @@ TEST(SiemensFrame, ShiftsTurnsAndMirrorsInTheOrderOfTheProgram) {
     EXPECT_EQ(machine("TRANS X10\nTRANS\n"), std::make_pair(1.0, 0.0));
 }
 
-TEST(SiemensFrame, RefusesArcsThatAreNoneAndTiltedPlanes) {
+TEST(SiemensFrame, RefusesDistortedArcsAndTiltedPlanes) {
     EXPECT_THAT(siemens_error("SCALE X2\nG1 X5 F100\nG2 X10 I2.5\n"),
                 HasSubstr("SCALE uses different factors"));
     EXPECT_THAT(siemens_error("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1)\n"),

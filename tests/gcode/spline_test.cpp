@@ -49,7 +49,7 @@ TEST(Spline, CubicRunsThroughItsMiddle) {
     EXPECT_EQ(spline->next_tangent, (SplinePoint{0, -8}));
 }
 
-TEST(Spline, CubicGoesOnInTheLastDirectionWithoutIAndJ) {
+TEST(Spline, CubicContinuesInTheLastDirectionWithoutIAndJ) {
     const auto spline = cubic_spline({8, 0}, {0, -8}, {{}, {}, 1.0, 2.0, {20, 0}});
     ASSERT_TRUE(spline);
     EXPECT_EQ(spline->curve.points[1].at, (SplinePoint{8, -8}));

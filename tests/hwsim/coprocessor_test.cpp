@@ -318,7 +318,7 @@ TEST(Coprocessor, TakesTheSameCyclesEveryTime) {
     EXPECT_EQ(a.device.state, b.device.state);
 }
 
-TEST(Coprocessor, GoesOnFromASnapshotAsItWentOn) {
+TEST(Coprocessor, ContinuesFromASnapshotAsBefore) {
     std::mt19937 rng(6);
     Work original(7);
     std::vector<std::pair<Work, CoprocessorState>> others;

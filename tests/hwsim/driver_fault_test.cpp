@@ -129,7 +129,7 @@ struct FailingJob {
     }
 };
 
-TEST(DriverFault, GoesOnFromAnyFaultAtAnyMomentAndPermitsNothingTooNear) {
+TEST(DriverFault, RecoversFromAnyFaultAtAnyMomentAndPermitsNothingTooNear) {
     std::array<size_t, stop_count> stops{};
     size_t permitted = 0;
     for (uint32_t seed = 0; seed < 150; ++seed) {

@@ -281,7 +281,7 @@ TEST(Driver, SaysWhenTheMemoryIsTooSmall) {
 }
 
 /// A wrong bit while a job runs: nothing is permitted that should not be, and the job goes on.
-TEST(Driver, GoesOnAfterAWrongBit) {
+TEST(Driver, RecoversFromAWrongBit) {
     std::mt19937 rng(8);
     for (int round = 0; round < 30; ++round) {
         EmulatedDevice device = emulated_device(bench_config()).value();
@@ -324,7 +324,7 @@ TEST(Driver, GivesLinesBackThatAStopHeld) {
     EXPECT_LT(driver.space.next, lines + 10);
 }
 
-TEST(Driver, GoesOnAfterAMemoryThatTookNoLines) {
+TEST(Driver, RecoversFromAMemoryThatStoredNoLines) {
     EmulatedDevice device = emulated_device(bench_config()).value();
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();

@@ -97,7 +97,7 @@ TEST(Threshold, IsNeverLessThanTheDistanceAndHalfTheStepAcross) {
     EXPECT_EQ(threshold(std::nextafter(1.0, 2.0), 0.0).value(), 4097U);
 }
 
-TEST(Threshold, RefusesWhatIsNoLength) {
+TEST(Threshold, RefusesInvalidLengths) {
     EXPECT_FALSE(threshold(-1e-9, 0.0));
     EXPECT_FALSE(threshold(0.0, -1e-9));
     EXPECT_FALSE(threshold(std::nan(""), 0.0));

@@ -96,7 +96,7 @@ TEST(AllowedRules, SayWhichNameIsNoRule) {
     }
 }
 
-TEST(AllowedRules, SayOnceWhichCommentIsNotPermittedAlsoWhereNothingWasFound) {
+TEST(AllowedRules, ReportACommentThatIsNotPermittedOnceEvenWithoutFindings) {
     const Checked checked =
         check(past_a_clamp("allow_comments = false\n"),
               program({"G0 X-20. Y97.8", "Z60. ; feeler: allow near-miss", "M98 P2000 L3"})

@@ -61,7 +61,7 @@ TEST(MissingLength, IsNotCuredByMoreStickOut) {
     EXPECT_THAT(rules_in(wrong_table), Not(HasSubstr("stick-out-short")));
 }
 
-TEST(MissingLength, TakesInNothingWhenItsRuleIsOff) {
+TEST(MissingLength, AbsorbsNothingIfItsRuleIsOff) {
     const SetupWriter off = SetupWriter().also("[rules]\nmissing-length-offset = \"off\"\n");
     EXPECT_THAT(check(off, passes("")).errors(), HasSubstr("holder-into-wall"));
 }
@@ -70,7 +70,7 @@ const SetupWriter short_second_length =
     SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 95\n"
                           "[[length_offset]]\nnumber = 2\nlength = 85\n");
 
-TEST(LengthOfAnotherTool, TakesInNoOtherCause) {
+TEST(LengthOfAnotherTool, AbsorbsNoOtherCause) {
     std::string stopped = passes("G43 H2");
     stopped.replace(stopped.find("S6000 M3"), 8, "S6000 M5");
     EXPECT_THAT(check(short_second_length, stopped).errors(), HasSubstr("spindle-off 8"));

@@ -47,7 +47,7 @@ TEST(WrongLength, DoesNotTakeInAClampThatIsInTheWayAnyhow) {
     EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than intended")));
 }
 
-TEST(WrongLength, TakesInAClampThatTheRightOneClears) {
+TEST(WrongLength, AbsorbsAClampThatTheRightOneClears) {
     // Minimum clearance 2 mm: at Z14.5 the tool is 2.5 mm above the top, with H3 1 mm.
     const std::string lines = "G0 Z14.5\nX50. Y110.\n";
     const Checked wrong = check(with_clamp(93.5, 12), with_length(1, 3, lines));
@@ -71,7 +71,7 @@ TEST(WrongLength, LeavesTheTopOfZ) {
     EXPECT_THAT(all_words(top), Not(HasSubstr("lower than intended")));
 }
 
-TEST(WrongLength, TakesInTheLowerEndOfZByWhatIsMissing) {
+TEST(WrongLength, AbsorbsTheLowerEndOfZByTheMissingLength) {
     // Z-167 ends 8 mm above the limit with the right length, 2 mm below it with 10 mm less.
     const auto beside = [](const std::string& z) { return "G0 Z" + z + "\n"; };
     const SetupWriter setup = table_with(85);

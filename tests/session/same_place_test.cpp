@@ -88,7 +88,7 @@ TEST(SameBlock, DiffersFromEveryOther) {
     EXPECT_EQ(different.size(), walked.digests.size());
 }
 
-TEST(RecordedRun, IsWhatACheckGivesWhateverWasLookedAtMeanwhile) {
+TEST(RecordedRun, EqualsACheckWhateverWasVisited) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
     const auto whole = app::run_check(files.job());
     ASSERT_TRUE(whole);

@@ -212,7 +212,7 @@ TEST(WhatIf, RefusesToMoveAFixtureThatHasBeenTakenAway) {
 
 /// The length in the control is 30 mm too short from G43 on. Meanwhile the clamp is moved into the
 /// path.
-TEST(WhatIf, LetsAWrongLengthTakeInOnlyWhatComesOfIt) {
+TEST(WhatIf, LetsAWrongLengthAbsorbOnlyItsConsequences) {
     const ProgramFiles files("short.ngc",
                              "G21 G90 G17 G54\nT1 M6\nS2000 M3\nG43 H3\nG0 Z90\nG0 X10 Y50\n"
                              "G1 Z-2 F500\nG1 X95\nG0 Z90\nM2\n",

@@ -113,7 +113,7 @@ private:
     size_t most_made_ = 0;
 };
 
-TEST(WhatIf, OnlyWhatStillCountsDecidesHoweverMuchWasTried) {
+TEST(WhatIf, DependsOnlyOnTheCurrentChanges) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
     size_t most = 0;
     for (unsigned seed = 0; seed < 6; ++seed) {

@@ -140,7 +140,7 @@ TEST(DeviceWorker, ARunEndsWithItsPanelAndWithAWhatIf) {
     EXPECT_TRUE(device.is_running);
 }
 
-TEST(DeviceWorker, SaysWhatIsWrongWithADeviceFile) {
+TEST(DeviceWorker, ReportsMistakesInADeviceFile) {
     const test_support::ScopedFolder folder;
     DeviceWatcher watcher("clamped_plate.nc");
     const DeviceModel& device = watcher.model.device;

@@ -58,7 +58,7 @@ TEST(RowFilter, LooksForOtherWordsInTheLine) {
     EXPECT_TRUE(RowFilter("T3").wanted_text().empty());
 }
 
-TEST(RowFilter, SaysWhatIsWrongWithACondition) {
+TEST(RowFilter, ReportsMistakesInACondition) {
     for (const auto& [text, why] : {std::pair{"clearance <", "ends too early"},
                                     {"clearence < 1", "'clearance'"},
                                     {"T3 rapid", "'and' or 'or' is missing"},
@@ -72,7 +72,7 @@ TEST(RowFilter, SaysWhatIsWrongWithACondition) {
     EXPECT_THAT(RowFilter("rapid and clearence < 1").refusal(), HasSubstr("Column 11"));
 }
 
-TEST(RowFilter, SaysWhatOnlyTheControlKnows) {
+TEST(RowFilter, ReportsValuesThatOnlyTheControlHas) {
     for (const auto& [text, name] :
          {std::pair{"rapid and plane = ZX", "plane"}, {"#100 > 5", "#100"}, {"x < 5", "x"}}) {
         const RowFilter filter(text);
