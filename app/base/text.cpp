@@ -177,6 +177,12 @@ std::string wrapped(const std::string& text, size_t indent, size_t hang) {
     return result + line + "\n";
 }
 
+std::string capitals(std::string text) {
+    for (char& c : text)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return text;
+}
+
 std::string line_ranges(std::vector<uint32_t> lines) {
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
@@ -248,16 +254,10 @@ std::string duration_text(double seconds) {
 }
 
 std::string verdict_text(core::Verdict verdict) {
-    switch (verdict) {
-    case core::Verdict::clear:
-        return "CLEAR";
-    case core::Verdict::undecided:
-        return "UNDECIDED, not proven clear";
-    case core::Verdict::violation:
-        return "VIOLATION, below a minimum clearance";
-    default:
-        return "COLLISION";
-    }
+    const std::string name = capitals(core::name_of(verdict));
+    if (verdict == core::Verdict::undecided) return name + ", not proven clear";
+    if (verdict == core::Verdict::violation) return name + ", below a minimum clearance";
+    return name;
 }
 
 } // namespace app

@@ -206,12 +206,12 @@ constexpr NamedFact facts[] = {
     {"rule", BlockFact::rule, ValueType::word},
 };
 
-constexpr std::string_view motions[] = {"rapid", "feed", "arc", "cycle", "none"};
-constexpr std::string_view verdicts[] = {"clear", "undecided", "violation", "collision"};
-constexpr std::string_view severities[] = {"error", "warning", "note"};
+// Findings that are off are not in the record.
+constexpr std::array severities = {core::Severity::note, core::Severity::warning,
+                                   core::Severity::error};
 
-bool is_in(const auto& list, std::string_view name) {
-    return std::find(std::begin(list), std::end(list), name) != std::end(list);
+bool names_one_of(const auto& all, std::string_view name) {
+    return core::find_named(all, name).has_value();
 }
 
 /// The number after a letter, as in t3; empty if the name has another form.
@@ -249,9 +249,11 @@ std::optional<Node> value_named(const std::string& name) {
 
 std::optional<Node> truth_named(const std::string& name) {
     constexpr ValueType truth = ValueType::truth;
-    if (is_in(motions, name)) return Node{.kind = NodeKind::moves, .type = truth, .text = name};
-    if (is_in(verdicts, name)) return Node{.kind = NodeKind::judged, .type = truth, .text = name};
-    if (is_in(severities, name))
+    if (names_one_of(core::all_block_motions, name))
+        return Node{.kind = NodeKind::moves, .type = truth, .text = name};
+    if (names_one_of(core::all_verdicts, name))
+        return Node{.kind = NodeKind::judged, .type = truth, .text = name};
+    if (names_one_of(severities, name))
         return Node{.kind = NodeKind::severity, .type = truth, .text = name};
     if (name == "near") return Node{.kind = NodeKind::near, .type = truth};
     if (name == "finding") return Node{.kind = NodeKind::severity, .type = truth};
@@ -264,11 +266,20 @@ std::optional<Node> truth_named(const std::string& name) {
     return std::nullopt;
 }
 
+namespace {
+
+std::vector<std::string> words_of(const auto& all) {
+    const std::vector<std::string_view> names = core::names_of(all);
+    return {names.begin(), names.end()};
+}
+
+} // namespace
+
 std::vector<std::string> words_for(const Node& node) {
     if (node.kind == NodeKind::fact && node.fact == BlockFact::motion)
-        return {std::begin(motions), std::end(motions)};
+        return words_of(core::all_block_motions);
     if (node.kind == NodeKind::fact && node.fact == BlockFact::verdict)
-        return {std::begin(verdicts), std::end(verdicts)};
+        return words_of(core::all_verdicts);
     if (node.kind == NodeKind::fact && node.fact == BlockFact::rule) return core::rule_names();
     const ModalEntry* entry = node.kind == NodeKind::control ? modal_entry(node.text) : nullptr;
     return entry ? words_of(*entry) : std::vector<std::string>{};
@@ -277,9 +288,12 @@ std::vector<std::string> words_for(const Node& node) {
 std::vector<std::string> condition_names() {
     std::vector<std::string> names;
     for (const NamedFact& fact : facts) names.emplace_back(fact.name);
-    for (const std::string_view motion : motions) names.emplace_back(motion);
-    for (const std::string_view verdict : verdicts) names.emplace_back(verdict);
-    for (const std::string_view severity : severities) names.emplace_back(severity);
+    const auto add = [&](const auto& all) {
+        for (const std::string_view name : core::names_of(all)) names.emplace_back(name);
+    };
+    add(core::all_block_motions);
+    add(core::all_verdicts);
+    add(severities);
     names.emplace_back("finding");
     names.emplace_back("near");
     for (std::string& rule : core::rule_names()) names.push_back(std::move(rule));

@@ -15,6 +15,7 @@
 #include "app/setup/tools/tool_library.h"
 #include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 
@@ -433,21 +434,11 @@ std::string setup_next_to(const std::string& program) {
     return is_one ? setup.string() : std::string();
 }
 
-namespace {
-
-core::Severity severity_named(const std::string& word) {
-    if (word == "off") return core::Severity::off;
-    if (word == "note") return core::Severity::note;
-    return word == "warning" ? core::Severity::warning : core::Severity::error;
-}
-
-} // namespace
-
 core::RuleSeverities read_severities(TableReader& table, const std::string& but) {
     core::RuleSeverities severities;
     for (const std::string& rule : table.keys()) {
         if (rule == but) continue;
-        const auto word = table.word(rule.c_str(), {"off", "note", "warning", "error"});
+        const auto word = table.word(rule.c_str(), core::names_of(core::all_severities));
         if (!word) continue;
         if (!core::default_severity(rule)) {
             table.refuse(rule.c_str(),
@@ -455,7 +446,7 @@ core::RuleSeverities read_severities(TableReader& table, const std::string& but)
                                      core::nearest_rule(rule)));
             continue;
         }
-        severities[rule] = severity_named(*word);
+        severities[rule] = *core::find_named(core::all_severities, *word);
         if (rule == core::rule_id("collision") && severities[rule] != core::Severity::error)
             table.refuse(core::rule_id("collision"), "is always an error");
     }

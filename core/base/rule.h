@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,6 +11,9 @@
 namespace core {
 
 enum class Severity : uint8_t { off, note, warning, error };
+
+constexpr std::array all_severities = {Severity::off, Severity::note, Severity::warning,
+                                       Severity::error};
 
 const char* name_of(Severity severity);
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,5 +28,21 @@ std::string without_trailing_zeros(std::string number);
 
 /// A number rounded to this many decimals, without trailing zeros and never "-0".
 std::string number_text(double value, int decimals);
+
+/// The names of enumerators, in their order, as `name_of` gives them.
+template <typename Enum, size_t Count>
+std::vector<std::string_view> names_of(const std::array<Enum, Count>& all) {
+    std::vector<std::string_view> names;
+    for (const Enum each : all) names.emplace_back(name_of(each));
+    return names;
+}
+
+/// The enumerator with this name; empty if there is none.
+template <typename Enum, size_t Count>
+std::optional<Enum> find_named(const std::array<Enum, Count>& all, std::string_view name) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](Enum each) { return name == name_of(each); });
+    return found == all.end() ? std::nullopt : std::optional(*found);
+}
 
 } // namespace core

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,10 +10,16 @@ namespace core {
 /// Verdict on a pair of bodies during a block, from best to worst.
 enum class Verdict : uint8_t { clear, undecided, violation, collision };
 
+constexpr std::array all_verdicts = {Verdict::clear, Verdict::undecided, Verdict::violation,
+                                     Verdict::collision};
+
 const char* name_of(Verdict verdict);
 
 /// Kind of motion in a block, as reports show it.
 enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
+
+constexpr std::array all_block_motions = {BlockMotion::none, BlockMotion::rapid, BlockMotion::feed,
+                                          BlockMotion::arc, BlockMotion::cycle};
 
 const char* name_of(BlockMotion motion);
 

@@ -212,7 +212,7 @@ TEST(Condition, SaysWhereAndHowItIsWrong) {
              {"clearance and rapid", 1, "a number, not a condition"},
              {"plane < XY", 1, "only be compared with = and !="},
              {"plane = XZ", 9, "it may be G17"},
-             {"motion = G1", 10, "it may be rapid, feed"},
+             {"motion = G1", 10, "it may be none, rapid, feed"},
              {"x < 1.2.3", 8, ""},
              {"x < 12abc", 5, "not a number"},
              {"# = 1", 1, "# must be followed by a number"},

@@ -4,6 +4,8 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/library/result/batch_result.h"
+#include "app/report/html/html_page.h"
 #include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"
 #include "tests/support/lengthened_run.h"
@@ -32,6 +34,19 @@ std::string every_byte() {
     std::string text;
     for (int byte = 0; byte < 256; ++byte) text += static_cast<char>(byte);
     return text;
+}
+
+/// The data of a page refers to enumerators by their index.
+TEST(HtmlPage, NamesEnumeratorsInTheirOrder) {
+    const auto are_in_order = [](const auto& all) {
+        for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(static_cast<size_t>(all[i]), i);
+    };
+    are_in_order(core::all_severities);
+    are_in_order(core::all_verdicts);
+    are_in_order(core::all_block_motions);
+    are_in_order(all_outcomes);
+    EXPECT_EQ(script_names("verdicts", core::all_verdicts),
+              "const verdicts=[\"clear\",\"undecided\",\"violation\",\"collision\"];\n");
 }
 
 TEST(HtmlText, LeavesNothingThatABrowserReadsAsMoreThanText) {

@@ -34,17 +34,10 @@ std::string nearness_text(const core::Setup& setup, const core::BlockResult& res
     return text;
 }
 
+/// The verdict, in capitals unless it is clear.
 std::string verdict_word(core::Verdict verdict) {
-    switch (verdict) {
-    case core::Verdict::clear:
-        return "clear";
-    case core::Verdict::undecided:
-        return "UNDECIDED";
-    case core::Verdict::violation:
-        return "VIOLATION";
-    default:
-        return "COLLISION";
-    }
+    const std::string name = core::name_of(verdict);
+    return verdict == core::Verdict::clear ? name : capitals(name);
 }
 
 std::string motion_text(const core::Setup& setup, const core::BlockResult& result) {

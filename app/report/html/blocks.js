@@ -1,8 +1,5 @@
 // The blocks of the program as columns of numbers, unpacked once.
 
-const motions = ["none", "rapid", "feed", "arc", "cycle"];
-const verdicts = ["clear", "undecided", "violation", "collision"];
-
 /** Units: um, seconds, mm3. `lower` and `width` are -1 if unknown. */
 function unpackBlocks(data) {
   const count = data.count;
@@ -41,7 +38,7 @@ function keepOf(blocks, i) {
 
 function hasError(blocks, i) {
   const found = blocks.found.get(i);
-  return found !== undefined && found.severity === 3;
+  return found !== undefined && severities[found.severity] === "error";
 }
 
 /** "violation", "near" or "clear", the colour of a block in the window; "" if nothing is known. */
@@ -55,7 +52,7 @@ function stateOf(blocks, i) {
 /** Badness of a block: its verdict, at least 2 (violation) for an error, 0.5 if near, -1 if nothing is known. */
 function badnessOf(blocks, i) {
   const state = stateOf(blocks, i);
-  if (state === "violation") return Math.max(blocks.verdict[i], hasError(blocks, i) ? 2 : 0);
+  if (state === "violation") return Math.max(blocks.verdict[i], hasError(blocks, i) ? verdicts.indexOf("violation") : 0);
   return { near: 0.5, clear: 0 }[state] ?? -1;
 }
 

@@ -1,7 +1,5 @@
 // Unpacking of columns of numbers, and numbers as text.
 
-const severities = ["", "note", "warning", "error"];
-
 /** Expands runs [value, count, ...] to one number per block. */
 function unpackRuns(runs, count) {
   const column = new Int32Array(count);

@@ -17,6 +17,14 @@
 #include "core/sim/verdict.h"
 
 namespace app {
+namespace {
+
+std::string batch_names() {
+    return script_names("outcomes", all_outcomes)
+           + script_names("severities", core::all_severities);
+}
+
+} // namespace
 
 std::string batch_html_report(const BatchResult& batch) {
     const PageAssets assets = batch_page_assets();
@@ -32,7 +40,7 @@ std::string batch_html_report(const BatchResult& batch) {
                                      {"rules", html_rules(batch)},
                                      {"skipped", html_skipped(batch)},
                                      {"programs", batch_columns_json(batch)},
-                                     {"script", std::string(assets.script)}});
+                                     {"script", batch_names() + std::string(assets.script)}});
 }
 
 namespace {

@@ -1,8 +1,15 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/report/html/html_text.h"
+#include "core/base/text.h"
 
 namespace app {
 
@@ -11,6 +18,15 @@ using PageFillings = std::map<std::string, std::string, std::less<>>;
 
 /// The page with each {{name}} replaced. Inserted text is not scanned for names.
 std::string filled_page(std::string_view page, const PageFillings& fillings);
+
+/// A statement of a script that lists the names of enumerators in their order, by which the data of
+/// the page refers to them: `const verdicts=["clear",...];`.
+template <typename Enum, size_t Count>
+std::string script_names(std::string_view list, const std::array<Enum, Count>& all) {
+    const std::vector<std::string_view> names = core::names_of(all);
+    return fmt::format("const {}={};\n", list,
+                       string_array(std::vector<std::string>(names.begin(), names.end())));
+}
 
 /// The colours of the window as CSS variables, light and dark: `--violation` and so on. The
 /// attribute `data-theme` of the page overrides the preference of the browser; printing uses the
@@ -21,7 +37,7 @@ std::string html_palette();
 struct PageAssets {
     std::string_view page;   // with {{name}}s to be replaced
     std::string_view style;  // CSS
-    std::string_view script; // all but the 3D view
+    std::string_view script; // all but the 3D view and the names of enumerators
 };
 
 /// For one program.

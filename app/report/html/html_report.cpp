@@ -28,6 +28,12 @@ std::string name_of_file(const std::string& path) {
     return name.empty() ? path : name;
 }
 
+std::string html_names() {
+    return script_names("motions", core::all_block_motions)
+           + script_names("verdicts", core::all_verdicts)
+           + script_names("severities", core::all_severities);
+}
+
 std::string list_of(const std::vector<std::string>& lines) {
     std::string list;
     for (const std::string& line : lines) list += "<li>" + html_text(line) + "</li>\n";
@@ -74,7 +80,7 @@ std::string html_report(const CheckRun& run, const ReportViews& views) {
                                      {"blocks", blocks_json(run)},
                                      {"views", views_json(views)},
                                      {"bundle", std::string(view_bundle())},
-                                     {"script", std::string(assets.script)}});
+                                     {"script", html_names() + std::string(assets.script)}});
 }
 
 namespace {

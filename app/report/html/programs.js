@@ -1,7 +1,6 @@
 // The programs of a batch and their findings, unpacked once.
 
-const outcomes = ["clear", "undecided", "errors", "violation", "collision", "stopped", "not run", "not checked"];
-const firstLost = 5; // outcomes from here on: not checked to the end
+const firstLost = outcomes.indexOf("stopped"); // outcomes from here on: not checked to the end
 
 /** Start indices of consecutive groups with these counts, and the end of the last one. */
 function startsOf(counts) {
@@ -54,9 +53,9 @@ function unpackPrograms(data) {
     setup: runs("setup"), dialect: runs("dialect"), engine: runs("engine"),
     margin: Float64Array.from(pair, (index, i) => (index < 0 ? NaN : data.lower[i] - data.keep[i])),
     blocks: checked(data.blocks), cycle: checked(data.cycle), seconds: checked(data.seconds),
-    errors: checked(countsOf(findings, count, 3)),
-    warnings: checked(countsOf(findings, count, 2)),
-    notes: checked(countsOf(findings, count, 1)),
+    errors: checked(countsOf(findings, count, severities.indexOf("error"))),
+    warnings: checked(countsOf(findings, count, severities.indexOf("warning"))),
+    notes: checked(countsOf(findings, count, severities.indexOf("note"))),
     failure: new Map(data.errors.map(([i, file, line, column, message]) => [i, { file, line, column, message }])),
     assumptions: startsOf(runs("assumptions")),
   };
@@ -70,5 +69,5 @@ function partsOf(programs, i) {
 
 /** CSS class that colours an outcome. */
 function toneOf(outcome) {
-  return outcome >= firstLost ? "lost" : ["clear", "undecided"][outcome] || "";
+  return outcome >= firstLost ? "lost" : ["clear", "undecided"].find((name) => name === outcomes[outcome]) || "";
 }
