@@ -200,7 +200,8 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
     result.warnings.clear();
 }
 
-/// Restores the parameters after a block that failed.
+/// Restores the state after a block that failed. Parameters are undone one by one: a copy of them in
+/// `before` would share them, and the first assignment of each block would copy them all.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);
