@@ -50,7 +50,7 @@ std::vector<std::string> notes_on(const core::ToolDescription& tool) {
         notes.push_back(fmt::format("tool {} does not cut within {:g} mm of its axis; its face is "
                                     "assumed to be {:.3g} mm higher there",
                                     number, tool.centre_radius, core::centre_recess(tool)));
-    if (tool.shape == core::ToolShape::threadmill && !tool.pitch)
+    if (has_size(tool.shape, &core::ToolDescription::pitch) && !tool.pitch)
         notes.push_back(fmt::format("tool {} has no pitch: it cuts like a cylinder around its "
                                     "crests, which removes the threads",
                                     number));

@@ -432,12 +432,6 @@ Result<void> check_lengths(const ToolDescription& tool, double to_holder, double
     return {};
 }
 
-/// Whether the tool is made to cut undercuts with the upper face or the side of its head.
-bool cuts_undercuts(ToolShape shape) {
-    return shape == ToolShape::tslot || shape == ToolShape::dovetail
-           || shape == ToolShape::threadmill;
-}
-
 /// Extends the flutes a little into the slender part above them. Shrinking the head, which
 /// distinguishes contact from collision, lowers the upward faces of steps but not the top face; the
 /// stub turns the top face into a step.

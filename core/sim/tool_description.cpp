@@ -1,5 +1,6 @@
 #include "core/sim/tool_description.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -14,11 +15,11 @@ using enum ToolShape;
 using Group = ToolSize::Group;
 
 constexpr ToolShapeEntry shapes[] = {
-    {flat, "flat", "a flat end mill"},      {ball, "ball", "a ball end mill"},
-    {bull, "bull", "a bull nose end mill"}, {drill, "drill", "a drill"},
-    {taper, "taper", "a tapered mill"},     {chamfer, "chamfer", "a chamfer mill"},
-    {tslot, "tslot", "a T-slot cutter"},    {dovetail, "dovetail", "a dovetail cutter"},
-    {lollipop, "lollipop", "a lollipop"},   {threadmill, "threadmill", "a thread mill"},
+    {flat, "flat", "a flat end mill"},         {ball, "ball", "a ball end mill"},
+    {bull, "bull", "a bull nose end mill"},    {drill, "drill", "a drill"},
+    {taper, "taper", "a tapered mill"},        {chamfer, "chamfer", "a chamfer mill"},
+    {tslot, "tslot", "a T-slot cutter", true}, {dovetail, "dovetail", "a dovetail cutter", true},
+    {lollipop, "lollipop", "a lollipop"},      {threadmill, "threadmill", "a thread mill", true},
     {profile, "profile", "a form tool"}};
 
 constexpr ShapeSet no_profile = {flat,    ball,  bull,     drill,    taper,
@@ -67,6 +68,10 @@ const char* description_of(ToolShape shape) {
     return tool_shapes()[static_cast<size_t>(shape)].description;
 }
 
+bool cuts_undercuts(ToolShape shape) {
+    return tool_shapes()[static_cast<size_t>(shape)].cuts_undercuts;
+}
+
 std::optional<ToolShape> tool_shape_named(const std::string& name) {
     for (const ToolShapeEntry& entry : tool_shapes())
         if (name == entry.name) return entry.shape;
@@ -74,6 +79,12 @@ std::optional<ToolShape> tool_shape_named(const std::string& name) {
 }
 
 std::span<const ToolSize> tool_sizes() { return shape_table::sizes; }
+
+bool has_size(ToolShape shape, ToolSize::Member member) {
+    return std::ranges::any_of(tool_sizes(), [&](const ToolSize& size) {
+        return size.member == member && size.shapes.contains(shape);
+    });
+}
 
 std::optional<double> ToolSize::of(const ToolDescription& tool) const {
     if (const auto* always = std::get_if<0>(&member)) {

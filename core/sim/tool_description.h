@@ -34,6 +34,8 @@ struct ToolShapeEntry {
     ToolShape shape;
     const char* name;        // `shape` in a set-up
     const char* description; // "a T-slot cutter", for messages
+    // Made to cut undercuts with the upper face or the side of its head.
+    bool cuts_undercuts = false;
 };
 
 /// All shapes, in the order of the enumeration.
@@ -44,6 +46,9 @@ const char* name_of(ToolShape shape);
 
 /// Name of a shape in a sentence, such as "a T-slot cutter".
 const char* description_of(ToolShape shape);
+
+/// Whether a tool of this shape is made to cut undercuts.
+bool cuts_undercuts(ToolShape shape);
 
 /// Shape with this set-up name; empty if there is none.
 std::optional<ToolShape> tool_shape_named(const std::string& name);
@@ -116,6 +121,9 @@ struct ToolSize {
 
 /// All numeric dimensions, in the order in which they are written to a set-up file.
 std::span<const ToolSize> tool_sizes();
+
+/// Whether tools of a shape have a dimension, such as &ToolDescription::pitch.
+bool has_size(ToolShape shape, ToolSize::Member member);
 
 /// An error whose message names the tool.
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why);

@@ -398,7 +398,7 @@ void read_shape(const Reader& reader, ToolDescription& made) {
     if (made.shape == ToolShape::chamfer)
         made.tip_diameter = reader.size("tip-diameter").value_or(0.0);
     if (made.shape == ToolShape::lollipop) made.neck_diameter = reader.size("shoulder-diameter");
-    if (made.shape == ToolShape::threadmill) made.pitch = reader.size("TP");
+    if (has_size(made.shape, &ToolDescription::pitch)) made.pitch = reader.size("TP");
     if (made.shape == ToolShape::taper) { // DC is measured at the tip
         made.tip_diameter = made.diameter;
         made.corner_radius = corner;

@@ -318,7 +318,7 @@ std::optional<core::ToolDescription> tool_of_text(const ToolText& text) {
     const bool tipped = tool.shape == ToolShape::taper || tool.shape == ToolShape::chamfer;
     if (tipped && text.tip_diameter.value_or(0.0) < tool.diameter)
         tool.tip_diameter = text.tip_diameter.value_or(0.0);
-    if (tool.shape == ToolShape::threadmill) tool.pitch = text.pitch;
+    if (has_size(tool.shape, &core::ToolDescription::pitch)) tool.pitch = text.pitch;
     assign_angle(text, tool);
     return tool;
 }
