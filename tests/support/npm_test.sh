@@ -2,9 +2,10 @@
 # Common functions of tests with npm packages. Source it with `feeler`, the program, and `work`, a
 # folder of the test, set.
 
-# Ends the test as skipped.
+# Ends the test as skipped, or as failed with FEELER_REQUIRE_SHARED, as in CI.
 skip() {
     printf 'skipped: %s\n' "$1"
+    [[ -z ${FEELER_REQUIRE_SHARED:-} ]] || exit 1
     exit 77
 }
 
@@ -25,8 +26,12 @@ install_packages() {
         [[ ! -e $folder/package.json ]] || cp "$folder"/package.json "$folder"/package-lock.json "$work"
     done
     cd "$work" || exit 1
-    timeout 600 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=0 \
-        --fetch-timeout=60000 >npm.log 2>&1 || skip 'npm could not get its packages'
+    # clock: gives up after 10 min
+    timeout 600 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=2 \
+        >npm.log 2>&1 || {
+        tail npm.log
+        skip 'npm could not get its packages'
+    }
 }
 
 # A report of `feeler check`, which must end with this status, or with a status below 2 for `any`.
