@@ -1,6 +1,8 @@
 """Tests the output of batch_overhead.py for hand-calculated times, and the commands that it runs."""
 
+import types
 import unittest
+from unittest import mock
 
 import batch_overhead
 
@@ -29,10 +31,11 @@ class Ways(unittest.TestCase):
 
 class CpuSeconds(unittest.TestCase):
     def test_they_are_those_of_what_was_started(self):
-        idle = batch_overhead.cpu_seconds([["sleep", "0.3"]])
-        busy = batch_overhead.cpu_seconds([["python3", "-c", "for i in range(6_000_000): pass"]])
-        self.assertLess(idle, 0.2)
-        self.assertGreater(busy, idle)
+        # clock: given
+        used = [types.SimpleNamespace(ru_utime=1.0, ru_stime=0.5), types.SimpleNamespace(ru_utime=3.0, ru_stime=0.75)]
+        with mock.patch("resource.getrusage", side_effect=used) as asked:  # clock: replaced
+            self.assertEqual(batch_overhead.cpu_seconds([["true"], ["false"]]), 2.25)  # clock: replaced
+        asked.assert_called_with(batch_overhead.resource.RUSAGE_CHILDREN)
 
 
 if __name__ == "__main__":

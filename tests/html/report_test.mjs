@@ -20,7 +20,7 @@ for (const colorScheme of ["light", "dark"])
     for (const name of ["findings", "clear", "evil"])
       test(`${name}, ${colorScheme}, ${width} px wide: opens without an error or a request, nothing sticks out`, async (browser) => {
         const { page, wrong } = await openReport(browser, report(name), { width, colorScheme });
-        await page.waitForTimeout(300);
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
         await keepPicture(page, `${folder}/${name}-${colorScheme}-${width}.png`, { fullPage: true });
         assert.equal(await isWide(page), false);
         assert.equal((await lightness(page)) > 384, colorScheme === "light");
