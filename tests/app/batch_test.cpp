@@ -107,17 +107,20 @@ TEST_F(Batch, ReportsAFileThatCannotBeRead) {
 TEST_F(Batch, ReadsOneProgramFromAPipeAndNothingElse) {
     const std::string pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    // clock: ends a copy that hangs
     const std::string piped = "timeout 120 dd status=none if='" + folder / "near.nc" + "' of='"
-                              + pipe + "' & timeout 120";
+                              + pipe + "' & timeout 120"; // clock: gives up after 2 min
     const Ran alone = check({pipe, "--setup", folder / "near.toml", "--format", "json"}, piped);
     EXPECT_EQ(alone.status, 1) << alone.err;
     const Ran by_name = check({folder / "near.nc", "--format", "json"});
     EXPECT_EQ(json::parse(alone.out)["sha256"], json::parse(by_name.out)["sha256"]);
+    // clock: gives up after 2 min
     const Ran beside = check({folder / "fine.nc", "/dev/zero"}, "timeout 120");
     EXPECT_EQ(beside.status, 2);
     EXPECT_THAT(beside.out, HasSubstr("is a pipe or a device"));
     EXPECT_THAT(beside.out, HasSubstr("clear      " + folder / "fine.nc"));
     for (const char* option : {"--setup", "--tool-table", "--parameters"}) {
+        // clock: gives up after 2 min
         const Ran ran = check({folder / "fine.nc", option, "/dev/zero"}, "timeout 120");
         EXPECT_EQ(ran.status, 2) << option;
         EXPECT_THAT(ran.err, HasSubstr("/dev/zero: is a pipe or a device, not a file")) << option;

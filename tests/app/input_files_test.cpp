@@ -201,7 +201,7 @@ TEST(InputAnswers, ReadAFileAgainThatWasWrittenSince) {
     const InputFile input{FileQuestion::content, path, {}, app::sha256_of_file(path)};
     const InputFile in_any_case{FileQuestion::any_case, folder.path(), "O1", std::nullopt};
     for (const int pause : {0, 80, 0}) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(pause));
+        std::this_thread::sleep_for(std::chrono::milliseconds(pause)); // clock: at least
         EXPECT_TRUE(answers.is_same(input));
         EXPECT_TRUE(answers.is_same(in_any_case));
     }

@@ -55,7 +55,7 @@ struct Life {
         const Kept each = numbered(program, i);
         if (!store->keep(each.job, each.run, each.result)) ::_exit(1);
         if (life.waits && !store->flush()) ::_exit(1);
-        if (!life.waits) ::usleep(5'000);
+        if (!life.waits) ::usleep(5'000); // clock: any pause
         if (::write(pipe, &i, sizeof i) != sizeof i) ::_exit(1);
     }
     while (true) ::pause();
@@ -82,12 +82,12 @@ inline Last killed(const Life& life, const std::string& database, const std::str
     if (life.is_from_first && reads_number()) last.number = number;
     constexpr useconds_t second = 1'000'000;
     if (life.length > second) {
-        ::usleep(life.length - second);
+        ::usleep(life.length - second); // clock: for tests/speed
         for (int waiting = 0; ::ioctl(ends[0], FIONREAD, &waiting) == 0 && waiting > 0;)
             if (reads_number()) last.number = number;
         last.second_before = last.number;
     }
-    ::usleep(std::min(life.length, second));
+    ::usleep(std::min(life.length, second)); // clock: kills at any moment
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);

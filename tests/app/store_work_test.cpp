@@ -32,7 +32,7 @@ TEST(ResultStore, WritesAThousandResultsInOneTransactionIfTheyComeAtOnce) {
 TEST(ResultStore, ReadsAFileOnceThatAThousandResultsDependOn) {
     const ThousandResults results;
     results.keep_all();
-    std::this_thread::sleep_for(100ms); // until no file counts as just written
+    std::this_thread::sleep_for(100ms); // clock: at least; until no file counts as just written
     const auto before = io_counts();
     results.find_all();
     const auto after = io_counts();

@@ -75,9 +75,9 @@ TEST_F(OneResult, IsThereAtOnceForWhoeverWaitsForIt) {
 TEST_F(OneResult, IsWrittenWithoutAFlush) {
     ResultStore store = opened(path);
     ASSERT_TRUE(store.keep(each.job, each.run, each.result));
-    const auto end = std::chrono::steady_clock::now() + 60s;
-    while (found() != each.result && std::chrono::steady_clock::now() < end)
-        std::this_thread::sleep_for(10ms);
+    const auto end = std::chrono::steady_clock::now() + 60s; // clock: gives up after 1 min
+    while (found() != each.result && std::chrono::steady_clock::now() < end) // clock: as above
+        std::this_thread::sleep_for(10ms);                                   // clock: polls
     EXPECT_EQ(found(), each.result);
 }
 

@@ -30,7 +30,7 @@ protected:
     void SetUp() override {
         folder.write("plate.nc", fine);
         folder.write("plate.toml", setup("42"));
-        std::this_thread::sleep_for(std::chrono::milliseconds(80));
+        std::this_thread::sleep_for(std::chrono::milliseconds(80)); // clock: at least
     }
 
     static std::string setup(const std::string& height) {
@@ -111,7 +111,7 @@ TEST_F(Watch, SaysTheFolderOfWhatIsCalledAsAnother) {
         folder.write(name + "/a.nc", fine);
         folder.write(name + "/a.toml", setup("42"));
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    std::this_thread::sleep_for(std::chrono::milliseconds(80)); // clock: at least
     Terminal terminal = watching({folder.path(), "--no-cache"});
     pass(terminal);
     terminal.while_stopped([&] {
@@ -140,7 +140,7 @@ TEST_F(Watch, SeesAChangedLinkAlsoWithStoredResults) {
         folder.write(name + "/a.toml", setup("42"));
     }
     fs::create_directory_symlink("one", folder / "current");
-    std::this_thread::sleep_for(std::chrono::milliseconds(80));
+    std::this_thread::sleep_for(std::chrono::milliseconds(80)); // clock: at least
     ASSERT_EQ(feeler({"check", folder / "current"}).status, 0);
     for (const std::string word : {"current", "current/a.nc"}) {
         Terminal terminal =
@@ -237,7 +237,7 @@ TEST_F(Watch, ContinuesWhileOthersWriteInTheFolder) {
     std::thread busy([&] {
         for (int i = 0; !is_over; ++i) {
             folder.write("note " + std::to_string(i), "");
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            std::this_thread::sleep_for(std::chrono::milliseconds(100)); // clock: any pause
         }
     });
     EXPECT_THAT(terminal.until("3 errors"), HasSubstr("plate.nc"));
@@ -249,7 +249,7 @@ TEST_F(Watch, DoesNotWakeUpBecauseOfItsOwnReports) {
     Terminal terminal = watching({folder.path(), "--cache", folder / "kept.db", "--format", "csv",
                                   "-o", folder / "report.txt"});
     pass(terminal);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500)); // clock: nothing may happen
     EXPECT_EQ(terminal.seen_so_far().find("changed"), std::string::npos);
     EXPECT_EQ(end(terminal), 0);
 }

@@ -18,6 +18,7 @@ using test_support::ScopedFolder;
 
 /// Waits until earlier writes no longer count as just written, and a new one gets another time
 /// stamp.
+// clock: at least
 void let_it_rest() { std::this_thread::sleep_for(std::chrono::milliseconds(80)); }
 
 class WatchedFilesTest : public testing::Test {
@@ -36,7 +37,7 @@ protected:
     }
 
     /// Stops the clock of the files: what is written from now on counts as just written.
-    void stop_the_clock() { stopped = WatchTime::now(); }
+    void stop_the_clock() { stopped = WatchTime::now(); } // clock: a start
 
     void advance_the_clock(std::chrono::milliseconds time) {
         stopped->of_day += time;
@@ -55,6 +56,7 @@ protected:
     ScopedFolder folder;
     std::optional<WatchTime> stopped; // empty: the clock goes
     WatchedFiles files{{folder / "report.json"},
+                       // clock: a start
                        [this] { return stopped ? *stopped : WatchTime::now(); }};
 };
 

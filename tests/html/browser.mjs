@@ -9,6 +9,7 @@ const flags = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--e
 const patience = 180_000;
 
 export function launch(more = []) {
+  // clock: gives up after 3 min
   return chromium.launch({ executablePath: "/usr/bin/chromium", args: [...flags, ...more], timeout: patience });
 }
 
@@ -25,7 +26,7 @@ export async function openReport(browser, file, { width = 1400, height = 1000, c
     if (request.url() !== url && !/^(data|blob):/.test(request.url())) wrong.push("request: " + request.url());
   });
   page.on("dialog", (dialog) => { wrong.push("dialog: " + dialog.message()); dialog.dismiss(); });
-  page.setDefaultTimeout(patience);
+  page.setDefaultTimeout(patience); // clock: gives up after 3 min
   await beforeOpening(page);
   await page.goto(url);
   await page.waitForFunction(() => document.documentElement.dataset.ready === "true");

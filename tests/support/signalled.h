@@ -54,13 +54,14 @@ public:
     /// Waits until a condition is true. False if the program ends first, or after two minutes.
     template <typename Condition>
     bool wait_for(const Condition& condition) {
+        // clock: gives up after 2 min
         const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
-        while (std::chrono::steady_clock::now() < end) {
+        while (std::chrono::steady_clock::now() < end) { // clock: as above
             if (condition()) return true;
             siginfo_t ended{};
             ::waitid(P_PID, static_cast<id_t>(child_), &ended, WEXITED | WNOHANG | WNOWAIT);
             if (ended.si_pid != 0) return condition();
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            std::this_thread::sleep_for(std::chrono::milliseconds(5)); // clock: polls
         }
         return false;
     }

@@ -60,8 +60,8 @@ public:
     /// Returns the screen up to and including this text; all of it if the text does not come in
     /// time.
     std::string until(const std::string& text) {
-        const auto end = Clock::now() + patience;
-        while (Clock::now() < end) {
+        const auto end = Clock::now() + patience; // clock: gives up after 2 min
+        while (Clock::now() < end) {              // clock: as above
             if (const size_t at = screen_.find(text); at != std::string::npos) {
                 const std::string seen = screen_.substr(0, at + text.size());
                 screen_.erase(0, at + text.size());
@@ -75,16 +75,16 @@ public:
     /// Returns the output so far that has not been read.
     std::string seen_so_far() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
-        while (::poll(&ready, 1, 0) > 0 && more())
+        while (::poll(&ready, 1, 0) > 0 && more()) // clock: takes what is there
             ;
         return screen_;
     }
 
     /// The exit status of the program; -1 if it does not end in time.
     int status() {
-        const auto end = Clock::now() + patience;
+        const auto end = Clock::now() + patience; // clock: gives up after 2 min
         while (more())
-            if (Clock::now() > end) return -1;
+            if (Clock::now() > end) return -1; // clock: as above
         int status = -1;
         ::waitpid(child_, &status, 0);
         child_ = -1;
@@ -92,13 +92,13 @@ public:
     }
 
 private:
-    using Clock = std::chrono::steady_clock;
+    using Clock = std::chrono::steady_clock; // clock: gives up after 2 min
     static constexpr std::chrono::seconds patience{120};
 
     /// Reads available output; false when the program has closed its side.
     bool more() {
         struct pollfd ready = {.fd = master_, .events = POLLIN, .revents = 0};
-        if (::poll(&ready, 1, 1000) == 0) return true;
+        if (::poll(&ready, 1, 1000) == 0) return true; // clock: polls
         char buffer[4096];
         const ssize_t count = ::read(master_, buffer, sizeof buffer);
         if (count <= 0) return false;

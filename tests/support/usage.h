@@ -16,7 +16,7 @@ namespace test_support {
 /// The resources used by a program, and how it ended.
 struct Usage {
     int status = -1;          // of exit
-    double cpu_seconds = 0.0; // of all threads
+    double cpu_seconds = 0.0; // of all threads // clock: for tests/speed
     long kib = 0;             // peak memory
     std::optional<IoCounts> io{};
 };
@@ -43,6 +43,7 @@ inline Usage usage_of(const std::vector<std::string>& words, const std::string& 
         return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
     };
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            // clock: for tests/speed
             seconds(usage.ru_utime) + seconds(usage.ru_stime), usage.ru_maxrss, io};
 }
 

@@ -33,10 +33,10 @@ void ask(const Question& question, long number) {
 /// False where no answer comes within two minutes.
 bool has_answer(const Question& question, long number) {
     using namespace std::chrono_literals;
-    const auto end = std::chrono::steady_clock::now() + 120s;
-    while (std::chrono::steady_clock::now() < end) {
+    const auto end = std::chrono::steady_clock::now() + 120s; // clock: gives up after 2 min
+    while (std::chrono::steady_clock::now() < end) {          // clock: as above
         if (XPending(question.display) == 0) {
-            std::this_thread::sleep_for(2ms);
+            std::this_thread::sleep_for(2ms); // clock: polls
             continue;
         }
         XEvent event;

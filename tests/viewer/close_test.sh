@@ -46,7 +46,7 @@ running() { kill -0 "$view" 2>/dev/null || die "the window stays open: $1"; }
 
 for seconds in 0 0.1 0.3 1 3; do
     open_raster
-    sleep "$seconds"
+    sleep "$seconds" # clock: it may be closed at any moment
     close "$seconds s after it was opened"
 done
 
@@ -60,7 +60,7 @@ close 'while it plays and is checked'
 
 open_window "$work/raster.nc" --setup "$work/raster.toml" --coprocessor
 expect 'the coprocessor runs during the check' 'coprocessor: running'
-sleep 2
+sleep 2 # clock: any moment
 press d d d
 close 'while the coprocessor runs'
 
@@ -78,7 +78,7 @@ open_raster
 expect 'is open' 'block 0 of'
 for _ in 1 2 3 4; do
     press ctrl+r
-    sleep 0.2
+    sleep 0.2 # clock: any moment
 done
 running 'after several reloads'
 close 'while it is reloaded'
@@ -86,7 +86,7 @@ close 'while it is reloaded'
 open_raster
 expect 'is open' 'block 0 of'
 printf '(ONE MORE)\n' >>"$work/raster.nc"
-sleep 1.5
+sleep 1.5 # clock: any moment
 running 'the file has changed'
 press Right Right
 close 'after the file has changed'

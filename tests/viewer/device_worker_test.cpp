@@ -46,12 +46,14 @@ public:
     /// Takes in news until something is true; whether it came to be.
     template <typename Condition>
     bool wait_for(const Condition& condition) {
+        // clock: gives up after 3 min
         const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(3);
         while (true) {
             send();
             take_in(model, worker_.take());
             if (condition()) return true;
             std::unique_lock lock(mutex_);
+            // clock: as above
             if (!woken_.wait_until(lock, end, [&] { return is_woken_; })) return false;
             is_woken_ = false;
         }

@@ -53,10 +53,10 @@ void give(const Source& source, const XSelectionRequestEvent& asked) {
 /// minutes.
 bool wait_for(const Source& source, const char* kind) {
     using namespace std::chrono_literals;
-    const auto end = std::chrono::steady_clock::now() + 120s;
-    while (std::chrono::steady_clock::now() < end) {
+    const auto end = std::chrono::steady_clock::now() + 120s; // clock: gives up after 2 min
+    while (std::chrono::steady_clock::now() < end) {          // clock: as above
         if (XPending(source.display) == 0) {
-            std::this_thread::sleep_for(5ms);
+            std::this_thread::sleep_for(5ms); // clock: polls
             continue;
         }
         XEvent event;

@@ -75,7 +75,7 @@ broken "$mesh" 'a truncated mesh' 07-mesh
 head -c 4000 /dev/urandom >"$mesh"
 broken "$mesh" 'a mesh of random bytes' 08-random-mesh
 rm "$program"
-sleep 1
+sleep 1 # clock: the window may notice or not
 cp "$program.good" "$program"
 expect 'a program that was deleted for a while is opened again' 'clamped_plate_low.nc, line'
 rm "$program"

@@ -284,7 +284,7 @@ TEST(Playback, TakesAsLongAsTheMachine) {
         play(model, 0.016);
         seconds += 0.016;
     }
-    EXPECT_NEAR(seconds, 10.0, 0.04);
+    EXPECT_NEAR(seconds, 10.0, 0.04); // clock: of the playback, added up
     EXPECT_EQ(model.cursor, (Cursor{9, 1.0}));
 }
 

@@ -34,10 +34,10 @@ cleanup() {
 trap cleanup EXIT
 # wait_for COMMAND...: waits until the command succeeds. False if it does not in time.
 wait_for() {
-    local end=$((SECONDS + patience))
+    local end=$((SECONDS + patience)) # clock: gives up after 2 min
     until "$@"; do
-        ((SECONDS < end)) || return 1
-        sleep 0.1
+        ((SECONDS < end)) || return 1 # clock: as above
+        sleep 0.1 # clock: polls
     done
 }
 if ! wait_for test -s "$work/display"; then
@@ -97,14 +97,14 @@ shows() {
     wait_for picture_meets "$name" "$@" || die "$what"
 }
 # still NAME: takes a picture once nothing has changed for two seconds, so that background work is
-# complete.
+# complete. On a slow machine the five pictures take longer, by as much as that work.
 still() {
     picture "$1"
     wait_for is_still "$1" || die "the window stops changing: $1"
 }
 is_still() {
     for _ in 1 2 3 4; do
-        sleep 0.5
+        sleep 0.5 # clock: the pictures take more of the processor than the work in the background
         picture "$1-later"
         if differ "$1" "$1-later"; then
             mv "$pictures/$1-later.png" "$pictures/$1.png"

@@ -1,4 +1,5 @@
 #include <chrono>
+#include <future>
 
 #include <gtest/gtest.h>
 
@@ -37,11 +38,13 @@ public:
     /// Takes in news until something is true; whether it came to be.
     template <typename Condition>
     bool wait_for(const Condition& condition) {
+        // clock: gives up after 3 min
         const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(3);
         while (true) {
             take_in(model, worker_.take(), 0.0);
             if (condition()) return true;
             std::unique_lock lock(mutex_);
+            // clock: as above
             if (!woken_.wait_until(lock, end, [&] { return is_woken_; })) return false;
             is_woken_ = false;
         }
@@ -217,16 +220,18 @@ std::optional<WalkEnd> next_end(SessionWorker& worker) {
     for (int tries = 0; tries < 6000; ++tries) {
         SessionUpdate news = worker.take();
         if (news.walk) return news.walk;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::this_thread::sleep_for(std::chrono::milliseconds(10)); // clock: gives up after 1 min
     }
     return {};
 }
 
 TEST(SessionWorker, AWalkThatIsInterruptedBeforeItBeginsGoesNowhere) {
-    SessionWorker worker([] {});
+    std::promise<void> interrupted;
+    SessionWorker worker([end = interrupted.get_future().share()] { end.wait(); });
     worker.open(clamped_plate());
     const uint64_t first = worker.walk(Walk::go_on, 0); // it waits for the program
     worker.interrupt();
+    interrupted.set_value();
     const auto ended = next_end(worker);
     ASSERT_TRUE(ended);
     EXPECT_EQ(ended->walk, first);
@@ -262,6 +267,7 @@ TEST(SessionWorker, EndsAtAnyMoment) {
         worker.open(clamped_plate());
         worker.show({3, true});
         worker.walk(Walk::go_on, 0);
+        // clock: any moment
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
         worker.show({20, false});
     }
