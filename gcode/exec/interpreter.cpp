@@ -498,7 +498,7 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
                          "reads them as a thousandth or less",
                          written(word), word.has_point ? "a" : "no",
                          word.has_point ? "none" : "one"),
-             core::rule_id("missing-decimal-point"), "Write every length with a decimal point."});
+             core::rule_id("missing-decimal-point"), "Add a decimal point to every length."});
         return;
     }
 }

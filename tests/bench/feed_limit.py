@@ -3,10 +3,10 @@
 
 usage: feed_limit.py FEELER ASSETS [--only NAME] [--config DEVICE.toml]
 
-The whole plan is run faster and faster, as by a feed override (`feeler coproc`), until a permit comes late;
-then the override is halved in between until it is known to 5 %. The feed is the programmed one of the block
-that is late first, times the override. Beside it stands at which override a machine that stops at once would
-come upon a block without a permit, and how much of the device's time goes into writing segments over the bus.
+The whole plan is run faster and faster, as with a feed override (`feeler coproc`), until a permit comes late;
+then bisection finds that override to 5 %. The feed is the programmed one of the first late block, times the
+override. The next columns give the override at which a machine that stops at once would reach a block without
+a permit, and the share of the device's time that goes into writing segments over the bus.
 """
 
 import argparse

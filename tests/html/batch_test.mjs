@@ -40,7 +40,7 @@ test("what is missing is said before all else, and a click shows it", async (bro
   assert.equal(await countText(page), "1 of 6 programs");
 });
 
-test("the worst program stands first, columns sort both ways", async (browser) => {
+test("the worst program comes first, columns sort both ways", async (browser) => {
   const { page } = await openReport(browser, report("shop"));
   const names = async () => (await cells(page, 1)).map((text) => text.trim().split(" vise/")[0].split(" air/")[0]);
   assert.deepEqual((await cells(page, 2)).slice(0, 3), ["stopped", "collision", "collision"]);
@@ -92,7 +92,7 @@ test("the name of a subprogram's file finds the programs in which it went wrong"
   }
 });
 
-test("a program that was not checked stands last by each of its numbers, both ways", async (browser) => {
+test("an unchecked program comes last when sorted by any number, both ways", async (browser) => {
   const { page } = await openReport(browser, report("large"));
   const grid = page.locator("#grid");
   for (const name of ["Margin mm", "Errors", "Warnings", "Blocks", "Cycle time", "Check s"])

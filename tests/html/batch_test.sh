@@ -12,7 +12,7 @@ install_packages "$here"
 
 # A library with programs of every kind, and names that a browser must treat as plain text.
 rm -rf shop
-ln -sfn "$assets" assets # so that no word which is searched for stands in the path of a set-up
+ln -sfn "$assets" assets # so that the path of a set-up contains none of the searched words
 mkdir -p "shop/vise/Gehäuse <i>" shop/broken shop/air
 cp "$assets/programs/clamped_plate_low.nc" shop/vise/
 cp "$assets/programs/clamped_plate_low.nc" "shop/vise/Gehäuse <i>/it's \"50%\" & \$HOME.nc"

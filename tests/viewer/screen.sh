@@ -69,7 +69,7 @@ open_window() {
     [[ -n $window ]] || die 'the window opens'
 }
 
-# ended WHEN: the window, which was told to close, ends in time, with status 0 and without output.
+# ended WHEN: the window, after the request to close, ends in time, with status 0 and without output.
 ended() {
     wait_for has_ended || die "closing ends: $1"
     local status=0

@@ -144,7 +144,7 @@ double centre_recess(const ToolDescription& tool);
 std::optional<CentreContact> follow(CentreTracker& tracker, const ToolDescription& tool,
                                     const RelativeLeg& leg, const CutModel& stock);
 
-/// The finding `singular-orientation` about a feed in which rotary axes turn: near the pole, an
+/// The finding `singular-orientation` about a feed in which rotary axes turn: either an
 /// axis turns far while the tool hardly tilts and its tip hardly moves; or, without tool centre
 /// point control, a block that turns several rotary axes is so long that the tip deviates from its
 /// straight line by more than 0.5 mm. The caller sets severity and block.
