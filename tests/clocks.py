@@ -27,7 +27,7 @@ CPP = [r"\b(steady|system|high_resolution|file|utc|tai|gps)_clock\b", r"\bnow\(\
        r"(^|::|[\s(])times?\((nullptr|NULL|0\)|&)", r"\bru_[us]time\b", r"\bcpu_seconds\b", r"\bStopwatch\b",
        r"seconds\(\)", r"\b(EXPECT|ASSERT)_(GT|GE|LT|LE|NEAR)\(.*\bseconds\b",
        r"\b(u|nano)?sleep(_for|_until)?\(", r"\bwait_(for|until)\(\s*\w*(lock|\d)", r"_timedwait\b",
-       r"\bpoll\(", r"\balarm\(", r"\bsetitimer\b", r"\btimer(fd)?_create\b"]
+       r"(^|[^\w])::poll\(", r"\balarm\(", r"\bsetitimer\b", r"\btimer(fd)?_create\b"]
 PYTHON = [r"\bimport time\b", r"\bfrom time\b", r"\btime\.\w+\(", r"\bdatetime\b", r"\btimeit\b", r"\btimeout=",
           r"\bperf_counter", r"\bmonotonic\b", r"\bprocess_time\(", r"\.alarm\(", r"\bsetitimer\b",
           r"\bgetrusage\b", r"\bru_[us]time\b", r"\bos\.times\b", r"\bcpu_seconds\b",
@@ -73,7 +73,7 @@ READING = {
     "a.cpp": ["auto t = std::chrono::steady_clock::now();", "using Clock = std::chrono::file_clock;",
               "auto t = Clock::now();", "time_t t = time(nullptr);", "auto t = std::time(NULL);",
               "auto t = ::clock();", "auto t = utc_clock::now();", "timespec_get(&t, TIME_UTC);", "times(&t);",
-              "double t = usage.ru_stime.tv_sec;", "EXPECT_GT(row.paper.seconds, 0.0);", "::alarm(2);",
+              "double t = usage.ru_stime.tv_sec;", "EXPECT_GT(row.paper.seconds, 0.0);", "::alarm(2);", "::poll(&input, 1, 1000);",
               "woken.wait_for(lock, 2s);", "woken.wait_until(lock, end);", "std::this_thread::sleep_for(pause);",
               "::usleep(100);", 'run("timeout -s HUP 0.2 env");', "while (watch.seconds() < 5.0)"],
     "a.py": ["import time", "from time import monotonic", "now = datetime.now()", "run(words, timeout=2)",
@@ -85,7 +85,7 @@ READING = {
     "CMakeLists.txt": ["set_tests_properties(a PROPERTIES TIMEOUT 20)"]}
 HARMLESS = {
     "b.cpp": ["::usleep(100); // clock: the other process ends at any moment", "// A clock: time(nullptr)",
-              "program.wait_for([&] { return true; });", "block_clock.advance(1s);", "double seconds = move.time();",
+              "program.wait_for([&] { return true; });", "files.poll();", "double seconds = move.time();",
               "shard.seconds = 0.25;", 'fmt::print("G4 P2");'],
     "c.cpp": ["// clock: gives up after 2 min", "while (Clock::now() < end)"],
     "b.py": ["run(words, timeout=300)  # clock: gives up after 5 min", "# import time", "timing = 3"],
