@@ -34,10 +34,7 @@ core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcod
         run.assumptions.push_back(
             fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
     }
-    if (gcode::dialect(chosen).supported) return chosen;
-    return core::fail(core::ErrorCode::unsupported,
-                      fmt::format("the dialect {} is not supported by this version",
-                                  gcode::dialect(chosen).name));
+    return gcode::supported(chosen);
 }
 
 /// Adds the assumptions that every check makes.

@@ -50,10 +50,7 @@ core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> st
         print_note(fmt::format("feeler: dialect {}, because {}\n", gcode::dialect(*stated).name,
                                seen.reason));
     }
-    if (gcode::dialect(*stated).supported) return *stated;
-    return core::fail(core::ErrorCode::unsupported,
-                      fmt::format("the dialect {} is not supported by this version",
-                                  gcode::dialect(*stated).name));
+    return gcode::supported(*stated);
 }
 
 /// A trace in progress: each block is written before the next one is read.

@@ -69,13 +69,7 @@ core::Result<CannedCycle> cycle_with_words(const Execution& execution, const Dri
                 word->span);
     }
     if (const Word* word = statement.word('P')) {
-        if (word->value < 0.0)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: a time must not be negative", written(*word)),
-                              word->span);
-        const bool milliseconds =
-            execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
-        cycle.dwell = milliseconds ? word->value / 1000.0 : word->value;
+        FEELER_TRY(cycle.dwell, dwell_time(execution, *word));
     }
     for (size_t i = 0; i < 3; ++i)
         if (const Word* word = shift_word(execution, kind.traits, i))

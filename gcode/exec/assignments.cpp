@@ -27,9 +27,8 @@ bool calls_macro(const Block& block) {
 ///         operator's manual 96-8000, "Notes on functions".
 core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) {
     Arithmetic arithmetic = assigning.dialect.arithmetic;
-    const bool is_length =
-        std::string_view("XYZABCUVWIJKRQrc").find(word.letter) != std::string_view::npos;
-    if (arithmetic.rounds_lengths_to_steps && is_length && !calls_macro(assigning.block)) {
+    if (arithmetic.rounds_lengths_to_steps && counts_increments(word.letter)
+        && !calls_macro(assigning.block)) {
         const bool angle = word.letter >= 'A' && word.letter <= 'C';
         arithmetic.steps_in_one = assigning.inch && !angle ? 10000.0 : 1000.0;
     }
@@ -127,6 +126,10 @@ core::Result<void> work_out_block(const Assigning& assigning) {
     if (assigning.dialect.assigns_in_order) return work_out_in_order(assigning);
     if (auto done = work_out_words(assigning); !done) return done;
     return assign(assigning);
+}
+
+bool counts_increments(char letter) {
+    return std::string_view("XYZABCUVWIJKRQrc").find(letter) != std::string_view::npos;
 }
 
 void take_back_assignments(const std::vector<AssignmentUndo>& undos,

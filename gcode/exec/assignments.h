@@ -34,6 +34,9 @@ struct Assigning {
 /// Errors: those of the expressions and parameters.
 core::Result<void> work_out_block(const Assigning& assigning);
 
+/// Whether words with this letter are lengths or angles, which controls count in least increments.
+bool counts_increments(char letter);
+
 /// Restores the old values of parameters.
 void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramParameters& parameters);
 

@@ -69,6 +69,9 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target);
 /// along U, V, W; else along the rotary axes, in degrees. Empty if an end is unknown.
 std::optional<double> way_between(const Position& from, const Position& to);
 
+/// Why there is no feed rate before the first F.
+inline constexpr std::string_view no_feed_yet = "no feed rate: no F has been programmed yet";
+
 /// The feed rate along a path in mm/min.
 ///
 /// Errors: missing_value without F (with G93: in this block), with a stopped spindle under G95, or
@@ -77,6 +80,14 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
 
 /// Changes the offsets without moving the machine; the program coordinates change instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
+
+/// The time of a dwell in seconds.
+///
+/// Errors: invalid_value for a negative time.
+core::Result<double> dwell_time(const Execution& execution, const Word& word);
+
+/// Warns of the M codes of the block that are unknown and may be ignored.
+void warn_of_unknown_m_codes(Execution& execution);
 
 core::Result<void> check_words(Execution& execution); // reports unused words
 core::Result<void> note_assumed_units(Execution& execution);

@@ -516,9 +516,7 @@ void count_smallest_steps(Block& block, const ModalState& modal, DialectId diale
     const bool calls = has_code(block, 'M', [](double code) { return code >= 96.0; });
     const bool turns = has_code(block, 'G', [](double code) { return code == 68.0; });
     for (Word& word : block.words) {
-        if (word.has_point || word.expression) continue;
-        if (std::string_view("XYZABCUVWIJKRQrc").find(word.letter) == std::string_view::npos)
-            continue;
+        if (word.has_point || word.expression || !counts_increments(word.letter)) continue;
         if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && calls)) continue;
         const bool angle =
             (word.letter >= 'A' && word.letter <= 'C') || (word.letter == 'R' && turns);

@@ -127,6 +127,15 @@ core::Result<void> set_coolant(Execution& execution) {
     return {};
 }
 
+core::Result<double> dwell_time(const Execution& execution, const Word& word) {
+    if (word.value < 0.0)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a time must not be negative", written(word)), word.span);
+    const bool milliseconds =
+        execution.dialect.dwell_without_point_is_milliseconds && !word.has_point;
+    return milliseconds ? word.value / 1000.0 : word.value;
+}
+
 core::Result<void> dwell(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::action);
     if (!entry || entry->code->number != g_code(4)) return {};
@@ -138,13 +147,8 @@ core::Result<void> dwell(Execution& execution) {
     if (!word)
         return core::fail(ErrorCode::missing_value, "G4 has no time: it needs a P word",
                           entry->word->span);
-    if (word->value < 0.0)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a time must not be negative", written(*word)),
-                          word->span);
-    const bool milliseconds =
-        execution.dialect.dwell_without_point_is_milliseconds && !word->has_point;
-    execution.emit(Dwell{milliseconds ? word->value / 1000.0 : word->value});
+    FEELER_TRY(const double seconds, dwell_time(execution, *word));
+    execution.emit(Dwell{seconds});
     return {};
 }
 

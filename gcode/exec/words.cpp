@@ -95,13 +95,17 @@ std::optional<double> length_word(const Execution& execution, char letter) {
     return word ? std::optional(length_of(execution, *word)) : std::nullopt;
 }
 
-core::Result<void> check_words(Execution& execution) {
-    if (auto checked = refuse_unknown_home(execution); !checked) return checked;
+void warn_of_unknown_m_codes(Execution& execution) {
     for (const Word* word : execution.statement.unknown_m_codes)
         execution.warn(
             word->span,
             fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
                         written(*word)));
+}
+
+core::Result<void> check_words(Execution& execution) {
+    if (auto checked = refuse_unknown_home(execution); !checked) return checked;
+    warn_of_unknown_m_codes(execution);
     if (!(execution.statement.letters & bits_that_need_a_code)) return {};
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))
@@ -212,7 +216,7 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     const bool inverse = modal.feed_mode == FeedMode::inverse_time;
     if (inverse && !execution.statement.word('F'))
         return refuse("with G93 each feed move needs its own F word");
-    if (!modal.feed) return refuse("no feed rate: no F word has been programmed yet");
+    if (!modal.feed) return refuse(no_feed_yet);
     if (*modal.feed == 0.0) return refuse("the feed rate is F0");
     if (modal.feed_mode == FeedMode::per_minute) return *modal.feed;
     if (inverse && !path_length)

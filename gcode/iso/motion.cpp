@@ -22,9 +22,10 @@ void assume_feed(Execution& execution) {
     const Word& mover = moving_word(execution);
     execution.result.warnings.push_back(
         {Severity::warning, mover.span,
-         fmt::format("{}: no feed rate: no F word has been programmed yet; Grbl 1.1 stops here "
-                     "(error 22), older versions use {:g} mm/min, which is assumed",
-                     written(mover), assumed),
+         fmt::format(
+             "{}: {}; Grbl 1.1 stops here (error 22), older versions use {:g} mm/min, which "
+             "is assumed",
+             written(mover), no_feed_yet, assumed),
          core::rule_id("no-feed"), "Program F before the first feed move."});
     modal.feed = assumed;
 }

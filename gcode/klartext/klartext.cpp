@@ -28,11 +28,7 @@ bool ends_block(const Execution& execution, ModalGroup group, CodeNumber last) {
 }
 
 void warn_of_m_codes(Execution& execution) {
-    for (const Word* word : execution.statement.unknown_m_codes)
-        execution.warn(
-            word->span,
-            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
-                        written(*word)));
+    warn_of_unknown_m_codes(execution);
     for (const CodeWord& entry : execution.statement.codes())
         if (entry.code->number == m_code(128))
             execution.warn(entry.word->span, "M128 is not modelled: the linear axes do not follow "
@@ -150,8 +146,8 @@ tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::st
 core::Result<double> klartext_feed(const Execution& execution) {
     const std::optional<double> feed = execution.modal().feed;
     if (feed && *feed > 0.0) return *feed;
-    tl::unexpected<core::Error> error = refuse_statement(
-        execution, feed ? "the feed rate is F0" : "no feed rate: no F has been programmed yet");
+    tl::unexpected<core::Error> error =
+        refuse_statement(execution, feed ? "the feed rate is F0" : no_feed_yet);
     error.value().code = no_feed;
     return error;
 }

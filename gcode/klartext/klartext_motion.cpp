@@ -486,8 +486,7 @@ core::Result<void> make_corner(Execution& execution) {
     const Corner corner = *before.corner;
     std::optional<double> feed = execution.modal().feed;
     if (const Word* word = execution.statement.word('F')) feed = length_of(execution, *word);
-    if (!feed || *feed <= 0.0)
-        return refuse_statement(execution, "no feed rate: no F has been programmed yet");
+    if (!feed || *feed <= 0.0) return refuse_statement(execution, no_feed_yet);
     if (corner.turn == 0) {
         execution.feed(corner.end, *feed);
     } else {

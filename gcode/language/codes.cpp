@@ -39,8 +39,6 @@ constexpr std::string_view no_slanted_axis = "grinding with a slanted axis is no
 constexpr std::string_view no_changing_pitch = "threads with variable pitch are not supported yet";
 constexpr std::string_view no_axis_offset =
     "the programmable offset of single axes is not supported yet: use ATRANS";
-constexpr std::string_view no_smooth_approach =
-    "smooth approach and retract are not supported yet: program the moves with G1 and G2 or G3";
 constexpr std::string_view no_point_between =
     "a fixed-point approach through an intermediate point is not supported yet: program a move, "
     "then G75";

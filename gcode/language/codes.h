@@ -8,6 +8,10 @@
 
 namespace gcode {
 
+/// Why the codes and keywords of smooth approach and retract are refused.
+inline constexpr std::string_view no_smooth_approach =
+    "smooth approach and retract are not supported yet: program the moves with G1 and G2 or G3";
+
 /// Codes of one group replace each other; a block may contain one code of each group.
 enum class ModalGroup : uint8_t {
     action, // one-shot codes: G4, G10, G28, G52, G53, G92

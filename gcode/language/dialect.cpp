@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 namespace gcode {
 namespace {
 
@@ -327,6 +329,13 @@ constexpr auto names_of_dialects = [] {
 } // namespace
 
 const Dialect& dialect(DialectId id) { return dialects[static_cast<size_t>(id)]; }
+
+core::Result<DialectId> supported(DialectId id) {
+    if (dialect(id).supported) return id;
+    return core::fail(
+        core::ErrorCode::unsupported,
+        fmt::format("the dialect {} is not supported by this version", dialect(id).name));
+}
 
 std::span<const std::string_view> dialect_names() { return names_of_dialects; }
 

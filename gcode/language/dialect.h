@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/result.h"
 #include "gcode/language/expression.h"
 #include "gcode/language/modal_state.h"
 
@@ -129,6 +130,11 @@ struct Dialect {
 };
 
 const Dialect& dialect(DialectId id);
+
+/// The dialect, if this version supports it.
+///
+/// Errors: unsupported, with the name of the dialect.
+core::Result<DialectId> supported(DialectId id);
 
 /// The names of all dialects, in the order of their enumerators.
 std::span<const std::string_view> dialect_names();

@@ -50,15 +50,12 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
         return core::fail(ErrorCode::missing_value,
                           "G4 has no time: it needs F in seconds, or S in spindle revolutions",
                           entry->word->span);
-    if (word->value < 0.0)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: a time must not be negative", written(*word)),
-                          word->span);
+    FEELER_TRY(const double time, dwell_time(execution, *word));
     execution.column = entry->word->span.column;
     if (seconds) {
-        execution.emit(Dwell{word->value});
+        execution.emit(Dwell{time});
     } else if (execution.modal().speed > 0.0) {
-        execution.emit(Dwell{word->value * 60.0 / execution.modal().speed});
+        execution.emit(Dwell{time * 60.0 / execution.modal().speed});
     } else {
         return core::fail(
             ErrorCode::missing_value,

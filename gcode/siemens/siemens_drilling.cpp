@@ -49,8 +49,7 @@ tl::unexpected<core::Error> refuse_cycle(const Execution& execution, int number,
 
 core::Result<double> modal_rate(const Execution& execution, int number) {
     const ModalState& modal = execution.modal();
-    if (!modal.feed || *modal.feed <= 0.0)
-        return refuse_cycle(execution, number, "no feed rate: no F has been programmed yet");
+    if (!modal.feed || *modal.feed <= 0.0) return refuse_cycle(execution, number, no_feed_yet);
     if (modal.feed_mode == FeedMode::inverse_time)
         return refuse_cycle(execution, number,
                             "a cycle cannot run in inverse-time feed mode (G93)");

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "gcode/language/codes.h"
 #include "gcode/siemens/siemens_line.h"
 
 namespace gcode {
@@ -14,8 +15,6 @@ constexpr std::string_view no_cycle =
 constexpr std::string_view no_machine =
     "this transformation depends on the rotary axes of the machine and is not supported";
 constexpr std::string_view no_actions = "synchronised actions are not supported yet";
-constexpr std::string_view no_approach =
-    "smooth approach and retract are not supported yet: program the moves with G1 and G2 or G3";
 constexpr std::string_view no_positioning =
     "positioning axes are not supported yet: program the move with G0 or G1";
 constexpr std::string_view no_measuring = "measuring is not supported yet";
@@ -166,10 +165,10 @@ constexpr SiemensKeyword keywords[] = {
     {"DIAMONA", refusal, no_diameters},
     {"DISABLE", note},
     {"DISC", noted_address},
-    {"DISCL", refused_address, no_approach},
+    {"DISCL", refused_address, no_smooth_approach},
     {"DISPLOF", note},
     {"DISPLON", note},
-    {"DISR", refused_address, no_approach},
+    {"DISR", refused_address, no_smooth_approach},
     {"DITE", noted_address},
     {"DITS", noted_address},
     {"DO", refusal, no_actions},

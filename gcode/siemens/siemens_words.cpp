@@ -136,11 +136,7 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
 } // namespace
 
 core::Result<void> use_siemens_words(Execution& execution) {
-    for (const Word* word : execution.statement.unknown_m_codes)
-        execution.warn(
-            word->span,
-            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
-                        written(*word)));
+    warn_of_unknown_m_codes(execution);
     warn_of_unused(execution);
     if (auto done = set_feed_mode(execution); !done) return done;
     set_mode_of_surface_speed(execution);

@@ -82,7 +82,7 @@ TEST(CircularPocket, RefusesRadiiThatDoNotFit) {
     EXPECT_THAT(error("G13 I8. K9. Z-1. F9. D1\n"), HasSubstr("K also needs Q"));
     EXPECT_THAT(error("G13 I8. Q2. Z-1. F9. D1\n"), HasSubstr("Q also needs K"));
     EXPECT_THAT(error("G13 I8. K7. Q2. Z-1. F9. D1\n"), HasSubstr("K must be greater"));
-    EXPECT_THAT(error("G13 I8. Z-1. D1\n"), HasSubstr("no F word"));
+    EXPECT_THAT(error("G13 I8. Z-1. D1\n"), HasSubstr("no F has been programmed"));
 }
 
 } // namespace

@@ -132,7 +132,7 @@ TEST(Interpreter, NeedsAMotionCodeForAxisWords) {
 }
 
 TEST(Interpreter, NeedsAFeedRateForFeeds) {
-    EXPECT_EQ(error_of("G0 X1\nG1 X2"), "2:1: G1: no feed rate: no F word has been programmed yet");
+    EXPECT_EQ(error_of("G0 X1\nG1 X2"), "2:1: G1: no feed rate: no F has been programmed yet");
     EXPECT_EQ(error_of("G1 X2 F0"), "1:1: G1: the feed rate is F0");
     EXPECT_EQ(error_of("F-1"), "1:1: F-1: a feed rate must not be negative");
 }

@@ -269,11 +269,7 @@ core::Result<SetupFile> infer_setup(const gcode::Program& program,
                                     const ProgramSettings& settings) {
     FEELER_TRY(SetupFile file, bare_setup(settings));
     if (!file.dialect) file.dialect = gcode::recognise(program).dialect;
-    if (!gcode::dialect(*file.dialect).supported)
-        return core::fail(core::ErrorCode::unsupported,
-                          fmt::format("the dialect {} is not supported by this version",
-                                      gcode::dialect(*file.dialect).name));
-    file.environment.dialect = *file.dialect;
+    FEELER_TRY(file.environment.dialect, gcode::supported(*file.dialect));
     if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
     return file;
 }
