@@ -3,8 +3,9 @@
 page names and every type in the glossary exists, and the pages that must stay short are short.
 
     documentation.py ROOT           checks the tree at ROOT; prints each mistake, exits with 1 if there is one
-    documentation.py ROOT FEELER    checks that the manual lists every subcommand, option and rule of the program
-    documentation.py ROOT FEELER --update    first writes severity, meaning and cure of each rule into the manual
+    documentation.py ROOT FEELER    checks that the manual lists every subcommand, option, rule and dialect of the program
+    documentation.py ROOT FEELER --update    first writes severity, meaning and cure of each rule, and the lists of
+                                             dialects, into the manual
     documentation.py --self-check   checks this script against a small tree with known mistakes
 """
 import json
@@ -245,6 +246,44 @@ def update_rules(root, feeler):
     page.write_text(text, encoding="utf-8")
 
 
+# Lists of dialects in sentences of the manual: page, text before and after the list, word before the last name.
+DIALECT_LISTS = (("commands.md", "language of the control: ", ". Otherwise", " or "),
+                 ("set-up-file.md", "| `dialect` | ", "; otherwise", ", "))
+
+
+def dialects_of(feeler):
+    text = subprocess.run([feeler, "check", "--help"], capture_output=True, text=True, check=True).stdout
+    return re.search(r"--dialect [A-Z]+:\{([^}]+)\}", text)[1].split(",")
+
+
+def dialect_list(names, around):
+    before, after, last = around
+    quoted = [f"`{name}`" for name in names]
+    return before + ", ".join(quoted[:-1]) + last + quoted[-1] + after
+
+
+def undocumented_dialects(root, feeler):
+    """Pages whose list of dialects differs from the program's, and dialects without a row in the table."""
+    names, found = dialects_of(feeler), []
+    for page, *around in DIALECT_LISTS:
+        text = (root / "docs" / "manual" / page).read_text(encoding="utf-8")
+        if dialect_list(names, around) not in text:
+            found.append(f"docs/manual/{page}: the list of dialects is not {', '.join(names)}")
+    table = (root / "docs" / "manual" / "controls-and-dialects.md").read_text(encoding="utf-8")
+    return found + [f"docs/manual/controls-and-dialects.md: the table has no row for {name}" for name in names
+                    if not re.search(rf"^\| `{name}` \| \w[^|]*\| \w[^|]*\|$", table, flags=re.M)]
+
+
+def update_dialects(root, feeler):
+    """Writes the lists of dialects; a row in the table of dialects needs an author."""
+    listed = dialects_of(feeler)
+    for name, *around in DIALECT_LISTS:
+        page = root / "docs" / "manual" / name
+        old = f"{re.escape(around[0])}`[^.;]*`{re.escape(around[1])}"
+        text = re.sub(old, dialect_list(listed, around), page.read_text(encoding="utf-8"))
+        page.write_text(text, encoding="utf-8")
+
+
 def self_check():
     """Runs the check over a small tree; each line with a mistake must be reported, and no other."""
     readme = "\n".join([
@@ -281,6 +320,11 @@ def self_check():
         assert len(lengths) == 2, lengths
 
 
+def unlisted(root, feeler):
+    """Whatever the program has and the manual lacks."""
+    return undocumented(root, feeler) + undocumented_rules(root, feeler) + undocumented_dialects(root, feeler)
+
+
 def main(arguments):
     if arguments == ["--self-check"]:
         self_check()
@@ -288,7 +332,8 @@ def main(arguments):
     root = pathlib.Path(arguments[0] if arguments else ".").resolve()
     if arguments[2:] == ["--update"]:
         update_rules(root, arguments[1])
-    found = undocumented(root, arguments[1]) + undocumented_rules(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
+        update_dialects(root, arguments[1])
+    found = unlisted(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
     for mistake in found:
         print(mistake)
     return 1 if found else 0

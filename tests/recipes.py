@@ -102,6 +102,9 @@ class Overlay:
     def path_of(self, name):
         return (self.folder if name in self.names else self.root) / name
 
+    def copy(self, name):
+        self.write(name, self.path_of(name).read_text(encoding="utf-8"))
+
     def write(self, name, text):
         self.names.add(name)
         file = self.folder / name
@@ -259,11 +262,13 @@ def carry_out(root, build):
         overlay = Overlay(root, pathlib.Path(folder).resolve())
         consoles = apply_recipes(text, overlay)
         feeler = link_feeler(overlay, build, objects_of(overlay, build))
+        for page, *_ in documentation.DIALECT_LISTS:
+            overlay.copy(f"docs/manual/{page}")
         overlay.complete_folders_of_tests()
+        documentation.update_dialects(overlay.folder, str(feeler))
         check_planted(overlay, feeler)
         check_consoles(overlay, feeler, consoles)
-        mistakes = documentation.undocumented(overlay.folder, str(feeler)) \
-            + documentation.undocumented_rules(overlay.folder, str(feeler))
+        mistakes = documentation.unlisted(overlay.folder, str(feeler))
         if mistakes:
             raise Stale("\n".join(mistakes))
 

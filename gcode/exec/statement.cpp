@@ -1,5 +1,6 @@
 #include "gcode/exec/statement.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,13 +23,13 @@ const CodeWord* rival_of(const Statement& statement, const Code& code, const Dia
     return code.is_cycle() ? statement.of(ModalGroup::motion) : nullptr;
 }
 
-/// Whether this word calls a subprogram, jumps or returns on some control.
+/// Whether this word calls a subprogram, jumps or returns on some control that reads ISO words.
 bool goes_elsewhere(const Word& word) {
-    for (const DialectId id :
-         {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas, DialectId::grbl})
-        if (const Code* code = find_code(word.letter, word.value, id))
-            if (code->group == ModalGroup::subprogram) return true;
-    return false;
+    return std::ranges::any_of(all_dialects(), [&](const Dialect& entry) {
+        if (entry.language != Language::words) return false;
+        const Code* code = find_code(word.letter, word.value, entry.id);
+        return code && code->group == ModalGroup::subprogram;
+    });
 }
 
 /// Accepts an unknown M code, unless it may change the order of execution or is not valid on any

@@ -11,6 +11,7 @@ using enum ModalGroup;
 
 constexpr DialectSet bit(DialectId id) { return static_cast<DialectSet>(1u << unsigned(id)); }
 
+// Of the dialects that have codes of their own; others share the codes of one of these.
 constexpr DialectSet linuxcnc = bit(DialectId::linuxcnc);
 constexpr DialectSet fanuc =
     bit(DialectId::fanuc) | bit(DialectId::haas) | bit(DialectId::siemens_iso);
@@ -375,10 +376,11 @@ constexpr std::array positions = [] {
 const Code* find_code(CodeNumber number, DialectId id) {
     const uint16_t position = positions[static_cast<size_t>(number)];
     if (position == 0) return nullptr;
+    const DialectSet wanted = bit(dialect(id).codes);
     // A code that has different meanings on different controls has adjacent rows, one for each.
     const Code* found = &codes[position - 1];
     for (; found != std::end(codes) && found->number <= number; ++found)
-        if ((found->dialects & bit(id)) && number <= found->last_number()) return found;
+        if ((found->dialects & wanted) && number <= found->last_number()) return found;
     return nullptr;
 }
 

@@ -45,7 +45,7 @@ enum class ModalGroup : uint8_t {
     count
 };
 
-/// Dialects as a set of bits, 1 << id.
+/// Dialects as a set of bits, 1 << Dialect::codes.
 using DialectSet = uint8_t;
 
 /// One G or M code.

@@ -32,6 +32,7 @@ constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
 
 constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .name = "linuxcnc",
+                                      .codes = DialectId::linuxcnc,
                                       .supported = true,
                                       .unit = LengthUnit::mm,
                                       .unit_is_machines = true,
@@ -117,6 +118,7 @@ constexpr Arithmetic fanuc_arithmetic = {.bitwise_logic = true,
 
 constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .name = "fanuc",
+                                   .codes = DialectId::fanuc,
                                    .supported = true,
                                    .unit = LengthUnit::mm,
                                    .unit_is_machines = false,
@@ -198,6 +200,7 @@ constexpr Dialect haas_dialect = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::haas;
     entry.name = "haas";
+    entry.codes = DialectId::haas;
     entry.contour_style = ContourStyle::rs274;
     entry.arithmetic.angles_have_no_sign = false;
     entry.machine_move_is_rapid = false;
@@ -220,6 +223,7 @@ constexpr Dialect grbl_dialect = [] {
     Dialect entry = linuxcnc_dialect;
     entry.id = DialectId::grbl;
     entry.name = "grbl";
+    entry.codes = DialectId::grbl;
     entry.assumed_feed = grbl_feed;
     entry.length_needs_g43 = false;
     entry.unit_is_machines = false;
@@ -248,6 +252,7 @@ constexpr Dialect heidenhain = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::heidenhain;
     entry.name = "heidenhain";
+    entry.codes = DialectId::heidenhain;
     entry.contour_style = ContourStyle::rs274;
     entry.radius_number_stays = false;
     entry.length_needs_g43 = false;
@@ -278,6 +283,7 @@ constexpr Dialect siemens_dialect = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::siemens;
     entry.name = "siemens";
+    entry.codes = DialectId::siemens;
     entry.arc = siemens_arc;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
@@ -313,6 +319,7 @@ constexpr Dialect siemens_iso = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::siemens_iso;
     entry.name = "siemens-iso";
+    entry.codes = DialectId::siemens_iso;
     entry.arc = siemens_arc;
     return entry;
 }();
@@ -336,6 +343,8 @@ core::Result<DialectId> supported(DialectId id) {
         core::ErrorCode::unsupported,
         fmt::format("the dialect {} is not supported by this version", dialect(id).name));
 }
+
+std::span<const Dialect> all_dialects() { return dialects; }
 
 std::span<const std::string_view> dialect_names() { return names_of_dialects; }
 

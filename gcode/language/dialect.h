@@ -49,6 +49,7 @@ enum class ContourStyle : uint8_t {
 struct Dialect {
     DialectId id;
     std::string_view name;
+    DialectId codes; // the dialect whose G and M codes it has, in the table of codes
     bool supported;
     LengthUnit unit;       // initial, until G20 or G21
     bool unit_is_machines; // the initial unit is that of the machine instead
@@ -135,6 +136,9 @@ const Dialect& dialect(DialectId id);
 ///
 /// Errors: unsupported, with the name of the dialect.
 core::Result<DialectId> supported(DialectId id);
+
+/// All dialects, in the order of their enumerators.
+std::span<const Dialect> all_dialects();
 
 /// The names of all dialects, in the order of their enumerators.
 std::span<const std::string_view> dialect_names();

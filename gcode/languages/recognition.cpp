@@ -103,6 +103,8 @@ Clue linuxcnc_clue(std::string_view text, size_t line) {
     return std::nullopt;
 }
 
+// The dialects that differ in their G codes. One that has the codes of another cannot be recognised
+// by them; it needs a clue of its own.
 constexpr std::array candidates = {DialectId::linuxcnc, DialectId::fanuc, DialectId::haas,
                                    DialectId::grbl};
 
