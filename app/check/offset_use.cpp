@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
@@ -141,11 +142,12 @@ std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const cor
 
 namespace {
 
-constexpr double inch = 25.4;
 constexpr double doubt = 2.0; // a part and its stock differ by less than this factor
 
 /// Whether a ratio of sizes is close to 25.4.
-bool is_units_apart(double ratio) { return ratio > inch / doubt && ratio < inch * doubt; }
+bool is_units_apart(double ratio) {
+    return ratio > core::mm_per_inch / doubt && ratio < core::mm_per_inch * doubt;
+}
 
 } // namespace
 

@@ -30,7 +30,7 @@ std::optional<gcode::LengthUnit> unit_named(const std::string& name) {
         return per_mm && std::abs(*per_mm - wanted) < 1e-4 * wanted;
     };
     if (name == "mm" || name == "metric" || is_near(1.0)) return gcode::LengthUnit::mm;
-    if (name == "inch" || name == "in" || name == "imperial" || is_near(1.0 / 25.4))
+    if (name == "inch" || name == "in" || name == "imperial" || is_near(1.0 / core::mm_per_inch))
         return gcode::LengthUnit::inch;
     return std::nullopt;
 }
@@ -119,7 +119,7 @@ public:
     AxisNumbers(const gcode::Environment& environment, size_t axis, size_t joint)
         : values_(environment.ini_values) {
         const bool inch = environment.machine_unit == gcode::LengthUnit::inch;
-        unit_ = inch && !core::is_rotary(axis) ? 25.4 : 1.0;
+        unit_ = inch && !core::is_rotary(axis) ? core::mm_per_inch : 1.0;
         sections_ = {fmt::format("axis_{}", core::lower(core::axis_letters[axis])),
                      fmt::format("axis_{}", axis), fmt::format("joint_{}", joint)};
     }

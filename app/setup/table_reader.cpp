@@ -1,35 +1,20 @@
 #include "app/setup/table_reader.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/base/text.h"
+
 namespace app {
 namespace {
-
-/// The number of letter edits that turn one word into the other.
-size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<size_t> row(b.size() + 1);
-    for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (size_t i = 1; i <= a.size(); ++i) {
-        size_t diagonal = row[0];
-        row[0] = i;
-        for (size_t j = 1; j <= b.size(); ++j) {
-            const size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
-            diagonal = above;
-        }
-    }
-    return row[b.size()];
-}
 
 std::string nearest(const std::string& word, const std::set<std::string>& known) {
     std::string best;
     size_t least = 3; // a suggestion must be closer than this
     for (const std::string& candidate : known) {
-        const size_t apart = edit_distance(word, candidate);
+        const size_t apart = core::letters_apart(word, candidate);
         if (apart >= least) continue;
         least = apart;
         best = candidate;
@@ -115,7 +100,8 @@ std::optional<bool> TableReader::boolean(const char* key) {
     return at->value<bool>();
 }
 
-std::optional<std::string> TableReader::word(const char* key, std::span<const std::string_view> words) {
+std::optional<std::string> TableReader::word(const char* key,
+                                             std::span<const std::string_view> words) {
     const auto value = string(key);
     if (!value) return std::nullopt;
     for (const std::string_view word : words)

@@ -7,6 +7,11 @@ namespace core {
 inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 inline constexpr double seconds_per_minute = 60.0;
+inline constexpr double mm_per_inch = 25.4;
+
+/// An angle in degrees as radians. Not `degrees * radians_per_degree`, which differs in the last
+/// bit.
+constexpr double radians_of(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 struct SinCos {
     double sin = 0.0;

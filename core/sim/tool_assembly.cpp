@@ -5,14 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "core/sim/tool_description.h"
 
 namespace core {
 namespace {
 
 constexpr double right_angle = 0.5 * std::numbers::pi;
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 /// The rounded edge of a tool: a torus of a ball of radius `corner` around a circle of radius
 /// `disc`.
@@ -132,7 +131,7 @@ Result<ToolHead> drill(const ToolDescription& tool) {
     if (point == 180.0) return flat(tool);
     if (!(point > 0.0 && point < 180.0))
         return tool_error(tool, "point_deg must lie between 0 and 180");
-    return coned(tool, 0.0, radians(0.5 * point));
+    return coned(tool, 0.0, radians_of(0.5 * point));
 }
 
 Result<ToolHead> tapered(const ToolDescription& tool) {
@@ -151,7 +150,7 @@ Result<ToolHead> tapered(const ToolDescription& tool) {
         return tool_error(tool, fmt::format("corner_radius {:g} is more than half of tip_diameter "
                                             "{:g}",
                                             corner, tool.tip_diameter));
-    return coned(tool, tip, radians(*tool.angle_deg));
+    return coned(tool, tip, radians_of(*tool.angle_deg));
 }
 
 Result<ToolHead> tslot(const ToolDescription& tool) {
@@ -177,13 +176,13 @@ Result<ToolHead> dovetail(const ToolDescription& tool) {
                                 "between 0 and 90");
     const double r = 0.5 * tool.diameter, height = tool.flute_length;
     const double corner = tool.corner_radius.value_or(0.0),
-                 steep = std::tan(radians(*tool.angle_deg));
+                 steep = std::tan(radians_of(*tool.angle_deg));
     if (!(corner >= 0.0 && corner < r && 2.0 * corner <= height))
         return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
                                             "flute_length {:g} and below half the diameter",
                                             corner, height));
     const Rounding round{r - corner, corner};
-    const ProfileElement flank = round.at(right_angle + radians(*tool.angle_deg));
+    const ProfileElement flank = round.at(right_angle + radians_of(*tool.angle_deg));
     const double z0 = corner > 0.0 ? flank.z0 : 0.0, r0 = corner > 0.0 ? flank.r0 : r;
     const double top = r0 - (height - z0) * steep;
     if (!(top > 0.0 && z0 < height))
@@ -255,7 +254,7 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
         return tool_error(tool, fmt::format("teeth = {}: flute_length {:g} has room for 1 to {}",
                                             rows, tool.flute_length, std::min(most, too_many)));
     const double crest = 0.5 * tool.diameter;
-    const double root = crest - 0.3125 * pitch / std::tan(radians(0.5 * angle));
+    const double root = crest - 0.3125 * pitch / std::tan(radians_of(0.5 * angle));
     if (!(root > 0.0))
         return tool_error(
             tool, fmt::format("pitch {:g} is too large for diameter {:g}", pitch, tool.diameter));

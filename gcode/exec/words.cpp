@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "gcode/exec/execution.h"
 #include "gcode/language/error_rules.h"
 
@@ -166,7 +167,7 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target) 
         return tl::unexpected(
             refusal(*angle, ErrorCode::missing_value,
                     "the start position of the line is unknown: move there first"));
-    const double radians = angle->value * std::numbers::pi / 180.0;
+    const double radians = core::radians_of(angle->value);
     const double along = first ? std::cos(radians) : std::sin(radians);
     const double across = first ? std::sin(radians) : std::cos(radians);
     const double way = *target[given] - *modal.position[given];

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/base/units.h"
 #include "gcode/klartext/klartext.h"
 
 namespace gcode {
@@ -20,7 +20,7 @@ void keep_order(Transforms& transforms, Kind kind, bool is_on) {
 }
 
 core::Mat3 turned(double angle_deg, const PlaneAxes& axes) {
-    const double angle = angle_deg * std::numbers::pi / 180.0;
+    const double angle = core::radians_of(angle_deg);
     const auto first = static_cast<int>(axes.first), second = static_cast<int>(axes.second);
     core::Mat3 linear(1.0);
     linear[first][first] = linear[second][second] = std::cos(angle);

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+
 namespace gcode {
 namespace {
 
@@ -25,7 +27,7 @@ constexpr ArcTolerance fanuc_arc = {.absolute_mm = 0.005,
 
 // Grbl, gcode.c: an error above 0.5 mm, or above both 0.005 mm and a thousandth of the radius.
 constexpr ArcTolerance grbl_arc = {.absolute_mm = 0.005,
-                                   .absolute_inch = 0.005 / 25.4,
+                                   .absolute_inch = 0.005 / core::mm_per_inch,
                                    .relative = 0.001,
                                    .limit = 100.0,
                                    .warned_mm = 0.0};
@@ -243,7 +245,7 @@ constexpr Dialect grbl_dialect = [] {
 
 // iTNC manual: the input tolerance for the end point of an arc around CC is 0.016 mm.
 constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
-                                         .absolute_inch = 0.016 / 25.4,
+                                         .absolute_inch = 0.016 / core::mm_per_inch,
                                          .relative = 0.0,
                                          .limit = 1.0,
                                          .warned_mm = 0.05};
@@ -274,7 +276,7 @@ constexpr Dialect heidenhain = [] {
 
 // SINUMERIK 840D, default MD21000 and MD21010: 0.01 mm, or a thousandth of the radius.
 constexpr ArcTolerance siemens_arc = {.absolute_mm = 0.01,
-                                      .absolute_inch = 0.01 / 25.4,
+                                      .absolute_inch = 0.01 / core::mm_per_inch,
                                       .relative = 0.001,
                                       .limit = 1e12,
                                       .warned_mm = 0.0};

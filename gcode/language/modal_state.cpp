@@ -1,8 +1,8 @@
 #include "gcode/language/modal_state.h"
 
 #include <cmath>
-#include <numbers>
 
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 
@@ -28,7 +28,7 @@ void map(const core::Mat3& linear, Position& position) {
 }
 
 core::Mat3 turned_about_z(double degrees) {
-    const double angle = degrees * std::numbers::pi / 180.0;
+    const double angle = core::radians_of(degrees);
     core::Mat3 turn(1.0);
     turn[0][0] = turn[1][1] = std::cos(angle);
     turn[0][1] = std::sin(angle);
@@ -106,6 +106,14 @@ AxisValues without_length(AxisValues tool) {
 }
 
 } // namespace
+
+double to_mm(double programmed, LengthUnit unit) {
+    return unit == LengthUnit::inch ? programmed * core::mm_per_inch : programmed;
+}
+
+double from_mm(double length, LengthUnit unit) {
+    return unit == LengthUnit::inch ? length / core::mm_per_inch : length;
+}
 
 core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work) {
     return machine_from_table(offsets).inverse()
@@ -185,7 +193,7 @@ Direction direction_of(double degrees) {
         const double turn = quarters - 4.0 * std::floor(quarters / 4.0);
         return exact[static_cast<size_t>(turn)];
     }
-    const double angle = degrees * std::numbers::pi / 180.0;
+    const double angle = core::radians_of(degrees);
     return {std::cos(angle), std::sin(angle)};
 }
 

@@ -171,12 +171,8 @@ enum class PathMode : uint8_t { exact_path, exact_stop, continuous }; // G61, G6
 enum class Side : uint8_t { none, left, right };                      // G40, G41, G42
 
 /// All conversions from program units to mm happen here.
-constexpr double to_mm(double programmed, LengthUnit unit) {
-    return unit == LengthUnit::inch ? programmed * 25.4 : programmed;
-}
-constexpr double from_mm(double length, LengthUnit unit) {
-    return unit == LengthUnit::inch ? length / 25.4 : length;
-}
+double to_mm(double programmed, LengthUnit unit);
+double from_mm(double length, LengthUnit unit);
 
 /// The axes of a plane, as indices; positive rotation is from the first to the second.
 struct PlaneAxes {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -221,7 +222,7 @@ core::Result<void> ExpressionReader::siemens_operand() {
         return {};
     }
     if (name == "PI" || name == "$PI") {
-        push(3.14159265358979323846, begin);
+        push(std::numbers::pi, begin);
         return {};
     }
     if (name == "NOT") {

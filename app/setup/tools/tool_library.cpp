@@ -15,6 +15,7 @@
 #include "core/base/file_reads.h"
 #include "core/base/result.h"
 #include "core/base/text.h"
+#include "core/base/units.h"
 #include "gcode/language/tables.h"
 
 namespace app {
@@ -191,7 +192,7 @@ std::optional<double> quantity(const json& value) {
     const TextNumber& number = numbers[0];
     const bool inch = number.suffix == "IN" || number.suffix == "\"";
     if (number.suffix == "M") return 1000.0 * number.value;
-    return number.value * (inch ? 25.4 : 1.0);
+    return number.value * (inch ? core::mm_per_inch : 1.0);
 }
 
 /// A parameter by any of its names, which differ between versions.
@@ -413,7 +414,7 @@ void read_holder(const json& tool, ToolDescription& made) {
     if (holder == tool.end() || !holder->is_object() || !holder->contains("segments")
         || !(*holder)["segments"].is_array())
         return;
-    const double unit = text_at(*holder, "unit") == "inches" ? 25.4 : 1.0;
+    const double unit = text_at(*holder, "unit") == "inches" ? core::mm_per_inch : 1.0;
     for (const json& segment : (*holder)["segments"]) {
         if (!segment.is_object()) continue;
         const double height = number_at(segment, "height") * unit;
@@ -433,7 +434,7 @@ std::optional<int> number_of(const json& tool) {
 }
 
 FoundTool fusion_tool(const json& entry, int number, const std::filesystem::path& path) {
-    const Reader reader{entry, text_at(entry, "unit") == "inches" ? 25.4 : 1.0};
+    const Reader reader{entry, text_at(entry, "unit") == "inches" ? core::mm_per_inch : 1.0};
     FoundTool found;
     found.source = path.string();
     found.tool.number = core::ToolNumber{number};

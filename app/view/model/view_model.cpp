@@ -8,6 +8,7 @@
 #include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
+#include "core/base/units.h"
 #include "core/sim/verdict.h"
 
 namespace app::viewer {
@@ -19,7 +20,7 @@ struct ShownLength {
     int decimals = 0;
 
     ShownLength(const ViewModel& model, double mm, int decimals_of_mm)
-        : value(model.settings.inch ? mm / 25.4 : mm),
+        : value(model.settings.inch ? mm / core::mm_per_inch : mm),
           decimals(model.settings.inch ? decimals_of_mm + 2 : decimals_of_mm) {}
 };
 

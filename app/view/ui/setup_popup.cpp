@@ -9,6 +9,7 @@
 #include "app/setup/holder_library.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/units.h"
 
 namespace app::viewer {
 namespace {
@@ -276,8 +277,6 @@ void SetupPopup::State::draw(Frame& frame) {
 
 namespace {
 
-constexpr double inch = 25.4;
-
 /// Three input fields for lengths in a row. True if one was changed.
 bool place_field(const Frame& frame, const char* id, core::Vec3& mm) {
     bool changed = false;
@@ -355,10 +354,10 @@ void field_name(Frame& frame, const std::string& name, double width) {
 
 bool length_field(const Frame& frame, const char* id, double& mm) {
     const bool is_inch = frame.model.settings.inch;
-    double shown = is_inch ? mm / inch : mm;
+    double shown = is_inch ? mm / core::mm_per_inch : mm;
     ImGui::SetNextItemWidth(frame.px(92));
     if (!ImGui::InputDouble(id, &shown, 0.0, 0.0, is_inch ? "%.5f" : "%.3f")) return false;
-    mm = is_inch ? shown * inch : shown;
+    mm = is_inch ? shown * core::mm_per_inch : shown;
     return true;
 }
 
