@@ -241,11 +241,6 @@ std::string counts_text(size_t errors, size_t warnings, size_t notes) {
            + counted(notes, "note");
 }
 
-std::string clearance_text(double lower, std::optional<double> upper, double allowance) {
-    if (!upper) return ">= " + core::clearance_at_least(lower);
-    return core::bounds_below(lower, *upper, allowance, "-");
-}
-
 std::string duration_text(double seconds) {
     const auto whole = static_cast<long long>(std::llround(seconds));
     if (whole < 60) return fmt::format("{} s", whole);

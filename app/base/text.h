@@ -61,10 +61,6 @@ std::string counted(size_t count, const std::string& noun);
 /// "1 error, 2 warnings, 0 notes".
 std::string counts_text(size_t errors, size_t warnings, size_t notes);
 
-/// The bounds of a clearance in mm for a column: "1.900-1.999", or ">= 1.900" without an upper
-/// bound. An upper bound below the allowance is never rounded up to it.
-std::string clearance_text(double lower, std::optional<double> upper, double allowance);
-
 /// A time of at least 0 in whole seconds, or minutes from an hour on: "5 s", "4 min 05 s",
 /// "2 h 05 min".
 std::string duration_text(double seconds);

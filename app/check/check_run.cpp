@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/base/clearance_text.h"
 #include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
@@ -33,6 +34,12 @@ double least_clearance(const core::Setup& setup, const core::BlockResult& result
     double lower = result.checked ? setup.search_limit : 0.0;
     for (const core::PairClearance& pair : result.pairs) lower = std::min(lower, pair.lower);
     return lower;
+}
+
+ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult& result) {
+    if (!result.checked) return {.is_known = false};
+    if (result.deciding) return shown_clearance(result.pairs[*result.deciding]);
+    return {.lower = least_clearance(setup, result)};
 }
 
 const CheckedBlock* nearest_block(const CheckRun& run) {

@@ -24,6 +24,8 @@ enum class DialectId : uint8_t;
 
 namespace app {
 
+struct ShownClearance;
+
 enum class Engine : uint8_t;
 struct SavedStock;
 
@@ -98,6 +100,10 @@ struct CheckProgress {
 
 /// A lower bound of the clearance of all pairs in a block that no pair decides; 0 if unknown.
 double least_clearance(const core::Setup& setup, const core::BlockResult& result);
+
+/// The bounds of a block's clearance: those of its deciding pair, else the lower bound of all
+/// pairs.
+ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult& result);
 
 /// The block whose deciding pair has the least margin; null if no pair decides any block.
 const CheckedBlock* nearest_block(const CheckRun& run);

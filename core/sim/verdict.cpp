@@ -29,8 +29,8 @@ std::string both(double low, int low_digits, double high, int high_digits,
     return at_least(low, low_digits) + std::string(between) + at_most(high, high_digits);
 }
 
-std::string clearance_text(double lower, double upper, int upper_digits, int digits,
-                           std::string_view between) {
+std::string interval_text(double lower, double upper, int upper_digits, int digits,
+                          std::string_view between) {
     const double low = std::max(lower, 0.0), high = std::max(upper, low);
     if (are_one(low, high, digits)) return at_least(low, digits);
     return both(low, digits, high, upper_digits, between);
@@ -87,7 +87,7 @@ int digits_below(double upper, double keep) {
 }
 
 std::string bounds_text(double lower, double upper, std::string_view between, int digits) {
-    return clearance_text(lower, upper, digits, digits, between);
+    return interval_text(lower, upper, digits, digits, between);
 }
 
 std::string missing_text(double least, double most, std::string_view between, int digits) {
@@ -96,7 +96,7 @@ std::string missing_text(double least, double most, std::string_view between, in
 }
 
 std::string bounds_below(double lower, double upper, double keep, std::string_view between) {
-    return clearance_text(lower, upper, digits_below(upper, keep), 3, between);
+    return interval_text(lower, upper, digits_below(upper, keep), 3, between);
 }
 
 } // namespace core

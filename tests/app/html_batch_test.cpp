@@ -191,7 +191,7 @@ TEST(HtmlBatch, ShowsNoMarginLargerThanItIs) {
     tightest.lower = 1.9996;
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("least margin</th><td>\xE2\x89\xA5 -0.001 mm: "
-                          "clearance 1.999 mm or more (minimum 2.000 mm)"));
+                          "clearance at least 1.999 mm (minimum 2.000 mm)"));
     tightest.upper = 2.0024;
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("<td>-0.001 mm: clearance 1.999 to 2.003 mm (minimum 2.000 mm)"));

@@ -146,13 +146,6 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
     EXPECT_EQ(bounds(-2e-6, 0.0), std::pair(int64_t{0}, int64_t{0})) << "-1 means unknown";
 }
 
-TEST(HtmlBounds, ShowNoLowerBoundLargerThanItIs) {
-    EXPECT_EQ(bounds_text(1.9996, {}, 2.0), "1.999 mm or more");
-    EXPECT_EQ(bounds_text(1.9996, 1.9996, 1.0), "1.999 mm");
-    EXPECT_EQ(bounds_text(1.9996, 2.0024, 1.0), "1.999 to 2.003 mm");
-    EXPECT_EQ(bounds_text(1.9, 1.9996, 2.0), "1.900 to 1.999600 mm");
-}
-
 TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {
     CheckRun run = clamped_plate();
     run.findings.clear();

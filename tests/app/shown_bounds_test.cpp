@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/base/clearance_text.h"
 #include "app/check/check_run.h"
-#include "app/debug/prompt/state_text.h"
 #include "app/library/result/program_diff.h"
 #include "app/report/exchange/exchange_reports.h"
 #include "app/report/history/history_report.h"
@@ -86,7 +86,7 @@ TEST(TextReport, SaysNoMoreThanTheSearchWentThrough) {
         block.result.checked = true;
     }
     run.setup.search_limit = 49.6;
-    EXPECT_THAT(text_report(run, {.blocks = true}), HasSubstr("> 49 "));
+    EXPECT_THAT(text_report(run, {.blocks = true}), HasSubstr(" >= 49.600 "));
 }
 
 TEST(Csv, HasBoundsToTheLastBit) {
@@ -121,17 +121,33 @@ TEST(DistanceText, RoundsLowerBoundsDownAndUpperBoundsUp) {
     EXPECT_THAT(text, HasSubstr(" closest pair 5.000000 mm apart"));
 }
 
-TEST(Prompt, RoundsLowerBoundsDownAndUpperBoundsUp) {
-    const auto text = [](double lower, double upper, double keep) {
-        const CheckRun run = with_bounds(lower, upper, keep);
-        for (const CheckedBlock& block : run.blocks)
-            if (block.result.deciding) return clearance_text(run.setup, block.result);
-        return std::string("none");
+TEST(ClearanceText, RoundsLowerBoundsDownAndUpperBoundsUp) {
+    const auto text = [](const ShownClearance& clearance) {
+        return clearance_text(clearance, ClearanceStyle::sentence) + "|"
+               + clearance_text(clearance, ClearanceStyle::column) + "|"
+               + clearance_text(clearance, ClearanceStyle::lower_bound);
     };
-    EXPECT_EQ(text(1.9996, 1.9996, 2.0), "1.999 mm");
-    EXPECT_EQ(text(1.9006, 2.0024, 2.0), "1.900-2.003 mm");
-    EXPECT_EQ(text(1.9, 1.9996, 2.0), "1.900-1.999600 mm");
-    EXPECT_EQ(text(49.9996, core::infinity, 2.0), "at least 49.999 mm");
+    EXPECT_EQ(text({true, 1.9996, 1.9996, 2.0}), "1.999 mm|1.999|1.999");
+    EXPECT_EQ(text({true, 1.9006, 2.0024, 2.0}), "1.900 to 2.003 mm|1.900-2.003|1.900");
+    EXPECT_EQ(text({true, 1.9, 1.9996, 2.0}), "1.900 to 1.999600 mm|1.900-1.999600|1.900");
+    EXPECT_EQ(text({true, 49.9996, {}, 2.0}), "at least 49.999 mm|>= 49.999|>= 49.999");
+    EXPECT_EQ(text({.is_known = false}), "unknown|unknown|unknown");
+}
+
+TEST(ShownClearance, IsThatOfTheDecidingPairOrALowerBoundOfAll) {
+    const auto text = [](const core::BlockResult& result) {
+        return clearance_text(shown_clearance({}, result), ClearanceStyle::sentence);
+    };
+    core::BlockResult result;
+    EXPECT_EQ(text(result), "at least 50.000 mm");
+    result.pairs = {{.lower = 3.0}, {.lower = 2.0, .upper = 2.5}};
+    EXPECT_EQ(text(result), "at least 2.000 mm");
+    result.deciding = 0;
+    EXPECT_EQ(text(result), "at least 3.000 mm");
+    result.deciding = 1;
+    EXPECT_EQ(text(result), "2.000 to 2.500 mm");
+    result.checked = false;
+    EXPECT_EQ(text(result), "unknown");
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/debug/inspected_value.h"
@@ -104,10 +105,9 @@ CommandResult show_block(PromptState& state, const std::string&) {
     text +=
         fmt::format("    begins at {:.2f} s, removes {:.1f} mm3\n", result.time, result.removed);
     for (const core::PairClearance& pair : result.pairs)
-        text += fmt::format("    {} / {}: {} to {} mm, minimum {} mm, {}\n",
+        text += fmt::format("    {} / {}: {}, minimum {} mm, {}\n",
                             core::part_name(setup, pair.pair), core::body_name(setup, pair.pair),
-                            core::clearance_at_least(pair.lower),
-                            pair.found() ? core::at_most(pair.upper) : "...",
+                            clearance_text(shown_clearance(pair), ClearanceStyle::sentence),
                             pair.allowance.distance, core::name_of(pair.verdict));
     return text;
 }
@@ -245,17 +245,8 @@ std::map<uint32_t, size_t> worst_blocks(const CheckRun& record, const std::strin
 /// The clearance of a block as a column: "0.420 !".
 std::string clearance_column(const PromptState& state, size_t block) {
     const core::BlockResult& result = state.session.record().blocks[block].result;
-    std::string text;
-    if (!result.checked)
-        text = "?";
-    else if (result.deciding) {
-        const core::PairClearance& pair = result.pairs[*result.deciding];
-        text = pair.found() ? core::clearance_at_least(pair.lower)
-                            : ">" + core::clearance_at_least(pair.lower, 1);
-    } else {
-        const double least = least_clearance(state.session.setup_at(block), result);
-        text = ">" + core::clearance_at_least(least, 0);
-    }
+    const std::string text = clearance_text(shown_clearance(state.session.setup_at(block), result),
+                                            ClearanceStyle::lower_bound);
     return text + (result.verdict == core::Verdict::clear && result.checked ? "  " : " !");
 }
 

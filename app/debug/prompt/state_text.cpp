@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "core/sim/verdict.h"
@@ -22,8 +23,9 @@ const core::PairClearance* deciding_pair(const core::BlockResult& result) {
 /// The closest pair: "holder to clamp-1: 0.420 mm, minimum 2 mm, short by 1.580 mm".
 std::string nearness_text(const core::Setup& setup, const core::BlockResult& result) {
     const core::PairClearance* pair = deciding_pair(result);
-    const std::string distance = clearance_text(setup, result);
-    if (!pair) return distance == "unknown" ? "clearance unknown" : distance + " from all bodies";
+    const ShownClearance clearance = shown_clearance(setup, result);
+    const std::string distance = clearance_text(clearance, ClearanceStyle::sentence);
+    if (!pair) return clearance.is_known ? distance + " from all bodies" : "clearance " + distance;
     std::string text = fmt::format("{} to {}: {}", core::part_name(setup, pair->pair),
                                    core::body_name(setup, pair->pair), distance);
     const double keep = pair->allowance.distance;
@@ -94,18 +96,6 @@ Condition::Subject subject_of(const PromptState& state) {
 std::string line_text(const CheckedBlock& block) {
     if (block.file.empty()) return fmt::format("line {}", block.line);
     return fmt::format("line {} of {}", block.line, trimmed(file_name(block.file)));
-}
-
-std::string clearance_text(const core::Setup& setup, const core::BlockResult& result) {
-    if (!result.checked) return "unknown";
-    const core::PairClearance* pair = deciding_pair(result);
-    if (!pair) {
-        const double least = least_clearance(setup, result);
-        if (least >= setup.search_limit) return fmt::format("more than {} mm", least);
-        return fmt::format("at least {} mm", core::clearance_at_least(least));
-    }
-    if (!pair->found()) return fmt::format("at least {} mm", core::clearance_at_least(pair->lower));
-    return core::bounds_below(pair->lower, pair->upper, pair->allowance.distance, "-") + " mm";
 }
 
 std::string finding_text(const core::Finding& finding, size_t indent) {

@@ -20,9 +20,6 @@ std::string location_text(PromptState& state);
 /// Why a walk stopped, with a newline; empty if it ran the requested number of blocks.
 std::string stop_text(const PromptState& state, const Stop& stop);
 
-/// "0.420 mm", "0.401-0.420 mm", "more than 50 mm", "unknown".
-std::string clearance_text(const core::Setup& setup, const core::BlockResult& result);
-
 /// The location of a block: "line 23", "line 23 of sub.nc".
 std::string line_text(const CheckedBlock& block);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/base/clearance_text.h"
 #include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
@@ -42,7 +43,8 @@ std::string nearest_text(const ProgramResult& result) {
     if (!result.tightest) return "no pair of bodies within the search limit";
     const Tightest& tightest = *result.tightest;
     return fmt::format("{} mm {} / {}, line {}",
-                       clearance_text(tightest.lower, tightest.upper, tightest.allowance),
+                       clearance_text({true, tightest.lower, tightest.upper, tightest.allowance},
+                                      ClearanceStyle::column),
                        trimmed(tightest.pair[0]), trimmed(tightest.pair[1]), tightest.line);
 }
 

@@ -71,8 +71,8 @@ function isWorse(blocks, a, b) {
 
 function clearanceText(blocks, i) {
   if (blocks.motion[i] === 0) return "";
-  if (blocks.lower[i] < 0) return "not known";
-  if (blocks.width[i] < 0) return (blocks.lower[i] >= blocks.limit ? "> " : "\u2265 ") + millimetres(blocks.lower[i]);
+  if (blocks.lower[i] < 0) return "unknown";
+  if (blocks.width[i] < 0) return "\u2265 " + millimetres(blocks.lower[i]);
   if (blocks.width[i] <= 1) return millimetres(blocks.lower[i]); // rounded down, as a lower bound is
   return millimetres(blocks.lower[i]) + "\u2013" + millimetres(blocks.lower[i] + blocks.width[i]);
 }

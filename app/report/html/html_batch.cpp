@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/library/result/batch_result.h"
@@ -198,7 +199,8 @@ std::string tightest_html(const BatchResult& batch) {
         "{}{:.3f} mm: clearance {} (minimum {} mm), {} / {}, <button type=\"button\" "
         "class=\"link\" data-program=\"{}\">{}, line {}</button>",
         tightest.upper ? "" : "\xE2\x89\xA5 ", margin,
-        bounds_text(tightest.lower, tightest.upper, tightest.allowance),
+        clearance_text({true, tightest.lower, tightest.upper, tightest.allowance},
+                       ClearanceStyle::sentence),
         core::at_most(tightest.allowance), html_text(tightest.pair[0]), html_text(tightest.pair[1]),
         at, html_text(name), tightest.line);
 }

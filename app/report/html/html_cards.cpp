@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/report/html/html_report.h"
@@ -105,7 +106,6 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
     if (!nearest) return "";
     const size_t block = core::value_of(nearest->block);
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
-    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
     return fmt::format(
                R"(<article class="card"><header><span class="badge">tightest</span><h3>{}</h3>)"
                R"(<span class="pair">{} / {}</span></header>)",
@@ -115,7 +115,7 @@ std::string tightest_card(const CheckRun& run, const ReportViews& views) {
            + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
                          "\xC2\xB7 {1} (minimum {2} mm)</button> <code>{3}</code></p>"
                          "</article>\n",
-                         block, bounds_text(pair.lower, upper, pair.allowance.distance),
+                         block, clearance_text(shown_clearance(pair), ClearanceStyle::sentence),
                          core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));
 }
 

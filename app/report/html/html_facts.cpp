@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
@@ -34,9 +35,8 @@ std::string tightest_text(const CheckRun& run) {
     const CheckedBlock* block = nearest_block(run);
     if (!block) return "no pair of bodies within the search limit";
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
     return fmt::format("{} (minimum {} mm): {} / {} in block {}, line {}",
-                       bounds_text(pair.lower, upper, pair.allowance.distance),
+                       clearance_text(shown_clearance(pair), ClearanceStyle::sentence),
                        core::at_most(pair.allowance.distance),
                        core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
                        core::value_of(block->block), block->line);

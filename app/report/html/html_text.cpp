@@ -70,11 +70,6 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-std::string bounds_text(double lower, std::optional<double> upper, double keep) {
-    if (!upper) return core::clearance_at_least(lower) + " mm or more";
-    return core::bounds_below(lower, *upper, keep, " to ") + " mm";
-}
-
 void NumberRuns::add(int64_t value) {
     if (runs_.empty() || runs_.back().value != value) runs_.push_back({value, 0});
     ++runs_.back().count;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,11 +18,6 @@ std::string script_string(std::string_view text);
 
 /// Base64, as in data URIs.
 std::string base64(std::string_view bytes);
-
-/// The bounds of a clearance as "1.999 to 2.003 mm", as "1.999 mm" if they differ by at most one
-/// um, or "1.999 mm or more" without an upper bound. An upper bound below the minimum clearance
-/// `keep` is never rounded up to it.
-std::string bounds_text(double lower, std::optional<double> upper, double keep);
 
 /// Run-length encoded numbers, as JSON: "[value,count,value,count,...]".
 class NumberRuns {

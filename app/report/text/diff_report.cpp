@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/base/clearance_text.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "core/sim/verdict.h"
@@ -17,9 +18,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t few = 12; // blocks listed per kind without --blocks
 
-std::string known_clearance(const BlockMeasure& block) {
-    if (!block.margin) return "not known";
-    return clearance_text(block.lower, block.upper, block.allowance);
+std::string clearance_of(const BlockMeasure& block) {
+    return clearance_text({block.margin.has_value(), block.lower, block.upper, block.allowance},
+                          ClearanceStyle::column);
+}
+
+std::string clearance_in_mm(const BlockMeasure& block) {
+    return clearance_of(block) + (block.margin ? " mm" : "");
 }
 
 std::string pair_text(const BlockMeasure& block) {
@@ -32,14 +37,14 @@ std::string change_text(const ChangedBlock& changed) {
     const BlockMeasure &was = changed.before, &is = changed.after;
     const double change = std::abs(changed.nearer);
     if (was.pair == is.pair && was.allowance == is.allowance) {
-        std::string text = fmt::format("{} -> {} mm", known_clearance(was), known_clearance(is));
+        std::string text = fmt::format("{} -> {}", clearance_of(was), clearance_in_mm(is));
         if (change > 0.0)
             text += fmt::format(", {:.3f} {}", change, changed.nearer > 0.0 ? "nearer" : "farther");
         return is.pair[0].empty() ? text : text + ", " + pair_text(is);
     }
     const auto side = [](const BlockMeasure& block) {
         const std::string pair = pair_text(block);
-        return known_clearance(block) + " mm" + (pair.empty() ? "" : " " + pair);
+        return clearance_in_mm(block) + (pair.empty() ? "" : " " + pair);
     };
     std::string text = fmt::format("{} -> {}", side(was), side(is));
     if (change > 0.0)

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/finding_group.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
@@ -46,15 +47,7 @@ std::string finding_groups_text(const CheckRun& run) {
 }
 
 std::string block_clearance(const CheckRun& run, const core::BlockResult& result) {
-    if (!result.checked) return "not known";
-    if (!result.deciding) {
-        const double least = least_clearance(run.setup, result);
-        if (least >= run.setup.search_limit) return "> " + core::clearance_at_least(least, 0);
-        return ">= " + core::clearance_at_least(least);
-    }
-    const core::PairClearance& pair = result.pairs[*result.deciding];
-    const auto upper = pair.found() ? std::optional(pair.upper) : std::nullopt;
-    return clearance_text(pair.lower, upper, pair.allowance.distance);
+    return clearance_text(shown_clearance(run.setup, result), ClearanceStyle::column);
 }
 
 std::string blocks_text(const CheckRun& run) {

@@ -82,8 +82,7 @@ std::string exact_words(const ViewModel& model, const Subject& subject) {
     std::string verdict = core::name_of(subject.exact().verdict);
     const BlockRow& row = model.row();
     if (!row.is_known || !row.lower) return verdict;
-    return fmt::format("{}, {}{} {}", verdict, row.upper ? "" : "> ",
-                       length_at_least(model, *row.lower, row.upper ? 2 : 0), length_unit(model));
+    return fmt::format("{}, {} {}", verdict, clearance_at_least(model, row), length_unit(model));
 }
 
 /// Compares the result of the exact engine with the answer of the device.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/clearance_text.h"
 #include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
@@ -231,6 +232,11 @@ std::string length_text(const ViewModel& model, double mm, int decimals) {
 std::string length_at_least(const ViewModel& model, double mm, int decimals) {
     const ShownLength shown(model, mm, decimals);
     return core::clearance_at_least(shown.value, shown.decimals);
+}
+
+std::string clearance_at_least(const ViewModel& model, const BlockRow& row) {
+    const bool has_upper = row.upper.has_value();
+    return lower_bound_text(length_at_least(model, *row.lower, has_upper ? 2 : 0), has_upper);
 }
 
 std::string length_at_most(const ViewModel& model, double mm, int decimals) {

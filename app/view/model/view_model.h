@@ -200,6 +200,9 @@ std::string length_text(const ViewModel& model, double mm, int decimals = 2);
 /// As length_text, for a lower bound of a clearance: rounded down, never below 0.
 std::string length_at_least(const ViewModel& model, double mm, int decimals = 2);
 
+/// The lower bound of the clearance of a block that has one; ">= 50" without an upper bound.
+std::string clearance_at_least(const ViewModel& model, const BlockRow& row);
+
 /// As length_text, for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);
 const char* length_unit(const ViewModel& model);

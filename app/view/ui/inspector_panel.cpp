@@ -19,8 +19,7 @@ void draw_number(Frame& frame) {
     const BlockRow& row = model.row();
     text(frame.fonts.small, frame.palette.color(Role::dim), "CLEARANCE");
     std::string number = "\xE2\x80\x94";
-    if (row.is_known && row.lower)
-        number = (row.upper ? "" : ">") + length_at_least(model, *row.lower, row.upper ? 2 : 0);
+    if (row.is_known && row.lower) number = clearance_at_least(model, row);
     const ImVec2 at = ImGui::GetCursorPos();
     text(frame.fonts.big, frame.palette.of(row, Role::text), number);
     if (!row.lower || !row.is_known) return;

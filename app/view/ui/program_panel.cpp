@@ -7,6 +7,7 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "app/base/clearance_text.h"
 #include "app/base/finding_group.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/row_filter.h"
@@ -59,11 +60,9 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
 }
 
 std::string clearance_text(const ViewModel& model, const BlockRow& row) {
-    if (row.is_known && !row.is_judged && moves(row)) return "?";
+    if (row.is_known && !row.is_judged && moves(row)) return unknown_clearance;
     if (!row.is_known || !row.lower) return {};
-    if (!row.upper) return ">" + length_at_least(model, *row.lower, 0);
-    // The lower bound is the proven one.
-    return length_at_least(model, *row.lower);
+    return clearance_at_least(model, row);
 }
 
 void draw_background(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,

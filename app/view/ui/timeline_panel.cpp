@@ -211,8 +211,7 @@ void show_hovered(Frame& frame, size_t block) {
     text(frame.fonts.mono, frame.palette.color(Role::dim), row.text);
     if (row.lower && row.is_known)
         text(frame.fonts.text, frame.palette.of(row, Role::text),
-             fmt::format("{} {} {}", length_at_least(frame.model, *row.lower),
-                         length_unit(frame.model),
+             fmt::format("{} {} {}", clearance_at_least(frame.model, row), length_unit(frame.model),
                          row.part.empty() ? "" : row.part + " \xE2\x80\x93 " + row.body));
     if (const std::string slack = slack_words(frame.model, block); !slack.empty()) {
         const bool stops = stops_machine(answer_of(frame.model.device.study.get(), block));
