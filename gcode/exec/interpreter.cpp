@@ -116,8 +116,8 @@ Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& sta
     if (!state.speaks_iso) return *this;
     if (!iso) {
         iso_environment = std::make_unique<Environment>(environment);
-        iso_environment->dialect = DialectId::siemens_iso;
-        iso.reset(new Scratch{library, *iso_environment, gcode::dialect(DialectId::siemens_iso)});
+        iso_environment->dialect = dialect.iso_mode.value();
+        iso.reset(new Scratch{library, *iso_environment, gcode::dialect(iso_environment->dialect)});
     }
     return *iso;
 }
@@ -200,8 +200,8 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
     result.warnings.clear();
 }
 
-/// Restores the state after a block that failed. Parameters are undone one by one: a copy of them in
-/// `before` would share them, and the first assignment of each block would copy them all.
+/// Restores the state after a block that failed. Parameters are undone one by one: a copy of them
+/// in `before` would share them, and the first assignment of each block would copy them all.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);

@@ -74,6 +74,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .tape_mark_ends_program = true,
                                       .repeated_codes_are_errors = true,
                                       .language = Language::words,
+                                      .iso_mode = {},
                                       .expressions = ExpressionSyntax::rs274,
                                       .arithmetic = {.equality = 0.0001},
                                       .tool_entries_by_axes = true,
@@ -160,6 +161,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .tape_mark_ends_program = false,
                                    .repeated_codes_are_errors = false,
                                    .language = Language::words,
+                                   .iso_mode = {},
                                    .expressions = ExpressionSyntax::fanuc,
                                    .arithmetic = fanuc_arithmetic,
                                    .tool_entries_by_axes = false,
@@ -295,6 +297,7 @@ constexpr Dialect siemens_dialect = [] {
     entry.dwell_without_point_is_milliseconds = false;
     entry.begins_with_g0 = false;
     entry.language = Language::siemens;
+    entry.iso_mode = DialectId::siemens_iso;
     entry.expressions = ExpressionSyntax::siemens;
     entry.arithmetic = {};
     entry.arc_after_contour_is_error = false;

@@ -91,6 +91,7 @@ struct Dialect {
 
     // language syntax besides words
     Language language;
+    std::optional<DialectId> iso_mode; // the dialect after G291; empty: there is only one language
     ExpressionSyntax expressions;
     Arithmetic arithmetic;
     bool tool_entries_by_axes;       // G10 L1, L10 and L11 take P and axis words
