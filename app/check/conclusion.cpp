@@ -381,9 +381,7 @@ std::string facts_of(const core::PartComparison& comparison, double tolerance) {
 }
 
 core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path) {
-    const auto refused = [&](const std::string& why) {
-        return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
-    };
+    const auto refused = [&](const std::string& why) { return core::fail_file(path, why); };
     FEELER_TRY(const MeshForm form, mesh_form(path));
     if (form != MeshForm::ply) return refused("cannot hold colours: the name must end in .ply");
     if (!run.comparison)

@@ -31,10 +31,6 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-tl::unexpected<core::Error> setup_error(const std::string& path, const std::string& why) {
-    return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
-}
-
 } // namespace
 
 core::Result<std::string> setup_file_text(const CheckJob& job) {
@@ -60,16 +56,16 @@ std::string proposed_setup_path(const CheckJob& job) {
 core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                               const FileWriter& write) {
     std::error_code failure;
-    if (path.empty()) return setup_error(path, "the file name is empty");
-    if (are_one_file(path, job.program)) return setup_error(path, "is the program itself");
-    if (!may_replace && fs::exists(path, failure)) return setup_error(path, "already exists");
+    if (path.empty()) return core::fail_file(path, "the file name is empty");
+    if (are_one_file(path, job.program)) return core::fail_file(path, "is the program itself");
+    if (!may_replace && fs::exists(path, failure)) return core::fail_file(path, "already exists");
     FEELER_TRY(const std::string text, setup_file_text(job));
     const bool is_elsewhere =
         !job.setup.empty() && !are_one_file(folder_of(path), folder_of(job.setup));
     if (is_elsewhere && names_relative_files(text))
-        return setup_error(path,
-                           fmt::format("the set-up names files by relative paths: save it in {}",
-                                       folder_of(job.setup).string()));
+        return core::fail_file(
+            path, fmt::format("the set-up names files by relative paths: save it in {}",
+                              folder_of(job.setup).string()));
     return write(path, text);
 }
 

@@ -15,10 +15,6 @@
 namespace app {
 namespace {
 
-tl::unexpected<core::Error> stock_file_error(const std::string& path, const std::string& why) {
-    return tl::unexpected<core::Error>({core::ErrorCode::invalid_value, {}, why, path});
-}
-
 /// Rounding to single precision moves a vertex by up to half a unit in the last place.
 double rounding_of(const core::Mesh& mesh) {
     const core::Aabb box = mesh.bounds();
@@ -33,7 +29,7 @@ core::Result<MeshForm> mesh_form(const std::string& path) {
     if (ending == ".stl") return MeshForm::stl;
     if (ending == ".ply") return MeshForm::ply;
     if (ending == ".feeler") return MeshForm::record;
-    return stock_file_error(path, "cannot be written: the name must end in .stl, .ply or .feeler");
+    return core::fail_file(path, "cannot be written: the name must end in .stl, .ply or .feeler");
 }
 
 std::string facts_of(const SavedStock& saved) {
@@ -53,7 +49,7 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
     FEELER_TRY(const MeshForm form, mesh_form(path));
     assert(form != MeshForm::record);
     if (surface.mesh.triangles.empty())
-        return stock_file_error(path, "was not written: no stock is left");
+        return core::fail_file(path, "was not written: no stock is left");
     StockFile file;
     file.facts = {path, surface.mesh.triangles.size(), surface.error, mesh_size, surface.lost};
     if (form == MeshForm::stl) file.facts.error += rounding_of(surface.mesh);

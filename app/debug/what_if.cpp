@@ -229,12 +229,6 @@ using core::ConeStep;
 
 constexpr double least_step = 1e-9; // mm; anything shorter is a rounding error
 
-double height(const std::vector<ConeStep>& steps) {
-    double sum = 0.0;
-    for (const ConeStep& step : steps) sum += step.length;
-    return sum;
-}
-
 /// Removes the upper end of a shank.
 void shorten(std::vector<ConeStep>& shank, double by) {
     while (by > least_step) {
@@ -286,7 +280,7 @@ core::Result<core::ToolAssembly> stretched(const core::ToolAssembly& tool, doubl
     const bool has_holder = !description.holder.empty();
     if (!has_holder && !description.stick_out && description.gauge_length)
         return core::assemble(description);
-    const double shank = height(description.shank);
+    const double shank = core::total_length(description.shank);
     if (-by > shank + least_step)
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("T{} can be no shorter than {} mm: {}", number,

@@ -17,12 +17,6 @@
 namespace app {
 namespace {
 
-std::string trimmed(const std::string& text) {
-    const size_t first = text.find_first_not_of(" \t");
-    if (first == std::string::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 /// A value of LINEAR_UNITS as LinuxCNC interprets it: a name, or units per millimetre.
 std::optional<gcode::LengthUnit> unit_named(const std::string& name) {
     const auto per_mm = number_in(name);
@@ -90,7 +84,7 @@ core::Result<IniFile> read_ini(const std::string& path) {
     FEELER_TRY(const std::vector<std::string> lines, lines_of_file(path));
     IniReader reader{std::filesystem::path(path).parent_path()};
     for (size_t line = 1; line <= lines.size(); ++line) {
-        const std::string text = trimmed(lines[line - 1]);
+        const std::string_view text = core::stripped(lines[line - 1]);
         if (text.starts_with("#INCLUDE"))
             return tl::unexpected(core::Error{core::ErrorCode::unsupported,
                                               {.line = static_cast<uint32_t>(line)},
@@ -99,13 +93,13 @@ core::Result<IniFile> read_ini(const std::string& path) {
                                               path});
         if (text.empty() || text[0] == '#' || text[0] == ';') continue;
         if (text[0] == '[') {
-            reader.section = trimmed(text.substr(1, text.find(']') - 1));
+            reader.section = core::stripped(text.substr(1, text.find(']') - 1));
             continue;
         }
         const size_t equals = text.find('=');
         if (equals == std::string::npos) continue; // LinuxCNC ignores such lines, too
-        const std::string wrong =
-            reader.take(trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)));
+        const std::string wrong = reader.take(std::string(core::stripped(text.substr(0, equals))),
+                                              std::string(core::stripped(text.substr(equals + 1))));
         if (!wrong.empty()) return tl::unexpected(line_error(path, line, wrong));
     }
     return std::move(reader.file);

@@ -15,15 +15,13 @@
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tool_table.h"
+#include "core/base/vec.h"
 #include "core/sim/clearance.h"
 
 namespace app {
 namespace {
 
 constexpr double largest_stock = 20000.0; // mm; anything larger is a typing error
-bool is_position(const core::Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 bool is_size(double value) { return value > 0.0 && value <= largest_stock; }
 
@@ -32,12 +30,12 @@ void check_stock(const core::Solid& stock, std::vector<EditRefusal>& refused) {
         fmt::format("sizes must be above 0 and at most {:g} mm", largest_stock);
     if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
         const core::Vec3 size = box->box.size();
-        if (!is_position(box->box.min))
+        if (!core::is_finite(box->box.min))
             refused.push_back({{}, "box", "the corner must have finite coordinates"});
         else if (!is_size(size.x) || !is_size(size.y) || !is_size(size.z))
             refused.push_back({{}, "box", sizes});
     } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
-        if (!is_position(round->base))
+        if (!core::is_finite(round->base))
             refused.push_back({{}, "cylinder", "the base must have finite coordinates"});
         else if (!is_size(2.0 * round->radius) || !is_size(round->height))
             refused.push_back({{}, "cylinder", sizes});

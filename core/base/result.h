@@ -37,6 +37,11 @@ inline tl::unexpected<Error> fail(ErrorCode code, std::string message, SourceSpa
     return tl::unexpected<Error>(Error{code, where, std::move(message)});
 }
 
+/// An invalid value: a file that cannot be what the user wants. `message` follows its path.
+inline tl::unexpected<Error> fail_file(const std::string& path, std::string message) {
+    return tl::unexpected<Error>(Error{ErrorCode::invalid_value, {}, std::move(message), path});
+}
+
 /// The error, with the path of its file if it has none.
 inline Error in_file(Error error, const std::string& path) {
     if (error.file.empty()) error.file = path;

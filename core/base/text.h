@@ -17,6 +17,9 @@ constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c
 std::string upper_case(std::string_view text);
 std::string lower_case(std::string_view text);
 
+/// The text without blanks and tabs at its ends.
+std::string_view stripped(std::string_view text);
+
 /// The edit distance of two words: letters to change, insert or delete.
 size_t letters_apart(std::string_view a, std::string_view b);
 

@@ -384,16 +384,11 @@ Result<RevolvedProfile> stack(const ToolDescription& tool, const std::vector<Con
     return profile;
 }
 
-double height(const std::vector<ConeStep>& steps) {
-    double sum = 0.0;
-    for (const ConeStep& step : steps) sum += step.length;
-    return sum;
-}
-
 /// Distance from the tip to the holder's lower face, if it is given independently of the shank.
 std::optional<double> stated_stick_out(const ToolDescription& tool) {
     if (tool.stick_out) return tool.stick_out;
-    if (tool.gauge_length && !tool.holder.empty()) return *tool.gauge_length - height(tool.holder);
+    if (tool.gauge_length && !tool.holder.empty())
+        return *tool.gauge_length - total_length(tool.holder);
     return std::nullopt;
 }
 

@@ -136,6 +136,12 @@ Result<void> check_length(const ToolDescription& tool, const ToolSize& size, dou
 
 } // namespace
 
+double total_length(const std::vector<ConeStep>& steps) {
+    double sum = 0.0;
+    for (const ConeStep& step : steps) sum += step.length;
+    return sum;
+}
+
 Result<void> check_keys(const ToolDescription& tool) {
     if (auto wrong = check_shape_keys(tool); !wrong) return wrong;
     for (const ToolSize& size : tool_sizes()) {

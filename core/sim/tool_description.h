@@ -60,6 +60,8 @@ struct ConeStep {
     double length = 0.0;
 };
 
+double total_length(const std::vector<ConeStep>& steps);
+
 /// A tool as described in a set-up. mm; angles in degrees, as in tool catalogues.
 struct ToolDescription {
     ToolNumber number{};

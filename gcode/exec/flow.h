@@ -1,5 +1,9 @@
 #pragma once
 
+#include <string>
+#include <utility>
+
+#include "core/base/result.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/language/block.h"
@@ -16,6 +20,11 @@ struct FlowStep {
     InterpreterState& state;
     BlockCommands& result;
 };
+
+/// A syntax error at the flow statement.
+inline tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string message) {
+    return core::fail(core::ErrorCode::syntax, std::move(message), step.block.flow.span);
+}
 
 /// Executes a flow statement: sets the line to be executed next, calls and returns.
 ///

@@ -9,12 +9,6 @@
 namespace gcode {
 namespace {
 
-using core::ErrorCode;
-
-tl::unexpected<core::Error> refuse(const FlowStep& step, std::string message) {
-    return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
-}
-
 core::Result<std::string> label_name(const FlowStep& step) {
     const Flow& flow = step.block.flow;
     if (flow.has_label) return step.block.pool.names[flow.label_name];
@@ -30,7 +24,7 @@ core::Result<uint32_t> line_of_label(const FlowStep& step) {
         if (const FlowMark* mark =
                 step.library.index(step.state.next.source).first(FlowKind::label, name))
             return mark->line;
-    return refuse(step, fmt::format("there is no LBL {} in this program", name));
+    return refuse_step(step, fmt::format("there is no LBL {} in this program", name));
 }
 
 /// Whether the current call level was started by `CALL LBL`. Such a level stays in the program of
@@ -80,7 +74,7 @@ core::Result<void> call_program(const FlowStep& step) {
     const std::string name = path.substr(path.find_last_of("\\/:") + 1);
     FEELER_TRY(const auto source, step.library.find({name, name + ".h", name + ".H"}));
     if (!source)
-        return refuse(
+        return refuse_step(
             step, fmt::format("CALL PGM {}: there is no file {} in the search path", path, name));
     Frame next{.called_from = {step.state.next.source, step.block.line},
                .begin = {*source, 1},
@@ -90,7 +84,7 @@ core::Result<void> call_program(const FlowStep& step) {
 
 core::Result<void> end_program(const FlowStep& step) {
     if (is_label_call(step.state))
-        return refuse(
+        return refuse_step(
             step,
             fmt::format("END PGM inside the subprogram called in line {}: its LBL 0 is missing",
                         step.state.frames.back().called_from.line));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "gcode/exec/flow.h"
 #include "gcode/language/flow_index.h"
 #include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
@@ -16,10 +17,6 @@ namespace {
 
 using core::ErrorCode;
 using enum FlowKind;
-
-tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string message) {
-    return core::fail(ErrorCode::syntax, std::move(message), step.block.flow.span);
-}
 
 /// Executes a flow statement, using the program around it.
 class SiemensFlowing {

@@ -31,6 +31,10 @@ StoredJson parsed_stored_json(const std::string& text) {
     return StoredJson::parse(text);
 }
 
+std::string json_text(const StoredJson& json, int indent) {
+    return json.dump(indent, ' ', false, StoredJson::error_handler_t::replace);
+}
+
 double number_from(const StoredJson& json, double least) {
     // get<double>() also accepts other types: true is 1.
     const double number = json.is_number() ? json.get<double>() : std::nan("");

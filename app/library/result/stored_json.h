@@ -24,6 +24,10 @@ bool is_nested_too_deep(std::string_view text);
 /// Parses JSON. Throws if the text is not JSON or is nested too deeply.
 StoredJson parsed_stored_json(const std::string& text);
 
+/// JSON as text: on one line, or with this indentation. Invalid UTF-8 is replaced, because programs
+/// contain bytes of any code page.
+std::string json_text(const StoredJson& json, int indent = -1);
+
 /// A whole number that fits the type.
 template <typename Whole>
 Whole whole_from(const StoredJson& json) {

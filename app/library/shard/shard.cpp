@@ -90,10 +90,6 @@ constexpr int shard_format = 1;
 constexpr std::string_view beginning = "{\"feeler_shard\"";
 constexpr double longest = 1e10; // seconds, three centuries
 
-std::string json_text(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 Json json_of(const PlannedProgram& program) { return {program.name, program.size, program.terms}; }
 
 PlannedProgram program_from(const Json& json) {

@@ -4,16 +4,13 @@
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/library/result/batch_result.h"
+#include "app/library/result/stored_json.h"
 #include "app/report/json/json_report.h"
 
 namespace app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 constexpr const char* batch_column_names =
     "program,setup,sha256,dialect,verdict,status,errors,warnings,notes,blocks,cycle_time,removed,"
@@ -61,19 +58,19 @@ std::string batch_json_report(const BatchResult& batch) {
     for (const SkippedFile& file : batch.skipped)
         skipped.push_back({{"file", file.path}, {"why", file.why}});
     if (!batch.shard.empty())
-        text += "\n],\n\"share\":" + dumped(batch.shard);
+        text += "\n],\n\"share\":" + json_text(batch.shard);
     else
         text += "\n]";
     return text
-           + fmt::format(",\n\"unchecked\":{},\n\"skipped\":{}}}\n", dumped(batch.unchecked),
-                         dumped(skipped));
+           + fmt::format(",\n\"unchecked\":{},\n\"skipped\":{}}}\n", json_text(batch.unchecked),
+                         json_text(skipped));
 }
 
 std::string batch_lines_report(const BatchResult& batch) {
     std::string text;
     for (const ProgramResult& program : batch.programs) text += json_of(program) + "\n";
     for (const std::string& program : batch.unchecked)
-        text += dumped({{"program", program}, {"checked", false}}) + "\n";
+        text += json_text({{"program", program}, {"checked", false}}) + "\n";
     return text;
 }
 

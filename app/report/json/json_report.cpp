@@ -8,6 +8,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/stock_file.h"
+#include "app/library/result/stored_json.h"
 #include "core/sim/part_comparison.h"
 #include "gcode/language/dialect.h"
 
@@ -179,10 +180,7 @@ void add_ending(Json& json, const CheckRun& run) {
     json["statistics"] = statistics_json(run);
 }
 
-// Programs contain bytes of any code page: invalid UTF-8 is replaced, without an exception.
-std::string dumped(const Json& json, int indent) {
-    return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string line_text(const Json& json) { return json_text(json) + "\n"; }
 
 Json record(const char* name, Json values) {
     Json json = {{"record", name}};
@@ -202,20 +200,20 @@ std::string json_report(const CheckRun& run, bool pairs) {
     for (const core::Finding& finding : run.findings)
         json["findings"].push_back(finding_json(run, finding));
     add_ending(json, run);
-    return dumped(json, 1);
+    return json_text(json, 1) + "\n";
 }
 
 std::string json_lines_report(const CheckRun& run, bool pairs) {
-    std::string lines = dumped(record("program", heading_json(run)), -1);
+    std::string lines = line_text(record("program", heading_json(run)));
     auto rules = rules_of_blocks(run);
     for (const CheckedBlock& block : run.blocks)
-        lines += dumped(record("block", block_json(run, block, rules[block.block], pairs)), -1);
+        lines += line_text(record("block", block_json(run, block, rules[block.block], pairs)));
     for (const core::Finding& finding : run.findings)
-        lines += dumped(record("finding", finding_json(run, finding)), -1);
+        lines += line_text(record("finding", finding_json(run, finding)));
     Json ending = {{"record", "end"}, {"verdict", core::name_of(run.verdict)}};
     if (run.stopped) ending["error"] = error_json(*run.stopped);
     add_ending(ending, run);
-    return lines + dumped(ending, -1);
+    return lines + line_text(ending);
 }
 
 std::map<core::BlockIndex, std::vector<std::string>> rules_of_blocks(const CheckRun& run) {

@@ -36,16 +36,10 @@ FindingsOfBlock by_block(const std::vector<core::Finding>& findings) {
     return sorted;
 }
 
-std::string trimmed(const std::string& text) {
-    const size_t begin = text.find_first_not_of(" \t");
-    if (begin == std::string::npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
-}
-
 } // namespace
 
 RowFilter::RowFilter(const std::string& text) {
-    const std::string wanted = trimmed(text);
+    const std::string wanted(core::stripped(text));
     if (wanted.empty()) return;
     auto condition = Condition::read(wanted);
     if (condition && !condition->asks_control()) {

@@ -52,12 +52,6 @@ private:
     double begin_ = 0.0;
 };
 
-} // namespace app::viewer
-
-struct ImGuiIO;
-
-namespace app::viewer {
-
 /// A queue of key events for ImGui 1.86, which only sees whether a key is down during a frame.
 ///
 /// A key that is pressed and released between two frames gets one frame for each event. A modifier
@@ -80,9 +74,6 @@ render::Image screen_picture(int width, int height);
 /// The first unused file name in a folder: feeler-0001.png and so on.
 std::filesystem::path free_picture_name(const std::filesystem::path& folder);
 
-} // namespace app::viewer
-
-namespace app::viewer {
 namespace {
 
 static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
