@@ -63,7 +63,7 @@ namespace {
 
 using core::ErrorCode;
 
-static_assert(Warning{}.rule == core::rule_id("program"));
+static_assert(rule_of_remarks == core::rule_id("program"));
 
 /// Whether a flow statement may change the call level.
 bool changes_level(FlowKind kind) {

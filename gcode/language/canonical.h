@@ -177,6 +177,9 @@ std::string_view name_of(Plane plane);
 /// set-up.
 enum class Severity : uint8_t { note, warning };
 
+/// The rule of a remark that has none of its own.
+constexpr std::string_view rule_of_remarks = "program";
+
 /// A remark about a block that does not stop the program. Traces print it with its line and column;
 /// a check turns it into a core::Finding, with the severity that the set-up gives its rule, which
 /// the interpreter does not know.
@@ -184,8 +187,8 @@ struct Warning {
     Severity severity;
     core::SourceSpan where;
     std::string message;
-    std::string_view rule = "program"; // stable name of the rule
-    std::string cure{};                // may be empty
+    std::string_view rule = rule_of_remarks; // stable name of the rule
+    std::string cure{};                      // may be empty
 
     bool operator==(const Warning&) const = default;
 };
