@@ -268,7 +268,7 @@ std::optional<Node> truth_named(const std::string& name) {
 
 namespace {
 
-std::vector<std::string> words_of(const auto& all) {
+std::vector<std::string> named_words(const auto& all) {
     const std::vector<std::string_view> names = core::names_of(all);
     return {names.begin(), names.end()};
 }
@@ -277,9 +277,9 @@ std::vector<std::string> words_of(const auto& all) {
 
 std::vector<std::string> words_for(const Node& node) {
     if (node.kind == NodeKind::fact && node.fact == BlockFact::motion)
-        return words_of(core::all_block_motions);
+        return named_words(core::all_block_motions);
     if (node.kind == NodeKind::fact && node.fact == BlockFact::verdict)
-        return words_of(core::all_verdicts);
+        return named_words(core::all_verdicts);
     if (node.kind == NodeKind::fact && node.fact == BlockFact::rule) return core::rule_names();
     const ModalEntry* entry = node.kind == NodeKind::control ? modal_entry(node.text) : nullptr;
     return entry ? words_of(*entry) : std::vector<std::string>{};

@@ -78,7 +78,7 @@ function stoppedPart(programs, i) {
 function clearanceSentence(programs, i) {
   if (programs.pair[i] < 0) return "no pair of bodies within the search limit";
   const lower = millimetres(programs.lower[i]), width = programs.width[i];
-  const range = width < 0 ? lower + " mm or more" : width <= 1 ? lower + " mm" : lower + "\u2013" + millimetres(programs.lower[i] + width) + " mm";
+  const range = width < 0 ? "at least " + lower + " mm" : width <= 1 ? lower + " mm" : lower + " to " + millimetres(programs.lower[i] + width) + " mm";
   return range + " (minimum " + millimetres(programs.keep[i]) + " mm): " + programs.texts[programs.pair[i]]
     + " in block " + programs.block[i] + ", line " + programs.line[i];
 }
