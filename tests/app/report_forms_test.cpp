@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
@@ -159,6 +160,18 @@ TEST(ReportFormats, AreInTheManual) {
     const std::string manual{std::istreambuf_iterator<char>(file), {}};
     for (const std::string& name : format_names(true))
         EXPECT_NE(manual.find("`" + name + "`"), std::string::npos) << name;
+}
+
+TEST(FindingText, SaysWhatAndWhere) {
+    core::Finding finding{.rule = "near-miss", .severity = core::Severity::error};
+    EXPECT_EQ(finding_title(finding), "error near-miss");
+    EXPECT_EQ(finding_title(finding, 8), "error    near-miss");
+    EXPECT_EQ(finding_location(12, "", " G0 Z5. "), ", line 12: G0 Z5.");
+    EXPECT_EQ(finding_location(12, "sub.nc", "G0 Z5.", 5), ", line 12 of sub.nc: G0...");
+    EXPECT_EQ(finding_location(0, "", ""), "");
+    EXPECT_EQ(cure_text(finding), "");
+    finding.cure = "Raise Z.";
+    EXPECT_EQ(cure_text(finding), "Cure: Raise Z.");
 }
 
 TEST(Duration, RoundsBeforeItDividesIntoUnits) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/base/clearance_text.h"
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "core/sim/verdict.h"
@@ -99,10 +100,8 @@ std::string line_text(const CheckedBlock& block) {
 }
 
 std::string finding_text(const core::Finding& finding, size_t indent) {
-    std::string text = wrapped(
-        fmt::format("{} {}: {}", core::name_of(finding.severity), finding.rule, finding.message),
-        indent, 2);
-    if (!finding.cure.empty()) text += wrapped("Cure: " + finding.cure, indent + 2, 2);
+    std::string text = wrapped(finding_title(finding) + ": " + finding.message, indent, 2);
+    if (!finding.cure.empty()) text += wrapped(cure_text(finding), indent + 2, 2);
     return text;
 }
 

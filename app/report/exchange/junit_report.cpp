@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/report/exchange/exchange_reports.h"
 
@@ -51,12 +52,10 @@ std::string xml_attribute(const std::string& text) {
 }
 
 std::string finding_text(const StoredFinding& finding) {
-    std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
-    if (!finding.file.empty()) text += " in " + finding.file;
-    if (finding.line != 0)
-        text += fmt::format(", line {}: {}", finding.line, trimmed(finding.text));
-    text += "\n    " + finding.message;
-    if (!finding.cure.empty()) text += " " + finding.cure;
+    const std::string location =
+        finding_location(finding.line, finding.file, finding.text, std::string::npos);
+    std::string text = finding_title(finding) + location + "\n    " + finding.message;
+    if (!finding.cure.empty()) text += "\n    " + cure_text(finding);
     return text + "\n";
 }
 

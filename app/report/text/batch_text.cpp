@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/base/finding_group.h"
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/library/result/batch_result.h"
 
@@ -56,7 +57,7 @@ std::string rule_lines(const ProgramResult& result, const BatchStyle& style) {
     for (const GroupOf<StoredFinding>& group : rule_groups(result)) {
         const StoredFinding& worst = *group.worst;
         if (worst.severity != Severity::error && !style.verbose) continue;
-        std::string line = fmt::format("{} {}", core::name_of(worst.severity), worst.rule);
+        std::string line = finding_title(worst);
         if (!worst.file.empty()) line += " in " + trimmed(worst.file);
         std::set<uint32_t> lines;
         for (const StoredFinding* finding : group.findings)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/clearance_text.h"
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "core/sim/verdict.h"
@@ -153,11 +154,7 @@ std::string diff_json(const ProgramDiff& diff) {
 }
 
 std::string finding_line(const StoredFinding& finding) {
-    std::string text = fmt::format("{} {}", core::name_of(finding.severity), finding.rule);
-    if (finding.line == 0) return text;
-    text += fmt::format(", line {}", finding.line);
-    if (!finding.file.empty()) text += " of " + trimmed(finding.file);
-    return text + ": " + clipped(trimmed(finding.text), 40);
+    return finding_title(finding) + finding_location(finding.line, finding.file, finding.text);
 }
 
 nlohmann::ordered_json findings_json(const std::vector<StoredFinding>& findings) {

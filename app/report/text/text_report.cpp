@@ -6,6 +6,7 @@
 
 #include "app/base/clearance_text.h"
 #include "app/base/finding_group.h"
+#include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/check/conclusion.h"
@@ -29,13 +30,13 @@ std::string finding_groups_text(const CheckRun& run) {
     std::string text;
     for (const GroupOf<core::Finding>& group : grouped_by(run.findings, subject_of)) {
         const core::Finding& worst = *group.worst;
-        text += fmt::format("{:<8} {}", core::name_of(worst.severity), worst.rule);
+        text += finding_title(worst, 8);
         if (worst.block) {
             const CheckedBlock& block = run.blocks[core::value_of(*worst.block)];
-            text += fmt::format(", line {}: {}", block.line, clipped(trimmed(block.text), 40));
+            text += finding_location(block.line, block.file, block.text);
         }
         text += "\n" + wrapped(worst.message, 9);
-        if (!worst.cure.empty()) text += wrapped("Cure: " + worst.cure, 9);
+        if (!worst.cure.empty()) text += wrapped(cure_text(worst), 9);
         const std::vector<uint32_t> lines = lines_of(run, group);
         if (lines.size() > 1)
             text += wrapped(
