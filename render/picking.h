@@ -41,7 +41,8 @@ struct Pick {
     std::optional<SurfaceHit> surface() const;
 };
 
-/// The nearest triangle that faces the ray's origin and is not cut away by the section.
+/// For callers with a mesh that is in no scene: the nearest triangle that faces the ray's origin
+/// and is not cut away by the section.
 std::optional<SurfaceHit> pick_mesh(const TriangleMesh& mesh, const Ray& ray,
                                     const std::optional<SectionPlane>& section = {},
                                     size_t* triangle = nullptr);

@@ -27,7 +27,8 @@ Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing,
 /// Scans a closed mesh, for callers that accept overlapping shells.
 Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit = default_memory_limit);
 
-/// The intersection of a closed mesh with the line along `axis` at (u, v) of the next two axes.
+/// For callers that need one line only: the intersection of a closed mesh with the line along
+/// `axis` at (u, v) of the next two axes.
 ///
 /// Errors:  a mesh that is open or inverted along this line.
 /// Cost:    every triangle of the mesh.

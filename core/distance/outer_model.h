@@ -7,7 +7,6 @@
 
 namespace core {
 
-struct CutModel;
 struct RevolvedProfile;
 struct Solid;
 struct Square;
@@ -41,16 +40,7 @@ ColumnFunction columns_of(const Solid& solid);
 OuterModel outer_model(const Aabb& bounds, const ScanGrid& grid, const ColumnFunction& column,
                        std::initializer_list<int> axes = {2, 0, 1});
 
-/// The current columns of a stock: the Z family.
-OuterModel outer_model(const CutModel& stock);
-
 /// Cell `i` of a family across `axis`: its extent along that axis.
 Interval cell_of(const OuterModel& model, int axis, int i);
-
-/// Boxes that together contain every point of the body: in every cube of the grid the product of
-/// the ranges of its columns, with runs of equal ones along the first family merged.
-///
-/// Proof:   README.md, "Outer models".
-std::vector<Aabb> boxes_of(const OuterModel& model);
 
 } // namespace core

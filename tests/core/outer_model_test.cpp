@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/known_body.h"
+#include "tests/support/outer_boxes.h"
 
 namespace core {
 namespace {
@@ -39,8 +40,8 @@ const Axes choices_of_axes[] = {{2, 0, 1}, {0, 1, 2}, {1}, {0, 2}};
 std::vector<Aabb> boxes(const std::vector<TruePart>& parts, double h, Axes axes) {
     const KnownBody known{parts, h};
     const Dbm lines = test_support::lines_of(known).value();
-    return boxes_of(outer_model(test_support::bounds(parts), lines.grid,
-                                test_support::columns_of(known), axes));
+    return test_support::boxes_of(outer_model(test_support::bounds(parts), lines.grid,
+                                              test_support::columns_of(known), axes));
 }
 
 TEST(OuterModel, HoldsEveryPointOfTheBody) {
@@ -84,7 +85,8 @@ TEST(OuterModel, OfACutStockHoldsEveryPointThatWasLeft) {
     std::mt19937 rng(9);
     for (int round = 0; round < 10; ++round) {
         const KnownBody known{test_support::floor_and_walls(rng, 1.0), 1.0};
-        const std::vector<Aabb> cover = boxes_of(outer_model(test_support::cut_model_of(known)));
+        const std::vector<Aabb> cover =
+            test_support::boxes_of(test_support::outer_model_of(test_support::cut_model_of(known)));
         for (const TruePart& part : known.parts) {
             const Aabb box = test_support::bounds(part);
             for (int i = 0; i < 200; ++i) {
