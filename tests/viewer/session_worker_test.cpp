@@ -27,10 +27,19 @@ app::CheckJob clamped_plate() {
     return job;
 }
 
-/// What a window would know, without one.
+/// What a window would know, without one. After each update the worker waits until it was taken in,
+/// so that a slow test sees all steps of a check.
 class Watcher {
 public:
     ViewModel model;
+
+    ~Watcher() {
+        {
+            const std::lock_guard lock(mutex_);
+            is_ending_ = true;
+        }
+        woken_.notify_all();
+    }
 
     void open(const app::CheckJob& job) { worker_.open(job); }
     SessionWorker& worker() { return worker_; }
@@ -47,6 +56,7 @@ public:
             // clock: as above
             if (!woken_.wait_until(lock, end, [&] { return is_woken_; })) return false;
             is_woken_ = false;
+            woken_.notify_all();
         }
     }
     bool record() {
@@ -56,13 +66,12 @@ public:
 private:
     std::mutex mutex_;
     std::condition_variable woken_;
-    bool is_woken_ = false;
+    bool is_woken_ = false, is_ending_ = false;
     SessionWorker worker_{[this] {
-        {
-            const std::lock_guard lock(mutex_);
-            is_woken_ = true;
-        }
+        std::unique_lock lock(mutex_);
+        is_woken_ = true;
         woken_.notify_all();
+        woken_.wait(lock, [this] { return !is_woken_ || is_ending_; });
     }};
 };
 
