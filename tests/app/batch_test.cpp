@@ -26,12 +26,12 @@ using testing::Not;
 const std::string fine = program({"X-20. Y50.", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z60."});
 
-/// A program with too many moves to wait for its end.
+/// A large program that never ends.
 std::string long_program() {
-    std::string text = fine.substr(0, fine.find("M30"));
+    std::string text = fine.substr(0, fine.find("M30")) + "N10 #1=#1+0.001\n";
     for (int i = 0; i < 300'000; ++i)
         text += "G1 X" + std::to_string(i % 2 * 90 + 5) + ". Y" + std::to_string(i % 97) + ".\n";
-    return text + "M30\n";
+    return text + "GOTO 10\nM30\n";
 }
 
 /// A folder of programs with set-ups next to them.
