@@ -6,8 +6,8 @@ Count operations instead, or move the test to tests/speed.
     clocks.py --self-check    checks this script against a small tree with known lines
 
 A line is allowed if a comment on it, or alone on the line above, says why the test cannot fail on a slow
-machine: `// clock: gives up after 2 min` or `# clock: ...`. Not checked: tests/speed, tests/cluster, which is run by hand, and the benchmarks in
-tests/bench, but for their own tests.
+machine: `// clock: gives up after 2 min` or `# clock: ...`. Not checked: tests/speed, tests/cluster, which is
+run by hand, and the benchmarks in tests/bench, but for their own tests.
 """
 import pathlib
 import re
@@ -73,7 +73,8 @@ READING = {
     "a.cpp": ["auto t = std::chrono::steady_clock::now();", "using Clock = std::chrono::file_clock;",
               "auto t = Clock::now();", "time_t t = time(nullptr);", "auto t = std::time(NULL);",
               "auto t = ::clock();", "auto t = utc_clock::now();", "timespec_get(&t, TIME_UTC);", "times(&t);",
-              "double t = usage.ru_stime.tv_sec;", "EXPECT_GT(row.paper.seconds, 0.0);", "::alarm(2);", "::poll(&input, 1, 1000);",
+              "double t = usage.ru_stime.tv_sec;", "EXPECT_GT(row.paper.seconds, 0.0);", "::alarm(2);",
+              "::poll(&input, 1, 1000);",
               "woken.wait_for(lock, 2s);", "woken.wait_until(lock, end);", "std::this_thread::sleep_for(pause);",
               "::usleep(100);", 'run("timeout -s HUP 0.2 env");', "while (watch.seconds() < 5.0)"],
     "a.py": ["import time", "from time import monotonic", "now = datetime.now()", "run(words, timeout=2)",
