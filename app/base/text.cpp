@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/base/file_reads.h"
+#include "core/base/text.h"
 
 namespace app {
 namespace {
@@ -177,12 +178,6 @@ std::string wrapped(const std::string& text, size_t indent, size_t hang) {
     return result + line + "\n";
 }
 
-std::string capitals(std::string text) {
-    for (char& c : text)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return text;
-}
-
 std::string line_ranges(std::vector<uint32_t> lines) {
     std::sort(lines.begin(), lines.end());
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
@@ -249,7 +244,7 @@ std::string duration_text(double seconds) {
 }
 
 std::string verdict_text(core::Verdict verdict) {
-    const std::string name = capitals(core::name_of(verdict));
+    const std::string name = core::upper_case(core::name_of(verdict));
     if (verdict == core::Verdict::undecided) return name + ", not proven clear";
     if (verdict == core::Verdict::violation) return name + ", below a minimum clearance";
     return name;

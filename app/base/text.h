@@ -45,9 +45,6 @@ std::string clipped(const std::string& text, size_t width);
 /// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.
 std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
 
-/// The text with ASCII letters in upper case.
-std::string capitals(std::string text);
-
 /// "4, 7-9, 12"; after twelve ranges only the last number.
 std::string line_ranges(std::vector<uint32_t> lines);
 

@@ -32,7 +32,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> signs = 
 }};
 
 /// Operators that are words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> words = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> word_operators = {{
     {"and", "and"},
     {"or", "or"},
     {"not", "not"},
@@ -144,7 +144,7 @@ private:
             at_ = end + 1;
         }
         std::string found = core::lower_case(text_.substr(begin, at_ - begin));
-        for (const auto& [word, sign] : words)
+        for (const auto& [word, sign] : word_operators)
             if (word == found) return token(Kind::sign, begin, std::string(sign));
         std::string whole = rule_from(begin);
         if (core::default_severity(core::lower_case(whole))) {
@@ -227,10 +227,7 @@ std::optional<double> number_after(char letter, const std::string& name) {
 /// Whether value_of returns a word for this name.
 bool is_word_of_control(const std::string& name) {
     if (const ModalEntry* entry = modal_entry(name)) return entry->kind == ModalKind::word;
-    std::string capitals = name;
-    for (char& c : capitals)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-    return offset_named(capitals).has_value();
+    return offset_named(core::upper_case(name)).has_value();
 }
 
 } // namespace

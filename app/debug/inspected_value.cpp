@@ -59,7 +59,7 @@ std::optional<size_t> index_in(std::string_view text) {
 std::optional<size_t> axis_named(std::string_view letter) {
     if (letter.size() != 1) return std::nullopt;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
-        if (letter[0] == static_cast<char>(axis_letters[axis] - 'A' + 'a')) return axis;
+        if (letter[0] == core::lower(axis_letters[axis])) return axis;
     return std::nullopt;
 }
 
@@ -135,7 +135,7 @@ core::Result<InspectedValue> numbered(const Reference& asked,
                                       const gcode::InterpreterState& control,
                                       const gcode::Environment& environment) {
     const char letter = parameter_letter(gcode::dialect(environment.dialect));
-    if (letter != (asked.letter == '#' ? '#' : static_cast<char>(asked.letter - 'a' + 'A')))
+    if (letter != core::upper(asked.letter))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("this control has no {}{}: its parameters are {}1, {}2, ...",
                                       core::upper_case(std::string(1, asked.letter)), asked.index,

@@ -8,6 +8,7 @@
 #include "app/base/finding_text.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
+#include "core/base/text.h"
 #include "core/sim/verdict.h"
 
 namespace app {
@@ -40,7 +41,7 @@ std::string nearness_text(const core::Setup& setup, const core::BlockResult& res
 /// The verdict, in capitals unless it is clear.
 std::string verdict_word(core::Verdict verdict) {
     const std::string name = core::name_of(verdict);
-    return verdict == core::Verdict::clear ? name : capitals(name);
+    return verdict == core::Verdict::clear ? name : core::upper_case(name);
 }
 
 std::string motion_text(const core::Setup& setup, const core::BlockResult& result) {

@@ -55,9 +55,7 @@ core::Result<WhatIf> length_change(const std::vector<std::string>& words) {
 
 /// Parses `G54.x -350`.
 core::Result<WhatIf> offset_change(const std::vector<std::string>& words) {
-    std::string name = words[0];
-    for (char& c : name)
-        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    const std::string name = core::upper_case(words[0]);
     const size_t dot = name.rfind('.');
     const size_t axis =
         dot == std::string::npos || dot + 2 != name.size()
