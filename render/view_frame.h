@@ -41,8 +41,8 @@ struct ViewFrame {
     unsigned hollows = 0; // ambient occlusion texture; 0: none
 };
 
-/// Offset of lines towards the eye, in front of the surface on which they are; `share` is a
-/// fraction of the distance.
+/// Offset of lines towards the eye by a fraction of the distance, so that they are in front of the
+/// surface on which they are.
 glm::vec2 nearer(const Camera& camera, double fraction);
 
 /// Sets the matrices for a body with this pose.

@@ -169,7 +169,8 @@ void say_project(const CheckJob& job) {
                                project));
 }
 
-/// `told`: the assumptions already shown on the terminal; replaced by those of this check.
+/// `shown_assumptions`: the assumptions already shown on the terminal; replaced by those of this
+/// check.
 ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>& targets,
                    std::vector<std::string>& shown_assumptions) {
     ReadFiles read;

@@ -62,7 +62,7 @@ public:
     core::Result<RunState> state_at(size_t position);
     /// Moves a copy of the state at position `from` on to a later position of the record.
     ///
-    /// Cost: runs the blocks after the nearest keyframe before `place` again.
+    /// Cost: runs the blocks after the nearest keyframe before `position` again.
     void advance_to(RunState& state, size_t from, size_t position);
 
     /// As BlockRunner::visit_ahead, from a copy of the state at a position.
@@ -110,7 +110,7 @@ private:
     void record_again_from(size_t position);
     /// Applies the changes made at a position to a copy of its state.
     void change_at(size_t position, RunState& state);
-    /// The position from which to run blocks again to rebuild the record up to `place`.
+    /// The position from which to run blocks again to rebuild the record up to `position`.
     size_t restart_position(size_t position);
 
     std::unique_ptr<PreparedCheck> check_;
