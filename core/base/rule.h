@@ -12,7 +12,7 @@ namespace core {
 
 enum class Severity : uint8_t { off, note, warning, error };
 
-constexpr std::array all_severities = {Severity::off, Severity::note, Severity::warning,
+inline constexpr std::array all_severities = {Severity::off, Severity::note, Severity::warning,
                                        Severity::error};
 
 const char* name_of(Severity severity);

@@ -10,7 +10,7 @@ namespace core {
 /// Verdict on a pair of bodies during a block, from best to worst.
 enum class Verdict : uint8_t { clear, undecided, violation, collision };
 
-constexpr std::array all_verdicts = {Verdict::clear, Verdict::undecided, Verdict::violation,
+inline constexpr std::array all_verdicts = {Verdict::clear, Verdict::undecided, Verdict::violation,
                                      Verdict::collision};
 
 const char* name_of(Verdict verdict);
@@ -18,7 +18,7 @@ const char* name_of(Verdict verdict);
 /// Kind of motion in a block, as reports show it.
 enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
 
-constexpr std::array all_block_motions = {BlockMotion::none, BlockMotion::rapid, BlockMotion::feed,
+inline constexpr std::array all_block_motions = {BlockMotion::none, BlockMotion::rapid, BlockMotion::feed,
                                           BlockMotion::arc, BlockMotion::cycle};
 
 const char* name_of(BlockMotion motion);
