@@ -79,7 +79,7 @@ std::optional<Answer> first_answer(const CoprocessorState& s) {
     return thread.answer;
 }
 
-void add(SearchSums& sum, const SearchCounts& counts) {
+void add(SearchTotals& sum, const SearchCounts& counts) {
     ++sum.queries;
     sum.deepest = std::max(sum.deepest, counts.deepest);
     sum.nodes += counts.nodes;
@@ -132,7 +132,7 @@ void dispatch(CoprocessorState& s) {
     Dispatched entry{.segment = segment, .pushed = first.pushed};
     if (segment.kind == SegmentKind::model) {
         if (s.memory.writes_done < first.lines) return;
-        take_model(s, segment);
+        store_model(s, segment);
     } else {
         entry.fault = fault_of_models(s, segment);
         if (entry.fault == Stop::none && !begin_search(s, segment, entry)) return;
@@ -212,7 +212,7 @@ Query query_of(const CoprocessorState& s, const Segment& segment) {
     return {segment, tool.header, work.header, tool.epoch, work.epoch, limit_of(segment)};
 }
 
-void take_model(CoprocessorState& s, const Segment& segment) {
+void store_model(CoprocessorState& s, const Segment& segment) {
     s.slots[segment.work_slot] = {true, segment.model_header, segment.work_epoch};
 }
 

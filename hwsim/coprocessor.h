@@ -78,11 +78,11 @@ struct ModelSlot {
 };
 
 /// Sums over all retired searches.
-struct SearchSums {
+struct SearchTotals {
     uint64_t queries = 0, nodes = 0, splits = 0, box_tests = 0, pair_tests = 0;
     uint32_t deepest = 0;
 
-    bool operator==(const SearchSums&) const = default;
+    bool operator==(const SearchTotals&) const = default;
 };
 
 /// The registers that the host writes and reads directly.
@@ -121,7 +121,7 @@ struct CoprocessorState {
     uint32_t searching = 0;   // threads with a search
     uint8_t next_element = 0; // has priority for the next search
     uint8_t next_request = 0; // has priority for the memory
-    SearchSums searched;
+    SearchTotals searched;
     Retired retired;
 
     bool operator==(const CoprocessorState&) const = default;
@@ -148,7 +148,7 @@ void halt(CoprocessorState& state, Stop reason, uint32_t sequence, uint32_t line
 /// query, loading a model into its slot, and the effect of the answer to the first entry.
 Stop fault_of_models(const CoprocessorState& state, const Segment& segment);
 Query query_of(const CoprocessorState& state, const Segment& segment);
-void take_model(CoprocessorState& state, const Segment& segment);
+void store_model(CoprocessorState& state, const Segment& segment);
 void retire_with(CoprocessorState& state, const Answer& answer);
 
 /// The interrupt line.

@@ -35,7 +35,7 @@ void answer_first(FunctionalDevice& device) {
     s.permits.in_order.push({.segment = entry.segment, .pushed = entry.pushed});
     Answer answer;
     if (entry.segment.kind == SegmentKind::model)
-        take_model(s, entry.segment);
+        store_model(s, entry.segment);
     else
         answer.stop = fault_of_models(s, entry.segment);
     if (entry.segment.kind != SegmentKind::model && answer.stop == Stop::none)
@@ -206,7 +206,7 @@ core::Result<FixedVec> fixed_position(const core::Vec3& p) {
 
 /// The entry for one pair, except its number and the `last` flag.
 core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
-                               const PairToKeep& pair) {
+                               const RequiredPair& pair) {
     const auto holds = [&](SlotNumber slot, Side side) {
         return index_of(slot) < driver.slots.size() && driver.slots[index_of(slot)].side == side
                && !driver.slots[index_of(slot)].is_free;
@@ -235,7 +235,7 @@ core::Result<std::vector<Segment>> entries_of(const Driver& driver, const PathSe
     if (path.pairs.empty())
         return core::fail(core::ErrorCode::invalid_value, "a segment needs at least one pair");
     std::vector<Segment> entries;
-    for (const PairToKeep& pair : path.pairs) {
+    for (const RequiredPair& pair : path.pairs) {
         FEELER_TRY(const Segment entry, entry_of(driver, path, pair));
         entries.push_back(entry);
     }

@@ -48,7 +48,7 @@ struct Driver {
 };
 
 /// A pair of bodies with its minimum distance over a segment.
-struct PairToKeep {
+struct RequiredPair {
     SlotNumber tool{}, work{};
     double distance = 0.0; // mm: the allowance plus the error bounds that the host adds
 };
@@ -56,7 +56,7 @@ struct PairToKeep {
 /// A straight segment of the path. Frame: the work's; positions of the tool origin.
 struct PathSegment {
     core::Vec3 from = core::Vec3(0.0), to = core::Vec3(0.0);
-    std::vector<PairToKeep> pairs;
+    std::vector<RequiredPair> pairs;
     double sample_step = 0.1; // mm: greatest distance between two samples
     uint32_t budget = 0;      // cycles until the permit is needed; 0: unlimited
 };

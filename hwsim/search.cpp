@@ -67,8 +67,8 @@ std::optional<uint64_t> squared_gap(const SearchPair& pair, const Segment& segme
                        offset_at(segment, pair.last), pair.work_box);
 }
 
-Halves halves_of_node(const SearchPair& pair, Division division, const Node& node) {
-    Halves halves;
+SplitPairs halves_of_node(const SearchPair& pair, Division division, const Node& node) {
+    SplitPairs halves;
     for (size_t i = 0; i < 2; ++i) {
         SearchPair& half = halves.pair[i];
         half = pair;
@@ -82,9 +82,9 @@ Halves halves_of_node(const SearchPair& pair, Division division, const Node& nod
     return halves;
 }
 
-Halves halves_of_way(const SearchPair& pair) {
+SplitPairs split_at_middle(const SearchPair& pair) {
     const auto middle = static_cast<uint16_t>((pair.first + pair.last) / 2);
-    Halves halves{.pair = {pair, pair}, .there = {true, true}};
+    SplitPairs halves{.pair = {pair, pair}, .there = {true, true}};
     halves.pair[0].last = middle;
     halves.pair[1].first = static_cast<uint16_t>(middle + 1);
     return halves;
@@ -118,7 +118,7 @@ private:
         }
         if (division == Division::way) {
             ++answer_.counts.splits;
-            return nearer_of(halves_of_way(pair));
+            return nearer_of(split_at_middle(pair));
         }
         const bool of_work = division == Division::work;
         const Line* line = read((of_work ? pair.work : pair.tool).line(), of_work);
@@ -127,7 +127,7 @@ private:
         return nearer_of(halves_of_node(pair, division, node_in(*line)));
     }
 
-    std::optional<SearchPair> nearer_of(Halves halves) {
+    std::optional<SearchPair> nearer_of(SplitPairs halves) {
         for (size_t i = 0; i < 2; ++i) {
             if (!halves.there[i]) continue;
             ++answer_.counts.box_tests;

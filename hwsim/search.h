@@ -37,14 +37,14 @@ std::optional<uint64_t> squared_gap(const Volume& tool, const FixedVec& from, co
                                     const Box& work);
 
 /// The result of a division: two pairs, or one if a child is missing. `squared` is not known yet.
-struct Halves {
+struct SplitPairs {
     std::array<SearchPair, 2> pair;
     std::array<bool, 2> there{};
 
-    bool operator==(const Halves&) const = default;
+    bool operator==(const SplitPairs&) const = default;
 };
-Halves halves_of_node(const SearchPair& pair, Division division, const Node& node);
-Halves halves_of_way(const SearchPair& pair);
+SplitPairs halves_of_node(const SearchPair& pair, Division division, const Node& node);
+SplitPairs split_at_middle(const SearchPair& pair);
 
 /// Tests a half; empty if it leaves the range of coordinates.
 std::optional<uint64_t> squared_gap(const SearchPair& pair, const Segment& segment);

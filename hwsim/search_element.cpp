@@ -8,7 +8,7 @@
 
 namespace hwsim {
 
-BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment& segment) {
+BoxUnit::Output box_question(uint8_t thread, const SplitPairs& halves, const Segment& segment) {
     BoxUnit::Output in{.valid = true, .thread = thread, .in_range = {true, true}};
     for (size_t i = 0; i < 2; ++i) {
         if (!halves.there[i]) continue;
@@ -86,15 +86,15 @@ void stop(SearchThread& thread, Stop reason, uint32_t line) {
     thread.phase = Phase::done;
 }
 
-bool wants_work(const SearchThread& thread) {
+bool needs_work(const SearchThread& thread) {
     return thread.phase == Phase::open ? thread.division == Division::work
                                        : thread.phase == Phase::take_work;
 }
 
-uint32_t wanted_line(const SearchThread& thread) {
-    const Reference& from = wants_work(thread) ? thread.pair.work : thread.pair.tool;
+uint32_t requested_line(const SearchThread& thread) {
+    const Reference& from = needs_work(thread) ? thread.pair.work : thread.pair.tool;
     if (thread.phase == Phase::open) return from.line();
-    return from.line() + (wants_work(thread) ? thread.work_line : thread.tool_line);
+    return from.line() + (needs_work(thread) ? thread.work_line : thread.tool_line);
 }
 
 void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit) {
@@ -107,7 +107,7 @@ void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit) {
         return;
     case Division::way:
         ++thread.answer.counts.splits;
-        thread.halves = halves_of_way(thread.pair);
+        thread.halves = split_at_middle(thread.pair);
         thread.phase = Phase::test;
         return;
     case Division::none:
@@ -118,10 +118,10 @@ void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit) {
     thread.phase = Phase::take_tool;
 }
 
-void take_line(SearchThread& thread, const Line& line) {
-    const bool of_work = wants_work(thread);
+void accept_line(SearchThread& thread, const Line& line) {
+    const bool of_work = needs_work(thread);
     const uint32_t epoch = of_work ? thread.query.work_epoch : thread.query.tool_epoch;
-    if (epoch_of(line) > epoch) return stop(thread, Stop::model_changed, wanted_line(thread));
+    if (epoch_of(line) > epoch) return stop(thread, Stop::model_changed, requested_line(thread));
     switch (thread.phase) {
     case Phase::open:
         ++thread.answer.counts.nodes;
@@ -138,7 +138,7 @@ void take_line(SearchThread& thread, const Line& line) {
     }
 }
 
-void take_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth) {
+void accept_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth) {
     std::array<bool, 2> goes_on{};
     for (size_t i = 0; i < 2; ++i) {
         if (!thread.halves.there[i]) continue;
@@ -188,7 +188,7 @@ PairUnit::Output next_records(SearchThread& thread, uint8_t number) {
     return in;
 }
 
-void take_distance(SearchThread& thread, const PairUnit::Output& distance) {
+void accept_distance(SearchThread& thread, const PairUnit::Output& distance) {
     --thread.in_pair_unit;
     ++thread.answer.counts.pair_tests;
     if (distance.squared < thread.answer.squared) {
@@ -240,12 +240,12 @@ void read_line(SearchElement& e, const DeviceConfig& config, SearchThread& threa
         return;
     }
     taken = true;
-    const uint32_t address = wanted_line(thread);
+    const uint32_t address = requested_line(thread);
     if (address >= config.memory_lines) return stop(thread, Stop::bad_address, address);
     const Line* line = cached_line(is_node ? e.nodes : e.records, address);
     if (line) {
         ++(is_node ? e.counts.node_hits : e.counts.record_hits);
-        return take_line(thread, *line);
+        return accept_line(thread, *line);
     }
     ++(is_node ? e.counts.node_misses : e.counts.record_misses);
     thread.after_line = thread.phase;
@@ -259,7 +259,7 @@ void ask_memory(SearchElement& e, const ElementInput& in, uint8_t number) {
         return;
     }
     thread.phase = thread.after_line;
-    e.request = {true, in.number, number, in.run, wanted_line(thread)};
+    e.request = {true, in.number, number, in.run, requested_line(thread)};
     thread.phase = Phase::wait;
 }
 
@@ -311,18 +311,18 @@ void take_response(SearchElement& e, const ElementInput& in) {
     } else {
         const bool is_node = thread.phase == Phase::open;
         fill(is_node ? e.nodes : e.records, request.address, in.response->line);
-        take_line(thread, in.response->line);
+        accept_line(thread, in.response->line);
     }
     sort_in(e, request.thread);
 }
 
 void take_results(SearchElement& e, const DeviceConfig& config) {
     if (const BoxUnit::Output& tests = e.box.output(); tests.valid) {
-        take_tests(e.threads[tests.thread], tests, config.stack_depth);
+        accept_tests(e.threads[tests.thread], tests, config.stack_depth);
         sort_in(e, tests.thread);
     }
     if (const PairUnit::Output& distance = e.pair.output(); distance.valid) {
-        take_distance(e.threads[distance.thread], distance);
+        accept_distance(e.threads[distance.thread], distance);
         sort_in(e, distance.thread);
     }
 }

@@ -65,7 +65,7 @@ struct BoxUnit {
 };
 
 /// The input of the first stage: both halves, either of which may be missing.
-BoxUnit::Output box_question(uint8_t thread, const Halves& halves, const Segment& segment);
+BoxUnit::Output box_question(uint8_t thread, const SplitPairs& halves, const Segment& segment);
 
 /// One rising clock edge.
 void tick(BoxUnit& unit, const BoxUnit::Output& in);
@@ -126,7 +126,7 @@ struct SearchThread {
     Query query;
     Answer answer;
     SearchPair pair;
-    Halves halves;
+    SplitPairs halves;
     Records tools{}, works{};
     FixedVec offset{};
     std::array<SearchPair, 64> stack{};
@@ -137,19 +137,19 @@ struct SearchThread {
 void start(SearchThread& thread, const Query& query, uint64_t cycle);
 
 /// The line that the thread reads in phases open, take_tool and take_work.
-uint32_t wanted_line(const SearchThread& thread);
+uint32_t requested_line(const SearchThread& thread);
 
 /// Whether that line belongs to the work model, else to the tool model.
-bool wants_work(const SearchThread& thread);
+bool needs_work(const SearchThread& thread);
 
 /// Decides the next step for the pair of the thread.
 void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit);
 
 /// Continues with the line that was read.
-void take_line(SearchThread& thread, const Line& line);
+void accept_line(SearchThread& thread, const Line& line);
 
 /// Continues with the result of the box unit.
-void take_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth);
+void accept_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth);
 
 /// Takes the next pair from the stack; the search is done if it is empty.
 void pop(SearchThread& thread);
@@ -158,7 +158,7 @@ void pop(SearchThread& thread);
 PairUnit::Output next_records(SearchThread& thread, uint8_t number);
 
 /// Takes the result of the pair unit.
-void take_distance(SearchThread& thread, const PairUnit::Output& distance);
+void accept_distance(SearchThread& thread, const PairUnit::Output& distance);
 
 /// Ends the search without an answer.
 void stop(SearchThread& thread, Stop reason, uint32_t line);

@@ -372,8 +372,8 @@ bool is_complete(const GlFramebuffer& framebuffer) {
 
 } // namespace
 
-core::Result<HollowPass> HollowPass::make() {
-    HollowPass pass;
+core::Result<AmbientOcclusionPass> AmbientOcclusionPass::make() {
+    AmbientOcclusionPass pass;
     FEELER_TRY(pass.hollows_,
                ShaderProgram::make(shaders::background_vertex, shaders::hollow_fragment));
     FEELER_TRY(pass.smooth_,
@@ -382,7 +382,7 @@ core::Result<HollowPass> HollowPass::make() {
     return pass;
 }
 
-bool HollowPass::resize(const Viewport& size) {
+bool AmbientOcclusionPass::resize(const Viewport& size) {
     if (size.width == size_.width && size.height == size_.height) return true;
     depths_ = texture(size, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT);
     rough_ = texture(size, GL_R8, GL_RED, GL_UNSIGNED_BYTE);
@@ -396,7 +396,7 @@ bool HollowPass::resize(const Viewport& size) {
     return complete;
 }
 
-unsigned HollowPass::draw(const ViewFrame& frame, BodyPass& bodies) {
+unsigned AmbientOcclusionPass::draw(const ViewFrame& frame, BodyPass& bodies) {
     const Viewport size{(frame.viewport.width + 1) / 2, (frame.viewport.height + 1) / 2};
     if (!resize(size)) return 0;
     glViewport(0, 0, size.width, size.height);

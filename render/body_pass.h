@@ -78,9 +78,9 @@ private:
 };
 
 /// Computes ambient occlusion in corners and hollows from the depths of opaque bodies.
-class HollowPass {
+class AmbientOcclusionPass {
 public:
-    static core::Result<HollowPass> make();
+    static core::Result<AmbientOcclusionPass> make();
 
     /// A texture of half the size of the picture with the brightness, 1 where nothing is occluded;
     /// 0 if the card has no memory for it.

@@ -122,7 +122,7 @@ struct Renderer::Parts {
     ShaderProgram background;
     BodyPass bodies;
     LinePass lines;
-    HollowPass hollows;
+    AmbientOcclusionPass hollows;
     GlVertexArray no_attributes;
 
     void draw_background(ColorScheme theme) const;
@@ -174,7 +174,7 @@ core::Result<Renderer> Renderer::make() {
                ShaderProgram::make(shaders::background_vertex, shaders::background_fragment));
     FEELER_TRY(parts->bodies, BodyPass::make());
     FEELER_TRY(parts->lines, LinePass::make());
-    FEELER_TRY(parts->hollows, HollowPass::make());
+    FEELER_TRY(parts->hollows, AmbientOcclusionPass::make());
     parts->no_attributes = GlVertexArray::make();
     return Renderer(std::move(parts));
 }

@@ -31,9 +31,9 @@ core::Result<Contestant> contestant(std::unique_ptr<core::DistanceEngine> engine
     return Contestant{std::move(engine), a, b};
 }
 
-core::Result<BenchAnswer> answer(const Contestant& by, const core::Transform& a_from_b,
-                                 double seconds_each) {
-    BenchAnswer answer{.seconds = core::infinity};
+core::Result<EngineResult> answer(const Contestant& by, const core::Transform& a_from_b,
+                                  double seconds_each) {
+    EngineResult answer{.seconds = core::infinity};
     double spent = 0.0;
     do {
         const double start = cpu_seconds();
@@ -56,8 +56,8 @@ core::Result<BenchTable> measure(const BenchScene& scene, double seconds_each) {
         FEELER_TRY(const Contestant paper, contestant(core::paper_engine(), points_a, points_b));
         FEELER_TRY(const Contestant fast, contestant(core::fast_engine(), points_a, points_b));
         for (const BenchPose& pose : scene.poses) {
-            FEELER_TRY(const BenchAnswer by_paper, answer(paper, pose.a_from_b, seconds_each));
-            FEELER_TRY(const BenchAnswer by_fast, answer(fast, pose.a_from_b, seconds_each));
+            FEELER_TRY(const EngineResult by_paper, answer(paper, pose.a_from_b, seconds_each));
+            FEELER_TRY(const EngineResult by_fast, answer(fast, pose.a_from_b, seconds_each));
             table.rows.push_back(
                 {mesh_size, points_a.size(), points_b.size(), pose.separation, by_paper, by_fast});
         }
@@ -67,8 +67,8 @@ core::Result<BenchTable> measure(const BenchScene& scene, double seconds_each) {
 
 namespace {
 
-BenchMeans mean_of(const std::vector<BenchRow>& rows, double mesh_size) {
-    BenchMeans mean{.mesh_size = mesh_size};
+BenchAverages mean_of(const std::vector<BenchRow>& rows, double mesh_size) {
+    BenchAverages mean{.mesh_size = mesh_size};
     double count = 0.0, log_ratio = 0.0;
     for (const BenchRow& row : rows) {
         if (row.mesh_size != mesh_size) continue;
@@ -94,8 +94,8 @@ double mean_of(const std::vector<double>& values) {
 
 } // namespace
 
-std::vector<BenchMeans> means_of(const BenchTable& table) {
-    std::vector<BenchMeans> means;
+std::vector<BenchAverages> averages_of(const BenchTable& table) {
+    std::vector<BenchAverages> means;
     for (const double mesh_size : table.scene.mesh_sizes)
         means.push_back(mean_of(table.rows, mesh_size));
     return means;
@@ -114,9 +114,9 @@ LineFit line_fit(const std::vector<double>& x, const std::vector<double>& y) {
     return {mean_y - slope * mean_x, slope, yy > 0.0 ? xy * xy / (xx * yy) : 1.0};
 }
 
-LineFit time_by_points(const std::vector<BenchMeans>& means) {
+LineFit time_by_points(const std::vector<BenchAverages>& means) {
     std::vector<double> points, seconds;
-    for (const BenchMeans& mean : means) {
+    for (const BenchAverages& mean : means) {
         points.push_back(static_cast<double>(mean.points));
         seconds.push_back(mean.paper_seconds);
     }

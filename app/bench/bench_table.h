@@ -8,7 +8,7 @@
 namespace app {
 
 /// The result of an engine, and its cost.
-struct BenchAnswer {
+struct EngineResult {
     double distance = 0.0;   // mm, between the closest points
     uint64_t node_tests = 0; // sphere tests or box tests
     uint64_t point_tests = 0;
@@ -20,7 +20,7 @@ struct BenchRow {
     double mesh_size = 0.0; // mm
     size_t points_a = 0, points_b = 0;
     double separation = 0.0; // mm, between the surfaces
-    BenchAnswer paper, fast;
+    EngineResult paper, fast;
 
     double error_percent() const { return 100.0 * (paper.distance - separation) / separation; }
     double ratio() const { return paper.seconds / fast.seconds; }
@@ -41,7 +41,7 @@ struct BenchTable {
 core::Result<BenchTable> measure(const BenchScene& scene, double seconds_each = 0.01);
 
 /// Means over all poses of a scene at one mesh size.
-struct BenchMeans {
+struct BenchAverages {
     double mesh_size = 0.0;
     size_t points = 0; // of A
     double error_percent = 0.0;
@@ -51,7 +51,7 @@ struct BenchMeans {
 };
 
 /// The means for each mesh size of the table, in its order.
-std::vector<BenchMeans> means_of(const BenchTable& table);
+std::vector<BenchAverages> averages_of(const BenchTable& table);
 
 /// The straight line y = start + slope * x that best fits some points.
 struct LineFit {
@@ -64,6 +64,6 @@ struct LineFit {
 LineFit line_fit(const std::vector<double>& x, const std::vector<double>& y);
 
 /// The fit of the paper's engine's time, s, over the number of points of one body.
-LineFit time_by_points(const std::vector<BenchMeans>& means);
+LineFit time_by_points(const std::vector<BenchAverages>& means);
 
 } // namespace app

@@ -79,8 +79,9 @@ private:
 void InputRecorder::note(const core::FileAccess& access) {
     InputFile input{access.question, access.path, access.name, std::nullopt};
     if (access.answer)
-        input.answer = access.question == core::FileQuestion::content ? sha256_of(*access.answer)
-                                                                      : std::string(*access.answer);
+        input.answer = access.question == core::FileAccessKind::content
+                           ? sha256_of(*access.answer)
+                           : std::string(*access.answer);
     inputs_.insert(std::move(input));
 }
 
@@ -103,7 +104,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
         FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.machine().stock));
-        runner.let_judge([&](std::span<const core::Event> block, const auto& before) {
+        runner.run_judge([&](std::span<const core::Event> block, const auto& before) {
             return device->judge(block, before);
         });
     }

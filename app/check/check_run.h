@@ -72,7 +72,7 @@ struct CheckRecord {
 
 /// The results after the last block.
 struct CheckReport {
-    std::vector<core::Finding> taken_in; // findings that were combined into another one
+    std::vector<core::Finding> combined_findings; // findings that were combined into another one
     core::Statistics statistics;
     size_t points = 0;                                      // of the stock's model at the end
     size_t lines = 0;                                       // scan lines

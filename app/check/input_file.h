@@ -6,7 +6,7 @@
 #include <string>
 
 namespace core {
-enum class FileQuestion : uint8_t;
+enum class FileAccessKind : uint8_t;
 }
 
 namespace app {
@@ -14,7 +14,7 @@ namespace app {
 /// A file access that affects the result of a check: the content of a file, or the fact that it
 /// does not exist.
 struct InputFile {
-    core::FileQuestion question{};
+    core::FileAccessKind question{};
     std::string path;                  // of the file, or of the folder that was searched
     std::string name;                  // name searched for in the folder
     std::optional<std::string> answer; // for content: its SHA-256

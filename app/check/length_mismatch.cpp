@@ -210,7 +210,7 @@ void combine_consequences(CheckRecord& record, CheckReport& report,
                                              && (!all.collides || collides_in(record, other));
                                   });
         std::copy_if(record.findings.begin(), record.findings.end(),
-                     std::back_inserter(report.taken_in), is_caused);
+                     std::back_inserter(report.combined_findings), is_caused);
         std::erase_if(record.findings, is_caused);
         add_sentence(record, *cause, all, mismatch.too_low, std::move(first));
     }

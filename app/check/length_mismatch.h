@@ -51,8 +51,8 @@ void track_changed_length(LengthTracker& tracker, const core::Setup& setup,
 /// next length or tool call that do not occur with the tool's true length. The finding of the rule
 /// `missing-length-offset`, `length-offset-cancelled` or `offset-not-tool` then states the number
 /// of blocks; if its severity is lower than theirs, one of them stays and states it. A rule that is
-/// off combines nothing. Blocks keep their verdicts, and `report.taken_in` holds the findings that
-/// were combined.
+/// off combines nothing. Blocks keep their verdicts, and `report.combined_findings` holds the
+/// findings that were combined.
 void combine_consequences(CheckRecord& record, CheckReport& report,
                           const std::vector<LengthMismatch>& mismatches);
 

@@ -163,9 +163,8 @@ void track_units(UnitsTracker& tracker, const core::BlockEvents& block) {
     }
 }
 
-std::optional<core::Finding> units_off_the_stock(const UnitsTracker& tracker,
-                                                 const core::Setup& setup, const core::Aabb& stock,
-                                                 bool unit_said) {
+std::optional<core::Finding> unit_mismatch(const UnitsTracker& tracker, const core::Setup& setup,
+                                           const core::Aabb& stock, bool unit_said) {
     if (!tracker.first) return std::nullopt;
     const core::Vec3 path = tracker.box.size(), size = stock.size();
     const double longest = std::max(path.x, path.y), widest = std::max(size.x, size.y);

@@ -55,8 +55,7 @@ void track_units(UnitsTracker& tracker, const core::BlockEvents& block);
 
 /// The finding `units-jump`: the feeds span about 25.4 times the stock or, if the program states no
 /// unit, 1/25.4 of it.
-std::optional<core::Finding> units_off_the_stock(const UnitsTracker& tracker,
-                                                 const core::Setup& setup, const core::Aabb& stock,
-                                                 bool unit_said);
+std::optional<core::Finding> unit_mismatch(const UnitsTracker& tracker, const core::Setup& setup,
+                                           const core::Aabb& stock, bool unit_said);
 
 } // namespace app

@@ -87,7 +87,7 @@ void take_tool_at_start(PreparedCheck& check) {
 /// Reads a program, with the digest of the same bytes: a pipe can be read only once.
 core::Result<gcode::Program> read_once(const std::string& path, std::string& sha256) {
     const core::FileAccessObserver listening([&](const core::FileAccess& access) {
-        if (access.question == core::FileQuestion::content && access.answer)
+        if (access.question == core::FileAccessKind::content && access.answer)
             sha256 = sha256_of(*access.answer);
     });
     return gcode::read_program(path);

@@ -165,7 +165,7 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
 
 ProgramRunner::~ProgramRunner() = default;
 
-void ProgramRunner::let_judge(BlockJudge judge) {
+void ProgramRunner::run_judge(BlockJudge judge) {
     runner_->judge = std::move(judge);
     runner_->before_block = {};
 }
@@ -214,8 +214,8 @@ void ProgramRunner::make_moves_before(uint32_t line) {
         }
         if (!made) continue;
         state_->moves_made.insert(i);
-        state_->machine.fixtures_there[move.from] = false;
-        if (move.to) state_->machine.fixtures_there[*move.to] = true;
+        state_->machine.mounted_fixtures[move.from] = false;
+        if (move.to) state_->machine.mounted_fixtures[*move.to] = true;
         record_.later_assumptions.push_back(
             fmt::format("{} has been moved, as stated in lines before the start",
                         input_.setup.fixtures[move.from].name));
@@ -278,9 +278,8 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
 void ProgramRunner::compare_with_stock() {
     for (core::Finding& finding : implausible_offsets(state_->offsets, runner_->setup()))
         record_.findings.push_back(std::move(finding));
-    if (auto jump =
-            units_off_the_stock(state_->units, runner_->setup(), state_->machine.stock.outer_box,
-                                state_->control.modal.unit_said))
+    if (auto jump = unit_mismatch(state_->units, runner_->setup(), state_->machine.stock.outer_box,
+                                  state_->control.modal.unit_said))
         record_.findings.push_back(*std::move(jump));
 }
 
@@ -351,7 +350,7 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
 void ProgramRunner::end() {
     const gcode::Environment& environment = check_.file.environment;
     if (!record_.stopped)
-        if (const auto warning = gcode::ending_warning(environment, state_->control))
+        if (const auto warning = gcode::end_warning(environment, state_->control))
             record_.findings.push_back(finding_of(runner_->setup(), *warning));
     end_correction();
     for (core::Finding& finding : core::end_of_run(runner_->setup(), state_->machine))

@@ -41,7 +41,7 @@ public:
 
     /// Judges blocks by `judge` in place of the distance core. Findings caused by a wrong tool
     /// length are then reported for each block.
-    void let_judge(BlockJudge judge);
+    void run_judge(BlockJudge judge);
 
     /// Starts in the middle of the program, at a line ("120") or block number ("N210"), with the
     /// control in its power-on state.

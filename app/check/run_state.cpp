@@ -42,7 +42,7 @@ void add(StateDigest& digest, const core::SimulatorState& machine) {
     }
     digest.add(machine.tool ? uint64_t(core::value_of(*machine.tool)) + 1 : 0);
     digest.add(uint64_t(machine.tool_known));
-    for (const bool is_there : machine.fixtures_there) digest.add(uint64_t(is_there));
+    for (const bool is_there : machine.mounted_fixtures) digest.add(uint64_t(is_there));
     digest.add(static_cast<uint64_t>(machine.spindle.direction));
     digest.add(machine.spindle.speed);
     digest.add(machine.length_offset.length);

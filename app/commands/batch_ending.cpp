@@ -11,7 +11,7 @@
 namespace app {
 
 ExitCode end_batch(const BatchResult& batch, const Shard* shard,
-                   const std::vector<ReportTarget>& targets, const BatchTalk& talk,
+                   const std::vector<ReportTarget>& targets, const BatchOutput& talk,
                    const ReadFiles& read) {
     bool all = true;
     for (const ReportTarget& target : targets) {
@@ -34,13 +34,13 @@ ExitCode end_batch(const BatchResult& batch, const Shard* shard,
     return all ? static_cast<ExitCode>(status_of(batch)) : ExitCode::failed;
 }
 
-void BatchTalk::say(const std::string& text) const {
+void BatchOutput::say(const std::string& text) const {
     std::fputs(text.c_str(), stream);
     std::fflush(stream);
 }
 
-BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets) {
-    BatchTalk talk{.style = asked};
+BatchOutput output_for(const BatchStyle& asked, const std::vector<ReportTarget>& targets) {
+    BatchOutput talk{.style = asked};
     for (const ReportTarget& target : targets)
         if (target.path.empty() && target.format != "text") talk.stream = stderr;
     const char* no_colour = std::getenv("NO_COLOR");

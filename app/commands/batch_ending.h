@@ -14,7 +14,7 @@ struct Shard;
 
 /// Prints text meant for people: to standard output, or to standard error if a report goes to
 /// standard output.
-struct BatchTalk {
+struct BatchOutput {
     std::FILE* stream = stdout;
     BatchStyle style;
 
@@ -22,13 +22,13 @@ struct BatchTalk {
 };
 
 /// Chooses the stream for `targets`, and colour if it is a terminal and NO_COLOR is not set.
-BatchTalk talk_of(const BatchStyle& asked, const std::vector<ReportTarget>& targets);
+BatchOutput output_for(const BatchStyle& asked, const std::vector<ReportTarget>& targets);
 
 /// Writes the reports of a batch, each completely or not at all. `shard` (may be null) is the
 /// content of reports of format "shard". Never overwrites a file that was read. Prints errors to
 /// standard error and returns the exit status.
 ExitCode end_batch(const BatchResult& batch, const Shard* shard,
-                   const std::vector<ReportTarget>& targets, const BatchTalk& talk,
+                   const std::vector<ReportTarget>& targets, const BatchOutput& talk,
                    const ReadFiles& read);
 
 } // namespace app

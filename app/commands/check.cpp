@@ -392,7 +392,7 @@ ExitCode watch(const std::vector<std::string>& outputs,
                const std::function<ExitCode(WatchedFiles&)>& pass) {
     stop_on_interrupt();
     WatchedFiles files(outputs);
-    PassOutputs written(outputs);
+    WatchOutputs written(outputs);
     while (true) {
         files.begin_again();
         written.begin_pass();

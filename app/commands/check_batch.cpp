@@ -233,7 +233,7 @@ bool is_changed_result(WatchState& watch, ProgramResult result) {
     return true;
 }
 
-BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchTalk& talk,
+BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const BatchOutput& talk,
                       BatchStore& store, WatchState& watch, ReadFiles& read) {
     ProgressLine line;
     BatchHooks hooks;
@@ -245,7 +245,7 @@ BatchResult run_aloud(const BatchPlan& plan, const BatchLimits& limits, const Ba
             // Note the paths as given: the database asks for the files that links led to when it
             // was opened.
             for (const std::string& path : {job.program, job.setup})
-                watch.files->note({core::FileQuestion::content, path, {}, {}});
+                watch.files->note({core::FileAccessKind::content, path, {}, {}});
             auto found = find(job);
             const std::scoped_lock lock(guard);
             if (found) known.insert(found->program);
@@ -294,7 +294,8 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     if (const auto safe = read.check(paths_of(targets)); !safe) return failed(safe.error());
     if (plan->jobs.empty() && !plan->failures.empty()) return all_failed(plan->failures);
     const SharedWork work = work_of(options, *std::move(plan));
-    const BatchTalk talk = talk_of({.quiet = options.quiet, .verbose = options.verbose}, targets);
+    const BatchOutput talk =
+        output_for({.quiet = options.quiet, .verbose = options.verbose}, targets);
     BatchResult batch = run_aloud(work.plan, limits_of(options), talk, store, watch, read);
     batch.shard = shard_text(options, work);
     talk.say("\n" + batch_summary(batch, time.seconds(), talk.style));

@@ -195,7 +195,7 @@ std::optional<std::string> LineReader::next() {
         ::el_set(editor_->line, EL_PREP_TERM, 1);
         const char* read = ::el_gets(editor_->line, &length);
         if (was_interrupted()) {
-            forget_interrupt();
+            clear_interrupt();
             ::tcflush(STDIN_FILENO, TCIFLUSH);
             ::el_reset(editor_->line);
             fmt::print("\n");
@@ -251,7 +251,7 @@ public:
 
     /// Runs the scripts. True if they ran to their end; false if a command failed or ended the
     /// session.
-    bool carry_out(const std::vector<Script>& scripts) {
+    bool execute_motion(const std::vector<Script>& scripts) {
         for (const Script& script : scripts) {
             if (!script.is_file) {
                 if (!one(script.text, fmt::format("-ex '{}'", script.text))) return false;
@@ -296,7 +296,7 @@ private:
     /// Removes the progress line before the answer is printed.
     PromptAnswer answered(PromptAnswer answer) {
         line_.clear();
-        forget_interrupt();
+        clear_interrupt();
         return answer;
     }
 
@@ -328,9 +328,9 @@ ExitCode debug(const DebugOptions& options) {
     if (!job) return failed(job.error());
     auto session = DebugSession::open(*job);
     if (!session) return failed(session.error());
-    note_interrupts();
+    catch_interrupts();
     Console console(**session);
-    const bool goes_on = console.carry_out(options.scripts) || console.failed;
+    const bool goes_on = console.execute_motion(options.scripts) || console.failed;
     if (goes_on && !options.batch) {
         if (isatty(STDIN_FILENO) == 1)
             console.talk();

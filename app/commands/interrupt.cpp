@@ -11,10 +11,10 @@ extern "C" void note(int) { noted = 1; }
 
 } // namespace
 
-void note_interrupts() { std::signal(SIGINT, note); }
+void catch_interrupts() { std::signal(SIGINT, note); }
 
 bool was_interrupted() { return noted != 0; }
 
-void forget_interrupt() { noted = 0; }
+void clear_interrupt() { noted = 0; }
 
 } // namespace app

@@ -3,10 +3,10 @@
 namespace app {
 
 /// From now on Ctrl-C only sets a flag.
-void note_interrupts();
+void catch_interrupts();
 
-/// Whether Ctrl-C was pressed since the last call of forget_interrupt.
+/// Whether Ctrl-C was pressed since the last call of clear_interrupt.
 bool was_interrupted();
-void forget_interrupt();
+void clear_interrupt();
 
 } // namespace app

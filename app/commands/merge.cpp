@@ -68,7 +68,7 @@ void add_inputs(const std::vector<Shard>& shards, ReadFiles& read) {
 }
 
 /// Prints what a single run of the batch would print.
-void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const BatchTalk& talk) {
+void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const BatchOutput& talk) {
     for (const ProgramResult& program : batch.programs) talk.say(program_text(program, talk.style));
     double seconds = 0.0;
     for (const Shard& shard : shards) seconds += shard.seconds;
@@ -80,7 +80,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
 }
 
 core::Result<ExitCode> merge(const MergeOptions& options) {
-    outlive_readers();
+    ignore_broken_pipes();
     ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets,
                targets_of(options.formats, options.outputs));
@@ -90,7 +90,7 @@ core::Result<ExitCode> merge(const MergeOptions& options) {
     add_inputs(shards, read);
     if (auto safe = read.check(paths_of(targets)); !safe) return tl::unexpected(safe.error());
     FEELER_TRY(const BatchResult batch, merged(shards));
-    const BatchTalk talk = talk_of(options.style, targets);
+    const BatchOutput talk = output_for(options.style, targets);
     say_all(batch, shards, talk);
     return end_batch(batch, nullptr, targets, talk, read);
 }

@@ -176,16 +176,16 @@ void take_away(const std::string& path) {
 
 } // namespace
 
-PassOutputs::PassOutputs(const std::vector<std::string>& paths) {
+WatchOutputs::WatchOutputs(const std::vector<std::string>& paths) {
     for (const std::string& path : paths)
         if (!path.empty()) outputs_.push_back({.path = path});
 }
 
-void PassOutputs::begin_pass() {
+void WatchOutputs::begin_pass() {
     for (Output& output : outputs_) output.before = written_stamp(output.path);
 }
 
-void PassOutputs::end_pass(const WatchedFiles& read) {
+void WatchOutputs::end_pass(const WatchedFiles& read) {
     for (const Output& output : outputs_) {
         const FileStamp written = written_stamp(output.path);
         const bool is_old = written.is_file && written == output.before;

@@ -65,9 +65,9 @@ ExitCode failed(const core::Error& error);
 
 /// The output files of a watch. A file written by one pass describes that version of the inputs; it
 /// is deleted if a later pass could not rewrite it.
-class PassOutputs {
+class WatchOutputs {
 public:
-    explicit PassOutputs(const std::vector<std::string>& paths);
+    explicit WatchOutputs(const std::vector<std::string>& paths);
 
     void begin_pass();
 

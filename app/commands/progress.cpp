@@ -54,10 +54,10 @@ void stop_on_interrupt() {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
     // SIGHUP stays ignored under nohup: the check is to outlive its terminal.
     if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-    outlive_readers();
+    ignore_broken_pipes();
 }
 
-void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
+void ignore_broken_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool is_interrupted() { return interrupted_at != 0; }
 

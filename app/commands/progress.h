@@ -8,12 +8,12 @@ struct BatchProgress;
 struct CheckProgress;
 
 /// From now on SIGINT, SIGTERM and SIGHUP request a check to stop; a second signal at least half a
-/// second later ends the process. Includes outlive_readers.
+/// second later ends the process. Includes ignore_broken_pipes.
 void stop_on_interrupt();
 
 /// From now on a closed pipe does not end the process: writing to it fails, and other reports are
 /// still written.
-void outlive_readers();
+void ignore_broken_pipes();
 
 /// Whether a stop was requested.
 bool is_interrupted();

@@ -23,7 +23,7 @@ FileNumber number_of(const std::string& path) {
 ReadFiles::ReadFiles() : listening_([this](const core::FileAccess& access) { note(access); }) {}
 
 void ReadFiles::note(const core::FileAccess& access) {
-    if (access.question == core::FileQuestion::content) add(access.path);
+    if (access.question == core::FileAccessKind::content) add(access.path);
 }
 
 void ReadFiles::add(const std::string& path) {

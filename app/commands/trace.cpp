@@ -94,7 +94,7 @@ struct Tracing {
             if (!*block) break;
             if (auto written = add(**block); !written) return written;
         }
-        if (const auto warning = gcode::ending_warning(environment, state)) warn(*warning, {});
+        if (const auto warning = gcode::end_warning(environment, state)) warn(*warning, {});
         if (auto written = flush(); !written) return written;
         if (auto safe = read.check(options.output); !safe) return safe; // it may be a subprogram
         return out.finish();

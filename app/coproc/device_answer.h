@@ -12,7 +12,7 @@
 namespace app {
 
 /// A pair of bodies that the coprocessor checked in a block.
-struct AskedPair {
+struct QueriedPair {
     core::Pair pair;
     core::Allowance allowance;
     bool refused = false;
@@ -26,9 +26,9 @@ struct BlockPermit {
     size_t segments = 0;   // number of questions
     hwsim::Stop stop = hwsim::Stop::none;
     std::optional<core::Pair> pair; // the refused pair
-    std::string not_asked;          // why a motion could not be checked; it is then not permitted
+    std::string not_queried;        // why a motion could not be checked; it is then not permitted
     bool is_reported = false;       // a finding of the run gives the same reason
-    std::vector<AskedPair> pairs;   // every pair once
+    std::vector<QueriedPair> pairs; // every pair once
     hwsim::DeviceReport report;     // of the device, before a stop is cleared
 };
 

@@ -121,8 +121,9 @@ namespace {
 enum class Teller : uint8_t { permit, run };
 
 void deny(BlockPermit& permit, std::string why, Teller teller = Teller::permit) {
-    permit.is_reported = teller == Teller::run && (permit.not_asked.empty() || permit.is_reported);
-    permit.not_asked = std::move(why);
+    permit.is_reported =
+        teller == Teller::run && (permit.not_queried.empty() || permit.is_reported);
+    permit.not_queried = std::move(why);
 }
 
 hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, SlotNumber work,
@@ -133,10 +134,10 @@ hwsim::PathSegment segment_of(const core::RelativeLeg& way, SlotNumber tool, Slo
 }
 
 /// The entry of a pair in a block's permit; added if it is missing.
-AskedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Setup& setup) {
-    for (AskedPair& known : permit.pairs)
+QueriedPair& entry_of(BlockPermit& permit, const core::Pair& pair, const core::Setup& setup) {
+    for (QueriedPair& known : permit.pairs)
         if (known.pair == pair) return known;
-    return permit.pairs.emplace_back(AskedPair{pair, allowance_of(setup, pair)});
+    return permit.pairs.emplace_back(QueriedPair{pair, allowance_of(setup, pair)});
 }
 
 /// Records a stop. Only the first of several stops is reported.
@@ -158,12 +159,12 @@ BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
     if (report.stop != hwsim::Stop::none) note_stop(block, report, setup);
     BlockPermit& permit = block.permit;
     if (permit.stop == hwsim::Stop::none) permit.report = report;
-    permit.permitted = permit.not_asked.empty() && permit.stop == hwsim::Stop::none;
+    permit.permitted = permit.not_queried.empty() && permit.stop == hwsim::Stop::none;
     return std::move(permit);
 }
 
 Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const core::Setup& setup,
-                                                const core::CutModel& stock, Asking asking) {
+                                                const core::CutModel& stock, QueryScope asking) {
     FEELER_TRY(hwsim::Driver driver, hwsim::open_device(std::move(port)));
     CoprocessorCheck check(std::move(driver), setup, asking);
     FEELER_TRY(check.stock_, hwsim::load_stock(check.driver_, stock));
@@ -179,7 +180,7 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
           .spindle = before.spindle,
           .corners = before.corners,
           .position = before.position,
-          .fixtures_there = before.fixtures_there,
+          .mounted_fixtures = before.mounted_fixtures,
           .centre = before.centre};
     at.is_cycle = std::count_if(block.begin(), block.end(),
                                 [](const core::Event& event) {
@@ -189,7 +190,7 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
     hold(before.tool, at);
     at.tool_known = before.tool_known;
     for (const core::Event& event : block)
-        if (auto asked = ask_event(event, at, pushed); !asked)
+        if (auto asked = query_event(event, at, pushed); !asked)
             return tl::unexpected(std::move(asked).error());
     return pushed;
 }
@@ -202,7 +203,7 @@ Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
     return answered(std::move(pushed), now, *setup_);
 }
 
-hwsim::Stop CoprocessorCheck::take_answers(PushedBlock& block) {
+hwsim::Stop CoprocessorCheck::collect_answers(PushedBlock& block) {
     const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
     if (now.stop != hwsim::Stop::none) {
         note_stop(block, now, *setup_);
@@ -213,19 +214,19 @@ hwsim::Stop CoprocessorCheck::take_answers(PushedBlock& block) {
     return now.stop;
 }
 
-Result<void> CoprocessorCheck::ask_event(const core::Event& event, At& at, PushedBlock& block) {
+Result<void> CoprocessorCheck::query_event(const core::Event& event, At& at, PushedBlock& block) {
     if (const auto* motion = std::get_if<core::Motion>(&event))
-        return ask_motion(*motion, at, block);
+        return query_motion(*motion, at, block);
     if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
     if (const auto* change = std::get_if<core::PathModeChange>(&event))
         change_mode(at.corners, *change, setup_->machine);
     if (const auto* change = std::get_if<core::ToolChange>(&event)) {
         hold(change->tool, at);
-        return ask_rest(at, block);
+        return query_standstill(at, block);
     }
     if (const auto* change = std::get_if<core::FixtureChange>(&event)) {
-        at.fixtures_there[change->fixture] = change->is_there;
-        if (change->is_there) return ask_rest(at, block);
+        at.mounted_fixtures[change->fixture] = change->is_there;
+        if (change->is_there) return query_standstill(at, block);
     }
     return {};
 }
@@ -237,13 +238,14 @@ void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at)
     at.tool_known = true;
 }
 
-Result<void> CoprocessorCheck::ask_rest(At& at, PushedBlock& block) {
+Result<void> CoprocessorCheck::query_standstill(At& at, PushedBlock& block) {
     const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return {};
-    return ask_leg({.positions = {path.legs[0].positions[0]}}, false, at, block);
+    return query_leg({.positions = {path.legs[0].positions[0]}}, false, at, block);
 }
 
-Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, PushedBlock& block) {
+Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
+                                            PushedBlock& block) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
     at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
@@ -264,7 +266,7 @@ Result<void> CoprocessorCheck::ask_motion(const core::Motion& motion, At& at, Pu
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     at.follows = follows_cuts(at.corners, at.called, rises, rapid && !at.is_cycle);
     for (const core::Leg& leg : path.legs) {
-        if (auto done = bring_up_to_date(at); !done) return done;
+        if (auto done = update_models(at); !done) return done;
         if (pushes_centre(leg, cutting, at))
             deny(block.permit, "the tool's centre, which does not cut, is pushed into the stock",
                  Teller::run);
@@ -293,7 +295,7 @@ Result<void> CoprocessorCheck::walk(const core::Leg& leg, bool cutting, At& at, 
             if (auto walked = walk(half, cutting, at, block, depth + 1); !walked) return walked;
         return {};
     }
-    if (auto asked = ask_leg(leg, cutting, at, block); !asked) return asked;
+    if (auto asked = query_leg(leg, cutting, at, block); !asked) return asked;
     if (cutting) note_cut(leg, at);
     return {};
 }
@@ -317,39 +319,39 @@ bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
         };
         if (is_vague({}, stock)) return true;
         for (size_t i = 0; i < setup_->fixtures.size(); ++i)
-            if (at.fixtures_there[i] && !is_exempt(setup_->machine, body, setup_->fixtures[i])
+            if (at.mounted_fixtures[i] && !is_exempt(setup_->machine, body, setup_->fixtures[i])
                 && is_vague(i, setup_->fixtures[i].body))
                 return true;
     }
     return false;
 }
 
-Result<void> CoprocessorCheck::ask_leg(const core::Leg& leg, bool cutting, At& at,
-                                       PushedBlock& block) {
+Result<void> CoprocessorCheck::query_leg(const core::Leg& leg, bool cutting, At& at,
+                                         PushedBlock& block) {
     if (!leg.straight) {
         deny(block.permit, "the path of the motion is unknown");
         return {};
     }
     static const core::ToolAssembly nothing;
     models_.use_tool(driver_, at.tool);
-    if (auto done = bring_up_to_date(at); !done) return done;
+    if (auto done = update_models(at); !done) return done;
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
         const Question stock = question(body, {}, leg, at);
         if (!cuts && !is_far(stock, core::convex(at.stock.outer_box), block)) {
             const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
-                                                      : &CoprocessorCheck::ask_pair;
+                                                      : &CoprocessorCheck::query_pair;
             if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
         }
         for (size_t i = 0; i < setup_->fixtures.size(); ++i) {
             const core::Fixture& fixture = setup_->fixtures[i];
-            if (!at.fixtures_there[i] || is_exempt(setup_->machine, body, fixture)
+            if (!at.mounted_fixtures[i] || is_exempt(setup_->machine, body, fixture)
                 || (cuts && fixture.expendable))
                 continue;
             const Question q = question(body, i, leg, at);
             if (is_far(q, fixture.body, block)) continue;
             FEELER_TRY(const SlotNumber work, models_.of_fixture(driver_, i));
-            if (auto asked = ask_pair(q, work, block); !asked) return asked;
+            if (auto asked = query_pair(q, work, block); !asked) return asked;
         }
     }
     return {};
@@ -363,7 +365,7 @@ bool CoprocessorCheck::is_far(const Question& q, const core::ExactBody& other,
     if (distance(bounds(q.body, q.way), bounds(other)) < setup_->search_limit + q.off_path
         && distance_over(q.way, q.body, other, limit, tests).lower < limit)
         return false;
-    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
+    QueriedPair& asked = entry_of(block.permit, q.pair, *setup_);
     asked.lower = std::min(asked.lower, setup_->search_limit);
     return true;
 }
@@ -374,7 +376,7 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
     const core::Mount& mount = fixture ? setup_->fixtures[*fixture].mount : setup_->stock_mount;
     const core::Pair pair{body.kind, fixture, body.carried};
     const core::Allowance allowance = allowance_of(*setup_, pair);
-    const double off = off_way(pair, at.off_motion, at.corners);
+    const double off = path_deviation(pair, at.off_motion, at.corners);
     // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
     const bool may_touch = allowance.distance <= core::resolution
                            && (off <= contact_depth(allowance) || (!fixture && at.follows));
@@ -382,7 +384,7 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
             allowance, off,  may_touch};
 }
 
-Result<void> CoprocessorCheck::bring_up_to_date(At& at) {
+Result<void> CoprocessorCheck::update_models(At& at) {
     if (at.to_cut.empty()) return {};
     for (const core::CutterSweep& sweep : at.to_cut) cut(at.stock, sweep);
     at.to_cut.clear();
@@ -405,7 +407,7 @@ void CoprocessorCheck::note_cut(const core::Leg& leg, At& at) const {
                          .orientation = way.orientation});
 }
 
-Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, PushedBlock& block) {
+Result<void> CoprocessorCheck::query_pair(const Question& q, SlotNumber work, PushedBlock& block) {
     if (auto measured = measure_pair(q, work, block); !measured) return measured;
     // For bodies that may touch, the tool-side body is shrunk by the contact tolerance.
     const double shrink =
@@ -420,20 +422,20 @@ Result<void> CoprocessorCheck::ask_pair(const Question& q, SlotNumber work, Push
     }
     block.asked.push_back(q.pair);
     ++block.permit.segments;
-    if (asking_ == Asking::everything) take_answers(block);
+    if (asking_ == QueryScope::everything) collect_answers(block);
     return {};
 }
 
 Result<void> CoprocessorCheck::measure_pair(const Question& q, SlotNumber work,
                                             PushedBlock& block) {
-    if (asking_ != Asking::everything) return {};
-    AskedPair& asked = entry_of(block.permit, q.pair, *setup_);
+    if (asking_ != QueryScope::everything) return {};
+    QueriedPair& asked = entry_of(block.permit, q.pair, *setup_);
     FEELER_TRY(const SlotNumber tool, models_.of_body(driver_, q.body, 0.0, q.way.orientation));
     const double off = q.way.error + q.off_path;
     const double limit = setup_->search_limit + off;
     const auto found = hwsim::measure(driver_, segment_of(q.way, tool, work, limit));
     if (!found) deny(block.permit, found.error().message);
-    if (!found || take_answers(block) != hwsim::Stop::none) {
+    if (!found || collect_answers(block) != hwsim::Stop::none) {
         asked.lower = 0.0;
         return {};
     }

@@ -60,7 +60,7 @@ BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
 
 /// How many questions are asked of a coprocessor: those up to the first refusal of a block, as on a
 /// machine; or all of them one by one, with clearances.
-enum class Asking : uint8_t { until_refused, everything };
+enum class QueryScope : uint8_t { until_refused, everything };
 
 /// Asks a coprocessor about every motion of a program: each part of the tool and each machine body
 /// against the stock, as it is before each leg of the motion, and against each fixture. Refers to
@@ -77,7 +77,7 @@ public:
     /// Errors: those of the driver.
     static core::Result<CoprocessorCheck> with(hwsim::DevicePort port, const core::Setup& setup,
                                                const core::CutModel& stock,
-                                               Asking asking = Asking::until_refused);
+                                               QueryScope asking = QueryScope::until_refused);
 
     /// Asks about a block and waits for the answers.
     ///
@@ -103,7 +103,7 @@ private:
         core::RoundedCorners corners;
         double off_motion = 0.0; // deviation of the motion by rounded corners, mm
         core::AxisPosition position;
-        std::vector<bool> fixtures_there;
+        std::vector<bool> mounted_fixtures;
         core::CentreTracker centre;             // for a tool that does not cut at its centre
         std::optional<core::ToolNumber> called; // tool in the spindle, described or not
         bool tool_known = false;
@@ -120,38 +120,38 @@ private:
         bool may_touch = false;
     };
 
-    CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup, Asking asking)
+    CoprocessorCheck(hwsim::Driver driver, const core::Setup& setup, QueryScope asking)
         : driver_(std::move(driver)), setup_(&setup), asking_(asking), models_(setup) {}
 
-    core::Result<void> ask_event(const core::Event& event, At& at, PushedBlock& block);
-    core::Result<void> ask_motion(const core::Motion& motion, At& at, PushedBlock& block);
-    core::Result<void> ask_rest(At& at, PushedBlock& block);
+    core::Result<void> query_event(const core::Event& event, At& at, PushedBlock& block);
+    core::Result<void> query_motion(const core::Motion& motion, At& at, PushedBlock& block);
+    core::Result<void> query_standstill(At& at, PushedBlock& block);
     void hold(const std::optional<core::ToolNumber>& tool, At& at) const;
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
     Question question(const core::MovingBody& body, std::optional<size_t> fixture,
                       const core::Leg& leg, const At& at) const;
     /// Whether a machine body stays so far away that no question is needed.
     bool is_far(const Question& question, const core::ExactBody& other, PushedBlock& block) const;
-    core::Result<void> bring_up_to_date(At& at);
+    core::Result<void> update_models(At& at);
     void note_cut(const core::Leg& leg, At& at) const;
     /// Asks along a leg. A leg with rotation is halved until the rotation adds little error.
     core::Result<void> walk(const core::Leg& leg, bool cutting, At& at, PushedBlock& block,
                             int depth = 0);
     /// Whether a rotating body may be too close, given the uncertainty of its position.
     bool is_too_vague(const core::Leg& leg, const At& at) const;
-    core::Result<void> ask_leg(const core::Leg& leg, bool cutting, At& at, PushedBlock& block);
-    core::Result<void> ask_pair(const Question& question, hwsim::SlotNumber work,
-                                PushedBlock& block);
+    core::Result<void> query_leg(const core::Leg& leg, bool cutting, At& at, PushedBlock& block);
+    core::Result<void> query_pair(const Question& question, hwsim::SlotNumber work,
+                                  PushedBlock& block);
     /// Measures the clearance of the bodies, if everything is asked.
     core::Result<void> measure_pair(const Question& question, hwsim::SlotNumber work,
                                     PushedBlock& block);
     /// Waits for the answers and stores them. Returns why the device stopped, if it did.
-    hwsim::Stop take_answers(PushedBlock& block);
+    hwsim::Stop collect_answers(PushedBlock& block);
     bool is_in_own_cut(const Question& question, const At& at) const;
 
     hwsim::Driver driver_;
     const core::Setup* setup_;
-    Asking asking_;
+    QueryScope asking_;
     hwsim::SlotNumber stock_{};
     DeviceModels models_;
 };

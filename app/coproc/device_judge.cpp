@@ -16,20 +16,20 @@ namespace {
 
 using core::Verdict;
 
-Verdict verdict_of(const AskedPair& asked) {
+Verdict verdict_of(const QueriedPair& asked) {
     if (!asked.refused) return Verdict::clear;
     return asked.may_overlap || asked.allowance.distance <= core::resolution ? Verdict::collision
                                                                              : Verdict::violation;
 }
 
-core::PairClearance clearance_of(const AskedPair& asked, double search_limit) {
+core::PairClearance clearance_of(const QueriedPair& asked, double search_limit) {
     core::PairClearance pair{.pair = asked.pair, .allowance = asked.allowance};
     pair.lower = std::min(asked.lower, search_limit);
     pair.verdict = verdict_of(asked);
     return pair;
 }
 
-std::string nearness(const AskedPair& asked) {
+std::string nearness(const QueriedPair& asked) {
     if (asked.allowance.distance <= core::resolution) return "collide";
     if (asked.may_overlap)
         return fmt::format("overlap (minimum clearance {} mm)",
@@ -40,10 +40,12 @@ std::string nearness(const AskedPair& asked) {
 }
 
 /// The worst refused pair; null if none was refused.
-const AskedPair* worst_of(const BlockPermit& permit) {
-    const AskedPair* worst = nullptr;
-    const auto margin = [](const AskedPair& pair) { return pair.lower - pair.allowance.distance; };
-    for (const AskedPair& pair : permit.pairs) {
+const QueriedPair* worst_of(const BlockPermit& permit) {
+    const QueriedPair* worst = nullptr;
+    const auto margin = [](const QueriedPair& pair) {
+        return pair.lower - pair.allowance.distance;
+    };
+    for (const QueriedPair& pair : permit.pairs) {
         if (!pair.refused) continue;
         const bool is_worse =
             !worst || verdict_of(pair) > verdict_of(*worst)
@@ -56,14 +58,14 @@ const AskedPair* worst_of(const BlockPermit& permit) {
 core::Finding refusal(const core::Setup& setup, const BlockPermit& permit) {
     core::Finding finding;
     finding.rule = core::rule_id("refused");
-    if (const AskedPair* worst = worst_of(permit)) {
+    if (const QueriedPair* worst = worst_of(permit)) {
         finding.pair = {core::part_name(setup, worst->pair), core::body_name(setup, worst->pair)};
         finding.shortfall = std::max(0.0, worst->allowance.distance - worst->lower);
     }
-    if (!permit.not_asked.empty() && permit.stop == hwsim::Stop::none) {
+    if (!permit.not_queried.empty() && permit.stop == hwsim::Stop::none) {
         finding.message = fmt::format("The coprocessor cannot check this block, so it gives no "
                                       "permit: {}.",
-                                      permit.not_asked);
+                                      permit.not_queried);
         finding.cure = "Check the block with the exact engine.";
     } else if (permit.stop == hwsim::Stop::violation && worst_of(permit)) {
         const bool is_stock = !worst_of(permit)->pair.fixture;
@@ -96,7 +98,7 @@ core::Result<DeviceJudge> DeviceJudge::with(const core::Setup& setup, const core
     FEELER_TRY(hwsim::FunctionalDevice device, hwsim::functional_device({}));
     auto state = std::make_unique<State>(State{setup, std::move(device)});
     FEELER_TRY(state->check, CoprocessorCheck::with(hwsim::port_of(state->device), setup, stock,
-                                                    Asking::everything));
+                                                    QueryScope::everything));
     return DeviceJudge(std::move(state));
 }
 
@@ -104,7 +106,7 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
                                                  const core::SimulatorState& before) {
     FEELER_TRY(const BlockPermit permit, state_->check->ask(block, before));
     core::Judgement judgement;
-    for (const AskedPair& asked : permit.pairs) {
+    for (const QueriedPair& asked : permit.pairs) {
         judgement.pairs.push_back(clearance_of(asked, state_->setup.search_limit));
         judgement.runs_into_stock =
             judgement.runs_into_stock
@@ -112,7 +114,7 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
     }
     if (permit.permitted) return judgement;
     judgement.verdict = Verdict::undecided;
-    judgement.checked = permit.not_asked.empty() || worst_of(permit);
+    judgement.checked = permit.not_queried.empty() || worst_of(permit);
     if (!permit.is_reported || permit.stop != hwsim::Stop::none)
         judgement.finding = refusal(state_->setup, permit);
     return judgement;
@@ -340,9 +342,9 @@ void add(EngineAgreement& agreement, const BlockPermit& permit, const core::Bloc
     ++agreement.blocks;
     agreement.violations += violates;
     agreement.refused += !permit.permitted;
-    agreement.not_asked += !permit.not_asked.empty();
+    agreement.not_queried += !permit.not_queried.empty();
     agreement.missed += violates && permit.permitted;
-    if (violates || permit.permitted || !permit.not_asked.empty()) return;
+    if (violates || permit.permitted || !permit.not_queried.empty()) return;
     agreement.undecided += exact.verdict == core::Verdict::undecided;
     agreement.false_alarms += exact.verdict == core::Verdict::clear;
 }

@@ -93,7 +93,7 @@ struct EngineAgreement {
     size_t blocks = 0;
     size_t violations = 0;   // violations and collisions by the exact engine
     size_t refused = 0;      // by the device
-    size_t not_asked = 0;    // of these, blocks that the device cannot check
+    size_t not_queried = 0;  // of these, blocks that the device cannot check
     size_t missed = 0;       // violations that the device permitted
     size_t undecided = 0;    // refused, and undecided by the exact engine
     size_t false_alarms = 0; // refused, and clear by the exact engine

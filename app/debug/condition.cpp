@@ -34,14 +34,14 @@ void add_bodies(const CheckRun& record, const core::BlockResult& result, BlockFa
 /// Adds the findings about the block, including those that were merged into another one.
 void add_findings(const CheckRun& record, BlockFacts& facts) {
     const core::BlockIndex block{static_cast<uint32_t>(facts.block)};
-    for (const auto* findings : {&record.findings, &record.taken_in})
+    for (const auto* findings : {&record.findings, &record.combined_findings})
         for (const core::Finding& finding : *findings)
             if (finding.block == block) facts.findings.push_back(&finding);
 }
 
 } // namespace
 
-BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wanted) {
+BlockFacts facts_of(const CheckRun& record, size_t block, const RequiredFacts& wanted) {
     const CheckedBlock& checked = record.blocks[block];
     const core::BlockResult& result = checked.result;
     BlockFacts facts;
@@ -279,13 +279,13 @@ bool is_of_findings(const Node& node) {
            || (node.kind == NodeKind::fact && node.fact == BlockFact::rule);
 }
 
-WantedFacts wanted_by(const Node& root) {
+RequiredFacts wanted_by(const Node& root) {
     return {any_node(root, [](const Node& node) { return node.kind == NodeKind::body; }),
             any_node(root, is_of_findings)};
 }
 
 core::Result<NodeValue> value_of(const Node& root, const Condition::Subject& subject,
-                                 const WantedFacts& wanted) {
+                                 const RequiredFacts& wanted) {
     const BlockFacts facts = facts_of(subject.record, subject.block, wanted);
     if (subject.environment || !subject.control)
         return value_of(root, Condition::Asked{facts, subject.control, subject.environment});
@@ -313,10 +313,10 @@ core::Result<NodeValue> value_of(const Node& node, const Condition::Asked& asked
     }
 }
 
-const Condition::Node* asked_of_control(const Node& node) {
+const Condition::Node* control_query(const Node& node) {
     if (node.kind == NodeKind::control) return &node;
     for (const Node& part : node.of)
-        if (const Node* found = asked_of_control(part)) return found;
+        if (const Node* found = control_query(part)) return found;
     return nullptr;
 }
 
@@ -330,7 +330,7 @@ core::Result<Condition> Condition::read(std::string_view text) {
                           {.line = 1, .column = root.column});
     Condition condition;
     condition.text_ = std::string(text);
-    if (const Node* node = asked_of_control(root)) condition.asks_control_ = node->text;
+    if (const Node* node = control_query(root)) condition.uses_control_ = node->text;
     condition.wanted_ = wanted_by(root);
     condition.root_ = std::make_shared<const Node>(std::move(root));
     return condition;
@@ -352,9 +352,9 @@ core::Result<InspectedValue> evaluate(std::string_view text, const Condition::Su
     return shown(value);
 }
 
-bool asks_control(std::string_view text) {
+bool uses_control(std::string_view text) {
     const auto root = parse_condition(text);
-    return root && asked_of_control(*root);
+    return root && control_query(*root);
 }
 
 std::string text_of(const Breakpoint& breakpoint) {

@@ -37,7 +37,7 @@ struct BlockFacts {
 };
 
 /// Which of the facts to collect that take time.
-struct WantedFacts {
+struct RequiredFacts {
     bool bodies = false;
     bool findings = false;
 };
@@ -46,7 +46,7 @@ struct WantedFacts {
 ///
 /// Cost: reads all findings of the record if they are wanted, because they are not sorted while the
 ///       record grows.
-BlockFacts facts_of(const CheckRun& record, size_t block, const WantedFacts& wanted);
+BlockFacts facts_of(const CheckRun& record, size_t block, const RequiredFacts& wanted);
 
 /// A condition on a block, for breakpoints, filters and `until`: `clearance < 1 and rapid`.
 ///
@@ -72,13 +72,13 @@ public:
     const std::string& text() const { return text_; }
 
     /// Whether the condition uses values of the control, besides facts of the record.
-    bool asks_control() const { return !asks_control_.empty(); }
+    bool uses_control() const { return !uses_control_.empty(); }
     /// The first value of the control that the condition uses; empty if none.
-    const std::string& control_value() const { return asks_control_; }
+    const std::string& control_value() const { return uses_control_; }
     /// The facts that the condition needs.
-    const WantedFacts& wanted() const { return wanted_; }
+    const RequiredFacts& wanted() const { return wanted_; }
 
-    /// A block of the record and the state of the control before it (needed only if asks_control).
+    /// A block of the record and the state of the control before it (needed only if uses_control).
     /// Without an environment, a default one for the dialect is used.
     struct Subject {
         const CheckRun& record;
@@ -100,8 +100,8 @@ public:
 private:
     std::string text_;
     std::shared_ptr<const Node> root_;
-    std::string asks_control_;
-    WantedFacts wanted_;
+    std::string uses_control_;
+    RequiredFacts wanted_;
 };
 
 /// The value of an expression in the language of conditions for a block: a number, a word, "true"
@@ -111,7 +111,7 @@ private:
 core::Result<InspectedValue> evaluate(std::string_view text, const Condition::Subject& subject);
 
 /// Whether evaluate needs the control for an expression. False for an invalid one.
-bool asks_control(std::string_view text);
+bool uses_control(std::string_view text);
 
 /// All names of the language that begin with a text, for completion: facts of blocks, rules and
 /// values of the control.

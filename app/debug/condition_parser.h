@@ -93,7 +93,7 @@ struct Condition::Asked {
 core::Result<NodeValue> value_of(const Condition::Node& node, const Condition::Asked& asked);
 
 /// The first node that uses a value of the control; null: none.
-const Condition::Node* asked_of_control(const Condition::Node& node);
+const Condition::Node* control_query(const Condition::Node& node);
 
 /// A token of the text of a condition.
 struct ConditionToken {

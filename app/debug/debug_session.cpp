@@ -54,7 +54,7 @@ void ControlWalk::advance() {
     ++next_block_;
     const auto& changes = run_.changes();
     if (std::any_of(changes.begin(), changes.end(),
-                    [this](const MadeChange& made) { return made.block == next_block_; }))
+                    [this](const AppliedChange& made) { return made.block == next_block_; }))
         control_ = run_.state_at(next_block_)->control;
 }
 
@@ -64,10 +64,10 @@ public:
     explicit SessionWalk(DebugSession& session);
 
     /// The goal of a walk, besides breakpoints and watches. `is_reached` is called for every block
-    /// on the way, in order, with the control before the block if `asks_control`.
+    /// on the way, in order, with the control before the block if `uses_control`.
     struct Goal {
         std::function<bool(size_t block, const gcode::InterpreterState* control)> is_reached;
-        bool asks_control = false;
+        bool uses_control = false;
         StopReason reason = StopReason::found;
     };
     Stop forwards(const Goal& goal);
@@ -86,7 +86,7 @@ private:
         bool has_error = false;
     };
 
-    bool asks_control(const Goal& goal) const;
+    bool uses_control(const Goal& goal) const;
     bool is_interrupted() const;
     Stop stop_at(size_t next_block, Stop stop);
     /// Stops after the last block that can be run.
@@ -144,7 +144,7 @@ const SessionWalk::Findings* SessionWalk::findings_of(size_t block) {
         of_block.has_error |= is_reported && finding.severity == core::Severity::error;
     };
     if (findings_read_ == 0)
-        for (const core::Finding& finding : record.taken_in) read(finding, false);
+        for (const core::Finding& finding : record.combined_findings) read(finding, false);
     for (; findings_read_ < record.findings.size(); ++findings_read_)
         read(record.findings[findings_read_], true);
     const auto found = findings_.find(static_cast<uint32_t>(block));
@@ -157,12 +157,12 @@ bool SessionWalk::offends(size_t block) {
            || session_.record().blocks[block].result.verdict != core::Verdict::clear;
 }
 
-bool SessionWalk::asks_control(const Goal& goal) const {
+bool SessionWalk::uses_control(const Goal& goal) const {
     const auto asks = [](const Breakpoint& point) {
-        return point.enabled && point.condition && point.condition->asks_control();
+        return point.enabled && point.condition && point.condition->uses_control();
     };
     const auto is_on = [](const Watch& watch) { return watch.enabled; };
-    return goal.asks_control
+    return goal.uses_control
            || std::any_of(session_.breakpoints_.begin(), session_.breakpoints_.end(), asks)
            || std::any_of(session_.watches_.begin(), session_.watches_.end(), is_on);
 }
@@ -250,7 +250,7 @@ Stop SessionWalk::stop_at_end(size_t next_block) {
 
 Stop SessionWalk::forwards(const Goal& goal) {
     std::optional<ControlWalk> walk;
-    if (asks_control(goal)) walk.emplace(*session_.run_, session_.at_);
+    if (uses_control(goal)) walk.emplace(*session_.run_, session_.at_);
     std::vector<InspectedValue> before = values(walk ? &walk->control() : nullptr);
     for (size_t next_block = session_.at_ + 1;; ++next_block) {
         if (!session_.knows(next_block - 1)) return stop_at_end(next_block - 1);
@@ -296,7 +296,7 @@ std::optional<std::pair<size_t, Stop>> SessionWalk::last_stop(size_t first, size
 }
 
 Stop SessionWalk::backwards(const Goal& goal) {
-    const bool with_control = asks_control(goal);
+    const bool with_control = uses_control(goal);
     size_t unexamined = session_.at_; // positions from here on have been examined
     while (unexamined > 0) {
         const size_t last = unexamined - 1;
@@ -359,11 +359,11 @@ const core::AxisPosition& DebugSession::position() const { return state_->machin
 
 const core::CutModel& DebugSession::stock() const { return state_->machine.stock; }
 
-const std::vector<bool>& DebugSession::fixtures_there() const {
-    return state_->machine.fixtures_there;
+const std::vector<bool>& DebugSession::mounted_fixtures() const {
+    return state_->machine.mounted_fixtures;
 }
 
-const std::vector<MadeChange>& DebugSession::changes() const { return run_->changes(); }
+const std::vector<AppliedChange>& DebugSession::changes() const { return run_->changes(); }
 
 bool DebugSession::record_for(double seconds) {
     using Clock = std::chrono::steady_clock;
@@ -448,14 +448,14 @@ Stop DebugSession::finish() {
 
 Stop DebugSession::go_on() { return SessionWalk(*this).forwards({}); }
 
-Stop DebugSession::go_on_back() { return SessionWalk(*this).backwards({}); }
+Stop DebugSession::reverse_resume() { return SessionWalk(*this).backwards({}); }
 
 Stop DebugSession::until(const Condition& condition) {
     return SessionWalk(*this).forwards(
         {[&](size_t block, const gcode::InterpreterState* control) {
              return condition.holds({record(), block, control, &environment()});
          },
-         condition.asks_control(), StopReason::found});
+         condition.uses_control(), StopReason::found});
 }
 
 Stop DebugSession::next_finding() {

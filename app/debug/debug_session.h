@@ -87,7 +87,7 @@ public:
     /// The current stock.
     const core::CutModel& stock() const;
     /// For each fixture of the set-up, whether it is mounted now.
-    const std::vector<bool>& fixtures_there() const;
+    const std::vector<bool>& mounted_fixtures() const;
     size_t keyframe_count() const;
     size_t keyframe_memory() const; // bytes
 
@@ -112,7 +112,7 @@ public:
     Stop finish();
     /// Goes to the next breakpoint, watch, or the end.
     Stop go_on();
-    Stop go_on_back();
+    Stop reverse_resume();
     /// Goes to the next block that meets the condition, or to a breakpoint or watch before it.
     Stop until(const Condition& condition);
     /// Goes to the next or previous block that has a finding of severity error or is not proven
@@ -162,7 +162,7 @@ public:
     ///
     /// Errors: there is no change to undo.
     core::Result<void> take_back();
-    const std::vector<MadeChange>& changes() const;
+    const std::vector<AppliedChange>& changes() const;
 
 private:
     friend class SessionWalk;

@@ -349,7 +349,7 @@ bool RecordedRun::advance() {
 void RecordedRun::finish() {
     is_complete_ = true;
     reported_.findings = record().findings;
-    for (const MadeChange& made : changes_)
+    for (const AppliedChange& made : changes_)
         check_->run.later_assumptions.push_back(
             fmt::format("from block {} on, {}", made.block, text_of(made.change)));
     check_->run.times.check = marks_.back().seconds;
@@ -429,7 +429,7 @@ void RecordedRun::record_again_from(size_t position) {
     if (is_complete_) {
         run.findings = reported_.findings;
         run.later_assumptions = reported_.assumptions;
-        run.taken_in.clear();
+        run.combined_findings.clear();
         run.comparison.reset();
         run.surface.reset();
         run.stock.reset();

@@ -85,7 +85,7 @@ public:
     ///
     /// Errors: invalid_value if there is none.
     core::Result<size_t> take_back();
-    const std::vector<MadeChange>& changes() const { return changes_; }
+    const std::vector<AppliedChange>& changes() const { return changes_; }
 
 private:
     /// The size of the record at a position.
@@ -120,7 +120,7 @@ private:
     std::unique_ptr<BlockRunner> replayer_;
     std::unique_ptr<Keyframes> keyframes_;
     std::vector<Mark> marks_ = std::vector<Mark>(1); // by position
-    std::vector<MadeChange> changes_ = {};
+    std::vector<AppliedChange> changes_ = {};
     std::vector<std::unique_ptr<core::Setup>> setups_ = {}; // after each change
     Reported reported_ = {};
     bool is_complete_ = false;

@@ -42,7 +42,7 @@ core::Result<void> check_number(double value, const std::string& of) {
     return core::fail(ErrorCode::invalid_value, fmt::format("{}: the value is not a number", of));
 }
 
-core::Result<void> change(const OtherToolLength& change, core::Setup& setup, RunState& state) {
+core::Result<void> change(const ToolLengthChange& change, core::Setup& setup, RunState& state) {
     const auto found = setup.tools.find(change.tool);
     if (found == setup.tools.end())
         return core::fail(ErrorCode::invalid_value,
@@ -61,7 +61,7 @@ core::Result<void> change(const OtherToolLength& change, core::Setup& setup, Run
 
 /// Fails if the control has read ahead, so that its position differs from that of the machine.
 core::Result<void> check_that_nothing_waits(const RunState& state) {
-    if (!holds_blocks_back(state.control)) return {};
+    if (!has_pending_blocks(state.control)) return {};
     return core::fail(ErrorCode::unsupported,
                       "the control reads ahead here, for cutter radius compensation or a "
                       "corner: change the offset before G41 or G42, or after G40");
@@ -91,7 +91,7 @@ gcode::Offsets with_length(const gcode::ModalState& modal, double before, double
     return offsets;
 }
 
-core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, RunState& state) {
+core::Result<void> change(const LengthOffsetOverride& change, core::Setup& setup, RunState& state) {
     const int number = core::value_of(change.number);
     if (number <= 0)
         return core::fail(ErrorCode::invalid_value,
@@ -114,7 +114,7 @@ core::Result<void> change(const OtherLengthOffset& change, core::Setup& setup, R
     return {};
 }
 
-core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, RunState& state) {
+core::Result<void> change(const WorkOffsetChange& change, core::Setup& setup, RunState& state) {
     if (change.index >= gcode::work_offset_count)
         return core::fail(ErrorCode::invalid_value, "there is no such work offset");
     if (change.axis >= gcode::axis_count || !setup.machine.axes[change.axis].present)
@@ -138,7 +138,7 @@ core::Result<void> change(const OtherWorkOffset& change, core::Setup& setup, Run
     return {};
 }
 
-core::Result<void> change(const OtherAllowance& change, core::Setup& setup, RunState& state) {
+core::Result<void> change(const AllowanceChange& change, core::Setup& setup, RunState& state) {
     if (change.distance && !(*change.distance >= 0.0 && *change.distance <= 1000.0))
         return core::fail(
             ErrorCode::invalid_value,
@@ -173,7 +173,8 @@ core::Result<size_t> fixture_named(const core::Setup& setup, const std::vector<b
 }
 
 core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunState& state) {
-    FEELER_TRY(const size_t index, fixture_named(setup, state.machine.fixtures_there, change.name));
+    FEELER_TRY(const size_t index,
+               fixture_named(setup, state.machine.mounted_fixtures, change.name));
     for (int axis = 0; axis < 3; ++axis)
         if (auto wrong = check_number(change.by[axis], change.name); !wrong) return wrong;
     core::Transform& link_from_body = setup.fixtures[index].mount.link_from_body;
@@ -185,21 +186,21 @@ core::Result<void> change(const MovedFixture& change, core::Setup& setup, RunSta
     return {};
 }
 
-std::string text(const OtherToolLength& change) {
+std::string text(const ToolLengthChange& change) {
     return fmt::format("T{} is {} mm long", core::value_of(change.tool),
                        number_text(change.length));
 }
 
-std::string text(const OtherLengthOffset& change) {
+std::string text(const LengthOffsetOverride& change) {
     return fmt::format("H{} is {} mm", core::value_of(change.number), number_text(change.length));
 }
 
-std::string text(const OtherWorkOffset& change) {
+std::string text(const WorkOffsetChange& change) {
     return fmt::format("{} has its origin at {}{}", offset_name(change.index),
                        gcode::axis_letters[change.axis], number_text(change.origin));
 }
 
-std::string text(const OtherAllowance& change) {
+std::string text(const AllowanceChange& change) {
     if (!change.distance) return "the minimum clearances are the default ones";
     return fmt::format("the minimum clearance is {} mm", number_text(*change.distance));
 }

@@ -20,28 +20,28 @@ struct RunState;
 /// A tool clamped deeper or less deep in its holder: changes stick-out, gauge length and visible
 /// length of the shank. Without a holder only the gauge length changes. The length offset in the
 /// control does not change.
-struct OtherToolLength {
+struct ToolLengthChange {
     core::ToolNumber tool{};
     double length = 0.0; // gauge length, mm
 };
 
 /// Another length in the offset table of the control, including wear. Takes effect at once if the
 /// offset is active.
-struct OtherLengthOffset {
+struct LengthOffsetOverride {
     core::OffsetNumber number{};
     double length = 0.0; // mm
 };
 
 /// Another origin of a work offset. Takes effect at once if the offset is active; bodies do not
 /// move.
-struct OtherWorkOffset {
+struct WorkOffsetChange {
     size_t index = 0;    // 0 is G54
     size_t axis = 0;     // index in gcode::axis_letters
     double origin = 0.0; // machine coordinates, mm or degrees
 };
 
 /// Another general allowance; empty: the default ones.
-struct OtherAllowance {
+struct AllowanceChange {
     std::optional<double> distance;
 };
 
@@ -52,11 +52,11 @@ struct MovedFixture {
 };
 
 /// A change of set-up or state during a run.
-using WhatIf =
-    std::variant<OtherToolLength, OtherLengthOffset, OtherWorkOffset, OtherAllowance, MovedFixture>;
+using WhatIf = std::variant<ToolLengthChange, LengthOffsetOverride, WorkOffsetChange,
+                            AllowanceChange, MovedFixture>;
 
 /// A change and the block from which it applies.
-struct MadeChange {
+struct AppliedChange {
     size_t block = 0;
     WhatIf change;
 };

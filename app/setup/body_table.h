@@ -19,7 +19,7 @@ class TableReader;
 struct SetupFile;
 
 /// Poses of named frames in the machine: "machine", the work offsets, the bodies read so far.
-struct Frames {
+struct NamedFrames {
     std::map<std::string, core::Transform> machine_from;
 
     std::optional<core::Transform> find(const std::string& name) const {
@@ -38,7 +38,7 @@ struct MeshSource {
 /// Context shared by the readers of bodies.
 struct BodyContext {
     std::filesystem::path folder; // for relative mesh paths
-    Frames frames;
+    NamedFrames frames;
     SetupFile& file;
 
     MeshSource meshes();

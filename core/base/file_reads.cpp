@@ -66,7 +66,7 @@ void notify_file_access(const FileAccess& access) {
 std::optional<std::string> file_bytes(const std::filesystem::path& path, size_t limit) {
     std::optional<std::string> bytes = read_bytes(path, limit);
     const bool is_whole = bytes && bytes->size() <= limit;
-    notify_file_access({FileQuestion::content,
+    notify_file_access({FileAccessKind::content,
                         path.string(),
                         {},
                         is_whole ? std::optional<std::string_view>(*bytes) : std::nullopt});
@@ -85,7 +85,7 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
         answer = "other";
     else
         answer = leftover_of(path, failure);
-    notify_file_access({FileQuestion::presence, path.string(), {}, answer});
+    notify_file_access({FileAccessKind::presence, path.string(), {}, answer});
     return answer;
 }
 

@@ -11,7 +11,7 @@
 namespace core {
 
 /// The kinds of file access.
-enum class FileQuestion : uint8_t {
+enum class FileAccessKind : uint8_t {
     content,   // the bytes of a file; no answer if it cannot be read to its end
     presence,  // the result of presence_of; no answer if nothing exists under the path
     in_folder, // where a name in a folder leads to; no answer if the folder has no such file
@@ -22,7 +22,7 @@ enum class FileQuestion : uint8_t {
 
 /// One access to the disk and its answer.
 struct FileAccess {
-    FileQuestion question{};
+    FileAccessKind question{};
     std::string path; // of the file, or of the folder that holds the name
     std::string name{};
     std::optional<std::string_view> answer{};

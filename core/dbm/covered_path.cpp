@@ -107,7 +107,7 @@ Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb
 
 /// The candidate moves of a log, among those with these numbers.
 Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
-                    const PathQuestion& question, double top) {
+                    const PathQuery& question, double top) {
     const bool upwards = widens_upwards(question.flutes);
     const double height = bounds(question.flutes).max.z;
     const Vec3 up = question.orientation[2];
@@ -127,14 +127,14 @@ Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
     return search;
 }
 
-bool is_covered(const Search& search, const PathQuestion& question) {
+bool is_covered(const Search& search, const PathQuery& question) {
     const Mat3 tool_from_stock = glm::transpose(question.orientation);
     return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
 }
 
 } // namespace
 
-bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
+bool runs_in_own_cut(const CutModel& stock, const PathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 up = question.orientation[2];
     const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
@@ -143,7 +143,7 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question) {
                       question);
 }
 
-bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuestion& question) {
+bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 up = question.orientation[2];
     const Aabb path = over_and_under(question.from, question.to, up, box).grown(question.sideways);

@@ -9,7 +9,7 @@ struct CutModel;
 struct RevolvedProfile;
 
 /// A straight move that is compared with earlier cuts.
-struct PathQuestion {
+struct PathQuery {
     const RevolvedProfile& flutes;         // of the moving tool
     Vec3 from = Vec3(0.0), to = Vec3(0.0); // positions of the tip
     double sideways =
@@ -28,10 +28,10 @@ struct PathQuestion {
 ///          a shank, which was there too but does not cut. False proves nothing.
 /// Cost:    the number of logged moves near the path times the number of parts into which it is
 ///          divided.
-bool runs_in_own_cut(const CutModel& stock, const PathQuestion& question);
+bool runs_in_own_cut(const CutModel& stock, const PathQuery& question);
 
 /// Overload for another body cut by the flutes: `box` contains the body, `log` the moves that cut
 /// it.
-bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuestion& question);
+bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& question);
 
 } // namespace core

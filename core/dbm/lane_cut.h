@@ -21,7 +21,7 @@ struct TileTask {
 
 /// A segment that the lanes cannot remove from a line, because it divides an interval or removes
 /// one.
-struct HandCut {
+struct ScalarCut {
     uint32_t slot;
     double lower, upper;
     uint8_t low_tilt, high_tilt; // of these ends, see ScanTile::Marks
@@ -29,11 +29,12 @@ struct HandCut {
 
 /// The effect of a cut on a tile.
 struct TileCut {
-    alignas(64) std::array<double, ScanTile::side> beyond{}; // removed volume by lane: see LineSums
+    alignas(
+        64) std::array<double, ScanTile::side> beyond{}; // removed volume by lane: see RemovalSums
     alignas(64) std::array<double, ScanTile::side> points{};
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
     size_t by_hand_count = 0;
-    std::array<HandCut, ScanTile::lines> by_hand; // not done yet; 8 kB, not initialised
+    std::array<ScalarCut, ScanTile::lines> by_hand; // not done yet; 8 kB, not initialised
 };
 
 /// Lines of a tile, one bit each, row by row.

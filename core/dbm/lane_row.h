@@ -144,7 +144,7 @@ struct Swept {
     Row low_facing, high_facing;
 };
 
-HWY_INLINE Swept nothing_swept() {
+HWY_INLINE Swept empty_sweep() {
     return {{row_of(infinity), row_of(-infinity)}, row_of(1.0), row_of(1.0)};
 }
 

@@ -29,11 +29,11 @@ HWY_INLINE void narrow(const Row& offset, const Row& low, const Row& high, doubl
 }
 
 /// Offsets of lines along X or Y from the start position of a circle: sideways and in height.
-struct AsideAndAbove {
+struct CircleOffset {
     Row s, z;
 };
 
-HWY_INLINE AsideAndAbove aside_and_above(const AcrossLanes& c, const Row& u, double v) {
+HWY_INLINE CircleOffset aside_and_above(const AcrossLanes& c, const Row& u, double v) {
     return {(c.side_is_u ? u : row_of(v)) - c.from_side, (c.side_is_u ? row_of(v) : u) - c.from_z};
 }
 
@@ -183,11 +183,11 @@ HWY_INLINE void add_round_across(const ElementLanes& sloped, const Row& u, doubl
 }
 
 /// An end of an element's segment on lines along Z, and the facing of the surface there.
-struct EndAt {
+struct SweepEnd {
     Row at, facing;
 };
 
-HWY_INLINE EndAt lower_end(const ProfileElement& e, const Row& away) {
+HWY_INLINE SweepEnd lower_end(const ProfileElement& e, const Row& away) {
     if (e.margin > 0.0) {
         const Row beyond = most(away - std::max(e.r0, e.r1), row_of(0.0));
         const Row half = root((row_of(e.margin) - beyond) * (beyond + e.margin));
@@ -245,7 +245,7 @@ HWY_INLINE Row ahead_of_cone(const ProfileElement& e, const Row& aside, double s
 /// Lower ends of the segments that a cone or a rounded disc sweeps on lines along Z, on a move up
 /// or down.
 struct LowerEnds {
-    EndAt end;
+    SweepEnd end;
     RowMask met;
 };
 
@@ -283,7 +283,7 @@ HWY_INLINE void add_slope_along(const ElementLanes& sloped, const Row& u, double
 }
 
 /// Narrows the times to those at which at + t * by is not negative.
-HWY_INLINE void keep_where_positive(const Row& at, double by, Moments& moments) {
+HWY_INLINE void add_where_positive(const Row& at, double by, Moments& moments) {
     constexpr double least_change = 1e-12; // a smaller change is ignored; the error is no larger
     if (std::abs(by) <= least_change)
         moments.met = moments.met & at_most(row_of(0.0), at);
@@ -323,8 +323,8 @@ HWY_INLINE void add_cone_across(const ElementLanes& sloped, const Row& u, double
     const double by = circles.by_radius;
     Moments at{row_of(0.0), row_of(1.0), at_most(row_of(0.0), row_of(0.0))};
     narrow(z, row_of(e.z0), row_of(e.z1), c.per_z, at);
-    keep_where_positive(circles.radius - s, by + c.by_side, at);
-    keep_where_positive(circles.radius + s, by - c.by_side, at);
+    add_where_positive(circles.radius - s, by + c.by_side, at);
+    add_where_positive(circles.radius + s, by - c.by_side, at);
     at.met = at.met & at_most(at.first, at.last);
     if (!any(at.met)) return;
     circles.offer(at.first, at, all);

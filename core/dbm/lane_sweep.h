@@ -83,7 +83,7 @@ HWY_INLINE Row on_lattice(const Row& x) {
 
 /// What the plan sweeps on a chunk of lines; lines that are not wanted may come out empty.
 HWY_ATTR Swept swept_of(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
-    Swept all = plan.by_lanes ? nothing_swept() : swept_one_by_one(plan, u, v, wanted);
+    Swept all = plan.by_lanes ? empty_sweep() : swept_one_by_one(plan, u, v, wanted);
     const Row at_u = load(u);
     for (size_t i = 0; i < plan.balls; ++i) {
         const CapsuleLanes& c = plan.ball[i];
@@ -150,7 +150,7 @@ HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, con
     for (size_t i = 0; i < plan.uprights; ++i) add(reach_of_upright(plan.upright[i], at_u, v));
     for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.sideways[i], at_u, v));
     if (plan.elements == 0) return found;
-    Swept loose = nothing_swept();
+    Swept loose = empty_sweep();
     for (size_t i = 0; i < plan.elements; ++i)
         add_element(plan, plan.element[i], true, at_u, v, loose);
     constexpr double slack = 1e-6;

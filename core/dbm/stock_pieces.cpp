@@ -74,7 +74,7 @@ public:
           u_tiles_((z_.u_count() + tile_side - 1) / tile_side),
           v_tiles_((z_.v_count() + tile_side - 1) / tile_side) {}
 
-    void bring_up_to_date();
+    void update_models();
     std::vector<StockPiece> put_together();
 
 private:
@@ -178,7 +178,7 @@ void PieceWork::link(int tu, int tv, int towards) {
     map_.tiles_[index(tu, tv)] = tile;
 }
 
-void PieceWork::bring_up_to_date() {
+void PieceWork::update_models() {
     const size_t count = index(0, v_tiles_);
     if (map_.tiles_.empty()) {
         map_.tiles_.resize(count);
@@ -254,7 +254,7 @@ void PieceMap::note_cut(const CutModel& model, const Aabb& box) {
 
 std::vector<StockPiece> PieceMap::pieces(const CutModel& model) {
     PieceWork work(model, *this);
-    work.bring_up_to_date();
+    work.update_models();
     return work.put_together();
 }
 
@@ -278,7 +278,7 @@ std::vector<std::pair<Vec3, Vec3>> PieceMap::stretches(const CutModel& model, si
     return found;
 }
 
-bool cannot_have_parted(const CutModel& model, const Aabb& box) {
+bool is_still_connected(const CutModel& model, const Aabb& box) {
     const ScanGrid& grid = model.lines.grid;
     const auto [u_first, u_last] = lines_within(grid, 0, box.min.x, box.max.x, 1);
     const auto [v_first, v_last] = lines_within(grid, 1, box.min.y, box.max.y, 1);

@@ -48,6 +48,6 @@ private:
 /// size around it, and all lines along Z end on that layer.
 ///
 /// Cost:    some microseconds. False proves nothing.
-bool cannot_have_parted(const CutModel& model, const Aabb& box);
+bool is_still_connected(const CutModel& model, const Aabb& box);
 
 } // namespace core

@@ -32,19 +32,19 @@ double points_below(const ScanGrid& grid, int axis, double x, bool itself) {
 }
 
 /// The contribution of a line's material to the sums.
-LineSums counted(const TileTask& task, const ScanTile& tile, size_t slot) {
+RemovalSums counted(const TileTask& task, const ScanTile& tile, size_t slot) {
     const double half = task.grid->half_count[static_cast<size_t>(task.axis)];
     const auto end = [&](double x, bool is_upper, uint8_t tilt) {
         const double points = points_below(*task.grid, task.axis, x, !is_upper);
         const double border = task.grid->centre[task.axis] + (points - half) * task.grid->spacing;
-        return LineSums{(x - border) * (1.0 - tilt * (1.0 / ScanTile::steepest)), points};
+        return RemovalSums{(x - border) * (1.0 - tilt * (1.0 / ScanTile::steepest)), points};
     };
-    LineSums sums;
+    RemovalSums sums;
     const LineView matter = tile.line(slot);
     for (size_t k = 0; k < matter.size(); ++k) {
         const EndMarks marks = tile.marks_of(slot, k);
-        const LineSums upper = end(matter[k].upper, true, marks.upper_tilt);
-        const LineSums lower = end(matter[k].lower, false, marks.lower_tilt);
+        const RemovalSums upper = end(matter[k].upper, true, marks.upper_tilt);
+        const RemovalSums lower = end(matter[k].lower, false, marks.lower_tilt);
         sums.beyond += upper.beyond - lower.beyond;
         sums.points += upper.points - lower.points;
     }
@@ -60,14 +60,14 @@ double sum_of(const std::array<double, ScanTile::side>& lanes) {
 }
 
 /// Removes the segments that the lanes left, and sums up.
-LineSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
-    LineSums sums{sum_of(done.beyond), sum_of(done.points)};
+RemovalSums finish(const TileTask& task, ScanTile& tile, const TileCut& done) {
+    RemovalSums sums{sum_of(done.beyond), sum_of(done.points)};
     for (size_t i = 0; i < done.by_hand_count; ++i) {
-        const HandCut& hand = done.by_hand[i];
-        const LineSums before = task.grid ? counted(task, tile, hand.slot) : LineSums{};
+        const ScalarCut& hand = done.by_hand[i];
+        const RemovalSums before = task.grid ? counted(task, tile, hand.slot) : RemovalSums{};
         subtract(tile, hand.slot, {hand.lower, hand.upper},
                  {task.mark, task.mark, hand.high_tilt, hand.low_tilt});
-        const LineSums after = task.grid ? counted(task, tile, hand.slot) : LineSums{};
+        const RemovalSums after = task.grid ? counted(task, tile, hand.slot) : RemovalSums{};
         sums.beyond += before.beyond - after.beyond;
         if (task.axis == 2) sums.points += before.points - after.points;
     }
@@ -293,7 +293,7 @@ void fit_when_many_are_stale(CutModel& model) {
 }
 
 /// Adds a removed volume to the volume owed and returns the part of it that can be reported now.
-double reported(CutModel& model, const LineSums& sums) {
+double reported(CutModel& model, const RemovalSums& sums) {
     const double h = model.lines.grid.spacing;
     model.volume_owed += h * h * (sums.beyond + h * sums.points);
     const double now = std::max(0.0, model.volume_owed);
@@ -354,14 +354,14 @@ private:
                              if (a.sweep != b.sweep) return a.sweep < b.sweep;
                              return a.family != b.family ? a.family < b.family : a.tile < b.tile;
                          });
-        std::vector<LineSums> sums(ready_.size());
+        std::vector<RemovalSums> sums(ready_.size());
         for (const StoredOutcome& one : all) {
             sums[one.sweep].beyond += one.outcome.removed.beyond;
             sums[one.sweep].points += one.outcome.removed.points;
             boxes_of(model_, one.family).note(one.tile, one.outcome.blocks);
         }
         std::vector<double> volumes;
-        for (const LineSums& sum : sums) volumes.push_back(reported(model_, sum));
+        for (const RemovalSums& sum : sums) volumes.push_back(reported(model_, sum));
         fit_when_many_are_stale(model_);
         return volumes;
     }
@@ -375,7 +375,7 @@ private:
 
 double cut(CutModel& model, const CutterSweep& sweep) {
     const std::optional<ReadySweep> ready = begin(model, sweep);
-    LineSums sums;
+    RemovalSums sums;
     if (ready) {
         cut_tiles(
             model, *ready, [](int, size_t) { return true; },

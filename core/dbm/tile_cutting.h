@@ -8,14 +8,14 @@ namespace core {
 
 /// Removed material, before conversion to a volume: grid points, one cell each, and the lengths by
 /// which removed segments extend beyond the borders of these cells.
-struct LineSums {
+struct RemovalSums {
     double beyond = 0.0; // mm, each end weighted by the square of its normal along the line
     double points = 0.0; // counted on the lines along Z
 };
 
 /// The effect of a sweep on a tile.
 struct TileOutcome {
-    LineSums removed;
+    RemovalSums removed;
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
 };
 

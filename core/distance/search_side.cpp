@@ -89,8 +89,8 @@ SearchSide::Pose SearchSide::pose_in(const SearchFrame& frame, const Transform& 
     return pose;
 }
 
-SearchSide::Sight SearchSide::sight(const Vec3& origin, float reach) const {
-    Sight sight;
+SearchSide::NodeView SearchSide::sight(const Vec3& origin, float reach) const {
+    NodeView sight;
     const Vec3 from = start_.frame_from_body * origin;
     for (int k = 0; k < 3; ++k) {
         const auto i = static_cast<size_t>(k);
@@ -145,7 +145,7 @@ const VisitedLeaf& SearchSide::child_leaf(uint32_t at, uint32_t lane) {
 }
 
 void SearchSide::project(VisitedLeaf& leaf) const {
-    Sight seen = sight(leaf.leaf->origin, leaf.leaf->reach);
+    NodeView seen = sight(leaf.leaf->origin, leaf.leaf->reach);
     seen.view.lower = seen.base;
     leaf.margin = *std::max_element(seen.margin.begin(), seen.margin.end());
     kernels_->project_points(*leaf.leaf, seen.view, leaf.points);

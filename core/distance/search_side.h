@@ -79,13 +79,13 @@ private:
         std::array<Vec3, 3> directions;
     };
     /// The view of a node or leaf in the frame, and the rounding bound per axis.
-    struct Sight {
+    struct NodeView {
         FrameView view;
         Float3 base{}, margin{};
     };
 
     static Pose pose_in(const SearchFrame& frame, const Transform& a_from_body);
-    Sight sight(const Vec3& origin, float reach) const;
+    NodeView sight(const Vec3& origin, float reach) const;
     uint32_t visit(uint32_t number);
     void project(VisitedLeaf& leaf) const;
 

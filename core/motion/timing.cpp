@@ -148,7 +148,7 @@ void add_motion(TimePlan& plan, const PathMotion& motion, uint32_t tag,
     if (plan.waiting.size() > look_ahead) settle_first(plan, done);
 }
 
-void come_to_rest(TimePlan& plan, std::vector<MotionTime>& done) {
+void plan_stop(TimePlan& plan, std::vector<MotionTime>& done) {
     while (!plan.waiting.empty()) settle_first(plan, done);
     plan.last.reset();
     plan.enter = 0.0;

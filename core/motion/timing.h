@@ -84,7 +84,7 @@ void add_motion(TimePlan& plan, const PathMotion& motion, uint32_t tag,
                 std::vector<MotionTime>& done);
 
 /// The machine stops: all waiting motions become final.
-void come_to_rest(TimePlan& plan, std::vector<MotionTime>& done);
+void plan_stop(TimePlan& plan, std::vector<MotionTime>& done);
 
 /// The greatest speed along a path that the axes and the programmed speed allow.
 ///

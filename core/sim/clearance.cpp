@@ -135,7 +135,7 @@ bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
     return rounds && !stated;
 }
 
-double off_way(const Pair& pair, double of_block, const RoundedCorners& corners) {
+double path_deviation(const Pair& pair, double of_block, const RoundedCorners& corners) {
     return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
 }
 
@@ -153,7 +153,7 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
 }
 
 void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts) {
-    const double off = off_way(pair.pair, of_block, corners);
+    const double off = path_deviation(pair.pair, of_block, corners);
     if (off == 0.0) return;
     pair.lower = std::max(0.0, pair.lower - off);
     if (pair.verdict == Verdict::collision) return;

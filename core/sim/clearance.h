@@ -130,7 +130,7 @@ bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
 
 /// Possible deviation between the bodies of a pair, mm, in a block whose feeds deviate by up to
 /// `of_block`.
-double off_way(const Pair& pair, double of_block, const RoundedCorners& corners);
+double path_deviation(const Pair& pair, double of_block, const RoundedCorners& corners);
 
 /// Whether a leg is straight and moves only upwards, or not at all.
 bool rises(const Leg& leg);

@@ -195,7 +195,7 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
 
 } // namespace
 
-core::Result<std::vector<ExecutedBlock>> take_for_corners(Corners& corners, ExecutedBlock block) {
+core::Result<std::vector<ExecutedBlock>> add_to_corners(Corners& corners, ExecutedBlock block) {
     auto ready = take(corners, std::move(block));
     if (!ready) (void)give_up_corners(corners);
     return ready;
@@ -427,7 +427,7 @@ core::Result<void> take_block(Contour& contour, const BlockCommands& block,
                               const ModalState& before, const ModalState& after) {
     if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
     FEELER_TRY(const std::vector<ExecutedBlock> ready,
-               take_for_corners(contour.corners, {block, before, after}));
+               add_to_corners(contour.corners, {block, before, after}));
     return take_all(contour, ready);
 }
 

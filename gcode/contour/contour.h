@@ -52,7 +52,7 @@ struct Corners {
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Optional chamfering and corner R": which blocks
 ///         may come between the two motions; no corner is inserted where the directions differ by
 ///         less than one degree.
-core::Result<std::vector<ExecutedBlock>> take_for_corners(Corners& corners, ExecutedBlock block);
+core::Result<std::vector<ExecutedBlock>> add_to_corners(Corners& corners, ExecutedBlock block);
 
 /// Reports a corner that is still waiting at the end of the program.
 ///

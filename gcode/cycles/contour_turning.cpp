@@ -104,7 +104,7 @@ core::Result<void> Tracing::take(const BlockCommands& block, const Position& bef
 core::Result<void> Tracing::follow() {
     Interpreter interpreter(execution.library, execution.environment);
     const size_t level = execution.state.frames.size();
-    while (state.frames.size() > level && state.ending == Ending::running) {
+    while (state.frames.size() > level && state.ending == ProgramStatus::running) {
         Position& place = state.modal.position;
         place[fillet_axis].reset();
         place[chamfer_axis].reset();
@@ -147,7 +147,7 @@ core::Result<void> emit_move(Execution& execution, const TurningMove& move) {
         execution.traverse(end);
         return {};
     }
-    FEELER_TRY(const double rate, feed_rate(execution, way_between(modal.position, end)));
+    FEELER_TRY(const double rate, feed_rate(execution, distance_between(modal.position, end)));
     modal.motion = MotionCode::straight;
     if (!move.arc) {
         execution.feed(end, rate);

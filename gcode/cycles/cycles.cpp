@@ -41,14 +41,14 @@ void take_levels(const Execution& execution, size_t normal, CannedCycle& cycle) 
     const bool incremental = execution.modal().distance == DistanceMode::incremental;
     if (const Word* word = execution.statement.word(axis_letters[normal])) {
         cycle.bottom = length_of(execution, *word);
-        cycle.bottom_is_way = incremental;
+        cycle.bottom_is_incremental = incremental;
     }
     if (const Word* word = execution.statement.word('R')) {
         cycle.r = length_of(execution, *word);
-        cycle.r_is_way = incremental;
+        cycle.r_is_incremental = incremental;
     }
     if (execution.dialect.cycle_levels_follow_g91)
-        cycle.r_is_way = cycle.bottom_is_way = incremental;
+        cycle.r_is_incremental = cycle.bottom_is_incremental = incremental;
 }
 
 /// The modal cycle updated with the words of this block.
@@ -139,14 +139,14 @@ core::Result<Drilling> drilling_of(Execution& execution, const DrillingCycle& ki
     const ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
     const core::SourceSpan where = moving_word(execution).span;
-    if (cycle.r_is_way && !cycle.initial_level)
+    if (cycle.r_is_incremental && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{}: with G91 the cycle is relative to the current "
                                       "position, which is unknown in {}",
                                       written(cycle.code), axis_letters[axes.normal]),
                           where);
-    const double r = cycle.r_is_way ? *cycle.initial_level + *cycle.r : *cycle.r;
-    const double bottom = cycle.bottom_is_way ? r + *cycle.bottom : *cycle.bottom;
+    const double r = cycle.r_is_incremental ? *cycle.initial_level + *cycle.r : *cycle.r;
+    const double bottom = cycle.bottom_is_incremental ? r + *cycle.bottom : *cycle.bottom;
     if (auto checked = check_levels(execution, kind, cycle, r, bottom); !checked)
         return tl::unexpected(std::move(checked).error());
     std::optional<double> clear = cycle.initial_level;

@@ -79,8 +79,8 @@ core::Result<void> set(const Assigning& assigning, const Assignment& entry, doub
     const Value old = parameters.stored_value(number);
     if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
     assigning.undos.push_back({false, number, {}, old});
-    return heed_alarm(assigning.block, assigning.dialect, number, value, entry.span,
-                      assigning.result);
+    return execute_alarm(assigning.block, assigning.dialect, number, value, entry.span,
+                         assigning.result);
 }
 
 /// Evaluates all right-hand sides before setting the first parameter.
@@ -122,7 +122,7 @@ core::Result<void> work_out_in_order(const Assigning& assigning) {
 
 } // namespace
 
-core::Result<void> work_out_block(const Assigning& assigning) {
+core::Result<void> evaluate_block(const Assigning& assigning) {
     if (assigning.dialect.assigns_in_order) return work_out_in_order(assigning);
     if (auto done = work_out_words(assigning); !done) return done;
     return assign(assigning);
@@ -142,8 +142,8 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos,
     }
 }
 
-core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
-                              Value value, core::SourceSpan where, BlockCommands& result) {
+core::Result<void> execute_alarm(const Block& block, const Dialect& dialect, double number,
+                                 Value value, core::SourceSpan where, BlockCommands& result) {
     constexpr double alarm = 3000.0, message_stop = 3006.0;
     if (!remembers_words(dialect.system_parameters)) return {};
     const std::string text =

@@ -32,7 +32,7 @@ struct Assigning {
 /// sides, then the parameters. Some controls do this one by one in the order written.
 ///
 /// Errors: those of the expressions and parameters.
-core::Result<void> work_out_block(const Assigning& assigning);
+core::Result<void> evaluate_block(const Assigning& assigning);
 
 /// Whether words with this letter are lengths or angles, which controls count in least increments.
 bool counts_increments(char letter);
@@ -44,8 +44,8 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramPara
 /// comment of the block.
 ///
 /// Errors: invalid_value for an alarm, at which the control stops.
-core::Result<void> heed_alarm(const Block& block, const Dialect& dialect, double number,
-                              Value value, core::SourceSpan where, BlockCommands& result);
+core::Result<void> execute_alarm(const Block& block, const Dialect& dialect, double number,
+                                 Value value, core::SourceSpan where, BlockCommands& result);
 
 /// Warns once that the program reads a clock, which is not simulated in real time.
 void note_clock(const Block& block, InterpreterState& state, BlockCommands& result);

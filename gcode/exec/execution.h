@@ -67,7 +67,7 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target);
 
 /// The length of a straight move as the feed rate counts it: along X, Y, Z; if these do not move,
 /// along U, V, W; else along the rotary axes, in degrees. Empty if an end is unknown.
-std::optional<double> way_between(const Position& from, const Position& to);
+std::optional<double> distance_between(const Position& from, const Position& to);
 
 /// Why there is no feed rate before the first F.
 inline constexpr std::string_view no_feed_yet = "no feed rate: no F has been programmed yet";
@@ -145,6 +145,6 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
 ///         B-63944EN, 7.2.2.
 core::Result<void> write_fanuc_entry(Execution& execution, int kind);
 core::Result<void> write_external_offset(Execution& execution);
-void pass_over_data(Execution& execution, const Word& kind);
+void skip_data(Execution& execution, const Word& kind);
 
 } // namespace gcode

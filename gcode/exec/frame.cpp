@@ -25,7 +25,7 @@ bool is_plain(const std::string& name) {
 
 std::optional<std::string> found_in_any_case(const std::string& folder, const std::string& name) {
     const std::optional<std::string> actual = name_in_any_case(names_in(folder), name);
-    core::notify_file_access({core::FileQuestion::any_case, folder, name, actual});
+    core::notify_file_access({core::FileAccessKind::any_case, folder, name, actual});
     return actual;
 }
 

@@ -13,7 +13,7 @@ void use_transforms(Execution& execution, const ProgramTransforms& transforms);
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Polar coordinate command (G15, G16)": a radius
 ///         given under G90 is measured from the program zero, under G91 from the tool; an angle
 ///         under G91 is added to the previous one.
-core::Result<void> take_polar_words(Execution& execution);
+core::Result<void> read_polar_words(Execution& execution);
 
 /// Replaces the target in the plane by the position with the radius and angle of G16.
 void place_by_radius_and_angle(const Execution& execution, Position& target);

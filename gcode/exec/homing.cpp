@@ -108,7 +108,7 @@ core::Result<void> skip_move(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     FEELER_TRY(const Position end, target_of(execution));
     FEELER_TRY(const double rate,
-               feed_rate(execution, way_between(execution.modal().position, end)));
+               feed_rate(execution, distance_between(execution.modal().position, end)));
     execution.warn(
         entry.word->span,
         fmt::format(

@@ -29,14 +29,14 @@ struct BeforeBlock {
     ProgramLine next;
     uint32_t next_block;
     bool tape_open, said_unit, said_home;
-    Ending ending;
+    ProgramStatus ending;
     bool said_time;
     DecimalPoints points;
     RuleState rules;
     Shared<Tables> tables;
     Shared<SplineState> spline;
     SharedLanguageState language;
-    bool speaks_iso;
+    bool is_iso_mode;
     // Only saved for blocks that call or return.
     bool has_calls = false;
     std::vector<Frame> frames;
@@ -113,7 +113,7 @@ struct Interpreter::Scratch {
 
 /// The scratch data for the active language. Siemens controls have two languages.
 Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
-    if (!state.speaks_iso) return *this;
+    if (!state.is_iso_mode) return *this;
     if (!iso) {
         iso_environment = std::make_unique<Environment>(environment);
         iso_environment->dialect = dialect.iso_mode.value();
@@ -139,7 +139,7 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         if (block.tape_mark && inside && !dialect.has_o_words) return false;
         if (block.tape_mark && state.next.source == 0
             && (state.tape_open || state.next_block > 0)) {
-            state.ending = Ending::tape_mark;
+            state.ending = ProgramStatus::tape_mark;
             return false;
         }
         if (begins_another_program(state)) return false;
@@ -170,18 +170,19 @@ void Interpreter::Scratch::remember_words(InterpreterState& state) const {
 /// Handles the end of a text: ends the run, or returns from a subprogram where the control does so.
 /// Otherwise an error in a subprogram. Returns whether there is more to read.
 core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
-    if (state.ending == Ending::running && state.frames.size() > 1 && dialect.text_end_returns) {
+    if (state.ending == ProgramStatus::running && state.frames.size() > 1
+        && dialect.text_end_returns) {
         keep_calls(state, before);
         leave(state);
         return true;
     }
-    if (state.ending == Ending::running && state.frames.size() > 1)
+    if (state.ending == ProgramStatus::running && state.frames.size() > 1)
         return core::fail(
             ErrorCode::syntax,
             fmt::format("subprogram {} ends here without {}: the control stops with an alarm",
                         state.frames.back().name, dialect.has_o_words ? "endsub or M99" : "M99"),
             {.line = state.next.line - 1});
-    if (state.ending == Ending::running) state.ending = Ending::text_end;
+    if (state.ending == ProgramStatus::running) state.ending = ProgramStatus::text_end;
     return false;
 }
 
@@ -222,7 +223,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         }
         const bool inch = state.modal.unit == LengthUnit::inch;
         const Assigning assigning{block, dialect, parameters, undos, values, result, inch};
-        if (auto done = work_out_block(assigning); !done) return done;
+        if (auto done = evaluate_block(assigning); !done) return done;
         if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
         if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);
         if (changes_level(block.flow.kind)) keep_calls(state, before);
@@ -288,7 +289,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     block.text = **found;
     if (!language.read_plain(block.text, block.line, dialect, block)) return false;
     begin_result(state, {state.next.source, block.line});
-    if (!take_quick_move(block, state, result)) return false;
+    if (!run_quick_move(block, state, result)) return false;
     if (dialect.decimal_points_matter) note_points(block, state, result);
     ++state.next.line;
     ++state.next_block;
@@ -330,7 +331,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
             return &scratch.result;
         }
         if (state.contour->failure) return tl::unexpected(*state.contour->failure);
-        if (state.ending != Ending::running) return nullptr;
+        if (state.ending != ProgramStatus::running) return nullptr;
         if (scratch.try_quick_move(state)) return &scratch.result;
         keep(state, scratch.before);
         scratch.undos.clear();
@@ -370,7 +371,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
 
 InterpreterState::InterpreterState() = default;
 
-bool holds_blocks_back(const InterpreterState& state) { return !state.contour->is_idle(); }
+bool has_pending_blocks(const InterpreterState& state) { return !state.contour->is_idle(); }
 
 InterpreterState initial_state(const Environment& environment) {
     InterpreterState state;
@@ -403,15 +404,15 @@ InterpreterState initial_state(const Environment& environment) {
     return state;
 }
 
-std::optional<Warning> ending_warning(const Environment& environment,
-                                      const InterpreterState& state) {
+std::optional<Warning> end_warning(const Environment& environment, const InterpreterState& state) {
     const core::SourceSpan where{.line = static_cast<uint32_t>(state.next.line - 1)};
-    if (state.ending == Ending::main_return)
+    if (state.ending == ProgramStatus::main_return)
         return Warning{Severity::warning, where,
                        "M99 in a main program starts it again; one pass was checked"};
-    const bool proper_mark =
-        state.ending == Ending::tape_mark && dialect(environment.dialect).tape_mark_ends_program;
-    if (state.ending == Ending::text_end || (state.ending == Ending::tape_mark && !proper_mark))
+    const bool proper_mark = state.ending == ProgramStatus::tape_mark
+                             && dialect(environment.dialect).tape_mark_ends_program;
+    if (state.ending == ProgramStatus::text_end
+        || (state.ending == ProgramStatus::tape_mark && !proper_mark))
         return Warning{Severity::warning, where, "the program has no M2 or M30 at its end"};
     return std::nullopt;
 }
@@ -436,7 +437,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.tables = state.tables;
     before.spline = state.spline;
     before.language = state.language;
-    before.speaks_iso = state.speaks_iso;
+    before.is_iso_mode = state.is_iso_mode;
     before.has_calls = false;
 }
 
@@ -454,7 +455,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.tables = before.tables;
     state.spline = before.spline;
     state.language = before.language;
-    state.speaks_iso = before.speaks_iso;
+    state.is_iso_mode = before.is_iso_mode;
 }
 
 void restore_calls(InterpreterState& state, const BeforeBlock& before) {

@@ -25,7 +25,7 @@ struct Environment;
 struct SplineState;
 
 /// Whether and how a program ended.
-enum class Ending : uint8_t { running, program_end, main_return, tape_mark, text_end };
+enum class ProgramStatus : uint8_t { running, program_end, main_return, tape_mark, text_end };
 
 /// What a language stores between two blocks in addition to the modes.
 class LanguageState {
@@ -107,7 +107,7 @@ struct InterpreterState {
     bool said_home = false; // the warning about an assumed home was issued
     bool said_time = false; // the warning about an unknown time was issued
     DecimalPoints points;
-    Ending ending = Ending::running;
+    ProgramStatus ending = ProgramStatus::running;
     std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
     std::vector<ModalMacro> modal_macros;              // G66, in the order programmed
     LocalParameters said{}; // Fanuc: the last values of words, by argument number
@@ -116,13 +116,13 @@ struct InterpreterState {
     Shared<Contour> contour; // blocks held back by cutter radius compensation
     Shared<SplineState> spline;
     SharedLanguageState language;
-    bool speaks_iso = false; // Siemens: ISO mode since G291
+    bool is_iso_mode = false; // Siemens: ISO mode since G291
     LoopDetector loops;
     RuleState rules;
 };
 
 /// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.
-bool holds_blocks_back(const InterpreterState& state);
+bool has_pending_blocks(const InterpreterState& state);
 
 /// A hash of everything that determines how a program continues: all but the block count and the
 /// search for endless loops.
@@ -152,7 +152,6 @@ private:
 };
 
 /// A warning about the end of the program: no M2 or M30.
-std::optional<Warning> ending_warning(const Environment& environment,
-                                      const InterpreterState& state);
+std::optional<Warning> end_warning(const Environment& environment, const InterpreterState& state);
 
 } // namespace gcode

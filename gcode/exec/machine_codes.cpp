@@ -164,7 +164,7 @@ core::Result<void> probe(Execution& execution) {
             fmt::format("{}: probing needs feed per minute: program G94 first", written(mover)),
             mover.span);
     FEELER_TRY(const Position end, target_of(execution));
-    const std::optional<double> way = way_between(modal.position, end);
+    const std::optional<double> way = distance_between(modal.position, end);
     FEELER_TRY(const double rate, feed_rate(execution, way));
     if (way && *way < 0.254)
         return core::fail(ErrorCode::invalid_value,
@@ -198,7 +198,7 @@ core::Result<void> stop(Execution& execution) {
         break;
     case m_code(2):
     case m_code(30):
-        execution.state.ending = Ending::program_end;
+        execution.state.ending = ProgramStatus::program_end;
         execution.emit(ProgramEnd{});
         break;
     default:

@@ -16,7 +16,7 @@ using core::ErrorCode;
 /// Whether the words of the plane are a radius and an angle (G16).
 bool moves_by_radius_and_angle(const Execution& execution) {
     const ModalState& modal = execution.modal();
-    if (!modal.transforms.polar || execution.statement.taker_of_axis_words()) return false;
+    if (!modal.transforms.polar || execution.statement.axis_word_owner()) return false;
     const PlaneAxes axes = axes_of(modal.plane);
     return !in_machine_coordinates(execution)
            && (execution.statement.word(axis_letters[axes.first])
@@ -121,8 +121,8 @@ core::Result<Position> target_of(const Execution& execution) {
             if (const Word* word = execution.statement.word(axis_letters[axis]))
                 machine[axis] =
                     axis_value(execution, axis, *word)
-                    + (execution.dialect.machine_places_are_of_tip ? modal.offsets.tool[axis]
-                                                                   : 0.0);
+                    + (execution.dialect.machine_coordinates_are_of_tip ? modal.offsets.tool[axis]
+                                                                        : 0.0);
         const Position position = program_from_machine(without_rotary_tool(modal.offsets), machine);
         const bool turned = mixes_axes(modal.offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
@@ -171,7 +171,7 @@ tl::unexpected<core::Error> unknown_position(const Execution& execution, size_t 
 
 } // namespace
 
-core::Result<void> take_polar_words(Execution& execution) {
+core::Result<void> read_polar_words(Execution& execution) {
     ModalState& modal = execution.modal();
     if (!modal.transforms.polar) return {};
     PolarPositions& polar = *modal.transforms.polar;

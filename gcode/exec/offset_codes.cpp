@@ -200,7 +200,7 @@ core::Result<void> write_offset(Execution& execution) {
             return write_fanuc_entry(execution, table);
         }
         if (kind->value == 3.0 || kind->value == 50.0 || kind->value == 52.0) {
-            pass_over_data(execution, *kind);
+            skip_data(execution, *kind);
             return {};
         }
     }
@@ -359,7 +359,7 @@ core::Result<void> write_external_offset(Execution& execution) {
     return {};
 }
 
-void pass_over_data(Execution& execution, const Word& kind) {
+void skip_data(Execution& execution, const Word& kind) {
     execution.warn(kind.span, fmt::format("G10 {}: tool life data and control parameters are not "
                                           "modelled; the blocks up to G11 have no effect",
                                           written(kind)));

@@ -146,7 +146,7 @@ core::Result<void> ProgramParameters::set_named(std::string_view name, Value val
         if (all.find(name) == all.end()) return undeclared(name, where);
         const auto type = state_.frames.back().types.find(name);
         if (type != state_.frames.back().types.end())
-            value = held_as(type->second, value.value_or(0.0));
+            value = converted_to(type->second, value.value_or(0.0));
     }
     if (all.size() >= most_named_parameters && all.find(name) == all.end())
         return core::fail(ErrorCode::invalid_value, "too many named parameters", where);
@@ -200,7 +200,7 @@ core::Result<bool> set_system_parameter(InterpreterState& state, const Environme
     return set_linuxcnc_parameter(state, environment, number, value, where);
 }
 
-double held_as(VariableType type, double value) {
+double converted_to(VariableType type, double value) {
     if (type == VariableType::whole) return std::round(value);
     if (type == VariableType::truth) return value != 0.0 ? 1.0 : 0.0;
     return value;

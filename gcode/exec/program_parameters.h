@@ -56,6 +56,6 @@ core::Result<bool> set_system_parameter(InterpreterState& state, const Environme
 void load_parameters(InterpreterState& state, const Environment& environment);
 
 /// Converts a value to the type of a variable.
-double held_as(VariableType type, double value);
+double converted_to(VariableType type, double value);
 
 } // namespace gcode

@@ -58,10 +58,10 @@ bool moves_quickly(const InterpreterState& state) {
            && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode
            && (modal.unit_said || state.said_unit) && !transforms.polar
            && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
-           && state.contour->is_idle() && !state.speaks_iso;
+           && state.contour->is_idle() && !state.is_iso_mode;
 }
 
-bool take_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {
+bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {
     ModalState& modal = state.modal;
     Move move{.motion = *modal.motion, .feed = modal.feed, .end = modal.position};
     for (const Word& word : block.words)

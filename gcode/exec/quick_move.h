@@ -14,6 +14,6 @@ bool moves_quickly(const InterpreterState& state);
 /// Executes such a block; if it contains anything else, returns false and changes nothing.
 ///
 /// The result is that of the steps in execution.h, at a third of their cost.
-bool take_quick_move(const Block& block, InterpreterState& state, BlockCommands& result);
+bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& result);
 
 } // namespace gcode

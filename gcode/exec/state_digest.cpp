@@ -70,8 +70,8 @@ void add(Digest& digest, const CannedCycle& cycle) {
     for (const auto& value : {cycle.bottom, cycle.r, cycle.dwell, cycle.peck, cycle.initial_level})
         digest.add(value);
     add_all(digest, cycle.shift);
-    digest.add(uint64_t{cycle.r_is_way});
-    digest.add(uint64_t{cycle.bottom_is_way});
+    digest.add(uint64_t{cycle.r_is_incremental});
+    digest.add(uint64_t{cycle.bottom_is_incremental});
 }
 
 void add(Digest& digest, const SplineState& spline) {
@@ -190,7 +190,7 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
                          + 8 * int(state.ending) + 64 * int(state.said_time)
                          + 128 * int(state.points.present) + 256 * int(state.points.missing)
-                         + 512 * int(state.points.said) + 1024 * int(state.speaks_iso)));
+                         + 512 * int(state.points.said) + 1024 * int(state.is_iso_mode)));
     for (const Frame& frame : state.frames) add(digest, frame);
     for (const ModalMacro& macro : state.modal_macros) {
         digest.add(macro.name);

@@ -106,7 +106,7 @@ const CodeWord* Statement::find(ModalGroup group) const {
     return nullptr;
 }
 
-const CodeWord* Statement::taker_of_axis_words() const {
+const CodeWord* Statement::axis_word_owner() const {
     for (const CodeWord& entry : codes()) {
         const Code& code = *entry.code;
         const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle

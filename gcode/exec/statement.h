@@ -56,7 +56,7 @@ struct Statement {
 
     /// The code that takes the axis words instead of the motion: G10, G28, G30, G52, G92, G43.1, or
     /// a G4 without P.
-    const CodeWord* taker_of_axis_words() const;
+    const CodeWord* axis_word_owner() const;
 
 private:
     const CodeWord* find(ModalGroup group) const;

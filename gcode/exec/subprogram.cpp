@@ -227,7 +227,7 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
         leave(state);
         announce_modes(execution.result, entry.word->span.column, before, state.modal);
     } else {
-        state.ending = Ending::main_return;
+        state.ending = ProgramStatus::main_return;
         if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
     }
     return {};
@@ -448,7 +448,7 @@ core::Result<void> call_macro(Execution& execution) {
 }
 
 core::Result<void> call(Execution& execution) {
-    if (execution.state.ending != Ending::running) return {};
+    if (execution.state.ending != ProgramStatus::running) return {};
     if (auto called = call_subprogram(execution); !called) return called;
     return call_macro(execution);
 }

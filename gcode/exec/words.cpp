@@ -30,7 +30,7 @@ const Code* going_on(const Execution& execution) {
 bool names_second_home(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* p_word = execution.statement.word('P');
-    return execution.dialect.p_names_more_places && action && action->code->number == g_code(30)
+    return execution.dialect.p_selects_more_offsets && action && action->code->number == g_code(30)
            && p_word && p_word->value == 2.0;
 }
 
@@ -38,7 +38,7 @@ bool names_second_home(const Execution& execution) {
 core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Statement& statement = execution.statement;
     const Word* p_word = statement.word('P');
-    if (!p_word || !execution.dialect.p_names_more_places) return {};
+    if (!p_word || !execution.dialect.p_selects_more_offsets) return {};
     const CodeWord* action = statement.of(ModalGroup::action);
     if (action && action->code->number == g_code(30) && !names_second_home(execution))
         return core::fail(
@@ -194,7 +194,7 @@ double turns_a_minute(const ModalState& modal) {
 
 } // namespace
 
-std::optional<double> way_between(const Position& from, const Position& to) {
+std::optional<double> distance_between(const Position& from, const Position& to) {
     // The feed applies to X, Y, Z; if these do not move, to U, V, W; else to the rotary axes.
     for (const size_t first : {size_t{0}, size_t{6}, size_t{3}}) {
         double squared = 0.0;

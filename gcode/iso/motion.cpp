@@ -39,7 +39,7 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     }
     const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;
     const std::optional<double> way =
-        needs_way ? way_between(execution.modal().position, end) : std::nullopt;
+        needs_way ? distance_between(execution.modal().position, end) : std::nullopt;
     FEELER_TRY(const double rate, feed_rate(execution, way));
     execution.feed(end, rate);
     return {};
@@ -73,7 +73,7 @@ core::Result<void> refuse_lone_arc(const Execution& execution) {
 bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     if (!statement.has_axis_word() && stands_alone(execution)) return true;
-    if (statement.taker_of_axis_words()) return false;
+    if (statement.axis_word_owner()) return false;
     if (statement.has_axis_word()) return true;
     if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
@@ -112,7 +112,7 @@ bool wants_axes_alone(const CodeWord& taker) {
 core::Result<void> set_motion_mode(Execution& execution) {
     const Statement& statement = execution.statement;
     ModalState& modal = execution.modal();
-    const CodeWord* taker = statement.taker_of_axis_words();
+    const CodeWord* taker = statement.axis_word_owner();
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
     const CodeWord* motion = statement.of(ModalGroup::motion);
     const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
@@ -225,7 +225,7 @@ core::Result<void> move(Execution& execution) {
     if (!has_motion_words(execution) && !cycle_words)
         return refuse_lone_machine_position(execution);
     if (in_machine_coordinates(execution)) return move_to_machine_position(execution);
-    if (auto taken = take_polar_words(execution); !taken) return taken;
+    if (auto taken = read_polar_words(execution); !taken) return taken;
     warn_of_axis_left_out(execution);
     if (auto moved = move_as_modes_say(execution); !moved) return moved;
     forget_position_before_rotation(execution);

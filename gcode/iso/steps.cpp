@@ -128,7 +128,7 @@ namespace {
 core::Result<void> leave_iso(Execution& execution) {
     if (!execution.statement.of(ModalGroup::other)) return {};
     for (const CodeWord& entry : execution.statement.codes())
-        if (entry.code->number == g_code(290)) execution.state.speaks_iso = false;
+        if (entry.code->number == g_code(290)) execution.state.is_iso_mode = false;
     return {};
 }
 
@@ -149,7 +149,7 @@ core::Result<void> take_steps(Execution& execution) {
 core::Result<void> execute_iso(Execution& execution, const ModalState& before) {
     if (auto taken = take_steps(execution); !taken) return taken;
     check_modal_rules(execution, before);
-    return execution.state.speaks_iso ? leave_iso(execution) : core::Result<void>{};
+    return execution.state.is_iso_mode ? leave_iso(execution) : core::Result<void>{};
 }
 
 core::Result<void> act(Execution& execution) {

@@ -92,7 +92,7 @@ core::Result<void> end_program(const FlowStep& step) {
         leave(step.state);
         return {};
     }
-    step.state.ending = Ending::program_end;
+    step.state.ending = ProgramStatus::program_end;
     step.result.commands.push_back(ProgramEnd{});
     step.result.columns.push_back(step.block.flow.span.column);
     return {};

@@ -55,7 +55,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .machine_move_needs_motion = true,
                                       .length_needs_g43 = true,
                                       .lone_h_is_length_offset = false,
-                                      .p_names_more_places = false,
+                                      .p_selects_more_offsets = false,
                                       .local_offset_is_axis_offset = true,
                                       .offset_writes_follow_g91 = false,
                                       .work_offsets_turn = true,
@@ -103,7 +103,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .has_parameter_zero = false,
                                       .names_are_declared = false,
                                       .assigns_in_order = false,
-                                      .machine_places_are_of_tip = false,
+                                      .machine_coordinates_are_of_tip = false,
                                       .text_end_returns = false,
                                       .radius_word = "R",
                                       .first_alarm = 0,
@@ -142,7 +142,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .machine_move_needs_motion = false,
                                    .length_needs_g43 = true,
                                    .lone_h_is_length_offset = true,
-                                   .p_names_more_places = true,
+                                   .p_selects_more_offsets = true,
                                    .local_offset_is_axis_offset = false,
                                    .offset_writes_follow_g91 = true,
                                    .work_offsets_turn = false,
@@ -190,7 +190,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .has_parameter_zero = false,
                                    .names_are_declared = false,
                                    .assigns_in_order = false,
-                                   .machine_places_are_of_tip = false,
+                                   .machine_coordinates_are_of_tip = false,
                                    .text_end_returns = false,
                                    .radius_word = "R",
                                    .first_alarm = 3000,
@@ -292,7 +292,7 @@ constexpr Dialect siemens_dialect = [] {
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.lone_h_is_length_offset = false;
-    entry.p_names_more_places = false;
+    entry.p_selects_more_offsets = false;
     entry.has_extended_offsets = false;
     entry.dwell_without_point_is_milliseconds = false;
     entry.begins_with_g0 = false;
@@ -310,7 +310,7 @@ constexpr Dialect siemens_dialect = [] {
     entry.has_parameter_zero = true;
     entry.names_are_declared = true;
     entry.assigns_in_order = true;
-    entry.machine_places_are_of_tip = true;
+    entry.machine_coordinates_are_of_tip = true;
     entry.text_end_returns = true;
     entry.radius_word = "CR=";
     entry.radius_number_stays = false;

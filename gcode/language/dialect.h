@@ -70,7 +70,7 @@ struct Dialect {
     bool machine_move_needs_motion;   // G53 in a block without a move is an error
     bool length_needs_g43;            // otherwise a tool change activates the tool's length offset
     bool lone_h_is_length_offset;     // H without G43 changes an active length offset
-    bool p_names_more_places;         // G54 P1, G30 P3
+    bool p_selects_more_offsets;      // G54 P1, G30 P3
     bool local_offset_is_axis_offset; // G52 and G92 write the same offset
     bool offset_writes_follow_g91;    // G10 L2 under G91 adds
     bool work_offsets_turn;           // G10 L2 R
@@ -118,13 +118,13 @@ struct Dialect {
     SystemParameters system_parameters;
     std::string_view parameter_letter; // of numbered parameters: # or R
     bool has_parameter_zero;           // R0
-    bool names_are_declared;        // DEF REAL X; all names are local to a level, also those with _
-    bool assigns_in_order;          // assignments apply to the rest of the block
-    bool machine_places_are_of_tip; // G53 and SUPA keep the tool length active
-    bool text_end_returns;          // the end of the text returns from a subprogram
-    std::string_view radius_word;   // of an arc: R or CR=
-    int first_alarm;                // #3000=1 raises this alarm number plus 1
-    int local_count;                // #1 to #n are local to a call level
+    bool names_are_declared; // DEF REAL X; all names are local to a level, also those with _
+    bool assigns_in_order;   // assignments apply to the rest of the block
+    bool machine_coordinates_are_of_tip; // G53 and SUPA keep the tool length active
+    bool text_end_returns;               // the end of the text returns from a subprogram
+    std::string_view radius_word;        // of an arc: R or CR=
+    int first_alarm;                     // #3000=1 raises this alarm number plus 1
+    int local_count;                     // #1 to #n are local to a call level
     size_t deepest_calls;
     bool same_offset_stays;              // G54 while G54 is active does not reload the table
     bool offset_writes_miss_axis_offset; // G10 recomputes the position without G92

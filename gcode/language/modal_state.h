@@ -192,8 +192,8 @@ struct CannedCycle {
     std::optional<double> peck;          // Q
     std::array<double, 3> shift{};       // I, J, K of G76 and G87
     std::optional<double> initial_level; // level before the first of a series of cycles
-    bool r_is_way = false;      // R was programmed with G91: it is relative to the initial level
-    bool bottom_is_way = false; // Z was programmed with G91: it is relative to R
+    bool r_is_incremental = false; // R was programmed with G91: it is relative to the initial level
+    bool bottom_is_incremental = false; // Z was programmed with G91: it is relative to R
 
     bool operator==(const CannedCycle&) const = default;
 };

@@ -184,7 +184,7 @@ core::Result<void> end_block(Execution& execution) {
         return {};
     }
     if (returns) {
-        execution.state.ending = Ending::main_return;
+        execution.state.ending = ProgramStatus::main_return;
         return {};
     }
     return stop(execution);
@@ -199,7 +199,7 @@ core::Result<void> switch_language(Execution& execution) {
                               "G291 while TRANS, ROT, SCALE or MIRROR is active is not supported "
                               "yet: cancel them with TRANS first",
                               entry.word->span);
-        execution.state.speaks_iso = true;
+        execution.state.is_iso_mode = true;
     }
     return {};
 }

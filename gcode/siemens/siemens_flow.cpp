@@ -101,10 +101,10 @@ std::optional<uint32_t> SiemensFlowing::last_in(const std::string& name, uint32_
 /// forwards, then backwards.
 std::optional<uint32_t> SiemensFlowing::line_of(const SiemensJump& jump) const {
     const ProgramLines lines = lines_around(index_, line_);
-    if (jump.way == JumpWay::to_start) return lines.begin;
+    if (jump.way == JumpDirection::to_start) return lines.begin;
     std::optional<uint32_t> found;
-    if (jump.way != JumpWay::backward) found = first_in(jump.target, line_ + 1, lines.end);
-    if (!found && jump.way != JumpWay::forward)
+    if (jump.way != JumpDirection::backward) found = first_in(jump.target, line_ + 1, lines.end);
+    if (!found && jump.way != JumpDirection::forward)
         found = last_in(jump.target, lines.begin, line_ + 1);
     return found;
 }
@@ -120,10 +120,10 @@ core::Result<void> SiemensFlowing::jump() {
             step_.state.next.line = *line;
             return {};
         }
-        if (jump.way == JumpWay::quietly) return {};
-        const std::string_view where = jump.way == JumpWay::forward    ? "after this block"
-                                       : jump.way == JumpWay::backward ? "before this block"
-                                                                       : "in this program";
+        if (jump.way == JumpDirection::no_alarm) return {};
+        const std::string_view where = jump.way == JumpDirection::forward    ? "after this block"
+                                       : jump.way == JumpDirection::backward ? "before this block"
+                                                                             : "in this program";
         const SiemensJump either{.target = jump.target};
         return core::fail(
             ErrorCode::syntax,
@@ -253,7 +253,7 @@ core::Result<void> return_from(const FlowStep& step) {
     if (step.state.frames.size() > 1)
         leave(step.state);
     else
-        step.state.ending = Ending::main_return;
+        step.state.ending = ProgramStatus::main_return;
     return {};
 }
 
@@ -388,7 +388,7 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
         } else if (parameter.initial.kind != SiemensArgument::Kind::nothing) {
             FEELER_TRY(value, value_of_argument(at_head, parameter.initial));
         }
-        frame.named[parameter.name] = held_as(parameter.type, value);
+        frame.named[parameter.name] = converted_to(parameter.type, value);
         if (parameter.type != VariableType::real) frame.types[parameter.name] = parameter.type;
     }
     return {};
@@ -437,7 +437,7 @@ core::Result<void> declare_variables(const FlowStep& step) {
         if (entry.initial.kind != SiemensArgument::Kind::nothing) {
             FEELER_TRY(value, value_of_argument(step, entry.initial));
         }
-        values.push_back(held_as(entry.type, value));
+        values.push_back(converted_to(entry.type, value));
     }
     Frame& frame = step.state.frames.back();
     for (size_t i = 0; i < values.size(); ++i) {

@@ -70,12 +70,12 @@ struct SiemensArgument {
 };
 
 /// Where a jump searches for its target.
-enum class JumpWay : uint8_t { forward, backward, either, quietly, to_start };
+enum class JumpDirection : uint8_t { forward, backward, either, no_alarm, to_start };
 
 /// `GOTOF END`, `IF R1 > 5 GOTOB N100`.
 struct SiemensJump {
     SiemensArgument condition; // nothing: unconditional
-    JumpWay way = JumpWay::either;
+    JumpDirection way = JumpDirection::either;
     std::string target; // in capitals
     core::SourceSpan span{};
 };

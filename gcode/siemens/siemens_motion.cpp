@@ -80,7 +80,7 @@ core::Result<void> go_straight(Execution& execution, const Position& end) {
         return {};
     }
     FEELER_TRY(const double rate,
-               feed_rate(execution, way_between(execution.modal().position, end)));
+               feed_rate(execution, distance_between(execution.modal().position, end)));
     execution.feed(end, rate);
     return {};
 }
@@ -365,7 +365,7 @@ core::Result<void> move_in_siemens(Execution& execution) {
     if (code) modal.motion = motion_of(code->code->number);
     if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
     if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
-    if (has_frame_words(execution) || statement.taker_of_axis_words()) return {};
+    if (has_frame_words(execution) || statement.axis_word_owner()) return {};
     const bool circles = is_arc(modal.motion);
     const bool moves =
         statement.has_axis_word()

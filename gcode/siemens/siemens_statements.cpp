@@ -13,14 +13,14 @@ using enum FlowKind;
 
 struct Jump {
     std::string_view name;
-    JumpWay way;
+    JumpDirection way;
 };
 
-constexpr Jump jump_ways[] = {{"GOTO", JumpWay::either},
-                              {"GOTOB", JumpWay::backward},
-                              {"GOTOC", JumpWay::quietly},
-                              {"GOTOF", JumpWay::forward},
-                              {"GOTOS", JumpWay::to_start}};
+constexpr Jump jump_ways[] = {{"GOTO", JumpDirection::either},
+                              {"GOTOB", JumpDirection::backward},
+                              {"GOTOC", JumpDirection::no_alarm},
+                              {"GOTOF", JumpDirection::forward},
+                              {"GOTOS", JumpDirection::to_start}};
 
 /// Statements of a single word.
 struct Mark {
@@ -119,7 +119,7 @@ private:
 
     core::Result<void> jump(const Jump& way, SiemensArgument condition) {
         SiemensJump entry{.condition = condition, .way = way.way};
-        if (way.way != JumpWay::to_start) {
+        if (way.way != JumpDirection::to_start) {
             FEELER_TRY(entry.target, target(way.name));
         }
         entry.span = reader_.lexer.span_from(begin_);

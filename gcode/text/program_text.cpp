@@ -17,7 +17,7 @@ std::vector<uint32_t> starts_of_lines(std::string_view text) {
     return starts;
 }
 
-std::string_view what_has_nuls(std::string_view text) {
+std::string_view nul_bytes_error(std::string_view text) {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
         return "is UTF-16 text, which controls cannot read: save it as plain text (ASCII or UTF-8)";
     return "contains NUL bytes: it is a binary file, not an NC program";

@@ -21,7 +21,7 @@ inline std::string_view without_line_end(std::string_view line) {
 }
 
 /// Message for a text with NUL bytes: UTF-16 by its first two bytes, else a binary file.
-std::string_view what_has_nuls(std::string_view text);
+std::string_view nul_bytes_error(std::string_view text);
 
 /// Whether the text has anything besides comments, tape marks and blanks.
 bool has_a_block(std::string_view text);

@@ -129,7 +129,7 @@ core::Result<void> LineWindows::check(const Window& window) const {
     if (const size_t nul = text.find('\0'); nul != std::string_view::npos) {
         const auto after = std::upper_bound(window.starts.begin(), window.starts.end(), nul);
         return tl::unexpected(
-            refusal(ErrorCode::syntax, what_has_nuls(text),
+            refusal(ErrorCode::syntax, nul_bytes_error(text),
                     window.first_line + static_cast<uint64_t>(after - window.starts.begin()) - 1));
     }
     const size_t controls = count_stray_controls(text);
@@ -247,7 +247,7 @@ std::optional<Error> Collector::add_piece(std::string_view piece) {
     }
     program_.text += piece.substr(first_end);
     if (nul != std::string_view::npos)
-        return refusal(what_has_nuls(program_.text), starts_of_lines(program_.text + ' ').size());
+        return refusal(nul_bytes_error(program_.text), starts_of_lines(program_.text + ' ').size());
     const size_t last_end = piece.find_last_of("\r\n");
     line_length_ = last_end == std::string_view::npos ? line_length_ + piece.size()
                                                       : piece.size() - last_end - 1;
@@ -330,7 +330,7 @@ core::Result<Collector> collected(const std::string& path) {
 core::Result<Program> read_program(const std::string& path) {
     auto collector = collected(path);
     core::notify_file_access(
-        {core::FileQuestion::content,
+        {core::FileAccessKind::content,
          path,
          {},
          collector ? std::optional<std::string_view>(collector->text()) : std::nullopt});

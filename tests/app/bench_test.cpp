@@ -73,7 +73,7 @@ TEST(PaperBench, KeepsWhatThePaperStates) {
             EXPECT_LT(row.error_percent(), 0.1);
         }
     }
-    const std::vector<BenchMeans> means = means_of(table);
+    const std::vector<BenchAverages> means = averages_of(table);
     for (size_t i = 1; i < means.size(); ++i)
         EXPECT_GT(means[i].error_percent, means[i - 1].error_percent);
     for (size_t i = 1; i < 8; ++i) { // at 0.5 mm, by gap
@@ -85,7 +85,7 @@ TEST(PaperBench, KeepsWhatThePaperStates) {
 TEST(PaperBench, TakesTestsInProportionToThePoints) {
     // Run times as in the paper; the counts are equal on every machine.
     std::vector<double> points, tests;
-    for (const BenchMeans& mean : means_of(paper_table())) {
+    for (const BenchAverages& mean : averages_of(paper_table())) {
         points.push_back(static_cast<double>(mean.points));
         tests.push_back(mean.sphere_tests + mean.point_tests);
     }
@@ -189,7 +189,7 @@ TEST(BenchCsv, IsOneTableOfNumbersThatKeepsTheirBits) {
                 const std::vector<std::string> fields = fields_of(lines.at(at++));
                 ASSERT_EQ(fields.size(), 13u);
                 const bool is_paper = std::string(engine) == "paper";
-                const BenchAnswer& by = is_paper ? row.paper : row.fast;
+                const EngineResult& by = is_paper ? row.paper : row.fast;
                 EXPECT_EQ(fields[0], table.scene.name);
                 EXPECT_EQ(fields[1], table.scene.direction);
                 EXPECT_EQ(fields[6], engine);

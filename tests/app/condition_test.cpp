@@ -74,7 +74,7 @@ TEST(Condition, KnowsNoClearanceOfABlockThatWasNotJudged) {
 
 TEST(Condition, MatchesARuleThatIsReportedAsPartOfAnother) {
     OneBlock one;
-    std::swap(one.record.findings, one.record.taken_in);
+    std::swap(one.record.findings, one.record.combined_findings);
     EXPECT_TRUE(one.holds("near-miss"));
 }
 
@@ -182,10 +182,10 @@ TEST(Condition, TakesAnUnknownClearanceForLargerThanAnyNumber) {
 
 TEST(Condition, ReadsTheControlOnlyWhereItNamesIt) {
     for (const char* text : {"clearance < 1", "feed", "T3", "near-miss", "line = 3", "tool = 3"})
-        EXPECT_FALSE(Condition::read(text)->asks_control()) << text;
+        EXPECT_FALSE(Condition::read(text)->uses_control()) << text;
     for (const char* text :
          {"feed > 1", "x < 3", "rapid and #100 = 1", "not (plane = XY)", "1 + 2 * G54.x < 3"})
-        EXPECT_TRUE(Condition::read(text)->asks_control()) << text;
+        EXPECT_TRUE(Condition::read(text)->uses_control()) << text;
 }
 
 TEST(Condition, SaysWhereAndHowItIsWrong) {

@@ -111,7 +111,7 @@ TEST(CoprocessorRun, RefusesWhatTheExactEngineDoesAndCountsTheSameEachTime) {
     ASSERT_TRUE(run.has_value());
     ASSERT_EQ(run->blocks.size(), run->check.blocks.size());
     EXPECT_EQ(agreement(*run).missed, 0U);
-    EXPECT_EQ(agreement(*run).not_asked, 0U);
+    EXPECT_EQ(agreement(*run).not_queried, 0U);
     for (const size_t block : {38U, 39U, 41U, 42U})
         EXPECT_FALSE(run->blocks[block].permit.permitted) << block;
     EXPECT_TRUE(run->blocks[20].permit.permitted);

@@ -81,7 +81,7 @@ TEST(Base64, WritesWhatRfc4648Says) {
 
 TEST(NumberRuns, HoldEachRunOnce) {
     NumberRuns runs;
-    StepRuns steps;
+    DeltaRuns steps;
     for (const int64_t value : {7, 7, 7, -1, 3}) runs.add(value);
     for (const int64_t value : {5, 6, 7, 8, 20}) steps.add(value);
     EXPECT_EQ(runs.json(), "[7,3,-1,1,3,1]");

@@ -48,7 +48,7 @@ std::string faced_then_grooved(double x) {
            + std::to_string(x) + " Y4\nZ-3\nG1 Z-4\nX60\nG0 Z10\nM2\n";
 }
 
-TEST(GuessedStock, EndsWhereARapidGoesDownNextToTheCuts) {
+TEST(InferredStock, EndsWhereARapidGoesDownNextToTheCuts) {
     const Inferred run = infer(faced_then_grooved(-15.0));
     EXPECT_EQ(run.count("rapid-in-stock"), 0u);
     EXPECT_THAT(run.assumed, HasSubstr("it ends at X -12.000, because line 11 plunges next to it"));
@@ -56,14 +56,14 @@ TEST(GuessedStock, EndsWhereARapidGoesDownNextToTheCuts) {
     EXPECT_DOUBLE_EQ(run.stock().max.x, 123.0);
 }
 
-TEST(GuessedStock, StaysUnderAPlungeFarInside) {
+TEST(InferredStock, StaysUnderAPlungeFarInside) {
     const Inferred run = infer(faced_then_grooved(50.0));
     EXPECT_EQ(run.count("rapid-in-stock"), 1u);
     EXPECT_DOUBLE_EQ(run.stock().min.x, -23.0);
     EXPECT_DOUBLE_EQ(run.stock().max.x, 123.0);
 }
 
-TEST(GuessedStock, StaysUnderAPlungeIntoAHoleThatIsCut) {
+TEST(InferredStock, StaysUnderAPlungeIntoAHoleThatIsCut) {
     const Inferred run =
         infer("G21 G90 G54\nM3 S1000\nG0 Z10\nX0 Y0\nG1 Z-5 F500\nX60\nY40\nX0\nY0\nG0 Z10\n"
               "X0 Y0\nZ-4\nG1 Z-6\nX60\nG0 Z10\nM2\n");
@@ -72,7 +72,7 @@ TEST(GuessedStock, StaysUnderAPlungeIntoAHoleThatIsCut) {
     EXPECT_EQ(run.assumed.find("next to it"), std::string::npos);
 }
 
-TEST(GuessedStock, EndsBelowThePlaneOfTravelOfAProgramWithoutRapids) {
+TEST(InferredStock, EndsBelowThePlaneOfTravelOfAProgramWithoutRapids) {
     const Inferred run =
         infer("G21 G90\nM3 S1000\nG1 Z5 F900\nX0 Y0\nZ-2\nX40\nZ5\nY20\nZ-2\nX0\nZ5\nX9\nM2\n");
     EXPECT_FALSE(run.run.has_errors());
@@ -81,7 +81,7 @@ TEST(GuessedStock, EndsBelowThePlaneOfTravelOfAProgramWithoutRapids) {
     EXPECT_DOUBLE_EQ(flat.stock().max.z, 5.0);
 }
 
-TEST(StatedStock, IsTheBlankOfKlartext) {
+TEST(DeclaredStock, IsTheBlankOfKlartext) {
     const Inferred run = infer("0 BEGIN PGM P MM\n1 BLK FORM 0.1 Z X-10 Y+0 Z-20\n"
                                "2 BLK FORM 0.2 X+90 Y+50 Z+0\n3 TOOL CALL 1 Z S2000\n"
                                "4 L X+0 Y+10 Z+5 R0 FMAX M3\n5 L Z-3 F200\n6 L X+50\n"
@@ -94,29 +94,29 @@ TEST(StatedStock, IsTheBlankOfKlartext) {
     EXPECT_EQ(run.stock().max, core::Vec3(90, 50, 0));
 }
 
-std::optional<app::StatedStock> stated(const std::string& text,
-                                       gcode::LengthUnit unit = gcode::LengthUnit::mm) {
+std::optional<app::DeclaredStock> stated(const std::string& text,
+                                         gcode::LengthUnit unit = gcode::LengthUnit::mm) {
     const ScopedFolder folder;
     const auto program = gcode::read_program(folder.write("p.h", text + "M30\n"));
     EXPECT_TRUE(program) << (program ? "" : program.error().message);
-    return program ? app::stated_stock(*program, unit) : std::nullopt;
+    return program ? app::declared_stock(*program, unit) : std::nullopt;
 }
 
-TEST(StatedStock, CountsIncrementsFromTheLowCorner) {
+TEST(DeclaredStock, CountsIncrementsFromTheLowCorner) {
     const auto stock = stated("1 BLK FORM 0.1 Z X+5 Y+5 Z-8\n2 BLK FORM 0.2 IX+10 IY+20 IZ+8\n");
     ASSERT_TRUE(stock);
     EXPECT_EQ(stock->box.min, core::Vec3(5, 5, -8));
     EXPECT_EQ(stock->box.max, core::Vec3(15, 25, 0));
 }
 
-TEST(StatedStock, IsTheBoxOfAWorkpiece) {
+TEST(DeclaredStock, IsTheBoxOfAWorkpiece) {
     const auto stock = stated("N10 WORKPIECE(,\"\",,\"BOX\",112,1,-20,-80,-5,0,100,60)\n");
     ASSERT_TRUE(stock);
     EXPECT_EQ(stock->box.min, core::Vec3(-5, 0, -20));
     EXPECT_EQ(stock->box.max, core::Vec3(100, 60, 1));
 }
 
-TEST(StatedStock, IsReadInInches) {
+TEST(DeclaredStock, IsReadInInches) {
     const auto stock = stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n2 BLK FORM 0.2 X+2 Y+3 Z+0\n",
                               gcode::LengthUnit::inch);
     ASSERT_TRUE(stock);
@@ -126,7 +126,7 @@ TEST(StatedStock, IsReadInInches) {
 
 const std::string vectric = "( Cross2 )\n( Material Size )\n( X=96 mm, Y=120.0, Z=6 )\n";
 
-TEST(StatedStock, IsTheMaterialOfAHeader) {
+TEST(DeclaredStock, IsTheMaterialOfAHeader) {
     const auto top = stated(vectric
                             + "( Z Origin for Material = Material Surface)\n"
                               "( XY Origin for Job = Center)\n");
@@ -139,12 +139,12 @@ TEST(StatedStock, IsTheMaterialOfAHeader) {
     EXPECT_EQ(table->box.max, core::Vec3(0, 0, 6));
 }
 
-TEST(StatedStock, LiesWhereItsSizeHoldsWhatIsCut) {
+TEST(DeclaredStock, LiesWhereItsSizeHoldsWhatIsCut) {
     const auto low_corner = [&](const core::Aabb& reach) -> std::optional<core::Vec3> {
         const ScopedFolder folder;
         const auto program = gcode::read_program(folder.write("p.tap", vectric + "M30\n"));
         EXPECT_TRUE(program);
-        const auto stock = app::stated_stock(*program, gcode::LengthUnit::mm, reach);
+        const auto stock = app::declared_stock(*program, gcode::LengthUnit::mm, reach);
         return stock ? std::optional(stock->box.min) : std::nullopt;
     };
     EXPECT_EQ(low_corner({{-2, -2, -6}, {98, 122, 0}}), core::Vec3(0, 0, -6));
@@ -153,7 +153,7 @@ TEST(StatedStock, LiesWhereItsSizeHoldsWhatIsCut) {
     EXPECT_FALSE(stated(vectric)); // no cutting
 }
 
-TEST(StatedStock, IsEmptyWithoutABody) {
+TEST(DeclaredStock, IsEmptyWithoutABody) {
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n"));
     EXPECT_FALSE(stated("1 BLK FORM 0.1 Z X+0 Y+0 Z-1\n2 BLK FORM 0.2 X+0 Y+3 Z+0\n"));
     EXPECT_FALSE(
@@ -242,7 +242,7 @@ TEST(NamedTool, IsNoDrillWhereItCutsSideways) {
                           "and its use, because drills do not cut sideways"));
 }
 
-TEST(GuessedStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {
+TEST(InferredStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {
     const Inferred run =
         infer("G21 G90 G54\nM3 S1000\nG0 Z10\nX0 Y0\nZ6\nG1 X60 F500\nY40\nG0 Z10\n"
               "G0 X30 Y20\nG81 R1 Z-4 F100\nG80\nG0 Z9\nM2\n");

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 using app::InputFile;
-using core::FileQuestion;
+using core::FileAccessKind;
 using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
@@ -42,7 +42,7 @@ app::CheckRun checked(const std::string& program, const std::string& setup,
 std::set<fs::path> contents(const std::vector<InputFile>& inputs) {
     std::set<fs::path> paths;
     for (const InputFile& input : inputs)
-        if (input.question == FileQuestion::content) paths.insert(fs::canonical(input.path));
+        if (input.question == FileAccessKind::content) paths.insert(fs::canonical(input.path));
     return paths;
 }
 
@@ -188,7 +188,7 @@ TEST(InputFiles, ASubprogramFoundInAnotherCaseIsAnInputByItsName) {
 
 TEST(InputFiles, WhatCannotBeReadIsNeverTheSame) {
     const ScopedFolder folder;
-    InputFile input{FileQuestion::content, folder / "none", {}, std::nullopt};
+    InputFile input{FileAccessKind::content, folder / "none", {}, std::nullopt};
     EXPECT_FALSE(all_same({input}));
     input.answer = "";
     EXPECT_FALSE(all_same({input}));
@@ -198,8 +198,8 @@ TEST(InputAnswers, ReadAFileAgainThatWasWrittenSince) {
     const ScopedFolder folder;
     const std::string path = folder.write("a.nc", "G0 X1\n");
     app::InputAnswers answers;
-    const InputFile input{FileQuestion::content, path, {}, app::sha256_of_file(path)};
-    const InputFile in_any_case{FileQuestion::any_case, folder.path(), "O1", std::nullopt};
+    const InputFile input{FileAccessKind::content, path, {}, app::sha256_of_file(path)};
+    const InputFile in_any_case{FileAccessKind::any_case, folder.path(), "O1", std::nullopt};
     for (const int pause : {0, 80, 0}) {
         std::this_thread::sleep_for(std::chrono::milliseconds(pause)); // clock: at least
         EXPECT_TRUE(answers.is_same(input));

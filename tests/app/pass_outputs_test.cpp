@@ -26,7 +26,7 @@ protected:
     test_support::ScopedFolder folder;
     const std::string report = folder / "r.csv";
     WatchedFiles files{{report}};
-    PassOutputs outputs{{report}};
+    WatchOutputs outputs{{report}};
 };
 
 TEST_F(PassOutputsTest, RemoveReportsOfAnEarlierVersion) {
@@ -49,7 +49,7 @@ TEST_F(PassOutputsTest, LeaveFilesThatOthersHaveWritten) {
 }
 
 TEST_F(PassOutputsTest, LeaveWhatIsRead) {
-    files.note({core::FileQuestion::content, report, {}, {}});
+    files.note({core::FileAccessKind::content, report, {}, {}});
     outputs.end_pass(files);
     EXPECT_TRUE(is_there());
 }

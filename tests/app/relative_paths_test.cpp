@@ -117,7 +117,8 @@ bool quotes(const std::string& text, const std::string& program = "lib/a.nc") {
     job.program = program;
     app::ProgramResult result;
     result.assumptions = {text};
-    return app::quotes_paths(result, job, {{core::FileQuestion::presence, "x", "", {}}}, "/home/w");
+    return app::quotes_paths(result, job, {{core::FileAccessKind::presence, "x", "", {}}},
+                             "/home/w");
 }
 
 TEST(QuotedPath, IsAWordOfATextOrPartOfAPathInIt) {
@@ -150,10 +151,10 @@ TEST(QuotedPath, IsNotTheNameOfTheProgramWhichIsPutBack) {
 
 TEST_F(RelativePathsTest, HoldUntilTheWorkingFolderChanges) {
     const RelativePaths paths = from("old", "../lib/.feeler/results.db");
-    EXPECT_TRUE(paths.still_hold());
+    EXPECT_TRUE(paths.are_still_valid());
     fs::rename(folder / "old", folder / "older");
     fs::create_directory(folder / "old");
-    EXPECT_FALSE(paths.still_hold());
+    EXPECT_FALSE(paths.are_still_valid());
 }
 
 TEST_F(RelativePathsTest, AreThoseOfTheFileHoweverItIsSpelled) {
@@ -163,10 +164,10 @@ TEST_F(RelativePathsTest, AreThoseOfTheFileHoweverItIsSpelled) {
 
 TEST_F(RelativePathsTest, HoldUntilALinkToTheFolderIsChanged) {
     const RelativePaths paths = from(".", "link/.feeler/results.db");
-    EXPECT_TRUE(paths.still_hold());
+    EXPECT_TRUE(paths.are_still_valid());
     fs::remove(folder / "link");
     fs::create_directory_symlink("new", folder / "link");
-    EXPECT_FALSE(paths.still_hold());
+    EXPECT_FALSE(paths.are_still_valid());
 }
 
 } // namespace

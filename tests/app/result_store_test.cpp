@@ -22,11 +22,11 @@ using app::CheckJob;
 using app::CheckRun;
 using app::ProgramResult;
 using app::ResultStore;
-using core::FileQuestion;
+using core::FileAccessKind;
 using test_support::ScopedFolder;
 
 app::InputFile content(const std::string& path) {
-    return {FileQuestion::content, path, {}, app::sha256_of_file(path)};
+    return {FileAccessKind::content, path, {}, app::sha256_of_file(path)};
 }
 
 ResultStore opened(const std::string& path, const std::string& version = "1") {
@@ -46,9 +46,9 @@ protected:
         run.inputs = {content(job.program),
                       content(job.setup),
                       content(folder / "vise.stl"),
-                      {FileQuestion::presence, folder / "control.var", {}, std::nullopt},
-                      {FileQuestion::in_folder, folder.path(), "O9000.nc", std::nullopt},
-                      {FileQuestion::any_case, folder.path(), "POCKET.SPF", std::nullopt}};
+                      {FileAccessKind::presence, folder / "control.var", {}, std::nullopt},
+                      {FileAccessKind::in_folder, folder.path(), "O9000.nc", std::nullopt},
+                      {FileAccessKind::any_case, folder.path(), "POCKET.SPF", std::nullopt}};
         result.program = job.program;
         result.setup = job.setup;
         result.sha256 = run.sha256;

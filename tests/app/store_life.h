@@ -31,7 +31,7 @@ inline Kept numbered(const std::string& program, int number) {
     kept.job.program = program;
     kept.job.start_line = fmt::format("{}", number); // so that each is a separate job
     kept.run.sha256 = app::sha256_of_file(program);
-    kept.run.inputs = {{core::FileQuestion::content, program, {}, kept.run.sha256}};
+    kept.run.inputs = {{core::FileAccessKind::content, program, {}, kept.run.sha256}};
     kept.result.program = program;
     kept.result.blocks = static_cast<size_t>(number);
     kept.result.assumptions.assign(20, std::string(200, static_cast<char>('a' + number % 26)));

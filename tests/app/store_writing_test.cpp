@@ -26,11 +26,11 @@ using app::CheckJob;
 using app::CheckRun;
 using app::ProgramResult;
 using app::ResultStore;
-using core::FileQuestion;
+using core::FileAccessKind;
 using test_support::ScopedFolder;
 
 app::InputFile content(const std::string& path) {
-    return {FileQuestion::content, path, {}, app::sha256_of_file(path)};
+    return {FileAccessKind::content, path, {}, app::sha256_of_file(path)};
 }
 
 ResultStore opened(const std::string& path) {

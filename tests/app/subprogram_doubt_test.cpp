@@ -28,7 +28,8 @@ TEST(LengthMismatch, IsFollowedFromTheMiddleOfASubprogram) {
             return finding.rule == "length-offset-cancelled";
         });
     EXPECT_TRUE(tells);
-    EXPECT_FALSE(run->taken_in.empty()); // crashes that do not occur with the correct length
+    EXPECT_FALSE(
+        run->combined_findings.empty()); // crashes that do not occur with the correct length
 }
 
 } // namespace

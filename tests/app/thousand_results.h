@@ -34,8 +34,8 @@ public:
             const app::CheckJob job = job_of(i);
             app::CheckRun run;
             run.sha256 = app::sha256_of_file(job.program);
-            run.inputs = {{core::FileQuestion::content, job.program, {}, run.sha256},
-                          {core::FileQuestion::content, mesh, {}, digest}};
+            run.inputs = {{core::FileAccessKind::content, job.program, {}, run.sha256},
+                          {core::FileAccessKind::content, mesh, {}, digest}};
             ASSERT_TRUE(store->keep(job, run, app::result_of(run, "")));
         }
         ASSERT_TRUE(store->flush());

@@ -132,7 +132,7 @@ TEST_F(WatchedFilesTest, KnowWhichOfTheChecksOwnFilesItReads) {
     EXPECT_FALSE(files.reads(report)) << "nothing in it was accessed";
     fs::create_symlink(report, folder / "link");
     watch([&] {
-        core::notify_file_access({core::FileQuestion::content, folder / "link", {}, {}});
+        core::notify_file_access({core::FileAccessKind::content, folder / "link", {}, {}});
     });
     EXPECT_TRUE(files.reads(report)) << "by another name";
     EXPECT_FALSE(files.reads(folder / "a.nc"));

@@ -80,13 +80,13 @@ TEST(WhatIf, MovesAnActiveWorkOffsetAsG10Does) {
     const SetupWriter setup;
     for (const auto& [axis, words] :
          {std::pair<size_t, std::string>{0, "X-340."}, {1, "Y-190.5"}, {2, "Z-415."}})
-        expect_as_programmed(setup, app::OtherWorkOffset{0, axis, std::stod(words.substr(1))},
+        expect_as_programmed(setup, app::WorkOffsetChange{0, axis, std::stod(words.substr(1))},
                              "G10 L2 P1 " + words + "\n");
 }
 
 TEST(WhatIf, MovesAWorkOffsetUnderARotationAsG10Does) {
     const std::string turned = "G21 G90 G17 G54\nT1 M6\nM3 S2000\nG43 H1 Z50.\nG68 X5. Y5. R30.\n";
-    expect_as_programmed(SetupWriter(), app::OtherWorkOffset{0, 0, -340.0}, "G10 L2 P1 X-340.\n",
+    expect_as_programmed(SetupWriter(), app::WorkOffsetChange{0, 0, -340.0}, "G10 L2 P1 X-340.\n",
                          turned,
                          "G1 X10. Y10. F800.\nZ20.\nG91 X30.\nG90 Y40.\nG69\nG0 Z50.\nM30\n");
 }
@@ -95,7 +95,7 @@ TEST(WhatIf, LeavesTheMachineAloneWhereAnotherOffsetIsOn) {
     const Opened changed(SetupWriter(), start + rest);
     changed.go_to_line(6);
     const auto before = changed->state().control.modal;
-    ASSERT_TRUE(changed->change(app::OtherWorkOffset{1, 0, -100.0}));
+    ASSERT_TRUE(changed->change(app::WorkOffsetChange{1, 0, -100.0}));
     EXPECT_EQ(changed->state().control.modal, before);
     EXPECT_EQ(changed->state().control.tables->work[1].origin[0], -100.0);
 }
@@ -105,7 +105,7 @@ TEST(WhatIf, ChangesALengthThatIsOnAsWritingItAndCallingItAgainDoes) {
         const std::string called =
             "G21 G90 G17 G54\nT1 M6\nM3 S2000\n" + std::string(call) + "G0 X10. Y10.\n";
         const std::string again = std::string(call).substr(0, 6);
-        expect_as_programmed(SetupWriter(), app::OtherLengthOffset{OffsetNumber{1}, 97.5},
+        expect_as_programmed(SetupWriter(), app::LengthOffsetOverride{OffsetNumber{1}, 97.5},
                              "G10 L10 P1 R97.5\n" + again + "\n", called);
     }
 }
@@ -116,7 +116,7 @@ TEST(WhatIf, CountsTheLengthWithItsWear) {
     const Opened changed(setup, start + rest);
     changed.go_to_line(6);
     EXPECT_DOUBLE_EQ(changed->state().control.modal.offsets.tool[2], 95.25);
-    ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 96.0}));
+    ASSERT_TRUE(changed->change(app::LengthOffsetOverride{OffsetNumber{1}, 96.0}));
     EXPECT_DOUBLE_EQ(changed->state().control.modal.offsets.tool[2], 96.0);
     EXPECT_DOUBLE_EQ(changed->state().machine.length_offset.length, 96.0);
 }
@@ -127,7 +127,7 @@ TEST(WhatIf, LeavesALengthAloneThatTheProgramGaveItself) {
     const Opened changed(setup, "G21 G90 G54\nT1 M6\nM3 S2000\nG43.1 Z95\nG0 Z50\n" + rest);
     changed.go_to_line(6);
     const auto before = changed->state().control.modal;
-    ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 60.0}));
+    ASSERT_TRUE(changed->change(app::LengthOffsetOverride{OffsetNumber{1}, 60.0}));
     EXPECT_EQ(changed->state().control.modal, before);
 }
 
@@ -139,7 +139,7 @@ TEST(WhatIf, ChangesTheLengthThatComesWithTheTool) {
                                 "6 END PGM P MM\n");
     changed.go_to_line(5); // in Klartext block numbers
     const double stood = *changed->state().machine.position[2];
-    ASSERT_TRUE(changed->change(app::OtherLengthOffset{OffsetNumber{1}, 100.0}));
+    ASSERT_TRUE(changed->change(app::LengthOffsetOverride{OffsetNumber{1}, 100.0}));
     EXPECT_EQ(changed->state().machine.position[2], stood);
     EXPECT_DOUBLE_EQ(*changed->state().control.modal.position[2], 45.0);
     ASSERT_TRUE(changed->go_to(changed->at() + 1));
@@ -152,11 +152,11 @@ TEST(WhatIf, DoesNotChangeAnOffsetDuringRadiusCompensation) {
                                               "M30\n");
     changed.go_to_line(8);
     const uint64_t before = digest_of(changed->state());
-    const auto done = changed->change(app::OtherWorkOffset{0, 0, -340.0});
+    const auto done = changed->change(app::WorkOffsetChange{0, 0, -340.0});
     ASSERT_FALSE(done);
     EXPECT_THAT(done.error().message, HasSubstr("before G41"));
     EXPECT_EQ(digest_of(changed->state()), before);
-    EXPECT_TRUE(changed->change(app::OtherWorkOffset{3, 0, -340.0}));
+    EXPECT_TRUE(changed->change(app::WorkOffsetChange{3, 0, -340.0}));
 }
 
 /// The parts of a tool with their lower and upper ends along its axis.
@@ -174,13 +174,13 @@ TEST(WhatIf, PullsAToolOutOfItsHolderOrPushesItIn) {
     const Opened changed(SetupWriter(), start + rest);
     const auto tool = [&] { return parts_of(changed->setup_at(0).tools.at(ToolNumber{1})); };
     EXPECT_EQ(tool(), "flutes 0..20 shank 20..45 holder 45..95 95");
-    ASSERT_TRUE(changed->change(app::OtherToolLength{ToolNumber{1}, 100.0}));
+    ASSERT_TRUE(changed->change(app::ToolLengthChange{ToolNumber{1}, 100.0}));
     EXPECT_EQ(tool(), "flutes 0..20 shank 20..50 holder 50..100 100");
-    ASSERT_TRUE(changed->change(app::OtherToolLength{ToolNumber{1}, 70.0}));
+    ASSERT_TRUE(changed->change(app::ToolLengthChange{ToolNumber{1}, 70.0}));
     EXPECT_EQ(tool(), "flutes 0..20 holder 20..70 70");
-    ASSERT_TRUE(changed->change(app::OtherToolLength{ToolNumber{1}, 80.0}));
+    ASSERT_TRUE(changed->change(app::ToolLengthChange{ToolNumber{1}, 80.0}));
     EXPECT_EQ(tool(), "flutes 0..20 shank 20..30 holder 30..80 80");
-    const auto done = changed->change(app::OtherToolLength{ToolNumber{1}, 69.0});
+    const auto done = changed->change(app::ToolLengthChange{ToolNumber{1}, 69.0});
     ASSERT_FALSE(done);
     EXPECT_THAT(done.error().message, HasSubstr("no shorter than 70 mm"));
     EXPECT_EQ(tool(), "flutes 0..20 shank 20..30 holder 30..80 80");
@@ -191,9 +191,9 @@ TEST(WhatIf, ChangesOnlyTheGaugeLengthOfAToolWithoutAHolder) {
     setup.tool("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
                "gauge_length = 95\n");
     const Opened changed(setup, start + rest);
-    ASSERT_TRUE(changed->change(app::OtherToolLength{ToolNumber{1}, 60.0}));
+    ASSERT_TRUE(changed->change(app::ToolLengthChange{ToolNumber{1}, 60.0}));
     EXPECT_EQ(parts_of(changed->setup_at(0).tools.at(ToolNumber{1})), "flutes 0..20 60");
-    EXPECT_FALSE(changed->change(app::OtherToolLength{ToolNumber{1}, 10.0}));
+    EXPECT_FALSE(changed->change(app::ToolLengthChange{ToolNumber{1}, 10.0}));
 }
 
 /// Verdict, deciding pair and bound of all blocks of a run, as text.
@@ -244,7 +244,7 @@ TEST(WhatIf, OfAToolGivesWhatASetUpWithThatToolGives) {
     SetupWriter longer = with_clamp("[80, 60, 0]");
     longer.tool("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
                 "shank = [[10, 10, 5]]\nholder = [[40, 40, 50]]\n");
-    expect_as_set_up(with_clamp("[80, 60, 0]"), app::OtherToolLength{ToolNumber{1}, 75.0}, longer);
+    expect_as_set_up(with_clamp("[80, 60, 0]"), app::ToolLengthChange{ToolNumber{1}, 75.0}, longer);
 }
 
 TEST(WhatIf, OfAFixtureGivesWhatASetUpWithItThereGives) {
@@ -255,7 +255,7 @@ TEST(WhatIf, OfAFixtureGivesWhatASetUpWithItThereGives) {
 TEST(WhatIf, OfTheAllowanceGivesWhatASetUpWithItGives) {
     SetupWriter other = with_clamp("[80, 60, 0]");
     other.root("mesh_size = 0.5\nallowance = 7.0\n");
-    expect_as_set_up(with_clamp("[80, 60, 0]"), app::OtherAllowance{7.0}, other);
+    expect_as_set_up(with_clamp("[80, 60, 0]"), app::AllowanceChange{7.0}, other);
 }
 
 TEST(WhatIf, OnTheWayForgetsNoBoundThatNoLongerHolds) {
@@ -280,20 +280,20 @@ TEST(WhatIf, NamesWhatExistsIfTheTargetIsMissing) {
         return done ? std::string() : done.error().message;
     };
     EXPECT_THAT(error(app::MovedFixture{"clamp-2"}), HasSubstr("there is clamp-1"));
-    EXPECT_THAT(error(app::OtherToolLength{ToolNumber{7}, 90.0}), HasSubstr("it has T1"));
-    EXPECT_THAT(error(app::OtherToolLength{ToolNumber{1}, -1.0}), HasSubstr("a number above 0"));
-    EXPECT_THAT(error(app::OtherWorkOffset{0, 3, 1.0}), HasSubstr("no such axis"));
-    EXPECT_THAT(error(app::OtherWorkOffset{5000, 0, 1.0}), HasSubstr("no such work offset"));
-    EXPECT_THAT(error(app::OtherLengthOffset{OffsetNumber{0}, 1.0}), HasSubstr("count from 1"));
-    EXPECT_THAT(error(app::OtherAllowance{-1.0}), HasSubstr("from 0 to 1000"));
+    EXPECT_THAT(error(app::ToolLengthChange{ToolNumber{7}, 90.0}), HasSubstr("it has T1"));
+    EXPECT_THAT(error(app::ToolLengthChange{ToolNumber{1}, -1.0}), HasSubstr("a number above 0"));
+    EXPECT_THAT(error(app::WorkOffsetChange{0, 3, 1.0}), HasSubstr("no such axis"));
+    EXPECT_THAT(error(app::WorkOffsetChange{5000, 0, 1.0}), HasSubstr("no such work offset"));
+    EXPECT_THAT(error(app::LengthOffsetOverride{OffsetNumber{0}, 1.0}), HasSubstr("count from 1"));
+    EXPECT_THAT(error(app::AllowanceChange{-1.0}), HasSubstr("from 0 to 1000"));
     EXPECT_TRUE(changed->changes().empty());
 }
 
 TEST(WhatIf, IsSaidAsAPersonWould) {
-    EXPECT_EQ(text_of(app::OtherToolLength{ToolNumber{3}, 95.0}), "T3 is 95 mm long");
-    EXPECT_EQ(text_of(app::OtherLengthOffset{OffsetNumber{3}, 95.5}), "H3 is 95.5 mm");
-    EXPECT_EQ(text_of(app::OtherWorkOffset{6, 2, -4.0}), "G59.1 has its origin at Z-4");
-    EXPECT_EQ(text_of(app::OtherAllowance{1.0}), "the minimum clearance is 1 mm");
+    EXPECT_EQ(text_of(app::ToolLengthChange{ToolNumber{3}, 95.0}), "T3 is 95 mm long");
+    EXPECT_EQ(text_of(app::LengthOffsetOverride{OffsetNumber{3}, 95.5}), "H3 is 95.5 mm");
+    EXPECT_EQ(text_of(app::WorkOffsetChange{6, 2, -4.0}), "G59.1 has its origin at Z-4");
+    EXPECT_EQ(text_of(app::AllowanceChange{1.0}), "the minimum clearance is 1 mm");
     EXPECT_EQ(text_of(app::MovedFixture{"clamp-1", {0.0, 10.0, -2.0}}),
               "clamp-1 is moved by 10 mm along Y, -2 mm along Z");
 }

@@ -10,7 +10,7 @@ namespace bench {
 class BoxRules {
 public:
     using Pair = hwsim::SearchPair;
-    using Halves = std::array<std::optional<Pair>, 2>;
+    using SplitPairs = std::array<std::optional<Pair>, 2>;
 
     explicit BoxRules(const hwsim::Query& query) : query_(query) {}
 
@@ -18,12 +18,12 @@ public:
     hwsim::Division division_of(const Pair& pair) const {
         return hwsim::division_of(pair, query_.segment);
     }
-    static Halves halves_of_node(const Pair& pair, hwsim::Division division, uint32_t /*line*/,
-                                 const hwsim::Node& node) {
+    static SplitPairs halves_of_node(const Pair& pair, hwsim::Division division, uint32_t /*line*/,
+                                     const hwsim::Node& node) {
         return those_there(hwsim::halves_of_node(pair, division, node));
     }
-    static Halves halves_of_way(const Pair& pair) {
-        return those_there(hwsim::halves_of_way(pair));
+    static SplitPairs split_at_middle(const Pair& pair) {
+        return those_there(hwsim::split_at_middle(pair));
     }
     bool test(Pair& pair) const {
         const auto gap = hwsim::squared_gap(pair, query_.segment);
@@ -34,8 +34,8 @@ public:
     static uint64_t bound_of(const Pair& pair) { return pair.squared; }
 
 private:
-    static Halves those_there(const hwsim::Halves& halves) {
-        Halves there;
+    static SplitPairs those_there(const hwsim::SplitPairs& halves) {
+        SplitPairs there;
         for (size_t i = 0; i < 2; ++i)
             if (halves.there[i]) there[i] = halves.pair[i];
         return there;

@@ -57,9 +57,9 @@ Division SphereRules::division_of(const SpherePair& pair) const {
     return way > 0 ? Division::way : Division::none;
 }
 
-SphereRules::Halves SphereRules::halves_of_node(const SpherePair& pair, Division division,
-                                                uint32_t line, const hwsim::Node& node) const {
-    Halves halves;
+SphereRules::SplitPairs SphereRules::halves_of_node(const SpherePair& pair, Division division,
+                                                    uint32_t line, const hwsim::Node& node) const {
+    SplitPairs halves;
     for (size_t i = 0; i < 2; ++i) {
         if (node.child[i].is_none()) continue;
         SpherePair half = pair;
@@ -71,9 +71,9 @@ SphereRules::Halves SphereRules::halves_of_node(const SpherePair& pair, Division
     return halves;
 }
 
-SphereRules::Halves SphereRules::halves_of_way(const SpherePair& pair) {
+SphereRules::SplitPairs SphereRules::split_at_middle(const SpherePair& pair) {
     const auto middle = static_cast<uint16_t>((pair.first + pair.last) / 2);
-    Halves halves{pair, pair};
+    SplitPairs halves{pair, pair};
     halves[0]->last = middle;
     halves[1]->first = static_cast<uint16_t>(middle + 1);
     return halves;

@@ -27,7 +27,7 @@ struct SpherePair {
 class SphereRules {
 public:
     using Pair = SpherePair;
-    using Halves = std::array<std::optional<Pair>, 2>;
+    using SplitPairs = std::array<std::optional<Pair>, 2>;
 
     SphereRules(std::span<const hwsim::Line> memory, const SphereTable& table,
                 const hwsim::Query& query);
@@ -36,9 +36,9 @@ public:
 
     /// The largest part, as with boxes: compares radii and half the path.
     hwsim::Division division_of(const Pair& pair) const;
-    Halves halves_of_node(const Pair& pair, hwsim::Division division, uint32_t line,
-                          const hwsim::Node& node) const;
-    static Halves halves_of_way(const Pair& pair);
+    SplitPairs halves_of_node(const Pair& pair, hwsim::Division division, uint32_t line,
+                              const hwsim::Node& node) const;
+    static SplitPairs split_at_middle(const Pair& pair);
 
     /// Sets the bound; false if the tool leaves the range of coordinates on its path.
     bool test(Pair& pair) const;

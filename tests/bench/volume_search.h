@@ -32,7 +32,7 @@ public:
 
 private:
     using Pair = typename Rules::Pair;
-    using Halves = typename Rules::Halves;
+    using SplitPairs = typename Rules::SplitPairs;
 
     std::optional<Pair> visit(const Pair& pair) {
         time_.step();
@@ -43,7 +43,7 @@ private:
         }
         if (division == hwsim::Division::way) {
             ++answer_.counts.splits;
-            return nearer_of(rules_.halves_of_way(pair));
+            return nearer_of(rules_.split_at_middle(pair));
         }
         ++answer_.counts.nodes;
         const uint32_t line = (division == hwsim::Division::work ? pair.work : pair.tool).line();
@@ -52,7 +52,7 @@ private:
         return nearer_of(rules_.halves_of_node(pair, division, line, node));
     }
 
-    std::optional<Pair> nearer_of(Halves halves) {
+    std::optional<Pair> nearer_of(SplitPairs halves) {
         time_.test();
         for (std::optional<Pair>& half : halves) {
             if (!half) continue;

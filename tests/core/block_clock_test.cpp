@@ -146,7 +146,7 @@ double drive(const Motion& motion, const Machine& machine,
     TimePlan plan{.limits = limits_of(machine), .waiting = {}, .last = {}};
     std::vector<MotionTime> done;
     add_motion(plan, *path, 0, done);
-    come_to_rest(plan, done);
+    plan_stop(plan, done);
     constexpr int steps = 2000;
     std::vector<double> when;
     std::vector<AxisValues> where;

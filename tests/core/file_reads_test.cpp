@@ -10,7 +10,7 @@
 namespace {
 
 using core::FileAccess;
-using core::FileQuestion;
+using core::FileAccessKind;
 using test_support::ScopedFolder;
 
 /// Records accesses as "content a: hello", "presence b: -" and so on, with the file name only.

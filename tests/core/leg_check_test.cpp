@@ -59,7 +59,7 @@ TEST(PairBounds, CarriesABoundOverLegs) {
     PairBounds bounds(setup, memory);
     std::vector<TrackedPair> pairs;
     bounds.begin_leg(4.0);
-    TrackedPair& holder = bounds.known_pair(pairs, holder_and_stock);
+    TrackedPair& holder = bounds.tracked_pair(pairs, holder_and_stock);
     EXPECT_EQ(holder.at_end, 30.0);
     EXPECT_TRUE(bounds.can_skip(holder, pairs));
     EXPECT_EQ(holder.at_end, 26.0);

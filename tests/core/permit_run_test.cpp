@@ -17,7 +17,7 @@ std::vector<PermitMotion> random_plan(std::mt19937& random, size_t count) {
     double heading = 0.0;
     for (size_t i = 0; i < count; ++i) {
         if (any(random) < 0.03) {
-            come_to_rest(plan, times);
+            plan_stop(plan, times);
             MotionTime pause;
             pause.duration = 0.2 * any(random);
             times.push_back(pause);
@@ -32,7 +32,7 @@ std::vector<PermitMotion> random_plan(std::mt19937& random, size_t count) {
         for (size_t axis = 0; axis < 2; ++axis) motion.fastest[axis] = std::abs(motion.start[axis]);
         add_motion(plan, motion, 0, times);
     }
-    come_to_rest(plan, times);
+    plan_stop(plan, times);
     std::vector<PermitMotion> motions;
     for (const MotionTime& time : times)
         motions.push_back({time, static_cast<uint32_t>(motions.size())});

@@ -41,7 +41,7 @@ std::vector<MotionTime> times_of(TimePlan plan, const std::vector<PathMotion>& m
     std::vector<MotionTime> done;
     for (size_t i = 0; i < motions.size(); ++i)
         add_motion(plan, motions[i], static_cast<uint32_t>(i), done);
-    come_to_rest(plan, done);
+    plan_stop(plan, done);
     return done;
 }
 
@@ -321,14 +321,14 @@ TEST(Timing, DoesNotDependOnHowBlocksAreFed) {
     for (size_t i = 0; i < path.motions.size(); ++i) {
         TimePlan copy = going; // state left by looking ahead must not count
         std::vector<MotionTime> thrown_away;
-        if (i % 97 == 0) come_to_rest(copy, thrown_away);
+        if (i % 97 == 0) plan_stop(copy, thrown_away);
         std::vector<MotionTime> done;
         add_motion(going, path.motions[i], static_cast<uint32_t>(i), done);
         EXPECT_EQ(done.size(), i < look_ahead ? 0u : 1u);
         piecewise.insert(piecewise.end(), done.begin(), done.end());
         EXPECT_LE(going.waiting.size(), look_ahead);
     }
-    come_to_rest(going, piecewise);
+    plan_stop(going, piecewise);
     ASSERT_EQ(piecewise.size(), whole.size());
     for (size_t i = 0; i < whole.size(); ++i) {
         EXPECT_EQ(piecewise[i].duration, whole[i].duration);

@@ -99,13 +99,13 @@ Outcome run_on(gcode::ProgramLibrary& library, const gcode::Environment& environ
     Outcome outcome;
     while (true) {
         if (half_way && state.next_block == most_blocks / 20) *half_way = state;
-        const bool may_fail_late = holds_blocks_back(state);
+        const bool may_fail_late = has_pending_blocks(state);
         const gcode::InterpreterState before = state;
         auto next = interpreter.next(state);
         if (!next) {
             const core::Error& error = next.error();
             require(!error.message.empty() && error.where.line <= lines, "an error has a place");
-            if (!may_fail_late && !holds_blocks_back(state)) {
+            if (!may_fail_late && !has_pending_blocks(state)) {
                 require(continue_alike(state, before),
                         "an error leaves the state as it was before the block");
                 require(gcode::digest_of(state) == gcode::digest_of(before),

@@ -48,7 +48,7 @@ TEST(Interpreter, CountsBlocksNotLines) {
         EXPECT_EQ(ran.run.blocks[i].line, lines[i]);
     }
     EXPECT_EQ(ran.run.blocks[2].text, "/G0 X1");
-    EXPECT_EQ(ran.run.state.ending, Ending::program_end);
+    EXPECT_EQ(ran.run.state.ending, ProgramStatus::program_end);
     EXPECT_FALSE(ran.run.ending);
 }
 
@@ -118,9 +118,9 @@ TEST(Interpreter, GivesTheSameAgainFromACopiedState) {
     InterpreterState state = initial_state(environment);
     ASSERT_TRUE(interpreter.next(state));
     InterpreterState copy = state;
-    while (state.ending == Ending::running) ASSERT_TRUE(interpreter.next(state));
+    while (state.ending == ProgramStatus::running) ASSERT_TRUE(interpreter.next(state));
     EXPECT_NE(digest_of(state), digest_of(copy));
-    while (copy.ending == Ending::running) ASSERT_TRUE(interpreter.next(copy));
+    while (copy.ending == ProgramStatus::running) ASSERT_TRUE(interpreter.next(copy));
     EXPECT_TRUE(continue_alike(state, copy));
     EXPECT_EQ(digest_of(state), digest_of(copy));
 }

@@ -57,7 +57,7 @@ TEST(LongProgram, OfTenMillionLinesIsReadInBoundedMemory) {
         ++blocks;
     }
     EXPECT_EQ(blocks, line_count + 3);
-    EXPECT_EQ(state.ending, Ending::program_end);
+    EXPECT_EQ(state.ending, ProgramStatus::program_end);
     EXPECT_LT(most_memory_in_kilobytes() - before, 16 * 1024);
 }
 

@@ -79,7 +79,7 @@ TEST(QuickMove, LeavesWhatIsMoreThanAStraightMove) {
     for (const Word word : {Word{'I', 1.0}, Word{'S', 1.0}, Word{'G', 2.0}, Word{'X', 1.0}}) {
         Block block; // a feed without F, or a word that does not belong to a straight move
         block.words = {word};
-        EXPECT_FALSE(take_quick_move(block, state, result)) << word.letter;
+        EXPECT_FALSE(run_quick_move(block, state, result)) << word.letter;
         EXPECT_TRUE(continue_alike(state, before) && result.commands.empty());
     }
 }

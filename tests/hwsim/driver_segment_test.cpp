@@ -35,7 +35,7 @@ TEST(DriverSegment, MeasuresTheNearestOfItsPairs) {
     FunctionalDevice device = functional_device({.memory_lines = 64}).value();
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_records(driver, Side::tool, {{{0, 0, 0}, 0, 0}}).value();
-    std::vector<PairToKeep> pairs;
+    std::vector<RequiredPair> pairs;
     for (const int32_t x : {300, 100, 200})
         pairs.push_back({tool, load_records(driver, Side::work, {{{x, 0, 0}, 0, 0}}).value(), 0.0});
     const auto nearest = measure(driver, {{0, 0, 0}, {0, 0, 0}, pairs}).value();

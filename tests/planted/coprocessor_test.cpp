@@ -58,7 +58,7 @@ TEST(Coprocessor, RefusesEveryBlockOfThePlantedProgramsThatTheExactEngineDoes) {
     test_support::record(all.counts);
     EXPECT_GT(all.counts.violations, 150);
     EXPECT_LT(all.counts.false_alarms, all.counts.blocks / 200);
-    EXPECT_LT(all.counts.not_asked, all.counts.blocks / 50);
+    EXPECT_LT(all.counts.not_queried, all.counts.blocks / 50);
 }
 
 /// The run of a program with one engine.

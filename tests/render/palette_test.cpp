@@ -29,11 +29,11 @@ Vec3 lab(const Vec3& rgb) {
 
 /// How people without one kind of cones see a colour. Source: Machado, Oliveira, Fernandes: A
 /// physiologically-based model for simulation of color vision deficiency, 2009; severity 1.
-struct Sight {
+struct NodeView {
     const char* name;
     std::array<Vec3, 3> rows;
 };
-const std::array<Sight, 4> sights = {{
+const std::array<NodeView, 4> sights = {{
     {"all", {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}},
     {"protanopia",
      {Vec3(0.152286, 1.052583, -0.204868), Vec3(0.114503, 0.786281, 0.099216),
@@ -46,7 +46,7 @@ const std::array<Sight, 4> sights = {{
       Vec3(0.004733, 0.691367, 0.303900)}},
 }};
 
-Vec3 seen(const Sight& sight, Color color) {
+Vec3 seen(const NodeView& sight, Color color) {
     const Vec3 rgb = linear(color);
     Vec3 changed(0.0);
     for (int i = 0; i < 3; ++i)
@@ -54,13 +54,13 @@ Vec3 seen(const Sight& sight, Color color) {
     return lab(changed);
 }
 
-double apart(const Sight& sight, Color a, Color b) {
+double apart(const NodeView& sight, Color a, Color b) {
     return glm::distance(seen(sight, a), seen(sight, b));
 }
 
 TEST(Palette, StatesStayApartForEveryKindOfSight) {
     for (const ColorScheme theme : {ColorScheme::dark, ColorScheme::light})
-        for (const Sight& sight : sights) {
+        for (const NodeView& sight : sights) {
             const Color violation = state_color(theme, ClearanceState::violation);
             const Color near = state_color(theme, ClearanceState::near);
             const Color clear = state_color(theme, ClearanceState::clear);
@@ -74,7 +74,7 @@ TEST(Palette, TheMeasureSeesThatRedAndGreenCanFallTogether) {
     // A traffic light is what these colours are not: the measure must find it wanting.
     const Color amber{230, 160, 30}, green{120, 180, 60};
     double least = 1000.0;
-    for (const Sight& sight : sights) least = std::min(least, apart(sight, amber, green));
+    for (const NodeView& sight : sights) least = std::min(least, apart(sight, amber, green));
     EXPECT_LT(least, 20.0);
     EXPECT_GT(apart(sights[0], amber, green), 40.0);
 }

@@ -36,7 +36,7 @@ TEST_F(Walking, StopsBeforeALineEveryTimeItIsRun) {
     }
     EXPECT_EQ(stops, 18U);
     EXPECT_EQ(session->breakpoints()[0].hits, 18U);
-    while (session->go_on_back().reason == app::StopReason::breakpoint) --stops;
+    while (session->reverse_resume().reason == app::StopReason::breakpoint) --stops;
     EXPECT_EQ(stops, 0U);
     EXPECT_EQ(session->at(), 0U);
 }
@@ -126,10 +126,10 @@ TEST_F(Walking, WatchesAParameterBothWays) {
     EXPECT_EQ(session->watches()[0].hits, places.size());
     // Stepping back stops before the block that changes it.
     for (size_t i = places.size(); i-- > 0;) {
-        ASSERT_EQ(session->go_on_back().reason, app::StopReason::watch);
+        ASSERT_EQ(session->reverse_resume().reason, app::StopReason::watch);
         EXPECT_EQ(session->at(), places[i] - 1);
     }
-    EXPECT_EQ(session->go_on_back().reason, app::StopReason::beginning);
+    EXPECT_EQ(session->reverse_resume().reason, app::StopReason::beginning);
 }
 
 TEST(BreakpointLines, MoveToTheNextLineThatHoldsABlock) {

@@ -23,9 +23,9 @@ void record_all(app::DebugSession& session) {
     }
 }
 
-const app::WhatIf longer_tool = app::OtherToolLength{core::ToolNumber{2}, 99.0};
+const app::WhatIf longer_tool = app::ToolLengthChange{core::ToolNumber{2}, 99.0};
 const app::WhatIf moved_clamp = app::MovedFixture{"clamp-1", core::Vec3(-30.0, 0.0, 0.0)};
-const app::WhatIf more_room = app::OtherAllowance{7.0};
+const app::WhatIf more_room = app::AllowanceChange{7.0};
 
 TEST(WhatIf, ChangedAtTheBeginningIsAnotherSetup) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
@@ -124,8 +124,8 @@ TEST(WhatIf, TakenBackAtOnceLeavesNothing) {
     for (const size_t place : {size_t(0), size_t(6), size_t(200)}) {
         ASSERT_TRUE(session->go_to(place));
         for (const app::WhatIf& change :
-             {app::WhatIf(app::OtherLengthOffset{core::OffsetNumber{1}, 60.0}),
-              app::WhatIf(app::OtherWorkOffset{0, 2, -400.0}), longer_tool}) {
+             {app::WhatIf(app::LengthOffsetOverride{core::OffsetNumber{1}, 60.0}),
+              app::WhatIf(app::WorkOffsetChange{0, 2, -400.0}), longer_tool}) {
             ASSERT_TRUE(session->change(change));
             ASSERT_TRUE(session->take_back());
             ASSERT_EQ(app::digest_of(session->state()), digests[place]) << app::text_of(change);
@@ -138,7 +138,7 @@ TEST(WhatIf, TakenBackAtOnceLeavesNothing) {
 TEST(WhatIf, OfAVastAllowanceLooksAsFarAsACheckDoes) {
     const ProgramFiles files("walked.ngc", walked_program(), walked_setup());
     const auto session = open_session(files);
-    ASSERT_TRUE(session->change(app::OtherAllowance{80.0}));
+    ASSERT_TRUE(session->change(app::AllowanceChange{80.0}));
     record_all(*session);
     app::CheckJob job = files.job();
     job.allowance = 80.0;
@@ -177,7 +177,7 @@ TEST(WhatIf, OfASmallAllowanceLooksAsFarAsBefore) {
     job.allowance = 80.0;
     const auto opened = app::DebugSession::open(job);
     ASSERT_TRUE(opened);
-    ASSERT_TRUE((*opened)->change(app::OtherAllowance{1.0}));
+    ASSERT_TRUE((*opened)->change(app::AllowanceChange{1.0}));
     EXPECT_EQ((*opened)->setup_at(0).search_limit, 81.0);
 }
 
@@ -228,8 +228,9 @@ TEST(WhatIf, LetsAWrongLengthAbsorbOnlyItsConsequences) {
     };
     const auto& findings = session->record().findings;
     EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), shown_assumptions));
-    const auto& taken_in = session->record().taken_in;
-    EXPECT_TRUE(std::none_of(taken_in.begin(), taken_in.end(), shown_assumptions));
+    const auto& combined_findings = session->record().combined_findings;
+    EXPECT_TRUE(
+        std::none_of(combined_findings.begin(), combined_findings.end(), shown_assumptions));
 }
 
 } // namespace

@@ -47,7 +47,7 @@ public:
     /// record.
     void expect_what_counts() {
         const auto other = opened();
-        for (const app::MadeChange& made : made_) {
+        for (const app::AppliedChange& made : made_) {
             ASSERT_TRUE(other->go_to(made.block));
             ASSERT_TRUE(other->change(made.change));
         }
@@ -75,19 +75,19 @@ private:
         const int number = static_cast<int>(1 + below(2));
         switch (below(5)) {
         case 0:
-            return app::OtherToolLength{core::ToolNumber{number}, between(90.0, 105.0)};
+            return app::ToolLengthChange{core::ToolNumber{number}, between(90.0, 105.0)};
         case 1:
-            return app::OtherLengthOffset{core::OffsetNumber{number}, between(80.0, 110.0)};
+            return app::LengthOffsetOverride{core::OffsetNumber{number}, between(80.0, 110.0)};
         case 2:
-            return app::OtherWorkOffset{0, 2, between(-430.0, -410.0)};
+            return app::WorkOffsetChange{0, 2, between(-430.0, -410.0)};
         case 3:
-            return app::OtherAllowance{between(0.0, 30.0)};
+            return app::AllowanceChange{between(0.0, 30.0)};
         default:
             return app::MovedFixture{"clamp-1", {between(-20.0, 20.0), between(-20.0, 20.0), 0.0}};
         }
     }
     void change() {
-        const app::MadeChange made{session_->at(), any_change()};
+        const app::AppliedChange made{session_->at(), any_change()};
         if (!session_->change(made.change)) return;
         std::erase_if(made_, [&](const auto& other) { return other.block > made.block; });
         made_.push_back(made);
@@ -101,7 +101,7 @@ private:
     }
     std::string shown_assumptions() const {
         std::string text;
-        for (const app::MadeChange& made : made_)
+        for (const app::AppliedChange& made : made_)
             text += std::to_string(made.block) + ": " + app::text_of(made.change) + "\n";
         return text;
     }
@@ -109,7 +109,7 @@ private:
     const ProgramFiles& files_;
     std::mt19937 random_;
     std::unique_ptr<app::DebugSession> session_;
-    std::vector<app::MadeChange> made_ = {};
+    std::vector<app::AppliedChange> made_ = {};
     size_t most_made_ = 0;
 };
 

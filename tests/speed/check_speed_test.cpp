@@ -82,7 +82,8 @@ TEST(CheckSpeed, WatchSeesAChangeWithinTwentySecondsWhileOthersWriteInTheFolder)
 TEST(BenchSpeed, TakesLongerForMorePoints) {
     app::BenchScene scene = app::paper_scene();
     scene.mesh_sizes = {1.0, 2.0};
-    const std::vector<app::BenchMeans> means = app::means_of(app::measure(scene, 0.0).value());
+    const std::vector<app::BenchAverages> means =
+        app::averages_of(app::measure(scene, 0.0).value());
     EXPECT_GT(means[0].paper_seconds, 1.5 * means[1].paper_seconds);
     EXPECT_LT(means[0].paper_seconds, 50.0 * means[1].paper_seconds);
 }

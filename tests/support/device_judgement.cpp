@@ -50,7 +50,7 @@ void record(const app::EngineAgreement& counts) {
     write("blocks", counts.blocks);
     write("violations", counts.violations);
     write("refused", counts.refused);
-    write("not_asked", counts.not_asked);
+    write("not_asked", counts.not_queried);
     write("undecided", counts.undecided);
     write("false_alarms", counts.false_alarms);
 }

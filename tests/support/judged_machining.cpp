@@ -32,7 +32,7 @@ public:
                   i & 4U ? known_.box.max.z : known_.box.min.z});
     }
 
-    void carry_out(int blocks) {
+    void execute_motion(int blocks) {
         for (int i = 0; state_ && i < blocks; ++i) {
             const KnownBlock block = machinist_.next();
             const core::BlockResult result = take(block.events, block.is_cycle);
@@ -149,7 +149,7 @@ private:
             const core::ProfileElement& hull = by.tool->part(core::PartKind::flutes)->hull;
             for (size_t i = 0; i < cut_fixtures_.size(); ++i) {
                 const TrueFixture& fixture = known_.world.fixtures[i];
-                if (!fixture.expendable || !by.fixtures_there[i]) continue;
+                if (!fixture.expendable || !by.mounted_fixtures[i]) continue;
                 const core::Vec3 middle(0, 0, 0.5 * (hull.z0 + hull.z1));
                 constexpr int steps = 16;
                 for (int step = 0; step <= steps && !cut_fixtures_[i]; ++step) {
@@ -314,7 +314,7 @@ std::string MachiningTally::report() const {
 MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning) {
     MachiningTally tally;
     for (unsigned i = 0; i < programs; ++i)
-        JudgedMachining(first_seed + i, turning, tally).carry_out(blocks);
+        JudgedMachining(first_seed + i, turning, tally).execute_motion(blocks);
     return tally;
 }
 

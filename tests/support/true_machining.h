@@ -43,7 +43,7 @@ struct TruePassage {
     const TrueTool* tool;
     TruePath path;
     bool chips = false;
-    std::vector<bool> fixtures_there = {};
+    std::vector<bool> mounted_fixtures = {};
     bool is_certain = true; // false: after a crash, when the remaining material is unknown
 };
 
@@ -106,7 +106,7 @@ struct TrueMachining {
     /// Whether the flutes may have cut a point of a fixture, and from which fraction on.
     std::optional<double> first_cut(const TruePassage& by, size_t fixture,
                                     const core::Vec3& p) const {
-        if (!by.chips || !by.fixtures_there[fixture]) return std::nullopt;
+        if (!by.chips || !by.mounted_fixtures[fixture]) return std::nullopt;
         return first_within(*by.tool->part(core::PartKind::flutes),
                             seen(by, fixtures[fixture].mount, p), 1e-9, Doubt::counts);
     }
@@ -153,7 +153,7 @@ struct TruePair {
         if (!by.tool->part(part)) return false;
         const bool chips = by.chips && part == core::PartKind::flutes;
         if (!fixture) return !chips;
-        return by.fixtures_there[*fixture] && !(chips && world.fixtures[*fixture].expendable);
+        return by.mounted_fixtures[*fixture] && !(chips && world.fixtures[*fixture].expendable);
     }
     /// Whether the flutes of the pair may cut the fixture while feeding.
     bool cuts_fixture(const TrueMachining& world) const {

@@ -20,7 +20,7 @@ namespace gcode {
 struct Run {
     std::shared_ptr<ProgramLibrary> library; // owns the texts that blocks refer to
     std::vector<BlockCommands> blocks;
-    std::optional<Warning> ending; // as ending_warning
+    std::optional<Warning> ending; // as end_warning
     std::optional<core::Error> error;
     InterpreterState state; // after the last good block
 };
@@ -40,7 +40,7 @@ inline Run run(const Program& program, const Environment& environment) {
         if (!*result) break;
         whole.blocks.push_back(**result);
     }
-    whole.ending = ending_warning(environment, whole.state);
+    whole.ending = end_warning(environment, whole.state);
     return whole;
 }
 

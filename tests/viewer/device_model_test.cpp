@@ -17,14 +17,14 @@ using viewer_test::model_with;
 std::vector<MadeAnswer> some_of_each() {
     return {viewer_test::nothing(),       viewer_test::permitted(1.0),
             viewer_test::permitted(-1.0), viewer_test::permitted(0.001),
-            viewer_test::refused(),       viewer_test::not_asked()};
+            viewer_test::refused(),       viewer_test::not_queried()};
 }
 
 TEST(DeviceStudy, KeepsTheAnswerToEachBlock) {
     const auto study = study_of(viewer_test::result_of(some_of_each()));
     const DeviceAnswer expected[] = {DeviceAnswer::nothing, DeviceAnswer::permitted,
                                      DeviceAnswer::late,    DeviceAnswer::permitted,
-                                     DeviceAnswer::refused, DeviceAnswer::not_asked};
+                                     DeviceAnswer::refused, DeviceAnswer::not_queried};
     for (size_t i = 0; i < std::size(expected); ++i)
         EXPECT_EQ(answer_of(study.get(), i), expected[i]) << i;
     EXPECT_EQ(answer_of(study.get(), 6), DeviceAnswer::unknown);

@@ -68,7 +68,7 @@ TEST(DeviceSheet, NamesTheFaultOfADeviceThatHasStopped) {
 }
 
 TEST(DeviceSheet, SaysWhyABlockCannotBeChecked) {
-    const DeviceSheet sheet = sheet_of(viewer_test::not_asked());
+    const DeviceSheet sheet = sheet_of(viewer_test::not_queried());
     EXPECT_EQ(sheet.number, "not checked");
     EXPECT_EQ(sheet.tone, Tone::bad);
     EXPECT_EQ(sheet.answer, "Not permitted: a body turns");
@@ -152,7 +152,7 @@ TEST(DeviceStatus, DescribesTheCurrentState) {
 TEST(SlackWords, AreShortEnoughForATooltip) {
     const ViewModel model =
         model_with({viewer_test::permitted(0.125), viewer_test::permitted(-2.0),
-                    viewer_test::refused(), viewer_test::not_asked(), viewer_test::nothing()});
+                    viewer_test::refused(), viewer_test::not_queried(), viewer_test::nothing()});
     EXPECT_EQ(slack_words(model, 0), "slack 125.0 ms");
     EXPECT_EQ(slack_words(model, 1), "late by 2.00 s");
     EXPECT_EQ(slack_words(model, 2), "refused: flutes / stock");

@@ -9,7 +9,7 @@ namespace viewer_test {
 
 /// What a device has said of a block, and when.
 struct MadeAnswer {
-    std::string not_asked = {};
+    std::string not_queried = {};
     bool permitted = true;
     size_t segments = 3;
     hwsim::Stop stop = hwsim::Stop::none;
@@ -21,7 +21,7 @@ inline MadeAnswer permitted(double slack) { return {.permit = 1.0, .due = 1.0 + 
 inline MadeAnswer refused(core::Verdict exact = core::Verdict::violation) {
     return {.permitted = false, .stop = hwsim::Stop::violation, .exact = exact};
 }
-inline MadeAnswer not_asked() { return {.not_asked = "a body turns", .permitted = false}; }
+inline MadeAnswer not_queried() { return {.not_queried = "a body turns", .permitted = false}; }
 inline MadeAnswer nothing() { return {.segments = 0, .due = core::infinity}; }
 
 /// Answers of a device to a program, as a run would have them.
@@ -34,7 +34,7 @@ inline app::CoprocessorResult result_of(const std::vector<MadeAnswer>& answers) 
         block.permit.permitted = answer.permitted;
         block.permit.segments = answer.segments;
         block.permit.stop = answer.stop;
-        block.permit.not_asked = answer.not_asked;
+        block.permit.not_queried = answer.not_queried;
         if (answer.stop == hwsim::Stop::violation) block.permit.pair = core::Pair{};
         block.permit.report = {.permitted = static_cast<uint32_t>(3 * i + 3),
                                .stop = answer.stop,

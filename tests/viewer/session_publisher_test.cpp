@@ -72,7 +72,7 @@ TEST(SessionPublisher, ClaimsNoMoreThanWasLookedForWhenABlockWasRun) {
     Published program(opening + "G0 Z90\nG0 X5\nG0 X0\nG1 Z-1 F200\nX20\nG0 Z90\nG0 X5\nM30\n");
     ASSERT_TRUE(program.session->go_to(9));
     const double looked_for = program.session->setup_at(0).search_limit;
-    ASSERT_TRUE(program.session->change(app::OtherAllowance{80.0}));
+    ASSERT_TRUE(program.session->change(app::AllowanceChange{80.0}));
     program.record_all();
     EXPECT_EQ(program.model.rows.at(7).lower, looked_for);
     EXPECT_EQ(program.model.rows.at(12).lower, 81.0);

@@ -225,7 +225,7 @@ TEST(SessionWorker, SaysWhyAProgramCannotBeOpened) {
 }
 
 /// The next end of a walk that a worker tells of.
-std::optional<WalkEnd> next_end(SessionWorker& worker) {
+std::optional<RunEnd> next_end(SessionWorker& worker) {
     for (int tries = 0; tries < 6000; ++tries) {
         SessionUpdate news = worker.take();
         if (news.walk) return news.walk;

@@ -158,7 +158,7 @@ Json block_json(const CoprocessorResult& result, size_t i) {
 
 std::string refusal(const CoprocessorResult& result, size_t block) {
     const BlockPermit& permit = result.run.blocks[block].permit;
-    if (!permit.not_asked.empty()) return permit.not_asked;
+    if (!permit.not_queried.empty()) return permit.not_queried;
     const std::string why = hwsim::name_of(permit.stop);
     if (!permit.pair) return why;
     const std::string pair =
@@ -257,7 +257,7 @@ std::string coprocessor_text(const CoprocessorResult& result) {
         fmt::format("exact engine: {}; coprocessor: permits {} of its violations, refuses {} "
                     "of its clear blocks, cannot check {}",
                     core::name_of(result.run.check.verdict), both.missed, both.false_alarms,
-                    both.not_asked));
+                    both.not_queried));
     return printable(text);
 }
 
@@ -300,7 +300,7 @@ std::string coprocessor_json(const CoprocessorResult& result) {
            {{"verdict", core::name_of(result.run.check.verdict)},
             {"missed", both.missed},
             {"false_alarms", both.false_alarms},
-            {"not_asked", both.not_asked}}}}},
+            {"not_asked", both.not_queried}}}}},
         {"fits", fits},
         {"counters", counters},
         {"blocks", Json::array()}};

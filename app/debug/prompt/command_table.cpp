@@ -22,7 +22,7 @@ constexpr PromptCommand commands[] = {
     {"reverse-next", "rn", "[COUNT]", "go back one block, skipping subprograms", step_back_over, true},
     {"finish", "fin", "", "run to the first block after the subprogram", finish_subprogram, true},
     {"continue", "c", "[COUNT]", "run to the next breakpoint, or to the COUNTth", go_on, true},
-    {"reverse-continue", "rc", "[COUNT]", "go back to the previous breakpoint", go_on_back, true},
+    {"reverse-continue", "rc", "[COUNT]", "go back to the previous breakpoint", reverse_resume, true},
     {"until", "u", "LINE|CONDITION", "run to a line, or to a block that meets a condition\n"
      "until 120, until N210, until clearance < 1 and rapid", go_until, false},
     {"goto", "jump", "LOCATION", "go forwards or back to: block 17, line 120, N210, start, end", go_to, false},

@@ -15,7 +15,7 @@ struct PromptCommand {
     std::string_view aliases; // short forms, separated by blanks
     std::string_view usage;   // the arguments
     std::string_view help;    // the first line is for the list, the rest only for `help NAME`
-    core::Result<std::string> (*carry_out)(PromptState& state, const std::string& arguments);
+    core::Result<std::string> (*execute_motion)(PromptState& state, const std::string& arguments);
     bool repeats = false; // whether an empty line repeats it
 };
 
@@ -49,7 +49,7 @@ CommandResult step_back(PromptState& state, const std::string& arguments);
 CommandResult step_back_over(PromptState& state, const std::string& arguments);
 CommandResult finish_subprogram(PromptState& state, const std::string& arguments);
 CommandResult go_on(PromptState& state, const std::string& arguments);
-CommandResult go_on_back(PromptState& state, const std::string& arguments);
+CommandResult reverse_resume(PromptState& state, const std::string& arguments);
 CommandResult go_until(PromptState& state, const std::string& arguments);
 CommandResult go_to(PromptState& state, const std::string& arguments);
 CommandResult go_to_finding(PromptState& state, const std::string& arguments);

@@ -81,7 +81,7 @@ core::Aabb box_of(const core::Setup& setup, const core::Fixture& fixture) {
 
 CommandResult show_fixtures(PromptState& state, const std::string&) {
     const core::Setup& setup = state.session.setup_at(state.session.at());
-    const auto& there = state.session.fixtures_there();
+    const auto& there = state.session.mounted_fixtures();
     std::string text;
     for (size_t i = 0; i < setup.fixtures.size(); ++i) {
         const core::Fixture& fixture = setup.fixtures[i];
@@ -129,7 +129,7 @@ CommandResult show_program(PromptState& state, const std::string&) {
 
 CommandResult show_changes(PromptState& state, const std::string&) {
     std::string text;
-    for (const MadeChange& made : state.session.changes())
+    for (const AppliedChange& made : state.session.changes())
         text += fmt::format("from block {} on: {}\n", made.block, text_of(made.change));
     return text.empty() ? "no changes\n" : text;
 }

@@ -43,14 +43,14 @@ core::Result<WhatIf> tool_change(std::vector<std::string> words) {
     if (words.size() != 2) return core::fail(ErrorCode::syntax, "write set tool 3 length 95");
     FEELER_TRY(const int32_t number, number_after('t', words[0]));
     FEELER_TRY(const double length, value_in(words[1]));
-    return WhatIf(app::OtherToolLength{core::ToolNumber(number), length});
+    return WhatIf(app::ToolLengthChange{core::ToolNumber(number), length});
 }
 
 core::Result<WhatIf> length_change(const std::vector<std::string>& words) {
     if (words.size() != 2) return core::fail(ErrorCode::syntax, "write set H3 95");
     FEELER_TRY(const int32_t number, number_after('h', words[0]));
     FEELER_TRY(const double length, value_in(words[1]));
-    return WhatIf(OtherLengthOffset{core::OffsetNumber(number), length});
+    return WhatIf(LengthOffsetOverride{core::OffsetNumber(number), length});
 }
 
 /// Parses `G54.x -350`.
@@ -65,15 +65,15 @@ core::Result<WhatIf> offset_change(const std::vector<std::string>& words) {
     if (words.size() != 2 || !index || axis >= gcode::axis_count)
         return core::fail(ErrorCode::syntax, "write set G54.x -350");
     FEELER_TRY(const double origin, value_in(words[1]));
-    return WhatIf(OtherWorkOffset{*index, axis, origin});
+    return WhatIf(WorkOffsetChange{*index, axis, origin});
 }
 
 core::Result<WhatIf> allowance_change(const std::vector<std::string>& words) {
     if (words.size() != 2)
         return core::fail(ErrorCode::syntax, "write set allowance 1, or set allowance default");
-    if (words[1] == "default") return WhatIf(OtherAllowance{});
+    if (words[1] == "default") return WhatIf(AllowanceChange{});
     FEELER_TRY(const double distance, value_in(words[1]));
-    return WhatIf(OtherAllowance{distance});
+    return WhatIf(AllowanceChange{distance});
 }
 
 /// Parses `fixture clamp-1 by 0,10,0`; the name may contain blanks.

@@ -86,11 +86,11 @@ CommandResult go_on(PromptState& state, const std::string& arguments) {
     return stop_and_location(state, stop);
 }
 
-CommandResult go_on_back(PromptState& state, const std::string& arguments) {
+CommandResult reverse_resume(PromptState& state, const std::string& arguments) {
     FEELER_TRY(const size_t count, count_in(arguments));
-    Stop stop = state.session.go_on_back();
+    Stop stop = state.session.reverse_resume();
     for (size_t i = 1; i < count && stop.reason == StopReason::breakpoint; ++i)
-        stop = state.session.go_on_back();
+        stop = state.session.reverse_resume();
     return stop_and_location(state, stop);
 }
 

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Reports access to a path that is not read or listed now, but may become a file or folder.
 void note_presence(const fs::path& path) {
-    core::notify_file_access({core::FileQuestion::presence, path.string(), {}, {}});
+    core::notify_file_access({core::FileAccessKind::presence, path.string(), {}, {}});
 }
 
 /// Walks through folders one after the other, links last.
@@ -49,7 +49,7 @@ private:
 
     void enter(const fs::path& folder) {
         found.folders.push_back(folder);
-        core::notify_file_access({core::FileQuestion::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileAccessKind::listing, folder.string(), {}, {}});
         std::error_code failure;
         std::vector<fs::directory_entry> entries;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
@@ -152,7 +152,7 @@ private:
     }
 
     std::vector<std::string> names_of(const fs::path& folder) {
-        core::notify_file_access({core::FileQuestion::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileAccessKind::listing, folder.string(), {}, {}});
         std::error_code failure;
         std::vector<std::string> names = gcode::names_in(folder, failure);
         if (failure) found_.unreadable.push_back(unreadable_folder(folder, failure));

@@ -22,8 +22,8 @@ void ProgramChoice::add(const ChosenProgram& program) {
         return;
     }
     ChosenProgram& known = programs_[at->second];
-    if (known.is_at_home && !program.is_at_home) return;
-    if (program.is_at_home && !known.is_at_home) {
+    if (known.named_by_nearest_project && !program.named_by_nearest_project) return;
+    if (program.named_by_nearest_project && !known.named_by_nearest_project) {
         known = {known.path, program.general, program.special, true};
         return;
     }
@@ -52,11 +52,11 @@ std::vector<SkippedFile> ProgramChoice::skipped() const {
     return all;
 }
 
-void Chooser::take_words(const std::vector<std::string>& words) {
+void ProgramChooser::add_words(const std::vector<std::string>& words) {
     take(choice_, find_programs(words), {});
 }
 
-core::Result<void> Chooser::take_project(const std::string& path) {
+core::Result<void> ProgramChooser::add_project(const std::string& path) {
     const Chosen chosen = chosen_by(path);
     if (!*chosen) return tl::unexpected(chosen->error());
     take_all(choice_, **chosen);
@@ -64,7 +64,7 @@ core::Result<void> Chooser::take_project(const std::string& path) {
 }
 
 /// The choice of a project; null while it is being read, because its own search found it again.
-Chooser::Chosen Chooser::chosen_by(const std::string& project) {
+ProgramChooser::Chosen ProgramChooser::chosen_by(const std::string& project) {
     const auto [known, is_new] = projects_.try_emplace(identities_.of(project));
     if (is_new) {
         auto choice = std::make_shared<core::Result<ProgramChoice>>(read_choice(project));
@@ -73,7 +73,7 @@ Chooser::Chosen Chooser::chosen_by(const std::string& project) {
     return known->second;
 }
 
-core::Result<ProgramChoice> Chooser::read_choice(const std::string& path) {
+core::Result<ProgramChoice> ProgramChooser::read_choice(const std::string& path) {
     FEELER_TRY(const Project project, read_project(path));
     ProgramChoice choice;
     for (const ProjectEntry& entry : project.entries) {
@@ -88,13 +88,14 @@ core::Result<ProgramChoice> Chooser::read_choice(const std::string& path) {
     return choice;
 }
 
-void Chooser::take(ProgramChoice& choice, const FoundPrograms& found, const Sayer& sayer) {
+void ProgramChooser::take(ProgramChoice& choice, const FoundPrograms& found,
+                          const SelectionSource& sayer) {
     for (const core::Error& error : found.failures) choice.fail(error);
     for (const SkippedFile& file : found.skipped) choice.skip(file);
     std::set<std::string> led_to;
     for (const FoundProgram& program : found.programs) {
         if (!program.project.empty()) led_to.insert(program.project);
-        take_found(
+        add_found(
             choice, program,
             {program.path, sayer.general, sayer.special, is_nearest(sayer.project, program.path)});
     }
@@ -109,7 +110,7 @@ void Chooser::take(ProgramChoice& choice, const FoundPrograms& found, const Saye
         if (const Chosen chosen = chosen_by(project); chosen && *chosen) take_all(choice, **chosen);
 }
 
-bool Chooser::is_nearest(const std::string& project, const std::string& program) {
+bool ProgramChooser::is_nearest(const std::string& project, const std::string& program) {
     if (project.empty()) return false;
     std::error_code ignored;
     const auto folder = std::filesystem::absolute(program, ignored).parent_path();
@@ -119,12 +120,14 @@ bool Chooser::is_nearest(const std::string& project, const std::string& program)
 
 /// Adds a found program with the settings of its own project, or skips it if the project does not
 /// name it.
-void Chooser::take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named) {
+void ProgramChooser::add_found(ProgramChoice& choice, const FoundProgram& found,
+                               ChosenProgram as_named) {
     const Chosen chosen = found.project.empty() ? nullptr : chosen_by(found.project);
     if (!chosen || found.is_named) choice.add(as_named);
     if (!chosen || !*chosen) return;
     if (const ChosenProgram* program = (*chosen)->find(found.path)) {
-        choice.add({found.path, program->general, program->special, program->is_at_home});
+        choice.add(
+            {found.path, program->general, program->special, program->named_by_nearest_project});
     } else if (!found.is_named) {
         choice.skip(
             {found.path, fmt::format("is not named in any [[program]] of {}", found.project)});

@@ -17,7 +17,7 @@ namespace app {
 struct ChosenProgram {
     std::string path;
     ProgramTerms general, special; // `general`: for all programs; `special`: from tables naming it
-    bool is_at_home = false;       // named by the nearest project file above it
+    bool named_by_nearest_project = false; // named by the nearest project file above it
 };
 
 /// Programs in the order of their first addition, each once however its path is written. If several
@@ -46,12 +46,12 @@ private:
 
 /// Chooses programs from arguments of a command line and from project files, including project
 /// files found in the folders that arguments name.
-class Chooser {
+class ProgramChooser {
 public:
-    void take_words(const std::vector<std::string>& words);
+    void add_words(const std::vector<std::string>& words);
 
     /// Errors: those of read_project.
-    core::Result<void> take_project(const std::string& path);
+    core::Result<void> add_project(const std::string& path);
 
     ProgramChoice finish() && { return std::move(choice_); }
 
@@ -61,14 +61,14 @@ private:
     Chosen chosen_by(const std::string& project);
     core::Result<ProgramChoice> read_choice(const std::string& project);
     /// The project and table that name programs; an empty project if the command line does.
-    struct Sayer {
+    struct SelectionSource {
         std::string project;
         ProgramTerms general, special;
     };
 
-    void take(ProgramChoice& choice, const FoundPrograms& found, const Sayer& sayer);
+    void take(ProgramChoice& choice, const FoundPrograms& found, const SelectionSource& sayer);
     bool is_nearest(const std::string& project, const std::string& program);
-    void take_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named);
+    void add_found(ProgramChoice& choice, const FoundProgram& found, ChosenProgram as_named);
 
     ProgramChoice choice_;
     std::map<std::string, Chosen> projects_; // null while the project is being read

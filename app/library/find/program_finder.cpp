@@ -86,7 +86,7 @@ private:
             if (!project.empty()) program.project = project;
         }
         if (!is_new) return examined.may_be_program;
-        core::notify_file_access({core::FileQuestion::kind, file, {}, {}});
+        core::notify_file_access({core::FileAccessKind::kind, file, {}, {}});
         auto why = why_no_program(file);
         examined.may_be_program = !why || !*why;
         if (!why)
@@ -207,7 +207,7 @@ bool has_mostly_blocks(std::string_view text) {
 
 /// Why a text cannot be a program of any kind; empty if it can.
 std::optional<std::string> why_unreadable(std::string_view text) {
-    if (text.find('\0') != std::string_view::npos) return std::string(gcode::what_has_nuls(text));
+    if (text.find('\0') != std::string_view::npos) return std::string(gcode::nul_bytes_error(text));
     if (gcode::looks_binary(gcode::count_stray_controls(text), text.size()))
         return "is a binary file";
     return text.empty() ? std::optional<std::string>("is empty") : std::nullopt;

@@ -86,7 +86,7 @@ core::Result<Project> read_project(const std::string& path) {
 std::string ProjectOwners::of(const std::filesystem::path& folder,
                               const std::filesystem::path& top) {
     std::filesystem::path here = folder;
-    while (!holds_project(here)) {
+    while (!contains_project(here)) {
         const std::filesystem::path above = here.parent_path();
         if (here == top || above == here) return {};
         here = above;
@@ -94,7 +94,7 @@ std::string ProjectOwners::of(const std::filesystem::path& folder,
     return (here / project_file_name).string();
 }
 
-bool ProjectOwners::holds_project(const std::filesystem::path& folder) {
+bool ProjectOwners::contains_project(const std::filesystem::path& folder) {
     const auto [known, is_new] = known_.try_emplace(folder.string());
     if (is_new) known->second = core::is_there(folder / project_file_name);
     return known->second;

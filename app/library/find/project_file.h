@@ -52,7 +52,7 @@ public:
     std::string of(const std::filesystem::path& folder, const std::filesystem::path& top);
 
 private:
-    bool holds_project(const std::filesystem::path& folder);
+    bool contains_project(const std::filesystem::path& folder);
 
     std::map<std::string, bool> known_; // whether a folder has a project file
 };

@@ -47,7 +47,7 @@ bool is_one_program(const std::vector<std::string>& words) {
 }
 
 core::Result<BatchPlan> plan_batch(const std::vector<std::string>& words, const CheckJob& asked) {
-    Chooser chooser;
+    ProgramChooser chooser;
     std::vector<std::string> plain; // successive arguments without a project
     for (const std::string& word : words) {
         const std::string path = project_of(word);
@@ -55,10 +55,10 @@ core::Result<BatchPlan> plan_batch(const std::vector<std::string>& words, const 
             plain.push_back(word);
             continue;
         }
-        chooser.take_words(std::exchange(plain, {}));
-        if (auto read = chooser.take_project(path); !read) return tl::unexpected(read.error());
+        chooser.add_words(std::exchange(plain, {}));
+        if (auto read = chooser.add_project(path); !read) return tl::unexpected(read.error());
     }
-    chooser.take_words(plain);
+    chooser.add_words(plain);
     const ProgramChoice choice = std::move(chooser).finish();
     BatchPlan plan{.jobs = {}, .skipped = choice.skipped(), .failures = choice.failures()};
     for (const ChosenProgram& chosen : choice.programs())

@@ -16,16 +16,16 @@ std::optional<std::string> answer_of(const InputFile& input) {
 
 bool InputAnswers::is_same(const InputFile& input) {
     switch (input.question) {
-    case core::FileQuestion::content:
+    case core::FileAccessKind::content:
         return input.answer && !input.answer->empty() && content_of(input.path) == *input.answer;
-    case core::FileQuestion::presence:
+    case core::FileAccessKind::presence:
         return core::presence_of(input.path) == input.answer;
-    case core::FileQuestion::in_folder:
+    case core::FileAccessKind::in_folder:
         return answer_of(input) == input.answer;
-    case core::FileQuestion::any_case:
+    case core::FileAccessKind::any_case:
         return name_in_any_case(input) == input.answer;
-    case core::FileQuestion::listing:
-    case core::FileQuestion::kind:
+    case core::FileAccessKind::listing:
+    case core::FileAccessKind::kind:
         return false; // no result depends on these, only the choice of programs
     }
     return false;
@@ -53,7 +53,7 @@ T InputAnswers::ask(std::map<std::string, Known<T>>& known, const std::string& p
 }
 
 std::string InputAnswers::content_of(const std::string& path) {
-    core::notify_file_access({core::FileQuestion::content, path, {}, {}});
+    core::notify_file_access({core::FileAccessKind::content, path, {}, {}});
     return ask(contents_, path, sha256_of_file);
 }
 

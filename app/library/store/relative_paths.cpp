@@ -61,7 +61,7 @@ RelativePaths::RelativePaths(const std::string& database) {
     stamps_ = stamps_of({working_folder_, named_folder_, folder_});
 }
 
-bool RelativePaths::still_hold() const {
+bool RelativePaths::are_still_valid() const {
     const auto is_same = [](const FileStamp& a, const FileStamp& b) {
         return a.is_there && a.device == b.device && a.number == b.number;
     };
@@ -108,14 +108,14 @@ CheckJob with_relative_paths(const CheckJob& job, const RelativePaths& paths) {
 
 InputFile with_relative_paths(InputFile input, const RelativePaths& paths) {
     input.path = paths.relative(input.path);
-    if (input.question == core::FileQuestion::in_folder && input.answer)
+    if (input.question == core::FileAccessKind::in_folder && input.answer)
         input.answer = paths.relative(*input.answer);
     return input;
 }
 
-InputFile asked_again(InputFile input, const RelativePaths& paths) {
+InputFile with_absolute_paths(InputFile input, const RelativePaths& paths) {
     input.path = paths.absolute(input.path);
-    if (input.question == core::FileQuestion::in_folder && input.answer)
+    if (input.question == core::FileAccessKind::in_folder && input.answer)
         input.answer = paths.absolute(*input.answer);
     return input;
 }
@@ -161,7 +161,7 @@ std::set<std::string> paths_of(const CheckJob& job, const std::vector<InputFile>
     paths.insert(paths.end(), settings.search_path.begin(), settings.search_path.end());
     for (const InputFile& input : inputs) {
         paths.push_back(input.path);
-        if (input.question == core::FileQuestion::in_folder && input.answer)
+        if (input.question == core::FileAccessKind::in_folder && input.answer)
             paths.push_back(*input.answer);
     }
     std::set<std::string> all;

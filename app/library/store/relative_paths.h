@@ -30,7 +30,7 @@ public:
 
     /// Whether the name of the folder still leads to it, and the working folder is the same. If a
     /// link or folder has been replaced since, paths and places refer to different files.
-    bool still_hold() const;
+    bool are_still_valid() const;
 
     /// The folder, with all links followed.
     const std::string& folder() const { return folder_; }
@@ -45,7 +45,7 @@ CheckJob with_relative_paths(const CheckJob& job, const RelativePaths& paths);
 
 /// An access with paths replaced by places, and back.
 InputFile with_relative_paths(InputFile input, const RelativePaths& paths);
-InputFile asked_again(InputFile input, const RelativePaths& paths);
+InputFile with_absolute_paths(InputFile input, const RelativePaths& paths);
 
 /// Whether any text of a result may contain the path of a file or folder of its check (as in the
 /// job, as accessed, or any in `folder`), apart from the members for program and set-up. True if in

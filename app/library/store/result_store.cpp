@@ -21,7 +21,7 @@ namespace app {
 namespace {
 
 InputFile input_of(const Statement& row) {
-    InputFile input{static_cast<core::FileQuestion>(row.number(0)), row.text(1), row.text(2), {}};
+    InputFile input{static_cast<core::FileAccessKind>(row.number(0)), row.text(1), row.text(2), {}};
     if (const std::string answer = row.text(3); !answer.empty()) input.answer = answer.substr(1);
     return input;
 }
@@ -116,7 +116,7 @@ JobKeys ResultStore::State::keys_of(const CheckJob& job, const std::string& sha2
 
 bool ResultStore::State::is_same(const StoredRow& row) {
     return std::all_of(row.inputs.begin(), row.inputs.end(), [this](const InputFile& input) {
-        return answers->is_same(asked_again(input, relative_paths));
+        return answers->is_same(with_absolute_paths(input, relative_paths));
     });
 }
 
@@ -185,7 +185,7 @@ core::Result<ResultStore> ResultStore::open_as(const std::string& path,
 void ResultStore::try_again() { state_->writer->try_again(); }
 
 std::vector<std::string> ResultStore::keys_of(const CheckJob& job) const {
-    if (!state_->relative_paths.still_hold()) return {};
+    if (!state_->relative_paths.are_still_valid()) return {};
     const std::string sha256 = state_->content_of(job);
     if (!is_stored(job) || sha256.empty()) return {};
     const JobKeys keys = state_->keys_of(job, sha256);
@@ -228,7 +228,7 @@ core::Result<void> ResultStore::keep(const CheckJob& job, const CheckRun& run,
     const bool was_stopped = run.stopped && run.stopped->code == core::ErrorCode::io;
     if (!state_->is_writable || !is_stored(job) || was_stopped || run.sha256.empty()) return {};
     const RelativePaths& relative_paths = state_->relative_paths;
-    if (!relative_paths.still_hold()) return {};
+    if (!relative_paths.are_still_valid()) return {};
     const JobKeys keys = state_->keys_of(job, run.sha256);
     const bool is_named = quotes_paths(result, job, run.inputs, relative_paths.folder());
     std::set<InputFile> inputs; // a set, because two paths may give the same place

@@ -119,7 +119,7 @@ bool WatchedFiles::differ(const Asked& asked, const Observation& a, const Observ
 }
 
 void WatchedFiles::note(const core::FileAccess& access) {
-    using enum core::FileQuestion;
+    using enum core::FileAccessKind;
     const bool is_named = access.question == in_folder;
     const std::string path =
         is_named ? (fs::path(access.path) / access.name).string() : access.path;

@@ -72,7 +72,7 @@ private:
     TextTable rules_;
     size_t most_;
     NumberRuns count_, severity_, rule_, file_, pair_, message_, cure_, shortfall_, kinds_;
-    StepRuns line_, block_, text_;
+    DeltaRuns line_, block_, text_;
     std::vector<int64_t> tally_;
 };
 

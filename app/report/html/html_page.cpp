@@ -6,7 +6,7 @@
 
 namespace app {
 
-std::string filled_page(std::string_view page, const PageFillings& fillings) {
+std::string filled_page(std::string_view page, const PageValues& fillings) {
     std::string text;
     while (true) {
         const size_t open = page.find("{{");

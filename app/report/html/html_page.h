@@ -14,10 +14,10 @@
 namespace app {
 
 /// Replacements for the {{name}}s of a page.
-using PageFillings = std::map<std::string, std::string, std::less<>>;
+using PageValues = std::map<std::string, std::string, std::less<>>;
 
 /// The page with each {{name}} replaced. Inserted text is not scanned for names.
-std::string filled_page(std::string_view page, const PageFillings& fillings);
+std::string filled_page(std::string_view page, const PageValues& fillings);
 
 /// A statement of a script that lists the names of enumerators in their order, by which the data of
 /// the page refers to them: `const verdicts=["clear",...];`.

@@ -107,7 +107,7 @@ private:
 };
 
 struct Columns {
-    StepRuns line, text;
+    DeltaRuns line, text;
     NumberRuns file, motion, tool, pair, verdict;
     std::vector<int64_t> time, removed, lower, width;
 };

@@ -37,7 +37,7 @@ std::string html_report(const CheckRun& run, const ReportViews& views);
 /// Units:  um, 0.1 ms and 0.01 mm3, as integers. Lower bounds are rounded down and upper bounds up,
 ///         so the interval shown encloses the true one.
 /// Result: `lower` is -1 if nothing is known; `width` (upper minus lower) is -1 beyond the search
-///         limit. Columns with many equal values are run-length encoded (NumberRuns, StepRuns).
+///         limit. Columns with many equal values are run-length encoded (NumberRuns, DeltaRuns).
 /// Cost:   linear; about 20 bytes per block, and each different text once.
 std::string blocks_json(const CheckRun& run);
 

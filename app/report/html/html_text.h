@@ -34,7 +34,7 @@ private:
 };
 
 /// Run-length encoded differences between consecutive numbers; the first is relative to 0.
-class StepRuns {
+class DeltaRuns {
 public:
     void add(int64_t value) {
         steps_.add(value - last_);

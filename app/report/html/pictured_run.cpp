@@ -248,7 +248,7 @@ struct Stage {
     core::Result<void> open(const CheckJob& job) {
         session.open(job, [] {});
         while (session.has_work()) session.record();
-        take_in(model, session.take_news(), 0.0);
+        take_in(model, session.take_update(), 0.0);
         if (model.failure) return tl::unexpected(*model.failure);
         model.settings.theme = render::ColorScheme::light;
         return {};
@@ -259,7 +259,7 @@ struct Stage {
     void go_to(size_t block) {
         viewer::go_to_witness(model, block);
         session.show({block, model.cursor.fraction >= 1.0});
-        take_in(model, session.take_news(), 0.0);
+        take_in(model, session.take_update(), 0.0);
         model.camera = render::seen_from(model.camera, render::StandardView::iso);
         model.camera = render::framing(model.camera, picture_size,
                                        render::work_bounds(viewer::scene_of(model)));

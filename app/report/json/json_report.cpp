@@ -218,7 +218,7 @@ std::string json_lines_report(const CheckRun& run, bool pairs) {
 
 std::map<core::BlockIndex, std::vector<std::string>> rules_of_blocks(const CheckRun& run) {
     std::vector<const core::Finding*> all;
-    for (const auto* findings : {&run.findings, &run.taken_in})
+    for (const auto* findings : {&run.findings, &run.combined_findings})
         for (const core::Finding& finding : *findings)
             if (finding.block) all.push_back(&finding);
     std::stable_sort(all.begin(), all.end(),

@@ -35,14 +35,14 @@ std::string paper_points(double mesh_size) {
     return "";
 }
 
-std::string means_text(const std::vector<BenchMeans>& means, bool with_the_papers) {
+std::string means_text(const std::vector<BenchAverages>& means, bool with_the_papers) {
     const char* const papers = with_the_papers ? "paper's" : "";
     std::string text =
         fmt::format("{:>6}{:>8}{:>9}{:>10}{:>10}{:>8}{:>9}{:>10}{:>8}\n", "mesh", "points", papers,
                     "error", "sphere", "point", "paper", "fast", "ratio");
     text += fmt::format("{:>6}{:>8}{:>9}{:>10}{:>10}{:>8}{:>9}{:>10}\n", "mm", "",
                         with_the_papers ? "points" : "", "%", "tests", "tests", "ms", "us");
-    for (const BenchMeans& mean : means)
+    for (const BenchAverages& mean : means)
         text += fmt::format(
             "{:>6.1f}{:>8}{:>9}{:>10.3f}{:>10.0f}{:>8.0f}{:>9.3f}{:>10.1f}{:>8.1f}\n",
             mean.mesh_size, mean.points, with_the_papers ? paper_points(mean.mesh_size) : "",
@@ -51,7 +51,7 @@ std::string means_text(const std::vector<BenchMeans>& means, bool with_the_paper
     return text;
 }
 
-std::string growth_text(const std::vector<BenchMeans>& means) {
+std::string growth_text(const std::vector<BenchAverages>& means) {
     const LineFit fit = time_by_points(means);
     return wrapped(fmt::format("The paper's time grows linearly with the points: {:.1f} ns for "
                                "each point plus {:.3f} ms (R2 = {:.4f}).",
@@ -66,7 +66,7 @@ std::string row_text(const BenchRow& row) {
                        1e6 * row.fast.seconds, row.ratio());
 }
 
-std::string rows_text(const BenchTable& table, const BenchMeans& mean) {
+std::string rows_text(const BenchTable& table, const BenchAverages& mean) {
     std::string text =
         fmt::format("{:>6}{:>11}{:>10}{:>11}{:>9}{:>11}{:>11}{:>9}\n", "gap", "distance", "error",
                     "sphere", "point", "paper", "fast", "ratio");
@@ -86,13 +86,13 @@ std::string points_text(const BenchTable& table, double mesh_size) {
 
 std::string scene_text(const BenchTable& table, size_t number) {
     std::string text = wrapped(fmt::format("{}. {}", number, table.scene.title), 0, 3);
-    const std::vector<BenchMeans> means = means_of(table);
+    const std::vector<BenchAverages> means = averages_of(table);
     size_t part = 0;
     if (means.size() > 2)
         text += fmt::format("\n{}.{}  Means over {} gaps (of the ratios: geometric)\n\n{}{}",
                             number, ++part, table.scene.poses.size(),
                             means_text(means, number == 1), growth_text(means));
-    for (const BenchMeans& mean : means)
+    for (const BenchAverages& mean : means)
         text +=
             fmt::format("\n{}.{}  Mesh size {:.1f} mm, {}\n\n{}", number, ++part, mean.mesh_size,
                         points_text(table, mean.mesh_size), rows_text(table, mean));
@@ -117,7 +117,7 @@ std::string agreement_text(const std::vector<BenchTable>& tables) {
 }
 
 std::string csv_row(const BenchScene& scene, const BenchRow& row, bool is_paper) {
-    const BenchAnswer& by = is_paper ? row.paper : row.fast;
+    const EngineResult& by = is_paper ? row.paper : row.fast;
     return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", scene.name, scene.direction,
                        row.mesh_size, row.points_a, row.points_b, row.separation,
                        is_paper ? "paper" : "fast", by.distance, row.error_percent(),

@@ -88,7 +88,7 @@ FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
 /// The tools that the program uses and the set-up lacks, with what is known of them.
 core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
                                                    const ProgramSurvey& seen) {
-    FEELER_TRY(const OfferedTools offered, offered_tools(file, program));
+    FEELER_TRY(const SuggestedTools offered, suggested_tools(file, program));
     const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
     const auto mills = [&](ToolNumber number) {
         const auto found = seen.mills.find(number);
@@ -170,8 +170,8 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
     std::optional<core::Aabb> reach;
     if (seen.feeds) reach = core::Aabb{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
-    const auto stated = file.is_inferred ? stated_stock(program, unit, reach) : std::nullopt;
-    GuessedStock stock;
+    const auto stated = file.is_inferred ? declared_stock(program, unit, reach) : std::nullopt;
+    InferredStock stock;
     if (stated) {
         const Vec3 shift = seen.zero - frame;
         stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
@@ -209,7 +209,7 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     file.setup.rules[core::rule_id("missing-length-offset")] = core::Severity::off;
     file.setup.rules[core::rule_id("tool-change-unsafe")] = core::Severity::off;
     if (file.needs_stock)
-        file.setup.stock = {core::SolidBox{stock_out_of_the_way()}, file.setup.stock.tolerance};
+        file.setup.stock = {core::SolidBox{unreachable_box()}, file.setup.stock.tolerance};
     return why;
 }
 
@@ -328,8 +328,8 @@ core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
 
 } // namespace
 
-core::Result<OfferedTools> offered_tools(const SetupFile& file, const gcode::Program& program) {
-    OfferedTools offered;
+core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode::Program& program) {
+    SuggestedTools offered;
     offered.tools = file.library;
     ProgramTools named =
         tools_of_program(program, unit_of_program(program, file.environment.machine_unit));

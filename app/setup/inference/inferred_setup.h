@@ -38,13 +38,13 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
 
 /// Tools that the set-up lacks, from its library, the program's comments and the control's tool
 /// table, in this order of precedence.
-struct OfferedTools {
+struct SuggestedTools {
     std::map<core::ToolNumber, FoundTool> tools;
     std::optional<FoundTool> in_spindle; // for a program without tool calls
 };
 
 /// Errors: those of the tool table's file.
-core::Result<OfferedTools> offered_tools(const SetupFile& file, const gcode::Program& program);
+core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode::Program& program);
 
 /// A tool of which only the use is known. `mills`: it cuts sideways.
 FoundTool unknown_tool(core::ToolNumber number, bool mills, gcode::LengthUnit unit);

@@ -114,12 +114,12 @@ struct Sides {
 
 } // namespace
 
-GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin) {
+InferredStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin) {
     return guessed_stock(seen, frame, margin, {});
 }
 
-GuessedStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin,
-                           const std::vector<UncutPlunge>& plunges) {
+InferredStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin,
+                            const std::vector<UncutPlunge>& plunges) {
     if (!seen.feeds)
         return {{frame + Vec3(-5, -5, -5), frame + Vec3(5, 5, 0)},
                 "the program cuts nothing, so the stock is a cube of 10 mm at its zero"};
@@ -147,7 +147,7 @@ std::string box_text(const Aabb& box) {
                        box.max.x, box.min.y, box.max.y, box.min.z, box.max.z);
 }
 
-core::Aabb stock_out_of_the_way() { return {{-5, -5, -100'010}, {5, 5, -100'000}}; }
+core::Aabb unreachable_box() { return {{-5, -5, -100'010}, {5, 5, -100'000}}; }
 
 namespace {
 
@@ -360,7 +360,7 @@ struct MaterialHeader {
 struct Scan {
     gcode::LengthUnit unit;
     std::optional<Vec3> first{};
-    std::optional<StatedStock> found{};
+    std::optional<DeclaredStock> found{};
     MaterialHeader header{};
 
     void take(const Vec3& a, const Vec3& b, std::string source) {
@@ -401,8 +401,8 @@ struct Scan {
 
 } // namespace
 
-std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit,
-                                        const std::optional<core::Aabb>& reach) {
+std::optional<DeclaredStock> declared_stock(const gcode::Program& program, gcode::LengthUnit unit,
+                                            const std::optional<core::Aabb>& reach) {
     Scan scan{unit};
     for (size_t line = 1; line <= program.line_count(); ++line) scan.line(program.line(line), line);
     scan.end(reach);

@@ -30,7 +30,7 @@ std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
                                        const SurveyTools& tools, const core::Aabb& box);
 
 /// The raw stock that a program was probably written for, machine frame, and the reasons.
-struct GuessedStock {
+struct InferredStock {
     core::Aabb box;
     std::string why; // one sentence
 };
@@ -41,18 +41,18 @@ struct GuessedStock {
 /// Each moves only one side inwards, the one that moves least, and in each axis the box shrinks by
 /// a fifth at most; a plunge too far inside stays in the material. A top above zero is lowered to
 /// the end of a plunge. Coordinates in the text are relative to `frame`, the frame of the stock.
-GuessedStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, double margin);
-GuessedStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, double margin,
-                           const std::vector<UncutPlunge>& plunges);
+InferredStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, double margin);
+InferredStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, double margin,
+                            const std::vector<UncutPlunge>& plunges);
 
 /// "X 0.000 to 10.000, Y ...".
 std::string box_text(const core::Aabb& box);
 
 /// A box away from all motions, for programs that are not known to cut.
-core::Aabb stock_out_of_the_way();
+core::Aabb unreachable_box();
 
 /// The raw stock that a program states, in program coordinates, mm.
-struct StatedStock {
+struct DeclaredStock {
     core::Aabb box;
     std::string source; // "BLK FORM in line 3", for the end of a sentence
 };
@@ -62,7 +62,7 @@ struct StatedStock {
 ///
 /// `reach`: what the program cuts, in program coordinates. If a header gives only a size, it shows
 /// whether program zero is at a corner or in the middle.
-std::optional<StatedStock> stated_stock(const gcode::Program& program, gcode::LengthUnit unit,
-                                        const std::optional<core::Aabb>& reach = {});
+std::optional<DeclaredStock> declared_stock(const gcode::Program& program, gcode::LengthUnit unit,
+                                            const std::optional<core::Aabb>& reach = {});
 
 } // namespace app

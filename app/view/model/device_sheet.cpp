@@ -47,7 +47,7 @@ std::string block_words(const DeviceStudy& study, size_t block) {
 
 std::string number_of(const Subject& subject) {
     if (subject.answer() == DeviceAnswer::refused) return "refused";
-    if (subject.answer() == DeviceAnswer::not_asked) return "not checked";
+    if (subject.answer() == DeviceAnswer::not_queried) return "not checked";
     const auto slack = slack_of(&subject.study, subject.index);
     return slack ? time_text(*slack) : no_value;
 }
@@ -70,7 +70,7 @@ std::string answer_words(const Subject& subject) {
         return subject.block().permit.stop == hwsim::Stop::violation
                    ? why() + " come closer than allowed"
                    : "The coprocessor has stopped: " + why();
-    case DeviceAnswer::not_asked:
+    case DeviceAnswer::not_queried:
         return "Not permitted: " + why();
     }
     return {};
@@ -94,7 +94,7 @@ void compare(const Subject& subject, const std::string& exact, DeviceSheet& shee
     if (both.missed > 0) {
         sheet.exact += ": the block must not be permitted";
         sheet.exact_tone = Tone::bad;
-    } else if (both.not_asked > 0 || is_undecided) {
+    } else if (both.not_queried > 0 || is_undecided) {
         sheet.exact_tone = Tone::near;
     } else if (both.false_alarms > 0) {
         sheet.exact += ": a false alarm, on the safe side";
@@ -170,8 +170,8 @@ void add_stops(const DeviceStudy& study, DevicePart& part) {
         part.lines.push_back({name, fmt::format("{} of {}", blocks, study.size()),
                               blocks == 0 ? Tone::plain : Tone::bad});
     };
-    count("refused", both.refused - both.not_asked);
-    if (both.not_asked > 0) count("not checked", both.not_asked);
+    count("refused", both.refused - both.not_queried);
+    if (both.not_queried > 0) count("not checked", both.not_queried);
     if (study.held)
         part.lines.push_back(
             {"stopped before", block_words(study, *study.held), Tone::bad, *study.held});
@@ -264,7 +264,7 @@ std::string slack_words(const ViewModel& model, size_t block) {
         return {};
     case DeviceAnswer::refused:
         return "refused: " + refusal(*study->result, block);
-    case DeviceAnswer::not_asked:
+    case DeviceAnswer::not_queried:
         return "not checked: " + refusal(*study->result, block);
     case DeviceAnswer::late:
         return "late by " + time_text(-*slack_of(study, block));

@@ -38,7 +38,7 @@ public:
 
 private:
     void work();
-    void carry_out(const DeviceJob& job, uint64_t run);
+    void execute_motion(const DeviceJob& job, uint64_t run);
     core::Result<CoprocessorResult> emulate(const DeviceJob& job, const DeviceFile& file,
                                             std::vector<uint32_t> others, uint64_t run);
     bool is_over(uint64_t run) const { return stopping_ || runs_ != run; }
@@ -113,7 +113,7 @@ void DeviceWorker::Thread::work() {
             job = *std::exchange(wanted_, std::nullopt);
             run = runs_;
         }
-        carry_out(job, run);
+        execute_motion(job, run);
     }
 }
 
@@ -143,7 +143,7 @@ core::Result<CoprocessorResult> DeviceWorker::Thread::emulate(const DeviceJob& j
     return in_time(std::move(made), file, true);
 }
 
-void DeviceWorker::Thread::carry_out(const DeviceJob& job, uint64_t run) {
+void DeviceWorker::Thread::execute_motion(const DeviceJob& job, uint64_t run) {
     const auto fail = [&](const core::Error& error) {
         deliver({.run = run, .is_done = true, .failure = error});
     };
@@ -218,7 +218,7 @@ std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result) {
 DeviceAnswer answer_of(const DeviceStudy* study, size_t block) {
     if (!study || block >= study->size()) return DeviceAnswer::unknown;
     const BlockPermit& permit = study->result->run.blocks[block].permit;
-    if (!permit.not_asked.empty()) return DeviceAnswer::not_asked;
+    if (!permit.not_queried.empty()) return DeviceAnswer::not_queried;
     if (!permit.permitted) return DeviceAnswer::refused;
     if (study->result->timing.blocks[block].is_late()) return DeviceAnswer::late;
     return permit.segments == 0 ? DeviceAnswer::nothing : DeviceAnswer::permitted;
@@ -226,7 +226,7 @@ DeviceAnswer answer_of(const DeviceStudy* study, size_t block) {
 
 bool stops_machine(DeviceAnswer answer) {
     return answer == DeviceAnswer::late || answer == DeviceAnswer::refused
-           || answer == DeviceAnswer::not_asked;
+           || answer == DeviceAnswer::not_queried;
 }
 
 std::optional<double> slack_of(const DeviceStudy* study, size_t block) {

@@ -26,7 +26,7 @@ enum class DeviceAnswer : uint8_t {
     permitted, // in time
     late,      // permitted, but later than the machine needed it
     refused,
-    not_asked // the device cannot check it, so it is not permitted
+    not_queried // the device cannot check it, so it is not permitted
 };
 
 /// The results of a program run with the coprocessor, as the window shows them. Never changes.

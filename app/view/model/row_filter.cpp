@@ -42,7 +42,7 @@ RowFilter::RowFilter(const std::string& text) {
     const std::string wanted(core::stripped(text));
     if (wanted.empty()) return;
     auto condition = Condition::read(wanted);
-    if (condition && !condition->asks_control()) {
+    if (condition && !condition->uses_control()) {
         condition_ = *std::move(condition);
     } else if (condition) {
         refusal_ =

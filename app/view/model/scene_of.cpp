@@ -32,7 +32,7 @@ std::optional<core::AxisValues> axes_now(const ViewModel& model, const BlockStat
     return view.standing;
 }
 
-bool shows(const Shown& shown, render::BodyRole role) {
+bool shows(const VisibleParts& shown, render::BodyRole role) {
     switch (role) {
     case render::BodyRole::fixture:
     case render::BodyRole::clamp:
@@ -79,7 +79,7 @@ void add_bodies(const ViewModel& model, const BlockState& view, render::Scene& s
     const core::Setup& setup = view.scene->setup;
     const auto values = axes_now(model, view);
     const core::AxisValues standing = values.value_or(core::AxisValues{});
-    scene.bodies = render::setup_bodies(setup, view.scene->meshes, standing, view.fixtures_there);
+    scene.bodies = render::setup_bodies(setup, view.scene->meshes, standing, view.mounted_fixtures);
     if (!values)
         std::erase_if(scene.bodies,
                       [](const auto& body) { return body.role == render::BodyRole::machine; });

@@ -34,7 +34,7 @@ struct SceneKey {
     size_t block = 0;
     double fraction = 1.0; // of the block's time
     render::Camera camera;
-    Shown shown;
+    VisibleParts shown;
     render::ColorScheme theme = render::ColorScheme::dark;
     std::optional<size_t> hovered;
     core::Vec3 section = core::Vec3(0.0);

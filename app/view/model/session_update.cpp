@@ -203,7 +203,7 @@ void SessionPublisher::add_rows(const DebugSession& session, SessionUpdate& news
     if (!update.empty()) news.rows.append(std::move(update));
 }
 
-std::vector<render::ClearanceState> SessionPublisher::known_states(const CheckRun& run) const {
+std::vector<render::ClearanceState> SessionPublisher::clearance_states(const CheckRun& run) const {
     std::vector<render::ClearanceState> states = states_;
     for (const core::Finding& finding : run.findings) {
         if (finding.severity != core::Severity::error || !finding.block) continue;
@@ -218,7 +218,7 @@ void SessionPublisher::paint_path(const DebugSession& session, SessionUpdate& ne
     const bool is_due = last_path_ == Clock::time_point{}
                         || now - last_path_ > std::chrono::milliseconds(300) + 20 * path_cost_;
     if (!is_due && !(session.is_recorded() && !is_whole_)) return;
-    const std::vector<render::ClearanceState> states = known_states(session.record());
+    const std::vector<render::ClearanceState> states = clearance_states(session.record());
     for (render::PathPoint& point : points_)
         if (point.block < states.size()) point.state = states[point.block];
     news.path = std::make_shared<const render::ToolPath>(render::tool_path(points_));

@@ -60,7 +60,7 @@ struct BlockState {
     std::vector<Pose> poses;                  // of the block
     std::optional<core::AxisValues> standing; // axis positions after the block
     std::optional<core::ToolNumber> tool;     // used in the block
-    std::vector<bool> fixtures_there;
+    std::vector<bool> mounted_fixtures;
     render::StockBricks stock;
     std::vector<ShownValue> modal, axes, offsets, parameters;
     std::vector<ShownValue> watched;
@@ -94,7 +94,7 @@ struct RowsUpdate {
 };
 
 /// The direction of a walk.
-enum class Walk : uint8_t { go_on, go_on_back };
+enum class Walk : uint8_t { go_on, reverse_resume };
 
 /// A request for the view of a block.
 struct ShowRequest {
@@ -114,7 +114,7 @@ struct SetupSaved {
 };
 
 /// Where a walk ended.
-struct WalkEnd {
+struct RunEnd {
     uint64_t walk = 0; // number of the walk
     size_t block = 0;  // the next block
     Stop stop;
@@ -128,7 +128,7 @@ struct SessionUpdate {
     std::optional<std::vector<core::Finding>> findings;
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const BlockState> block_state;
-    std::optional<WalkEnd> walk;
+    std::optional<RunEnd> walk;
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
     std::optional<core::Error> failure;              // the program could not be opened
@@ -161,7 +161,7 @@ private:
 
     void add_rows(const DebugSession& session, SessionUpdate& news);
     /// The states of the checked blocks.
-    std::vector<render::ClearanceState> known_states(const CheckRun& run) const;
+    std::vector<render::ClearanceState> clearance_states(const CheckRun& run) const;
     void paint_path(const DebugSession& session, SessionUpdate& news);
     /// The first row whose time changed since it was sent.
     size_t first_changed(const CheckRun& run) const;

@@ -122,7 +122,7 @@ bool WorkerSession::can_show(const ShowRequest& request) const {
 
 std::shared_ptr<const SceneSetup> WorkerSession::scene_at(size_t block) {
     size_t first = 0;
-    for (const MadeChange& change : session_->changes())
+    for (const AppliedChange& change : session_->changes())
         if (change.block <= block) first = std::max(first, change.block);
     for (const auto& [known, scene] : scenes_)
         if (known == first) return scene;
@@ -158,7 +158,7 @@ void WorkerSession::show(const ShowRequest& request) {
     if (request.at_end) surface_->update(session_->stock());
     view->stock = surface_->bricks();
     view->standing = known_values(view->scene->setup.machine, session_->position());
-    view->fixtures_there = session_->fixtures_there();
+    view->mounted_fixtures = session_->mounted_fixtures();
     const ControlValues after = values_of(*session_);
     view->modal = compared(before.modal, after.modal);
     view->axes = compared(before.axes, after.axes);
@@ -181,10 +181,10 @@ void WorkerSession::walk_on() {
         return refuse(gone.error());
     }
     walk_rests_ = Clock::now() + walk_slice;
-    const Stop stop = way.walk == Walk::go_on ? session_->go_on() : session_->go_on_back();
+    const Stop stop = way.walk == Walk::go_on ? session_->go_on() : session_->reverse_resume();
     way.block = session_->at();
     if (stop.reason == StopReason::interrupted && !is_interrupted_()) return publish_if_due();
-    news_.walk = WalkEnd{way.number, session_->at(), stop};
+    news_.walk = RunEnd{way.number, session_->at(), stop};
     walk_.reset();
     news_.breakpoints = breakpoints_ = session_->breakpoints();
     news_.has_news = true;
@@ -204,13 +204,13 @@ void WorkerSession::change(const WhatIf& change, size_t block) {
     if (!session_) return;
     if (const auto gone = session_->go_to(block); !gone) return refuse(gone.error());
     if (const auto made = session_->change(change); !made) return refuse(made.error());
-    follow_anew();
+    restart_following();
 }
 
 void WorkerSession::take_back() {
     if (!session_ || session_->changes().empty()) return;
     if (const auto back = session_->take_back(); !back) return refuse(back.error());
-    follow_anew();
+    restart_following();
 }
 
 void WorkerSession::save_setup(const CheckJob& job, const std::string& path, bool may_replace,
@@ -226,7 +226,7 @@ void WorkerSession::save_setup(const CheckJob& job, const std::string& path, boo
     news_.has_news = true;
 }
 
-void WorkerSession::follow_anew() {
+void WorkerSession::restart_following() {
     walk_.reset();
     scenes_.clear();
     surface_->reset();
@@ -241,7 +241,8 @@ void WorkerSession::follow_anew() {
     news_.rows.append({block, std::move(track.rows), count});
     publisher_.publish(*session_, news_);
     std::vector<std::string> changes;
-    for (const MadeChange& change : session_->changes()) changes.push_back(text_of(change.change));
+    for (const AppliedChange& change : session_->changes())
+        changes.push_back(text_of(change.change));
     news_.changes = std::move(changes);
     news_.has_news = true;
 }
@@ -251,7 +252,7 @@ void WorkerSession::refuse(const core::Error& error) {
     news_.has_news = true;
 }
 
-SessionUpdate WorkerSession::take_news() {
+SessionUpdate WorkerSession::take_update() {
     SessionUpdate news = std::move(news_);
     news_ = {};
     news_.opening = news.opening = openings_;
@@ -345,7 +346,7 @@ void SessionWorker::State::run() {
         } else {
             session.record();
         }
-        deliver(session.take_news());
+        deliver(session.take_update());
     }
 }
 
@@ -359,7 +360,7 @@ void SessionWorker::interrupt() { state_->interrupt(); }
 void SessionWorker::open(const CheckJob& job) {
     interrupt();
     state_->post([state = state_.get(), job](WorkerSession& session) {
-        const auto publish = [&] { state->deliver(session.take_news()); };
+        const auto publish = [&] { state->deliver(session.take_update()); };
         session.open(job, publish);
     });
 }

@@ -51,7 +51,7 @@ public:
     void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
                     const SetupWriter& write);
 
-    SessionUpdate take_news();
+    SessionUpdate take_update();
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -65,7 +65,7 @@ private:
     /// The set-up in effect for a block, for drawing.
     std::shared_ptr<const SceneSetup> scene_at(size_t block);
     /// Reads the path from the current block on again after a change.
-    void follow_anew();
+    void restart_following();
     std::vector<ShownValue> watched_values() const;
 
     std::function<bool()> is_interrupted_, is_closing_;
@@ -102,7 +102,7 @@ public:
     /// Only the last of several waiting requests is answered.
     void show(const ShowRequest& request);
     /// Walks on from a block, starting with the block after it. Returns the number of the walk; the
-    /// result comes as a WalkEnd with this number.
+    /// result comes as a RunEnd with this number.
     uint64_t walk(Walk walk, size_t block);
     /// Interrupts the walks requested so far.
     void interrupt();

@@ -67,7 +67,7 @@ Settings settings_in(const std::string& text) {
 }
 
 std::string text_of(const Settings& s) {
-    const Shown& shown = s.shown;
+    const VisibleParts& shown = s.shown;
     return fmt::format(
         "# Settings of feeler view, saved when the window was last closed.\n"
         "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nscale = {:.2f}\nmouse = {}\n"

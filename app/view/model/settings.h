@@ -20,11 +20,11 @@ constexpr const char* mouse_preset_names[] = {"Middle turns, Shift+middle moves"
                                               "Middle turns, Ctrl+middle moves"};
 
 /// The visible parts of the scene.
-struct Shown {
+struct VisibleParts {
     bool stock = true, fixtures = true, tool = true, machine = true, path = true, witness = true;
     bool holder_xray = true;
 
-    bool operator==(const Shown&) const = default;
+    bool operator==(const VisibleParts&) const = default;
 };
 
 /// The settings that the window saves.
@@ -34,7 +34,7 @@ struct Settings {
     double scale = 1.0; // multiplied with the scale of the screen
     MousePreset mouse = MousePreset::middle_orbits;
     render::Projection projection = render::Projection::perspective;
-    Shown shown;
+    VisibleParts shown;
     int width = 1440, height = 900; // of the window, screen coordinates
     int x = -1, y = -1;             // of its corner; -1: left to the system
     bool maximised = false;

@@ -135,7 +135,7 @@ std::string sentence_of(const Stop& stop) {
     return {};
 }
 
-void end_walk(ViewModel& model, const WalkEnd& end, double now) {
+void end_walk(ViewModel& model, const RunEnd& end, double now) {
     // Ignore a walk that the user has cancelled by going elsewhere.
     if (model.walking != end.walk || !model.has_rows()) return;
     model.walking.reset();

@@ -39,7 +39,7 @@ constexpr KeyBinding bindings[] = {
     {C::toggle_breakpoint, G::stops, key::function(9), 0, "F9", "Breakpoint on this line"},
     {C::break_if, G::stops, key::function(9), shift, "Shift+F9", "Breakpoint on a condition"},
     {C::go_on, G::stops, key::function(5), 0, "F5", "Continue to a breakpoint"},
-    {C::go_on_back, G::stops, key::function(5), shift, "Shift+F5", "Continue backwards"},
+    {C::reverse_resume, G::stops, key::function(5), shift, "Shift+F5", "Continue backwards"},
     {C::toggle_bookmark, G::stops, key::of('B'), 0, "B", "Bookmark"},
     {C::next_bookmark, G::stops, key::of('B'), shift, "Shift+B", "Next bookmark"},
     {C::show_findings, G::stops, key::of('V'), 0, "V", "Show grouped findings or program lines"},

@@ -29,7 +29,7 @@ enum class Command : uint8_t {
     faster,
     slower,
     go_on,
-    go_on_back,
+    reverse_resume,
     toggle_breakpoint,
     break_if,
     next_offending,

@@ -178,7 +178,7 @@ void draw_watches(Frame& frame, std::string& typed) {
 }
 
 void draw_show(Frame& frame) {
-    Shown& shown = frame.model.settings.shown;
+    VisibleParts& shown = frame.model.settings.shown;
     heading(frame, "Show");
     if (!ImGui::BeginTable("show", 2)) return;
     const auto box = [&](const char* name, bool& value) {

@@ -160,8 +160,8 @@ bool walk(ViewModel& model, Command command, double now) {
     case Command::go_on:
         model.walk = Walk::go_on;
         return true;
-    case Command::go_on_back:
-        model.walk = Walk::go_on_back;
+    case Command::reverse_resume:
+        model.walk = Walk::reverse_resume;
         return true;
     default:
         return false;

@@ -182,14 +182,15 @@ void PopupPanel::draw_lengths(Frame& frame, const core::Setup& setup) {
         if (ImGui::IsWindowAppearing()) length_ = setup.tools.at(*tool).length;
         row_name(frame, fmt::format("Length of T{}", core::value_of(*tool)));
         if (length_to_try(frame, "tool", length_))
-            model.wanted_change = OtherToolLength{*tool, length_};
+            model.wanted_change = ToolLengthChange{*tool, length_};
     }
     row_name(frame, "Offset table, H");
     ImGui::SetNextItemWidth(frame.px(60));
     ImGui::InputInt("##number", &table_number_, 0);
     ImGui::SameLine();
     if (length_to_try(frame, "table", table_length_))
-        model.wanted_change = OtherLengthOffset{core::OffsetNumber{table_number_}, table_length_};
+        model.wanted_change =
+            LengthOffsetOverride{core::OffsetNumber{table_number_}, table_length_};
     row_name(frame, "Work offset");
     ImGui::SetNextItemWidth(frame.px(74));
     ImGui::Combo("##offset", &offset_, "G54\0G55\0G56\0G57\0G58\0G59\0");
@@ -199,7 +200,7 @@ void PopupPanel::draw_lengths(Frame& frame, const core::Setup& setup) {
     ImGui::SameLine();
     if (length_to_try(frame, "origin", origin_))
         model.wanted_change =
-            OtherWorkOffset{static_cast<size_t>(offset_), static_cast<size_t>(axis_), origin_};
+            WorkOffsetChange{static_cast<size_t>(offset_), static_cast<size_t>(axis_), origin_};
 }
 
 void PopupPanel::draw_fixture(Frame& frame, const core::Setup& setup) {
@@ -230,7 +231,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
     draw_lengths(frame, setup);
     row_name(frame, "Minimum clearance");
     if (length_to_try(frame, "allowance", allowance_))
-        model.wanted_change = OtherAllowance{allowance_};
+        model.wanted_change = AllowanceChange{allowance_};
     if (!setup.fixtures.empty()) draw_fixture(frame, setup);
     for (const std::string& change : model.changes)
         text(frame.fonts.text, frame.palette.color(Role::accent), change);

@@ -455,7 +455,7 @@ const char* words_of(DeviceAnswer answer) {
         return "late";
     case DeviceAnswer::refused:
         return "refused";
-    case DeviceAnswer::not_asked:
+    case DeviceAnswer::not_queried:
         return "not checked";
     }
     return "";

@@ -46,7 +46,7 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
                              context_.statistics.shape_tests);
     };
     if (seen.upper == 0.0 && relative.error > 0.0) {
-        const RevolvedProfile sure = surely_passing(*body.profile, relative);
+        const RevolvedProfile sure = certain_sweep(*body.profile, relative);
         if (!sure.empty() && clearance_of(sure).upper == 0.0) now.upper = 0.0;
     }
     if (now.upper > 0.0 && !may_touch) return now;
@@ -109,7 +109,7 @@ void FixtureCheck::resolve_doubts(std::vector<TrackedPair>& pairs) {
 void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                               std::vector<TrackedPair>& pairs) {
     const Pair pair = pair_of(body, fixture);
-    TrackedPair& known = bounds_.known_pair(pairs, pair);
+    TrackedPair& known = bounds_.tracked_pair(pairs, pair);
     if (bounds_.can_skip(known, pairs)) return;
     const RelativeLeg relative = relative_leg(
         context_.setup.machine, context_.setup.fixtures[fixture].mount, body.mover, leg);
@@ -136,9 +136,9 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     check_pair(stretch(leg, 0.5, 1.0), start, fixture, body, pairs);
 }
 
-bool FixtureCheck::must_keep_apart(const Leg& leg, const MovingBody& body, size_t fixture,
+bool FixtureCheck::needs_clearance(const Leg& leg, const MovingBody& body, size_t fixture,
                                    std::vector<TrackedPair>& pairs) {
-    if (!context_.fixtures_there[fixture]
+    if (!context_.mounted_fixtures[fixture]
         || is_exempt(context_.setup.machine, body, context_.setup.fixtures[fixture]))
         return false;
     if (body.kind != PartKind::flutes || !context_.setup.fixtures[fixture].expendable) return true;
@@ -156,7 +156,7 @@ void FixtureCheck::check(const Leg& leg, double start, std::vector<TrackedPair>&
         for (size_t fixture = 0; fixture < context_.setup.fixtures.size(); ++fixture)
             for (const MovingBody& body : context_.bodies)
                 if ((first == pair_of(body, fixture)) == likely
-                    && must_keep_apart(leg, body, fixture, pairs))
+                    && needs_clearance(leg, body, fixture, pairs))
                     check_pair(leg, start, fixture, body, pairs);
 }
 

@@ -8,10 +8,16 @@
 namespace core {
 
 LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
-                   const std::vector<bool>& fixtures_there, CheckMemory& memory,
+                   const std::vector<bool>& mounted_fixtures, CheckMemory& memory,
                    Statistics& statistics)
-    : context_{setup,          tool,   use,        block,
-               fixtures_there, memory, statistics, moving_bodies(setup, tool)},
+    : context_{setup,
+               tool,
+               use,
+               block,
+               mounted_fixtures,
+               memory,
+               statistics,
+               moving_bodies(setup, tool)},
       bounds_(setup, memory),
       flutes_(context_),
       probe_(context_, bounds_),

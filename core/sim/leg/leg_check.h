@@ -38,7 +38,7 @@ private:
 
     /// Whether the pair needs its minimum clearance on this leg. Flutes may cut expendable
     /// fixtures.
-    bool must_keep_apart(const Leg& leg, const MovingBody& body, size_t fixture,
+    bool needs_clearance(const Leg& leg, const MovingBody& body, size_t fixture,
                          std::vector<TrackedPair>& pairs);
     void check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                     std::vector<TrackedPair>& pairs);
@@ -94,8 +94,8 @@ private:
                             const CutModel& stock, std::vector<TrackedPair>& pairs);
     /// Whether the tool stays clear on a leg on which rotary axes move, measured over the whole
     /// leg; if so, adds its clearances.
-    bool is_clear_from_afar(const Leg& leg, double start, const CutModel& stock,
-                            std::vector<TrackedPair>& pairs);
+    bool is_clear_by_bound(const Leg& leg, double start, const CutModel& stock,
+                           std::vector<TrackedPair>& pairs);
     double check_whole(const Leg& leg, double start, CutModel& stock,
                        std::vector<TrackedPair>& pairs);
     double check_cutting(const Leg& leg, double start, CutModel& stock,
@@ -125,7 +125,8 @@ private:
 class LegCheck {
 public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
-             const std::vector<bool>& fixtures_there, CheckMemory& memory, Statistics& statistics);
+             const std::vector<bool>& mounted_fixtures, CheckMemory& memory,
+             Statistics& statistics);
     LegCheck(const LegCheck&) = delete;
     LegCheck& operator=(const LegCheck&) = delete;
 

@@ -30,7 +30,7 @@ struct LegContext {
     const ToolAssembly& tool;
     FluteUse use;
     BlockIndex block;
-    const std::vector<bool>& fixtures_there;
+    const std::vector<bool>& mounted_fixtures;
     CheckMemory& memory;
     Statistics& statistics;
     std::vector<MovingBody> bodies;

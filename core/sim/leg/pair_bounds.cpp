@@ -42,7 +42,7 @@ Separation widened(Separation found, const RelativeLeg& leg) {
     return found;
 }
 
-RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg) {
+RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg) {
     return leg.turns ? RevolvedProfile{} : shrunk_within(part, leg.error);
 }
 
@@ -62,7 +62,7 @@ void PairBounds::end_leg() {
     for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
 }
 
-TrackedPair& PairBounds::known_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const {
+TrackedPair& PairBounds::tracked_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const {
     for (TrackedPair& known : pairs)
         if (known.pair == pair) return known;
     TrackedPair& begun = entry(pairs, pair, setup_);

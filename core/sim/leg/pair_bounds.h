@@ -39,7 +39,7 @@ Separation widened(Separation found, const RelativeLeg& leg);
 
 /// The part shrunk by the leg's error: the real part certainly sweeps everything that this one
 /// sweeps. Empty if the body turns on the leg or nothing is left.
-RevolvedProfile surely_passing(const RevolvedProfile& part, const RelativeLeg& leg);
+RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg);
 
 /// Greatest distance that any point of a body moves over a leg relative to any other body, mm;
 /// infinite if rotary axes move or the path is unknown.
@@ -59,7 +59,7 @@ public:
     double travel() const { return travel_; }
 
     /// The entry of a pair; a new entry starts with the bound from the last block.
-    TrackedPair& known_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
+    TrackedPair& tracked_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
 
     /// Whether the pair stays clear over the leg and another pair of the block has less margin. If
     /// so, updates its bound to the leg's end.

@@ -32,7 +32,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     bool settled = true;
     for (const MovingBody* body : context_.likely_first({})) {
         if (body->kind == PartKind::flutes || (only_tool_ && body->body)) continue;
-        TrackedPair& known = bounds_.known_pair(pairs, pair_of(*body));
+        TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
         if (bounds_.can_skip(known, pairs)) continue;
         if (bounds_.can_probably_skip(known)) {
             later.push_back(body);
@@ -63,7 +63,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
 
 void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
                           const CutModel& stock, bool cut, std::vector<TrackedPair>& pairs) {
-    TrackedPair& known = bounds_.known_pair(pairs, pair_of(check.body));
+    TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(check.body));
     if (check.clear && !check.before.whole
         && bounds_.cannot_decide(known.allowance, check.before.plain.lower, pairs)) {
         merge(known, probe_.clearance(check.body, leg, start, check.before, {}));
@@ -80,7 +80,7 @@ void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
 
 void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start,
                             const CutModel& stock, std::vector<TrackedPair>& pairs) {
-    TrackedPair& known = bounds_.known_pair(pairs, pair_of(body));
+    TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
     if (bounds_.can_skip(known, pairs)) return;
     // The stock before the cut is no longer available. It was the remaining stock plus what the
     // flutes removed on the leg.
@@ -132,7 +132,7 @@ bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stoc
     bool gouged = false;
     for (const MovingBody* body : context_.likely_first({})) {
         if (only_tool_ && body->body) continue;
-        TrackedPair& known = bounds_.known_pair(pairs, pair_of(*body));
+        TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
         if (bounds_.can_skip(known, pairs)) continue;
         if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
         const StockObservation seen = probe_.observe(*body, leg, stock, known.upper);
@@ -163,8 +163,8 @@ double StockCheck::check_whole(const Leg& leg, double start, CutModel& stock,
                                              : check_not_cutting(leg, start, stock, pairs);
 }
 
-bool StockCheck::is_clear_from_afar(const Leg& leg, double start, const CutModel& stock,
-                                    std::vector<TrackedPair>& pairs) {
+bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel& stock,
+                                   std::vector<TrackedPair>& pairs) {
     std::vector<PairClearance> seen;
     for (const MovingBody& body : context_.bodies) {
         if (body.body) continue;
@@ -233,7 +233,7 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
         return 0.0;
     }
     if (!context_.turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
-    if (is_clear_from_afar(leg, start, stock, pairs)) return 0.0;
+    if (is_clear_by_bound(leg, start, stock, pairs)) return 0.0;
     const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
     return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
 }

@@ -114,7 +114,7 @@ void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const
     if ((relative.turns || !body.profile) && near && has_way)
         observe_half_way(seen, body, leg, stock, nearest);
     if (!overlaps || !body.profile) return;
-    const RevolvedProfile sure = surely_passing(*body.profile, relative);
+    const RevolvedProfile sure = certain_sweep(*body.profile, relative);
     if (sure.empty()) return;
     MovingBody inner = body;
     inner.profile = &sure;

@@ -76,14 +76,14 @@ PieceTracker piece_tracker(const CutModel& stock) {
     return tracker;
 }
 
-std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
+std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& mounted_fixtures,
                                   const CutModel& stock, size_t first, PieceTracker& tracker) {
     std::vector<Finding> findings;
     if (first == stock.log.size() || severity_of(setup, rule_id("loose-piece")) == Severity::off)
         return findings;
     const Aabb box = box_of_cuts(stock, first);
     tracker.map.note_cut(stock, box);
-    if (cannot_have_parted(stock, box)) return findings;
+    if (is_still_connected(stock, box)) return findings;
     const std::vector<StockPiece> pieces = tracker.map.pieces(stock);
     size_t fresh = pieces.size() > tracker.known ? pieces.size() - tracker.known : 0;
     tracker.known = pieces.size();
@@ -92,7 +92,7 @@ std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& f
     for (size_t i = pieces.size(); i-- > 1 && fresh > 0;) {
         if (!overlaps(pieces[i].box, near)) continue;
         const auto holders =
-            holders_of(setup, fixtures_there, stock, tracker.map, i, pieces[i].box);
+            holders_of(setup, mounted_fixtures, stock, tracker.map, i, pieces[i].box);
         findings.push_back(finding_of(setup, pieces[i], stock.lines.grid.spacing, holders));
         --fresh;
     }

@@ -22,13 +22,13 @@ Setup with_every_pair(Setup setup) {
 
 /// Measures every pair, whatever detail the report has.
 struct LinkCheck {
-    const LegAsRun& link;
+    const ExecutedLeg& link;
     Setup setup = with_every_pair(link.setup);
     CheckMemory memory = {};
     Statistics statistics = {};
 
     LegCheck check() {
-        return {setup,  link.tool, FluteUse::not_cutting, link.block, link.fixtures_there,
+        return {setup,  link.tool, FluteUse::not_cutting, link.block, link.mounted_fixtures,
                 memory, statistics};
     }
 
@@ -65,13 +65,13 @@ double flutes_to_stock(const std::vector<TrackedPair>& pairs) {
 }
 
 /// Whether the flutes pass above the top of the stock, rather than next to a wall.
-bool passes_over(const LegAsRun& link, const PairClearance& pair) {
+bool passes_over(const ExecutedLeg& link, const PairClearance& pair) {
     const Vec3 up = pair.on_tool - pair.on_body;
     return up.z > 0.7 * glm::length(up) && pair.on_body.z >= link.stock.outer_box.max.z - room;
 }
 
 /// The pair that the rapid brings too near; null if there is none.
-const PairClearance* in_the_way(const LegAsRun& link, const std::vector<TrackedPair>& pairs) {
+const PairClearance* in_the_way(const ExecutedLeg& link, const std::vector<TrackedPair>& pairs) {
     const PairClearance* worst = deciding_pair(pairs);
     if (worst && worst->verdict != Verdict::clear) return worst;
     for (const TrackedPair& pair : pairs)
@@ -82,11 +82,11 @@ const PairClearance* in_the_way(const LegAsRun& link, const std::vector<TrackedP
 }
 
 /// Whether any pair is below its allowance on the link, or the flutes pass close to the stock.
-bool is_doubtful(const LegAsRun& link, const std::vector<TrackedPair>& known) {
+bool is_doubtful(const ExecutedLeg& link, const std::vector<TrackedPair>& known) {
     if (!are_clear(known)) return true;
     CheckMemory memory;
     Statistics statistics;
-    return LegCheck(link.setup, link.tool, FluteUse::not_cutting, link.block, link.fixtures_there,
+    return LegCheck(link.setup, link.tool, FluteUse::not_cutting, link.block, link.mounted_fixtures,
                     memory, statistics)
                .room_of_flutes(link.leg, link.stock, room)
            < room;
@@ -122,7 +122,7 @@ bool goes_across(const Leg& leg) {
     return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
-std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known) {
+std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<TrackedPair>& known) {
     if (!is_doubtful(link, known)) return std::nullopt;
     LinkCheck probe{link};
     const std::vector<TrackedPair> pairs = probe.along(0.0);

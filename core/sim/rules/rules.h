@@ -55,12 +55,12 @@ struct ToolReach {
 using ToolReaches = std::map<ToolNumber, ToolReach>;
 
 /// A leg of the run, with the data to check it again with a changed tool or at another height.
-struct LegAsRun {
+struct ExecutedLeg {
     const Setup& setup;
     const ToolAssembly& tool;
     BlockIndex block;
     const Leg& leg;
-    const std::vector<bool>& fixtures_there;
+    const std::vector<bool>& mounted_fixtures;
     const CutModel& stock; // note_reach: after the leg; low_retract: before it
 };
 
@@ -69,7 +69,8 @@ struct LegAsRun {
 ///
 /// Cost: none for a leg on which they are clear; about ten checks of the leg if they must be higher
 /// than for any leg before.
-void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<TrackedPair>& pairs);
+void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
+                const std::vector<TrackedPair>& pairs);
 
 /// The findings `stick-out-short` and `over-engagement`, at most one of each per tool, with the
 /// first block concerned and the length that is enough for all blocks. The caller sets severities,
@@ -95,7 +96,7 @@ bool goes_across(const Leg& leg);
 /// on the leg. The caller sets its severity.
 ///
 /// Cost: none if the rapid is well clear; else about twenty checks of the leg.
-std::optional<Finding> low_retract(const LegAsRun& link, const std::vector<TrackedPair>& known);
+std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<TrackedPair>& known);
 
 /// The pieces of a stock while it is cut. A plain value.
 struct PieceTracker {
@@ -107,12 +108,12 @@ struct PieceTracker {
 PieceTracker piece_tracker(const CutModel& stock);
 
 /// Checks whether the cuts from number `first` in the log on have parted the stock.
-/// `fixtures_there` says which fixtures are mounted.
+/// `mounted_fixtures` says which fixtures are mounted.
 ///
 /// Result: a finding `loose-piece`, without its block, for each new piece but the largest: its
 ///         size, its position, and whether a fixture touches it, to within a mesh size.
 /// Cost:   some microseconds for cuts above solid material, else that of PieceMap::pieces().
-std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& fixtures_there,
+std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& mounted_fixtures,
                                   const CutModel& stock, size_t first, PieceTracker& tracker);
 
 /// State of a tool that does not cut at its centre, while it goes down: the stock before that, and

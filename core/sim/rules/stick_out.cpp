@@ -34,13 +34,13 @@ ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
 }
 
 /// Whether the part `from`, raised by `by`, keeps its allowance to the remaining stock on the leg.
-bool keeps_clear(const LegAsRun& cut, PartKind from, double by) {
+bool keeps_clear(const ExecutedLeg& cut, PartKind from, double by) {
     const ToolAssembly longer = raised(cut.tool, from, by);
     CutModel stock = cut.stock;
     CheckMemory memory;
     Statistics statistics;
     std::vector<TrackedPair> pairs;
-    LegCheck(cut.setup, longer, FluteUse::cutting, cut.block, cut.fixtures_there, memory,
+    LegCheck(cut.setup, longer, FluteUse::cutting, cut.block, cut.mounted_fixtures, memory,
              statistics)
         .run(cut.leg, 0.0, stock, pairs);
     return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
@@ -52,7 +52,7 @@ bool keeps_clear(const LegAsRun& cut, PartKind from, double by) {
 
 /// Least raise, to within `stick_out_step` and at least `known`, that keeps the leg clear, mm;
 /// `longest_stick_out` if there is none.
-double needed(const LegAsRun& cut, PartKind from, double known) {
+double needed(const ExecutedLeg& cut, PartKind from, double known) {
     if (keeps_clear(cut, from, known)) return known;
     double low = known, high = std::max(1.0, 2.0 * known);
     while (high < longest_stick_out && !keeps_clear(cut, from, high)) {
@@ -166,7 +166,8 @@ bool goes_sideways(const Leg& leg) {
 
 } // namespace
 
-void note_reach(ToolReaches& reaches, const LegAsRun& cut, const std::vector<TrackedPair>& pairs) {
+void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
+                const std::vector<TrackedPair>& pairs) {
     constexpr double touch = 0.02; // mm
     for (const TrackedPair& pair : pairs) {
         const bool is_shank = pair.pair.part == PartKind::shank;

@@ -15,7 +15,7 @@ struct Adding {
 
     BlockTime& block() { return clock.open.back(); }
 
-    void rest() { come_to_rest(clock.plan, settled); }
+    void rest() { plan_stop(clock.plan, settled); }
 
     void from_rest_to_rest(double seconds, double at_full_speed) {
         rest();
@@ -108,7 +108,7 @@ void add_block(BlockClock& clock, const BlockEvents& block, std::vector<BlockTim
 
 void stop_clock(BlockClock& clock, std::vector<BlockTime>& done) {
     std::vector<MotionTime> settled;
-    come_to_rest(clock.plan, settled);
+    plan_stop(clock.plan, settled);
     enter(clock, settled);
     give_out(clock, done);
 }

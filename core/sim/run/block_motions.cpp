@@ -82,7 +82,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
          "the machine's home position.");
 }
 
-void BlockRun::carry_out(const Motion& motion) {
+void BlockRun::execute_motion(const Motion& motion) {
     result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
     drills_sideways = drills_sideways
                       || (tool() && motion.kind != MotionKind::rapid
@@ -143,7 +143,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
         legs.push_back({leg, result.duration});
         if (use(motion) == FluteUse::cutting && !state.rules.length_in_doubt)
             note_reach(state.rules.reaches,
-                       {setup, *tool(), block.block, leg, state.fixtures_there, state.stock},
+                       {setup, *tool(), block.block, leg, state.mounted_fixtures, state.stock},
                        pairs);
     }
     check.finish(pairs);
@@ -169,7 +169,7 @@ void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutMode
     const bool straight = path.legs.size() == 1 && path.legs[0].straight;
     if (straight && tool())
         return tell(low_retract(
-            {setup, *tool(), block.block, path.legs[0], state.fixtures_there, before}, pairs));
+            {setup, *tool(), block.block, path.legs[0], state.mounted_fixtures, before}, pairs));
     const TrackedPair* worst = deciding_pair(pairs);
     if (!worst || worst->verdict == Verdict::clear) return;
     Machine machine = setup.machine;

@@ -32,7 +32,7 @@ void BlockRun::forget_bounds() {
     for (TrackedPair& pair : pairs) pair.at_end = -infinity;
 }
 
-void BlockRun::carry_out(const ToolChange& change) {
+void BlockRun::execute_motion(const ToolChange& change) {
     // The earliest time can only be found with the tool that made the motion, so find it before the
     // change.
     if (const TrackedPair* worst = deciding_pair(pairs))
@@ -54,15 +54,15 @@ void BlockRun::carry_out(const ToolChange& change) {
              fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
 }
 
-void BlockRun::carry_out(const PathModeChange& change) {
+void BlockRun::execute_motion(const PathModeChange& change) {
     if (change_mode(state.corners, change, setup.machine))
         state.assumptions.insert("the control does not round corners where neither G64 nor "
                                  "`corner_tolerance` of the machine gives a tolerance");
 }
 
-void BlockRun::carry_out(const FixtureChange& change) {
+void BlockRun::execute_motion(const FixtureChange& change) {
     forget_bounds();
-    state.fixtures_there[change.fixture] = change.is_there;
+    state.mounted_fixtures[change.fixture] = change.is_there;
     state.memory.cuts.erase(change.fixture); // another fixture may be there now
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)

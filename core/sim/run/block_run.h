@@ -68,7 +68,7 @@ struct BlockRun {
     LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
         return {setup,           tool() ? *tool() : nothing, use,
-                block.block,     state.fixtures_there,       memory,
+                block.block,     state.mounted_fixtures,     memory,
                 state.statistics};
     }
     LegCheck leg_check(FluteUse use) { return leg_check(use, state.memory); }
@@ -80,13 +80,13 @@ struct BlockRun {
         return feeds && cuts ? FluteUse::cutting : FluteUse::not_cutting;
     }
 
-    void carry_out(const Motion& motion);
-    void carry_out(const ToolChange& change);
-    void carry_out(const SpindleChange& change) { state.spindle = change; }
-    void carry_out(const Dwell& dwell) { result.duration += dwell.seconds; }
-    void carry_out(const LengthOffsetChange& change) { state.length_offset = change; }
-    void carry_out(const PathModeChange& change);
-    void carry_out(const FixtureChange& change);
+    void execute_motion(const Motion& motion);
+    void execute_motion(const ToolChange& change);
+    void execute_motion(const SpindleChange& change) { state.spindle = change; }
+    void execute_motion(const Dwell& dwell) { result.duration += dwell.seconds; }
+    void execute_motion(const LengthOffsetChange& change) { state.length_offset = change; }
+    void execute_motion(const PathModeChange& change);
+    void execute_motion(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
     /// Cuts the stock along a path without measuring, for a block with a `Judgement`.

@@ -54,7 +54,7 @@ std::string cure_of_rapid(MoveWithin within) {
 std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                           const RoundedCorners& corners) {
     const bool rapid = move.motion == BlockMotion::rapid;
-    const double off = off_way(pair.pair, rapid ? 0.0 : corners.by, corners);
+    const double off = path_deviation(pair.pair, rapid ? 0.0 : corners.by, corners);
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
     // upper - lower.
     if (off > 0.0 && 4.0 * off >= pair.upper - pair.lower)

@@ -14,7 +14,8 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
-    for (const Fixture& fixture : setup.fixtures) state.fixtures_there.push_back(fixture.is_there);
+    for (const Fixture& fixture : setup.fixtures)
+        state.mounted_fixtures.push_back(fixture.is_there);
     state.pieces = piece_tracker(state.stock);
     state.corners = corners_at_start(setup.machine);
     return state;
@@ -26,11 +27,11 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
     run.result.time = state.time;
     run.result.tool = state.tool;
     for (const Event& event : block.events)
-        std::visit([&](const auto& e) { run.carry_out(e); }, event);
+        std::visit([&](const auto& e) { run.execute_motion(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
     for (Finding& finding :
-         track_pieces(setup, state.fixtures_there, state.stock, cuts_before, state.pieces))
+         track_pieces(setup, state.mounted_fixtures, state.stock, cuts_before, state.pieces))
         run.add(std::move(finding));
     if (block.judgement)
         run.conclude(*block.judgement);

@@ -21,10 +21,10 @@ struct Setup;
 /// State of a run between two blocks. A plain value: copy it to step back.
 struct SimulatorState {
     CutModel stock;
-    std::optional<ToolNumber> tool;   // tool in the spindle; empty: none, or unknown
-    bool tool_known = false;          // a tool or an empty spindle was called
-    AxisPosition position;            // at the end of the last motion
-    std::vector<bool> fixtures_there; // whether each fixture of the set-up is mounted
+    std::optional<ToolNumber> tool;     // tool in the spindle; empty: none, or unknown
+    bool tool_known = false;            // a tool or an empty spindle was called
+    AxisPosition position;              // at the end of the last motion
+    std::vector<bool> mounted_fixtures; // whether each fixture of the set-up is mounted
     SpindleChange spindle;
     LengthOffsetChange length_offset;
     PieceTracker pieces;  // of the stock
