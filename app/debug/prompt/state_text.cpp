@@ -22,7 +22,7 @@ const core::PairClearance* deciding_pair(const core::BlockResult& result) {
     return result.deciding ? &result.pairs[*result.deciding] : nullptr;
 }
 
-/// The closest pair: "holder to clamp-1: 0.420 mm, minimum 2 mm, short by 1.580 mm".
+/// The closest pair: "holder to clamp-1: 0.420 mm, minimum 2 mm".
 std::string nearness_text(const core::Setup& setup, const core::BlockResult& result) {
     const core::PairClearance* pair = deciding_pair(result);
     const ShownClearance clearance = shown_clearance(setup, result);
@@ -32,9 +32,6 @@ std::string nearness_text(const core::Setup& setup, const core::BlockResult& res
                                    core::body_name(setup, pair->pair), distance);
     const double keep = pair->allowance.distance;
     if (keep > 0.0) text += fmt::format(", minimum {} mm", keep);
-    if (result.verdict != core::Verdict::clear && keep > pair->upper)
-        text +=
-            ", short by " + core::missing_text(keep - pair->upper, keep - pair->lower, "-") + " mm";
     return text;
 }
 

@@ -192,7 +192,7 @@ double shortfall_of(const PairClearance& pair) {
 } // namespace
 
 std::string moment_text(double fraction) {
-    if (fraction < 0.005) return "at the start of the block";
+    if (fraction < 0.01) return "at the start of the block";
     return fmt::format("after {:.0f} % of the block", 100.0 * fraction);
 }
 
