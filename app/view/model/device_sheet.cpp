@@ -196,7 +196,7 @@ DevicePart run_part(const ViewModel& model) {
     add_stops(study, part);
     part.lines.push_back({"latency p50", time_text(study.figures->p50)});
     part.lines.push_back({"latency max", time_text(study.figures->longest)});
-    part.lines.push_back({"busy", percent(study.figures->busy_fraction)});
+    part.lines.push_back({"device busy", percent(study.figures->busy_fraction)});
     if (study.agreement->missed > 0)
         part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
     part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});
