@@ -13,7 +13,7 @@ namespace core {
 enum class Severity : uint8_t { off, note, warning, error };
 
 inline constexpr std::array all_severities = {Severity::off, Severity::note, Severity::warning,
-                                       Severity::error};
+                                              Severity::error};
 
 const char* name_of(Severity severity);
 

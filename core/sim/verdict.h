@@ -11,15 +11,15 @@ namespace core {
 enum class Verdict : uint8_t { clear, undecided, violation, collision };
 
 inline constexpr std::array all_verdicts = {Verdict::clear, Verdict::undecided, Verdict::violation,
-                                     Verdict::collision};
+                                            Verdict::collision};
 
 const char* name_of(Verdict verdict);
 
 /// Kind of motion in a block, as reports show it.
 enum class BlockMotion : uint8_t { none, rapid, feed, arc, cycle };
 
-inline constexpr std::array all_block_motions = {BlockMotion::none, BlockMotion::rapid, BlockMotion::feed,
-                                          BlockMotion::arc, BlockMotion::cycle};
+inline constexpr std::array all_block_motions = {
+    BlockMotion::none, BlockMotion::rapid, BlockMotion::feed, BlockMotion::arc, BlockMotion::cycle};
 
 const char* name_of(BlockMotion motion);
 
