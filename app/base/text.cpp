@@ -237,6 +237,7 @@ std::string counts_text(size_t errors, size_t warnings, size_t notes) {
 }
 
 std::string duration_text(double seconds) {
+    if (!(std::abs(seconds) < 1e15)) return "unknown";
     const auto whole = static_cast<long long>(std::llround(seconds));
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);

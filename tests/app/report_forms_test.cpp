@@ -180,6 +180,7 @@ TEST(Duration, RoundsBeforeItDividesIntoUnits) {
     EXPECT_EQ(duration_text(179.7), "3 min 00 s");
     EXPECT_EQ(duration_text(3599.7), "1 h 00 min");
     EXPECT_EQ(duration_text(7500.0), "2 h 05 min");
+    EXPECT_EQ(duration_text(core::infinity), "unknown");
 }
 
 TEST(Progress, FitsALineOfATerminal) {

@@ -81,6 +81,18 @@ TEST(FindingGroups, ThatAreAsBadComeInTheOrderOfTheProgram) {
     EXPECT_EQ(groups[2].rule, "collision");
 }
 
+TEST(FindingGroups, HaveOneGroupForARuleWithoutAPairWhateverItsMessages) {
+    std::vector<core::Finding> findings(3);
+    for (uint32_t i = 0; i < 3; ++i) {
+        findings[i].rule = "over-travel";
+        findings[i].block = core::BlockIndex(2 * i);
+        findings[i].message = "X goes " + std::to_string(i) + " mm beyond its limit.";
+    }
+    const auto groups = grouped(ten_rows(), findings);
+    ASSERT_EQ(groups.size(), 1u);
+    EXPECT_EQ(groups[0].count, 3u);
+}
+
 TEST(FindingGroups, KeepEveryMessageOfFindingsAboutNoPair) {
     std::vector<core::Finding> findings(3);
     for (core::Finding& finding : findings) finding.rule = "gouge";

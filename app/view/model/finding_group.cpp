@@ -1,6 +1,7 @@
 #include "app/view/model/finding_group.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -81,17 +82,26 @@ size_t first_of(const FindingGroup& group) {
     return group.stretches.empty() ? 0 : group.stretches.front().first;
 }
 
+/// Findings with equal keys are one group: those of a rule about a pair of bodies. Of findings
+/// about the program as a whole, such as gouges, each message is a group.
+std::tuple<std::string, std::string, std::string, std::string>
+group_key(const core::Finding& finding) {
+    return {finding.rule, finding.pair[0], finding.pair[1],
+            finding.block ? std::string() : finding.message};
+}
+
 } // namespace
 
 std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
                                   const std::vector<core::Finding>& findings) {
     std::vector<FindingGroup> groups;
-    for (const GroupOf<core::Finding>& alike : grouped_by(findings, subject_of))
+    for (const GroupOf<core::Finding>& alike : grouped_by(findings, group_key))
         groups.push_back(group_of(rows, alike));
     std::stable_sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) {
         if (a.severity != b.severity) return a.severity > b.severity;
         if (shortfall_of(a) != shortfall_of(b)) return shortfall_of(a) > shortfall_of(b);
-        return first_of(a) < first_of(b);
+        if (first_of(a) != first_of(b)) return first_of(a) < first_of(b);
+        return std::tie(a.rule, a.pair) < std::tie(b.rule, b.pair);
     });
     return groups;
 }

@@ -129,16 +129,16 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-/// Draws the numbers of errors, warnings and all blocks, next to the tabs.
+/// Draws the numbers of blocks with a problem, of warnings and of all blocks, next to the tabs.
 void draw_counts(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
-    const size_t errors = count_of(model.findings, core::Severity::error);
+    const size_t problems = model.offending.size();
     const size_t warnings = count_of(model.findings, core::Severity::warning);
-    const std::string bad = fmt::format("{} {}", frame.fonts.icon(Icon::warning), errors);
+    const std::string bad = fmt::format("{} {}", frame.fonts.icon(Icon::warning), problems);
     const std::string doubtful = fmt::format("{} {}", frame.fonts.icon(Icon::near), warnings);
     const std::string blocks = counted(model.rows.size(), "block");
     const float gap = frame.px(12);
-    // If there is little room, errors come first.
+    // If there is little room, problems come first.
     const float room = area.width - frame.px(26) - (ImGui::GetItemRectMax().x - area.x);
     float width = ImGui::CalcTextSize(bad.c_str()).x;
     const auto fits = [&](const std::string& words) {
@@ -149,8 +149,8 @@ void draw_counts(Frame& frame, const Area& area) {
     };
     const bool warnings_fit = fits(doubtful), blocks_fit = warnings_fit && fits(blocks);
     ImGui::SameLine(area.width - width - frame.px(14));
-    text(frame.fonts.text, frame.palette.color(errors == 0 ? Role::dim : Role::violation), bad);
-    tip(frame, "Errors, as in the report");
+    text(frame.fonts.text, frame.palette.color(problems == 0 ? Role::dim : Role::violation), bad);
+    tip(frame, "Blocks with an error, or not proven clear");
     if (!warnings_fit) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.palette.color(warnings == 0 ? Role::dim : Role::near), doubtful);
