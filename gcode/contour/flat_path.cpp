@@ -48,7 +48,7 @@ FlatPoint nearest_on(const CornerSide& side, FlatPoint to) {
 }
 
 /// The parameter of a point along the motion: 0 at its start, 1 at its end.
-double indices_of_shard(const CornerSide& side, FlatPoint at) {
+double fraction_of(const CornerSide& side, FlatPoint at) {
     if (!side.arc) {
         const FlatPoint way = side.end - side.start;
         return dot(at - side.start, way) / dot(way, way);
@@ -163,8 +163,7 @@ CornerCut cut_corner(const CornerSide& first, const CornerSide& second, CornerKi
             straight && kind == CornerKind::rounding ? CornerFit::straight_on : CornerFit::none;
         return cut;
     }
-    const double left = indices_of_shard(first, cut.from),
-                 reached = indices_of_shard(second, cut.to);
+    const double left = fraction_of(first, cut.from), reached = fraction_of(second, cut.to);
     const auto is_inside = [](double fraction) {
         return fraction > -fuzz && fraction < 1.0 + fuzz;
     };

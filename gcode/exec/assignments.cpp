@@ -39,7 +39,7 @@ core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) 
 /// Evaluates the words and removes those whose value is vacant (Fanuc).
 core::Result<void> work_out_words(const Assigning& assigning) {
     std::vector<Word>& words = assigning.block.words;
-    size_t stored_value = 0;
+    size_t used = 0;
     for (size_t i = 0; i < words.size(); ++i) {
         Word& word = words[i];
         if (word.expression) {
@@ -47,10 +47,10 @@ core::Result<void> work_out_words(const Assigning& assigning) {
             if (!value) continue;
             word.value = *value;
         }
-        if (stored_value != i) words[stored_value] = word;
-        ++stored_value;
+        if (used != i) words[used] = word;
+        ++used;
     }
-    words.resize(stored_value);
+    words.resize(used);
     return {};
 }
 

@@ -236,10 +236,9 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         else
             note_points(block, state, result);
     }
-    if (auto cached_line =
-            look_up(block, dialect, environment, statement, blocks_are_arguments(state));
-        !cached_line)
-        return cached_line;
+    if (auto checked = look_up(block, dialect, environment, statement, blocks_are_arguments(state));
+        !checked)
+        return checked;
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
         || !state.modal_macros.empty()
         || (language.changes_level && language.changes_level(statement, state)))

@@ -210,10 +210,10 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
         const size_t axis = axis_letters.find(upper(name.back()));
         if (axis != std::string_view::npos && (name.size() == 2 || name.size() == 6)) {
             const ModalState& modal = state.modal;
-            const Position parameter = name.size() == 2
-                                           ? modal.position
-                                           : machine_from_program(modal.offsets, modal.position);
-            return shown(parameter[axis].value_or(0.0), axis, modal.unit);
+            const Position position = name.size() == 2
+                                          ? modal.position
+                                          : machine_from_program(modal.offsets, modal.position);
+            return shown(position[axis].value_or(0.0), axis, modal.unit);
         }
     }
     for (const Named& entry : named_values)

@@ -459,6 +459,13 @@ double radius_code(Side side) {
     return side == Side::left ? 41.0 : 42.0;
 }
 
+/// Vacant for a motion that has no number, such as Siemens' CIP.
+Value motion_code(const std::optional<MotionCode>& motion) {
+    if (!motion) return 0.0;
+    const auto number = number_of(*motion);
+    return number ? Value(value_of(*number)) : Value();
+}
+
 double path_code(PathMode mode) { return mode == PathMode::continuous ? 64.0 : 61.0; }
 
 } // namespace
@@ -467,7 +474,7 @@ Value fanuc_mode(const InterpreterState& state, int group) {
     const ModalState& modal = state.modal;
     switch (group) {
     case 1:
-        return modal.motion ? value_of(number_of(*modal.motion).value_or(g_code(0))) : 0.0;
+        return motion_code(modal.motion);
     case 2:
         return plane_code(modal.plane);
     case 3:

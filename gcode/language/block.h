@@ -126,12 +126,12 @@ struct Flow {
 /// The part of a line that only its language reads, such as a KlartextLine or a SiemensLine.
 class LanguageLine {
 public:
-    /// The block must have been parsed by the language of T.
+    /// An empty T if the language of T has not parsed this line.
     template <typename T>
     const T& as() const {
+        static const T nothing{};
         const T* line = std::any_cast<T>(&line_);
-        assert(line);
-        return *line;
+        return line ? *line : nothing;
     }
 
     /// As the parser of that language writes it: kept between lines, for its capacity.

@@ -7,7 +7,7 @@
 namespace gcode {
 namespace {
 
-uint64_t indices_of_shard(uint64_t key, const Value& value) {
+uint64_t digest_of_value(uint64_t key, const Value& value) {
     if (!value) return 0;
     Digest digest;
     digest.add(key);
@@ -26,15 +26,15 @@ uint64_t key_of(std::string_view name) {
 void Parameters::set_numbered(int number, Value value) {
     const auto at = static_cast<size_t>(number);
     if (numbered_.size() <= at) numbered_.resize(at + 1);
-    digest_ ^= indices_of_shard(at, numbered_[at]) ^ indices_of_shard(at, value);
+    digest_ ^= digest_of_value(at, numbered_[at]) ^ digest_of_value(at, value);
     numbered_[at] = value;
 }
 
 void Parameters::set_named(std::string_view name, Value value) {
     const auto found = named_.find(name);
     const uint64_t key = key_of(name);
-    digest_ ^= indices_of_shard(key, found != named_.end() ? Value{found->second} : Value{});
-    digest_ ^= indices_of_shard(key, value);
+    digest_ ^= digest_of_value(key, found != named_.end() ? Value{found->second} : Value{});
+    digest_ ^= digest_of_value(key, value);
     if (!value && found != named_.end())
         named_.erase(found);
     else if (value && found != named_.end())

@@ -87,6 +87,10 @@ TEST(SiemensCall, PassesValuesAndRepeats) {
     EXPECT_EQ(places(with_subprograms), "1 10 10 5 6 7 0 6 0 9 ");
 }
 
+TEST(SiemensCall, ReturnsFromASubprogramWithoutBlocks) {
+    EXPECT_EQ(places("G0 X1\nSUB_G\nX9\nM30\n%_N_SUB_G_SPF\n; nothing\n"), "1 9 ");
+}
+
 TEST(SiemensCall, RefusesWhatDoesNotFit) {
     EXPECT_THAT(siemens_error("SUB_B(1,2)\n%_N_SUB_B_SPF\nPROC SUB_B(REAL ONE)\nM17\n"),
                 HasSubstr("1:1: SUB_B takes 1 parameters, but 2 are given"));

@@ -246,6 +246,16 @@ TEST(SiemensFrame, RadiusCompensationTakesTheToolsOwnDiameter) {
     EXPECT_THAT(commands_of(ran.run), HasSubstr("y=5 z=0 feed=100"));
 }
 
+TEST(SiemensFrame, TheReferencePointIsNotPartOfACompensatedContour) {
+    Environment environment = known_environment(DialectId::siemens);
+    environment.tool_diameters[core::ToolNumber(4)] = 10.0;
+    const Ran ran = run_text("T4\nM6\nG0 X-20 Y0\nG1 G41 D1 X0 F100\nX20\nG74 X1=0 Y1=0\n"
+                             "G0 X40 Y0\nG1 Y50\nG40 X60\nM30\n",
+                             environment);
+    EXPECT_FALSE(ran.run.error) << ran.run.error->message;
+    EXPECT_THAT(commands_of(ran.run), HasSubstr("x=20 y=5 z=0 feed=100"));
+}
+
 TEST(SiemensState, IsAsBeforeTheBlockAtFaultAndCopiesAgree) {
     const std::string good = "R1=5\nDEF REAL LEN=2\nTRANS X3\nG0 X=R1\n";
     const Ran before = run_text(good, DialectId::siemens);
