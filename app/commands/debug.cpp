@@ -251,7 +251,7 @@ public:
 
     /// Runs the scripts. True if they ran to their end; false if a command failed or ended the
     /// session.
-    bool execute_motion(const std::vector<Script>& scripts) {
+    bool run_scripts(const std::vector<Script>& scripts) {
         for (const Script& script : scripts) {
             if (!script.is_file) {
                 if (!one(script.text, fmt::format("-ex '{}'", script.text))) return false;
@@ -330,7 +330,7 @@ ExitCode debug(const DebugOptions& options) {
     if (!session) return failed(session.error());
     catch_interrupts();
     Console console(**session);
-    const bool goes_on = console.execute_motion(options.scripts) || console.failed;
+    const bool goes_on = console.run_scripts(options.scripts) || console.failed;
     if (goes_on && !options.batch) {
         if (isatty(STDIN_FILENO) == 1)
             console.talk();

@@ -74,7 +74,7 @@ public:
           u_tiles_((z_.u_count() + tile_side - 1) / tile_side),
           v_tiles_((z_.v_count() + tile_side - 1) / tile_side) {}
 
-    void update_models();
+    void update_pieces();
     std::vector<StockPiece> put_together();
 
 private:
@@ -178,7 +178,7 @@ void PieceWork::link(int tu, int tv, int towards) {
     map_.tiles_[index(tu, tv)] = tile;
 }
 
-void PieceWork::update_models() {
+void PieceWork::update_pieces() {
     const size_t count = index(0, v_tiles_);
     if (map_.tiles_.empty()) {
         map_.tiles_.resize(count);
@@ -254,7 +254,7 @@ void PieceMap::note_cut(const CutModel& model, const Aabb& box) {
 
 std::vector<StockPiece> PieceMap::pieces(const CutModel& model) {
     PieceWork work(model, *this);
-    work.update_models();
+    work.update_pieces();
     return work.put_together();
 }
 

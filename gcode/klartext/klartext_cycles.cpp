@@ -365,7 +365,7 @@ core::Result<void> call_defined_cycle(Execution& execution) {
 
 namespace {
 
-constexpr double most_locations = 10000.0;
+constexpr double most_positions = 10000.0;
 
 /// The holes of a full circle or arc (220), or of rows rotated about the first hole (221).
 core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
@@ -374,7 +374,7 @@ core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
     std::vector<PlanePoint> positions;
     if (klartext_of(execution.block).number == 220) {
         const double count = plain(241);
-        if (!(count >= 1.0 && count <= most_locations))
+        if (!(count >= 1.0 && count <= most_positions))
             return refuse_statement(execution, "Q241, the number of holes, must be at least 1");
         double step = plain(247);
         // Q246 is used if no step is given. On a full circle the first hole is not repeated.
@@ -389,7 +389,7 @@ core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
         return positions;
     }
     const double columns = plain(242), rows = plain(243);
-    if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_locations))
+    if (!(columns >= 1.0 && rows >= 1.0 && columns * rows <= most_positions))
         return refuse_statement(
             execution, "Q242 and Q243, the numbers of columns and rows, must be at least 1");
     const double turn = plain(224) * core::radians_per_degree;

@@ -15,7 +15,7 @@ struct PromptCommand {
     std::string_view aliases; // short forms, separated by blanks
     std::string_view usage;   // the arguments
     std::string_view help;    // the first line is for the list, the rest only for `help NAME`
-    core::Result<std::string> (*execute_motion)(PromptState& state, const std::string& arguments);
+    core::Result<std::string> (*execute)(PromptState& state, const std::string& arguments);
     bool repeats = false; // whether an empty line repeats it
 };
 

@@ -45,7 +45,7 @@ PromptAnswer Prompt::answer(std::string_view line) {
     const auto [name, arguments] = split_word(text);
     const auto command = command_named(name);
     if (!command) return {error_text(command.error()), true};
-    auto result = (*command)->execute_motion(state_, arguments);
+    auto result = (*command)->execute(state_, arguments);
     // After `list 20`, repeating continues with a plain `list`.
     state_.repeated = !(*command)->repeats         ? std::string()
                       : (*command)->name == "list" ? std::string("list")

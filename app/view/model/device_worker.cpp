@@ -38,7 +38,7 @@ public:
 
 private:
     void work();
-    void execute_motion(const DeviceJob& job, uint64_t run);
+    void run_job(const DeviceJob& job, uint64_t run);
     core::Result<CoprocessorResult> emulate(const DeviceJob& job, const DeviceFile& file,
                                             std::vector<uint32_t> others, uint64_t run);
     bool is_over(uint64_t run) const { return stopping_ || runs_ != run; }
@@ -113,7 +113,7 @@ void DeviceWorker::Thread::work() {
             job = *std::exchange(wanted_, std::nullopt);
             run = runs_;
         }
-        execute_motion(job, run);
+        run_job(job, run);
     }
 }
 
@@ -143,7 +143,7 @@ core::Result<CoprocessorResult> DeviceWorker::Thread::emulate(const DeviceJob& j
     return in_time(std::move(made), file, true);
 }
 
-void DeviceWorker::Thread::execute_motion(const DeviceJob& job, uint64_t run) {
+void DeviceWorker::Thread::run_job(const DeviceJob& job, uint64_t run) {
     const auto fail = [&](const core::Error& error) {
         deliver({.run = run, .is_done = true, .failure = error});
     };
