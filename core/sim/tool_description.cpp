@@ -16,7 +16,7 @@ using Group = ToolSize::Group;
 
 constexpr ToolShapeEntry shapes[] = {
     {flat, "flat", "a flat end mill"},         {ball, "ball", "a ball end mill"},
-    {bull, "bull", "a bull nose end mill"},    {drill, "drill", "a drill"},
+    {bull, "bull", "a bull nose end mill"},    {drill, "drill", "a drill", false, true},
     {taper, "taper", "a tapered mill"},        {chamfer, "chamfer", "a chamfer mill"},
     {tslot, "tslot", "a T-slot cutter", true}, {dovetail, "dovetail", "a dovetail cutter", true},
     {lollipop, "lollipop", "a lollipop"},      {threadmill, "threadmill", "a thread mill", true},
@@ -71,6 +71,8 @@ const char* description_of(ToolShape shape) {
 bool cuts_undercuts(ToolShape shape) {
     return tool_shapes()[static_cast<size_t>(shape)].cuts_undercuts;
 }
+
+bool only_drills(ToolShape shape) { return tool_shapes()[static_cast<size_t>(shape)].only_drills; }
 
 std::optional<ToolShape> tool_shape_named(const std::string& name) {
     for (const ToolShapeEntry& entry : tool_shapes())

@@ -36,6 +36,7 @@ struct ToolShapeEntry {
     const char* description; // "a T-slot cutter", for messages
     // Made to cut undercuts with the upper face or the side of its head.
     bool cuts_undercuts = false;
+    bool only_drills = false; // made to be fed along its axis, not sideways
 };
 
 /// All shapes, in the order of the enumeration.
@@ -49,6 +50,9 @@ const char* description_of(ToolShape shape);
 
 /// Whether a tool of this shape is made to cut undercuts.
 bool cuts_undercuts(ToolShape shape);
+
+/// Whether a tool of this shape must not be fed sideways.
+bool only_drills(ToolShape shape);
 
 /// Shape with this set-up name; empty if there is none.
 std::optional<ToolShape> tool_shape_named(const std::string& name);

@@ -79,7 +79,7 @@ ToolNumber free_number(const ProgramSurvey& seen) {
 FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
     const auto use = seen.mills.find(tool.tool.number);
     const bool mills = use != seen.mills.end() && use->second;
-    if (!mills || tool.tool.shape != core::ToolShape::drill || tool.tool.point_deg) return tool;
+    if (!mills || !core::only_drills(tool.tool.shape) || tool.tool.point_deg) return tool;
     tool.tool.shape = core::ToolShape::flat;
     tool.source += " and its use, because drills do not cut sideways";
     return tool;

@@ -216,7 +216,7 @@ void read_angles(const json& parameters, ToolDescription& tool) {
     const auto cutting =
         parameter(parameters, {"CuttingEdgeAngle", "cuttingAngle", "CuttingAngle"});
     const auto tip = parameter(parameters, {"TipAngle"});
-    if (tool.shape == ToolShape::drill) tool.point_deg = tip;
+    if (has_size(tool.shape, &ToolDescription::point_deg)) tool.point_deg = tip;
     if (tool.shape == ToolShape::chamfer && cutting) tool.angle_deg = 0.5 * *cutting;
     if (tool.shape == ToolShape::dovetail && cutting) tool.angle_deg = 90.0 - *cutting;
     if (tool.shape == ToolShape::taper) tool.angle_deg = parameter(parameters, {"TaperAngle"});
@@ -303,7 +303,7 @@ FoundTool freecad_tool(const json& entry, int number, const std::filesystem::pat
         tool.corner_radius = corner;
     }
     if (angle > 0.0 && angle < 180.0) {
-        if (tool.shape == ToolShape::drill) tool.point_deg = angle;
+        if (has_size(tool.shape, &ToolDescription::point_deg)) tool.point_deg = angle;
         if (tool.shape == ToolShape::chamfer) tool.angle_deg = 0.5 * angle;
     }
     if (tool.shape == ToolShape::chamfer) tool.tip_diameter = 2.0 * size("flatRadius");
@@ -392,7 +392,7 @@ void read_shape(const Reader& reader, ToolDescription& made) {
         made.shape = ToolShape::bull;
         made.corner_radius = corner;
     }
-    if (made.shape == ToolShape::drill) made.point_deg = point;
+    if (has_size(made.shape, &ToolDescription::point_deg)) made.point_deg = point;
     if (made.shape == ToolShape::chamfer || made.shape == ToolShape::dovetail)
         made.angle_deg = flank;
     if (made.shape == ToolShape::chamfer && !flank && point) made.angle_deg = 0.5 * *point;

@@ -277,7 +277,7 @@ void read_number(const TextNumber& number, LengthUnit unit, ToolText& text,
 void assign_angle(const ToolText& text, core::ToolDescription& tool) {
     if (!text.angle_deg) return;
     const double angle = *text.angle_deg;
-    if (tool.shape == ToolShape::drill) tool.point_deg = angle;
+    if (has_size(tool.shape, &core::ToolDescription::point_deg)) tool.point_deg = angle;
     if (tool.shape == ToolShape::taper || tool.shape == ToolShape::dovetail) tool.angle_deg = angle;
     if (tool.shape == ToolShape::chamfer) tool.angle_deg = 0.5 * angle;
 }

@@ -90,7 +90,7 @@ bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool) {
 }
 
 bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
-    if (tool.description.shape != ToolShape::drill || motion.tip) return true;
+    if (!only_drills(tool.description.shape) || motion.tip) return true;
     const auto way = [&](size_t i) {
         return motion.from[i] && motion.to[i] ? std::abs(*motion.to[i] - *motion.from[i]) : 0.0;
     };
