@@ -8,8 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
+#include "app/commands/suggestion.h"
 
 namespace {
 
@@ -46,7 +48,16 @@ int run(int argc, char** argv) {
         cli.parse(argc, arguments.data());
     } catch (const CLI::ParseError& error) {
         // Help and version are no errors; every misuse is the same to a script.
-        return cli.exit(error) == 0 ? 0 : static_cast<int>(app::ExitCode::failed);
+        if (error.get_exit_code() == 0) return cli.exit(error);
+        const std::string misspelt = app::misspelt_text(cli, arguments_of(argc, argv));
+        if (misspelt.empty())
+            cli.exit(error);
+        else
+            std::fputs(fmt::format("feeler: {}\nRun with --help for more information.\n",
+                                   app::printable(misspelt))
+                           .c_str(),
+                       stderr);
+        return static_cast<int>(app::ExitCode::failed);
     }
     return static_cast<int>(exit_code);
 }

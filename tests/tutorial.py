@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Runs the commands of the tutorial in the manual and compares their output with the tutorial.
+"""Runs the commands of the tutorial and of other pages of the manual and compares their output with the page.
 
     tutorial.py FEELER ROOT             fails with the first difference
-    tutorial.py FEELER ROOT --update    writes the actual output into the tutorial
+    tutorial.py FEELER ROOT --update    writes the actual output into the pages
 
 A block ```console holds commands ($ ...) with their output; a line [...] matches any lines. A block ```toml
 FILE is written to that file, ```toml append FILE is appended to it. Seconds of computing time are not compared.
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 
+PAGES = ("tutorial.md", "reading-the-report.md")
 LEFT_OUT = "[...]"
 SECONDS = re.compile(r"\b\d+\.\d\d s$")
 
@@ -90,7 +91,7 @@ def write_file(shell, info, block):
 
 
 def carried_out(text, shell, update):
-    """The tutorial with its current output; stops at the first difference unless updating."""
+    """The page with its current output; stops at the first difference unless updating."""
     lines, result = text.splitlines(), []
     at = 0
     while at < len(lines):
@@ -117,16 +118,17 @@ def compared(shell, command, shown, update):
         return shown
     if update:
         return updated(shown, printed)
-    raise SystemExit(f"$ {command}\nprints\n" + "\n".join(printed) + "\nthe tutorial shows\n" + "\n".join(shown))
+    raise SystemExit(f"$ {command}\nprints\n" + "\n".join(printed) + "\nthe manual shows\n" + "\n".join(shown))
 
 
 def main(feeler, root, *options):
-    tutorial = pathlib.Path(root) / "docs" / "manual" / "tutorial.md"
-    text = tutorial.read_text(encoding="utf-8")
-    with tempfile.TemporaryDirectory() as home:
-        now = carried_out(text, Shell(feeler, pathlib.Path(root).resolve(), home), "--update" in options)
-    if "--update" in options:
-        tutorial.write_text(now, encoding="utf-8")
+    for name in PAGES:
+        page = pathlib.Path(root) / "docs" / "manual" / name
+        text = page.read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as home:
+            now = carried_out(text, Shell(feeler, pathlib.Path(root).resolve(), home), "--update" in options)
+        if "--update" in options:
+            page.write_text(now, encoding="utf-8")
 
 
 if __name__ == "__main__":

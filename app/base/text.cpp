@@ -160,8 +160,7 @@ std::string clipped(const std::string& text, size_t width) {
     return text.substr(0, end) + "...";
 }
 
-std::string wrapped(const std::string& text, size_t indent, size_t hang) {
-    constexpr size_t width = 80;
+std::string wrapped(const std::string& text, size_t indent, size_t hang, size_t width) {
     std::istringstream words(text);
     std::string result, line(indent, ' '), word;
     bool line_is_empty = true;
@@ -237,7 +236,9 @@ std::string counts_text(size_t errors, size_t warnings, size_t notes) {
 }
 
 std::string duration_text(double seconds) {
-    if (!(std::abs(seconds) < 1e15)) return "unknown";
+    constexpr double longest = 3.6e9; // a million hours
+    if (!std::isfinite(seconds)) return "unknown";
+    if (seconds >= longest) return "more than 1,000,000 h";
     const auto whole = static_cast<long long>(std::llround(seconds));
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);

@@ -42,8 +42,8 @@ std::string printable(std::string_view text);
 /// At most `width` bytes, with `...` if shortened; UTF-8 characters stay whole.
 std::string clipped(const std::string& text, size_t width);
 
-/// Lines of at most 80 characters, indented by `indent`, all but the first by `hang` more.
-std::string wrapped(const std::string& text, size_t indent, size_t hang = 0);
+/// Lines of at most `width` characters, indented by `indent`, all but the first by `hang` more.
+std::string wrapped(const std::string& text, size_t indent, size_t hang = 0, size_t width = 80);
 
 /// "4, 7-9, 12"; after twelve ranges only the last number.
 std::string line_ranges(std::vector<uint32_t> lines);
@@ -59,7 +59,7 @@ std::string counted(size_t count, const std::string& noun);
 std::string counts_text(size_t errors, size_t warnings, size_t notes);
 
 /// A time of at least 0 in whole seconds, or minutes from an hour on: "5 s", "4 min 05 s",
-/// "2 h 05 min".
+/// "2 h 05 min", "more than 1,000,000 h"; "unknown" if it is infinite.
 std::string duration_text(double seconds);
 
 /// The verdict on a program in capitals, with its meaning.

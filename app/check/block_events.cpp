@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/sim/setup.h"
+#include "gcode/exec/following.h"
 #include "gcode/lower/lowering.h"
 
 namespace app {
@@ -71,6 +72,17 @@ std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockC
         if (speed_by_hand) take_any_speed(event);
     }
     return events;
+}
+
+std::optional<size_t> displaced_axis(std::span<const core::Event> events) {
+    for (const core::Event& event : events) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        for (size_t axis = 3; motion && axis < core::axis_count; ++axis)
+            if (motion->from[axis] != motion->to[axis]
+                || gcode::is_away_from_zero(axis, motion->to[axis].value_or(0.0)))
+                return axis;
+    }
+    return std::nullopt;
 }
 
 std::optional<std::vector<core::Event>>

@@ -31,6 +31,10 @@ std::vector<size_t> fixture_moves_of(const core::Setup& setup, const gcode::Bloc
 std::vector<core::Event> events_of(const core::Setup& setup, const gcode::BlockCommands& block,
                                    gcode::Lowering& lowering, bool speed_by_hand);
 
+/// The first axis besides X, Y and Z that moves or is away from 0, not counting full turns; empty
+/// if there is none.
+std::optional<size_t> displaced_axis(std::span<const core::Event> events);
+
 /// Receives a block and its events. Returns false to see no more blocks.
 using BlockVisit = std::function<bool(const gcode::BlockCommands&, std::span<const core::Event>)>;
 

@@ -1,6 +1,8 @@
 #include "app/check/block_runner.h"
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +12,8 @@
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
+#include "gcode/exec/following.h"
+#include "gcode/language/error_rules.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -31,12 +35,23 @@ std::string as_sentence(std::string text) {
 core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning) {
     core::Finding finding;
     finding.rule = warning.rule;
-    finding.severity = core::default_severity(finding.rule).value_or(core::Severity::warning);
     if (warning.severity == gcode::Severity::note) finding.severity = core::Severity::note;
-    if (const auto set = setup.rules.find(finding.rule); set != setup.rules.end())
-        finding.severity = set->second;
+    core::settle_severity(setup, finding);
     finding.message = as_sentence(warning.message);
     finding.cure = warning.cure;
+    return finding;
+}
+
+std::optional<core::Finding> alarm_finding(const core::Setup& setup, const core::Error& error) {
+    core::Finding finding;
+    finding.rule = gcode::rule_of(error);
+    if (finding.rule.empty()) return std::nullopt;
+    finding.severity = core::severity_of(setup, finding.rule);
+    if (finding.severity == core::Severity::off) return std::nullopt;
+    finding.message = error.message + ". The control stops here with an alarm.";
+    finding.cure = finding.rule == core::rule_id("no-feed")
+                       ? "Add F to this block, in the unit of the feed mode."
+                       : "Check the end point, centre and plane of this arc.";
     return finding;
 }
 
@@ -48,13 +63,13 @@ BlockRunner::BlockRunner(const PreparedCheck& check)
 
 std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& block,
                                                 const gcode::Lowering& lowering) const {
-    if (lowering.moved_tilted)
+    if (lowering.moved_tilted && check_.file.has_axes)
         return core::Error{core::ErrorCode::unsupported,
                            {.line = block.line, .column = 1},
                            "this block moves in a tilted plane or with a tilted tool, but the "
                            "machine in the set-up has no rotary axes: add them as [[axis]]",
                            std::string(block.file)};
-    if (!lowering.other_axis) return std::nullopt;
+    if (!lowering.other_axis || !check_.file.has_axes) return std::nullopt;
     return core::Error{core::ErrorCode::unsupported,
                        {.line = block.line, .column = 1},
                        fmt::format("this block moves axis {}, which the machine in the set-up does "
@@ -77,12 +92,39 @@ void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState
     }
 }
 
+core::PathCertainty BlockRunner::certainty(const gcode::BlockCommands& block,
+                                           std::span<const core::Event> events, RunState& state,
+                                           std::vector<core::Finding>& findings) const {
+    const auto axis = check_.file.has_axes ? std::nullopt : displaced_axis(events);
+    if (!axis) return block.path;
+    const auto certainty = std::max(block.path, core::PathCertainty::pose_unknown);
+    if (std::exchange(state.said_displaced, true)) return certainty;
+    const bool turns = core::is_rotary(*axis);
+    core::Finding finding;
+    finding.rule = core::rule_id("undecided");
+    finding.block = block.block;
+    finding.message = fmt::format(
+        "Axis {} {}. This block and all others with such an axis away from 0 are not checked, and "
+        "what they cut stays in the stock.",
+        core::axis_letters[*axis],
+        turns ? "turns the work about a centre that is not stated"
+              : "is not described, so it is unknown what it moves");
+    finding.cure =
+        fmt::format("Describe the machine in a set-up, with {} as an [[axis]]{}.",
+                    core::axis_letters[*axis], turns ? " and a point on its axis of rotation" : "");
+    core::settle_severity(*setup_, finding);
+    if (finding.severity != core::Severity::off) findings.push_back(std::move(finding));
+    return certainty;
+}
+
 core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
     const auto failed = [&](core::Error error) {
         return tl::unexpected(core::in_file(std::move(error), check_.program->file));
     };
     next_ = state.control;
     const auto read = interpreter_.next(next_);
+    if (after_reading && next_.readings->met.size() > state.control.readings->met.size())
+        after_reading(state, next_);
     if (!read) return failed(read.error());
     if (!*read) {
         std::swap(state.control, next_);
@@ -106,8 +148,9 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
                     std::string(block.file),
                     block.calls,
                     {}}};
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
-                                     judge ? &*judged : nullptr};
+    const core::PathCertainty path = certainty(block, events, state, step.findings);
+    const core::BlockEvents of_block{block.block,     block.is_cycle, events,
+                                     block.goes_home, path,           judge ? &*judged : nullptr};
     track_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
     if (before_block) before_block(block, state);
     std::swap(state.control, next_);
@@ -115,8 +158,11 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
     step.checked.result = core::run_block(*setup_, of_block, state.machine);
     add_warnings(block, state, step.findings);
     for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
-    track_offsets(state.offsets, *setup_, state.control, of_block, state.machine);
-    track_units(state.units, of_block);
+    if (path < core::PathCertainty::pose_unknown)
+        track_offsets(state.offsets, *setup_, lowering.offsets, of_block, state.machine);
+    else
+        state.offsets[lowering.offsets.active].gap = 0.0; // it may cut the stock
+    note_feeds(state.feeds, *setup_, state.control.modal, of_block, state.machine);
     core::add_block(state.clock, of_block, step.timed);
     return step;
 }

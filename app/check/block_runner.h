@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/check/block_events.h"
@@ -21,6 +22,9 @@ struct RunState;
 /// The finding for a warning of the interpreter, with its severity in the set-up.
 core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning);
 
+/// The finding for an alarm of the control; empty if no rule names it.
+std::optional<core::Finding> alarm_finding(const core::Setup& setup, const core::Error& error);
+
 /// The result of one block.
 struct BlockStep {
     CheckedBlock checked;
@@ -37,6 +41,9 @@ public:
     // Called after the control has read a block and before it moves, with the state before
     // the block.
     std::function<void(const gcode::BlockCommands&, const RunState&)> before_block;
+    // Called after the control has read a block, or failed to, with the state before it and the
+    // control's state after it.
+    std::function<void(const RunState&, const gcode::InterpreterState&)> after_reading;
     BlockJudge judge; // empty: the distance core measures clearances
 
     const core::Setup& setup() const { return *setup_; }
@@ -58,6 +65,11 @@ public:
 private:
     std::optional<core::Error> refusal(const gcode::BlockCommands& block,
                                        const gcode::Lowering& lowering) const;
+    /// How far the motions of a block are known. Reports the first block in which an axis that no
+    /// set-up describes is away from 0.
+    core::PathCertainty certainty(const gcode::BlockCommands& block,
+                                  std::span<const core::Event> events, RunState& state,
+                                  std::vector<core::Finding>& findings) const;
     /// Adds the findings for the interpreter's warnings.
     void add_warnings(const gcode::BlockCommands& block, const RunState& state,
                       std::vector<core::Finding>& findings) const;

@@ -4,12 +4,14 @@
 #include <set>
 
 #include "app/base/clearance_text.h"
+#include "app/base/findings.h"
 #include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
 #include "app/check/prepared_check.h"
 #include "app/check/program_runner.h"
 #include "app/coproc/device_judge.h"
+#include "app/setup/coverage.h"
 #include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
 #include "core/sim/run/simulator.h"
@@ -22,6 +24,32 @@ bool CheckRun::has_errors() const {
     return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
         return finding.severity == core::Severity::error;
     });
+}
+
+Coverage CheckRun::full_coverage() const {
+    Coverage full = coverage ? *coverage : Coverage();
+    std::set<core::ToolNumber> feeding;
+    for (const CheckedBlock& block : blocks) {
+        const core::BlockMotion motion = block.result.motion;
+        full.moves = full.moves || motion != core::BlockMotion::none;
+        const bool feeds = motion != core::BlockMotion::none && motion != core::BlockMotion::rapid;
+        if (feeds && block.result.tool) feeding.insert(*block.result.tool);
+    }
+    for (const core::ToolNumber number : feeding) {
+        const auto tool = setup.tools.find(number);
+        if (tool == setup.tools.end() || tool->second.description.holder.empty())
+            full.tools_without_holder.push_back(number);
+    }
+    full.holders = full.tools_without_holder.empty() ? Known::described : Known::missing;
+    if (doubts_start(findings)) full.start = Known::inferred;
+    return full;
+}
+
+std::string CheckRun::headline() const {
+    const bool in_program = std::any_of(findings.begin(), findings.end(), is_error_of_program);
+    return headline_of(
+        {.verdict = verdict, .is_stopped = stopped.has_value(), .has_errors = in_program},
+        full_coverage());
 }
 
 std::vector<std::string> CheckRun::all_assumptions() const {
@@ -104,7 +132,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
         FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.machine().stock));
-        runner.run_judge([&](std::span<const core::Event> block, const auto& before) {
+        runner.use_judge([&](std::span<const core::Event> block, const auto& before) {
             return device->judge(block, before);
         });
     }

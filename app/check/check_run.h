@@ -27,7 +27,9 @@ namespace app {
 struct ShownClearance;
 
 enum class Engine : uint8_t;
+struct Coverage;
 struct SavedStock;
+struct Tolerances;
 
 /// One block as executed, with its result.
 struct CheckedBlock {
@@ -37,6 +39,33 @@ struct CheckedBlock {
     std::string file;            // file of a subprogram; empty for the main program
     std::vector<uint32_t> calls; // lines of the calls, the outermost first
     core::BlockResult result;
+};
+
+/// An error that occurs with another reading of an open premise, but not with the assumed one.
+struct ReadingError {
+    uint32_t line = 0;
+    std::string file; // of a subprogram; empty for the main program
+    core::Finding finding;
+};
+
+/// What a check found with another reading of an open premise.
+struct ReadingResult {
+    std::string reason;            // "The set-up does not state parameter 5006#6 (TOS)"
+    std::string assumed;           // a clause: "parameter 5006#6 (TOS) is 1"
+    std::vector<std::string> when; // likewise, of this reading; the premises met first come first
+    std::string effect;            // what the control then does; may be empty
+    std::string cure;              // a sentence: how to state the premise
+    core::BlockIndex block{};      // of the assumed reading, in which the premise matters
+    uint32_t line = 0;             // of that block
+    std::string file;
+    core::Verdict verdict = core::Verdict::clear; // of the blocks from there on
+    std::vector<ReadingError> errors;             // the first few
+    size_t error_count = 0;
+    std::optional<core::Error> stopped; // why this reading ended early
+    bool is_condition = false;          // of the program; otherwise a parameter of the control
+    bool continues = false;             // it goes on where another reading had been stopped
+    std::optional<ReadingError>
+        avoided; // the first error of the assumed reading that this one lacks
 };
 
 /// Wall time of the stages of a check, seconds.
@@ -55,7 +84,8 @@ struct CheckInput {
     Engine engine{}; // exact
     core::Setup setup;
     std::vector<std::string> assumptions;
-    double memory = 0.0; // expected size of the model of the stock, bytes
+    std::shared_ptr<const Coverage> coverage; // without holders and motion, which the run shows
+    double memory = 0.0;                      // expected size of the model of the stock, bytes
 };
 
 /// The results by block. They only grow while the program runs.
@@ -65,8 +95,9 @@ struct CheckRecord {
     std::vector<CheckedBlock> blocks;
     std::vector<core::Finding> findings; // after the run in the order of the blocks
     core::Verdict verdict = core::Verdict::clear;
-    std::optional<core::Error> stopped; // why the program stopped early
-    double removed = 0.0;               // mm3
+    std::vector<ReadingResult> readings; // other readings of open premises
+    std::optional<core::Error> stopped;  // why the program stopped early
+    double removed = 0.0;                // mm3
     CheckTimes times;
 };
 
@@ -81,12 +112,17 @@ struct CheckReport {
     std::shared_ptr<const core::StockMesh> surface;         // of the remaining stock, if requested
     std::shared_ptr<const SavedStock> saved_stock;          // if the stock was written to a file
     std::shared_ptr<const core::PartComparison> comparison; // if the set-up has a part
+    std::shared_ptr<const Tolerances> tolerances;           // of the set-up's values, if requested
 };
 
 /// A check of a program against a set-up, in its three stages: read_check fills the input,
 /// ProgramRunner the record, and conclude the report.
 struct CheckRun : CheckInput, CheckRecord, CheckReport {
     bool has_errors() const;
+    /// What is known of all that the verdict rests on, with the tools that have fed so far.
+    Coverage full_coverage() const;
+    /// The verdict in words that say no more than was checked; see headline_of.
+    std::string headline() const;
     /// The assumptions of the input, then those of the run.
     std::vector<std::string> all_assumptions() const;
 };

@@ -10,6 +10,7 @@
 #include "app/check/length_mismatch.h"
 #include "app/check/prepared_check.h"
 #include "app/check/stock_file.h"
+#include "app/setup/coverage.h"
 #include "app/setup/inference/program_survey.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
@@ -48,7 +49,7 @@ void require_judged_motion(CheckRecord& record) {
 }
 
 /// Reports motions that were not checked, so that the program does not count as checked.
-void say_not_judged(CheckRecord& record, const std::string& why) {
+void report_not_judged(CheckRecord& record, const std::string& why) {
     const auto moves = [](const CheckedBlock& block) {
         return block.result.motion != core::BlockMotion::none;
     };
@@ -59,6 +60,21 @@ void say_not_judged(CheckRecord& record, const std::string& why) {
     finding.message = "The motions were not checked: " + why + ".";
     finding.cure = "Check the program on the lathe's own control.";
     record.verdict = std::max(record.verdict, core::Verdict::undecided);
+    record.findings.push_back(finding);
+}
+
+/// Reports what the set-up does not describe, if the rule is on.
+void report_incomplete_setup(const CheckRun& run, CheckRecord& record) {
+    core::Finding finding;
+    finding.rule = core::rule_id("incomplete-setup");
+    finding.severity = core::severity_of(run.setup, finding.rule);
+    const Coverage coverage = run.full_coverage();
+    if (coverage.is_complete() || finding.severity == core::Severity::off) return;
+    finding.message = "Not everything was checked: " + uncovered_text(coverage) + ".";
+    finding.cure = "Describe it in the set-up.";
+    if (coverage.fixtures == Known::missing)
+        finding.cure = "Describe it in the set-up; if there are no fixtures, write "
+                       "fixtures = \"none\" at its top.";
     record.findings.push_back(finding);
 }
 
@@ -81,10 +97,11 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     run.later_assumptions.insert(run.later_assumptions.end(), end.assumptions.begin(),
                                  end.assumptions.end());
     require_judged_motion(run);
+    report_incomplete_setup(run, run);
     // A program that was checked only in part must not count as clear.
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
     put_in_order(run.findings);
-    say_not_judged(run, check.file.not_judged);
+    report_not_judged(run, check.file.not_judged);
     run.stock = std::make_shared<const core::CutModel>(end.stock);
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
@@ -161,7 +178,7 @@ std::optional<core::Finding> doubt_about(const CheckedBlock& block, const Allowe
 }
 
 /// Checks every comment of the executed lines once.
-void say_doubtful_comments(const CheckInput& input, CheckRecord& record, bool comments_count) {
+void report_invalid_comments(const CheckInput& input, CheckRecord& record, bool comments_count) {
     std::set<std::pair<std::string, uint32_t>> seen;
     std::vector<core::Finding> found;
     for (const CheckedBlock& block : record.blocks) {
@@ -172,8 +189,7 @@ void say_doubtful_comments(const CheckInput& input, CheckRecord& record, bool co
                 found.push_back(*std::move(doubt));
     }
     for (core::Finding& finding : found) {
-        if (const auto set = input.setup.rules.find(finding.rule); set != input.setup.rules.end())
-            finding.severity = set->second;
+        core::settle_severity(input.setup, finding);
         if (finding.severity == core::Severity::off) continue;
         const auto after = std::find_if(record.findings.begin(), record.findings.end(),
                                         [&](const core::Finding& other) {
@@ -183,10 +199,10 @@ void say_doubtful_comments(const CheckInput& input, CheckRecord& record, bool co
     }
 }
 
-void say_severities(const CheckInput& input, CheckRecord& record) {
+void list_changed_severities(const CheckInput& input, CheckRecord& record) {
     for (const auto& [rule, severity] : input.setup.rules) {
         const core::Severity own = core::default_severity(rule).value_or(severity);
-        if (severity == own) continue;
+        if (severity == own || own == core::Severity::off) continue; // one more rule hides nothing
         record.later_assumptions.push_back(
             severity == core::Severity::off
                 ? fmt::format("the set-up switches {} off; collisions are reported all the same",
@@ -218,8 +234,8 @@ std::vector<AllowedRule> allowed_rules(std::string_view line) {
 }
 
 void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comments_count) {
-    say_severities(input, record);
-    say_doubtful_comments(input, record, comments_count);
+    list_changed_severities(input, record);
+    report_invalid_comments(input, record, comments_count);
     std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by message
     const auto judge = [&](const core::Finding& finding) {
         if (!is_allowed(record, finding)) return false;
@@ -267,6 +283,8 @@ struct Step {
 std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment environment,
                            bool block_delete) {
     environment.block_delete = block_delete;
+    environment.control.answers.erase(gcode::ControlQuestion::blocks_are_deleted);
+    environment.control.reports_premises = false;
     std::vector<Step> steps;
     visit_events(program, environment, [&](const ProgramEvent& event) {
         if (const auto* motion = std::get_if<core::Motion>(&event.event))

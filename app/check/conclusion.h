@@ -5,9 +5,11 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/sim/finding.h"
 
 namespace core {
 struct PartComparison;
+struct Setup;
 struct SimulatorState;
 } // namespace core
 namespace gcode {
@@ -23,6 +25,7 @@ struct CheckReport;
 struct CheckRun;
 struct LengthMismatch;
 struct PreparedCheck;
+struct RunState;
 
 /// Completes a run after its last block: sorts the findings, combines those with one cause, applies
 /// comments that allow rules, compares with the part, and stores the remaining stock.
@@ -64,5 +67,14 @@ std::string facts_of(const core::PartComparison& comparison, double tolerance);
 ///
 /// Errors: invalid_value if the set-up has no part or the name does not end in .ply.
 core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path);
+
+/// The findings about a whole run that contradicts itself or cannot be meant:
+/// `implausible-value`, at most one for each kind of value (a feed above the rapid speed of the
+/// machine in the set-up is a warning, because the control limits it); `nothing-moves` (a warning
+/// if the program only defines subprograms); `tool-mismatch`; `units-doubtful`; and `units-jump`
+/// of the feeds and the stock. `end` is the state after the last block.
+std::vector<core::Finding> implausible_findings(const PreparedCheck& check,
+                                                const CheckRecord& record, const RunState& end,
+                                                const core::Setup& setup);
 
 } // namespace app

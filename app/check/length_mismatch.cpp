@@ -50,7 +50,8 @@ bool can_be_caused_by_length(const core::Finding& finding) {
     if (finding.rule == core::rule_id("tool-change-unsafe")) return false;
     return finding.rule == core::rule_id("over-travel") || !finding.pair[0].empty()
            || finding.rule == core::rule_id("air-cut")
-           || finding.rule == core::rule_id("offset-implausible");
+           || finding.rule == core::rule_id("offset-implausible")
+           || finding.rule == core::rule_id("nothing-cut");
 }
 
 /// The axis letter, with which a finding about a limit begins.

@@ -39,11 +39,12 @@ struct LengthTracker {
     bool is_open = false; // the last of them continues
 };
 
-/// Updates the watch before a block is run, and sets `length_in_doubt` of the state.
+/// Updates the mismatches before a block is run, and sets `length_in_doubt` of the state.
 void track_length(LengthTracker& tracker, const core::Setup& setup, const core::BlockEvents& block,
                   std::span<const gcode::Warning> warnings, core::SimulatorState& state);
 
-/// Updates the watch after the user changed the tool's length or its offset between two blocks.
+/// Updates the mismatches after the user changed the tool's length or its offset between two
+/// blocks.
 void track_changed_length(LengthTracker& tracker, const core::Setup& setup,
                           core::SimulatorState& state);
 

@@ -7,9 +7,12 @@
 #include "app/base/sha256.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
+#include "app/check/tool_mismatch.h"
 #include "app/setup/inference/inferred_setup.h"
+#include "app/setup/inference/inferred_stock.h"
 #include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
+#include "core/base/rule_table.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
@@ -30,7 +33,7 @@ core::Result<gcode::DialectId> choose_dialect(const SetupFile& setup, const gcod
         chosen = *setup.dialect;
     } else {
         const gcode::Recognition seen = gcode::recognise(program);
-        chosen = seen.dialect;
+        FEELER_TRY(chosen, gcode::supported(seen));
         run.assumptions.push_back(
             fmt::format("dialect {}, because {}", gcode::dialect(chosen).name, seen.reason));
     }
@@ -49,6 +52,19 @@ void add_standing_assumptions(const core::Setup& setup, CheckInput& run) {
     run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
                                   ? "rapids run straight"
                                   : "rapids run as dog-legs, each axis at its own speed");
+}
+
+/// What controls of a dialect do at corners, where the machine does not say.
+///
+/// Grbl follows the path; its junction deviation only limits the speed. Fanuc and Haas wait at the
+/// end of each rapid until the machine is in position. Others may round corners between rapids as
+/// those between feeds.
+void settle_corner_tolerances(core::Machine& machine, gcode::DialectId dialect) {
+    using gcode::DialectId;
+    if (dialect == DialectId::grbl && !machine.corner_tolerance) machine.corner_tolerance = 0.0;
+    if (machine.rapid_corner_tolerance) return;
+    const bool stops = dialect == DialectId::fanuc || dialect == DialectId::haas;
+    machine.rapid_corner_tolerance = stops ? std::optional(0.0) : machine.corner_tolerance;
 }
 
 core::Error stopped_before(const CheckJob& job) {
@@ -118,14 +134,21 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(core::in_file(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
+    auto notes = apply(file.control, file.environment, file.setup.machine);
+    if (!notes) return tl::unexpected(core::in_file(notes.error(), job.setup));
+    for (std::string& note : *notes) run.assumptions.push_back(std::move(note));
     file.environment.limits.is_stopped = job.is_stopped;
-    check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock);
+    check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock)
+                            && !stands_for_no_stock(file.setup.stock);
+    check.tool_mismatches = tool_mismatches(*check.program, file);
     if (const auto whole = complete_setup(file, *check.program); !whole)
         return tl::unexpected(
             core::in_file(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
+    run.coverage = coverage_of(file);
     run.setup = std::move(file.setup);
+    settle_corner_tolerances(run.setup.machine, *dialect);
     if (job.allowance && !job.edits.allowance) run.setup.allowance = job.allowance;
     run.setup.detail = job.detail;
     for (const auto& [rule, severity] : job.rules) run.setup.rules[rule] = severity;
@@ -138,6 +161,8 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     // is_stopped may have cut the survey short. From here on the run polls it.
     if (job.is_stopped && job.is_stopped()) return tl::unexpected(stopped_before(job));
     file.environment.limits.is_stopped = {};
+    file.environment.control.reports_premises =
+        core::severity_of(run.setup, core::rule_id("open-premise")) != core::Severity::off;
     add_standing_assumptions(run.setup, run);
     run.times.read = reading.seconds();
     return check;
@@ -178,8 +203,8 @@ std::vector<std::string> timing_notes(const core::Machine& machine) {
     if (!unknown.empty())
         notes.push_back(fmt::format(
             "axes without a stated acceleration reach full speed at once: {}", unknown));
-    notes.push_back(fmt::format("corners are rounded within {} mm unless the program states it "
-                                "(G61, G61.1, G64 P); clearances are those of sharp corners",
+    notes.push_back(fmt::format("for times, corners are rounded within {} mm unless the program "
+                                "states it (G61, G61.1, G64 P)",
                                 core::default_blend_tolerance));
     notes.push_back("tool and spindle changes take no time beyond stopping the axes");
     return notes;

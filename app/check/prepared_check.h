@@ -19,6 +19,7 @@ class ProgramLibrary;
 namespace app {
 
 struct CheckJob;
+struct ToolMismatch;
 
 /// A program and its complete set-up before the first block.
 struct PreparedCheck {
@@ -27,12 +28,16 @@ struct PreparedCheck {
     PreparedCheck& operator=(PreparedCheck&&) noexcept;
     ~PreparedCheck();
 
+    /// Whether the first unit that the program states, or else the one at its start, is the inch.
+    bool is_in_inches() const;
+
     std::unique_ptr<const gcode::Program> program;
     std::shared_ptr<gcode::ProgramLibrary> library; // the subprograms
     SetupFile file;                                 // its setup has been moved to `run`
     CheckRun run;                                   // without blocks
     std::unique_ptr<core::SimulatorState> machine;  // before the first block
     bool stock_is_stated = true;                    // false: inferred from the program's cuts
+    std::vector<ToolMismatch> tool_mismatches;      // of the tools that the set-up states
 };
 
 /// Reads program and set-up and infers missing values. place_check then adds the simulator with the

@@ -10,11 +10,12 @@
 #include "app/check/block_events.h"
 #include "app/check/block_runner.h"
 #include "app/check/conclusion.h"
+#include "app/check/other_readings.h"
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
 #include "gcode/exec/restart.h"
-#include "gcode/language/error_rules.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -89,12 +90,13 @@ void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& s
     if (is_lost_) return;
     const gcode::BlockCommands& block = **next;
     const std::vector<core::Event> events = events_of(setup_, block, lowering_, speed_by_hand_);
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home};
+    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
+                                     real.path};
     core::BlockResult result = core::run_block(setup_, of_block, machine_);
     is_lost_ = !result.checked;
     if (is_lost_) return;
     for (core::Finding& finding : result.findings) found_.push_back(std::move(finding));
-    track_offsets(offsets_, setup_, control_, of_block, machine_);
+    track_offsets(offsets_, setup_, lowering_.offsets, of_block, machine_);
     last_ = block.block;
 }
 
@@ -103,8 +105,11 @@ LengthMismatch CorrectedRun::end() {
     if (tool != setup_.tools.end())
         if (auto air = core::end_air(machine_.rules.air, tool->second.description.diameter))
             found_.push_back(*std::move(air));
-    for (core::Finding& finding : implausible_offsets(offsets_, setup_))
+    const core::Aabb& stock = machine_.stock.outer_box;
+    for (core::Finding& finding : implausible_offsets(offsets_, setup_, stock))
         found_.push_back(std::move(finding));
+    if (auto nothing = nothing_cut(offsets_, setup_, stock, true))
+        found_.push_back(*std::move(nothing));
     mismatch_.corrected_to = last_;
     mismatch_.remaining = std::move(found_);
     return std::move(mismatch_);
@@ -135,20 +140,6 @@ void drop_unreported(core::BlockResult& result) {
     result.findings.shrink_to_fit();
 }
 
-/// The finding for an alarm of the control; empty if no rule names it.
-std::optional<core::Finding> alarm(const core::Setup& setup, const core::Error& error) {
-    core::Finding finding;
-    finding.rule = gcode::rule_of(error);
-    if (finding.rule.empty()) return std::nullopt;
-    finding.severity = core::severity_of(setup, finding.rule);
-    if (finding.severity == core::Severity::off) return std::nullopt;
-    finding.message = error.message + ". The control stops here with an alarm.";
-    finding.cure = finding.rule == core::rule_id("no-feed")
-                       ? "Add F to this block, in the unit of the feed mode."
-                       : "Check the end point, centre and plane of this arc.";
-    return finding;
-}
-
 } // namespace
 
 ProgramRunner::ProgramRunner(PreparedCheck& check)
@@ -156,16 +147,20 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
       input_(check.run),
       record_(check.run),
       runner_(std::make_unique<BlockRunner>(check)),
+      readings_(std::make_unique<OtherReadings>(check)),
       state_(std::make_unique<RunState>(
           start_of_program(check.file.environment, input_.setup, std::move(*check.machine)))) {
     runner_->before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
         follow_correction(block, before);
     };
+    runner_->after_reading = [this](const RunState& before, const gcode::InterpreterState& after) {
+        readings_->note(before, after, record_.blocks.size());
+    };
 }
 
 ProgramRunner::~ProgramRunner() = default;
 
-void ProgramRunner::run_judge(BlockJudge judge) {
+void ProgramRunner::use_judge(BlockJudge judge) {
     runner_->judge = std::move(judge);
     runner_->before_block = {};
 }
@@ -187,6 +182,7 @@ core::Result<void> ProgramRunner::start_at(const std::string& line) {
                gcode::restart_at(*check_.library, check_.file.environment, number,
                                  input_.setup.tool_at_start));
     state_->control = restart.state;
+    is_partial_ = true;
     state_->lowering = gcode::initial_lowering(state_->control);
     record_.later_assumptions.push_back(fmt::format(
         "the program starts at line {}, with the control in its power-on state", number));
@@ -222,20 +218,35 @@ void ProgramRunner::make_moves_before(uint32_t line) {
     }
 }
 
-void ProgramRunner::stop(core::Error error) {
+void ProgramRunner::add_last_block(const core::Error& error, core::Finding finding) {
     const core::BlockIndex block{static_cast<uint32_t>(record_.blocks.size())};
-    if (auto finding = alarm(runner_->setup(), error)) {
-        const bool in_main = error.file == check_.program->file;
-        const auto text = check_.program->find_line(error.where.line);
-        record_.blocks.push_back({block,
-                                  error.where.line,
-                                  in_main && text && *text ? std::string(**text) : std::string(),
-                                  in_main ? std::string() : error.file,
-                                  {},
-                                  {}});
-        finding->block = block;
-        record_.findings.push_back(*std::move(finding));
+    const bool in_main = error.file == check_.program->file;
+    const auto text = check_.program->find_line(error.where.line);
+    record_.blocks.push_back({block,
+                              error.where.line,
+                              in_main && text && *text ? std::string(**text) : std::string(),
+                              in_main ? std::string() : error.file,
+                              {},
+                              {}});
+    finding.block = block;
+    record_.findings.push_back(std::move(finding));
+}
+
+void ProgramRunner::stop(core::Error error) {
+    if (!check_.file.not_judged.empty()
+        && !gcode::has_lathe_codes(check_.file.environment.dialect)) {
+        // What a mill's control makes of the block is irrelevant: the motions are not judged.
+        core::Finding finding;
+        finding.rule = core::rule_id("undecided");
+        finding.severity = core::Severity::error;
+        finding.message = "The program was read up to this block, which is written for a lathe.";
+        finding.cure = "Check the program on the lathe's own control.";
+        record_.verdict = std::max(record_.verdict, core::Verdict::undecided);
+        add_last_block(error, std::move(finding));
+        return;
     }
+    if (auto finding = alarm_finding(runner_->setup(), error))
+        add_last_block(error, *std::move(finding));
     record_.stopped = std::move(error);
 }
 
@@ -276,11 +287,14 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
 }
 
 void ProgramRunner::compare_with_stock() {
-    for (core::Finding& finding : implausible_offsets(state_->offsets, runner_->setup()))
-        record_.findings.push_back(std::move(finding));
-    if (auto jump = unit_mismatch(state_->units, runner_->setup(), state_->machine.stock.outer_box,
-                                  state_->control.modal.unit_said))
-        record_.findings.push_back(*std::move(jump));
+    const core::Setup& setup = runner_->setup();
+    const core::Aabb& stock = state_->machine.stock.outer_box;
+    std::vector<core::Finding> offsets = implausible_offsets(state_->offsets, setup, stock);
+    const bool ran_whole = !record_.stopped && !is_partial_;
+    if (ran_whole)
+        if (auto nothing = nothing_cut(state_->offsets, setup, stock, !offsets.empty()))
+            record_.findings.push_back(*std::move(nothing));
+    for (core::Finding& finding : offsets) record_.findings.push_back(std::move(finding));
 }
 
 void ProgramRunner::report_missing_moves() {
@@ -313,7 +327,12 @@ bool ProgramRunner::advance() {
     CheckedBlock& checked = (**step).checked;
     record_.verdict = std::max(record_.verdict, checked.result.verdict);
     record_.removed += checked.result.removed;
-    for (core::Finding& finding : (**step).findings) record_.findings.push_back(std::move(finding));
+    for (core::Finding& finding : (**step).findings) {
+        if (finding.rule == core::rule_id("unknown-value")
+            && finding.severity == core::Severity::error)
+            record_.verdict = std::max(record_.verdict, core::Verdict::undecided);
+        record_.findings.push_back(std::move(finding));
+    }
     if (runner_->setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
     if (checked.file.empty()) last_line_ = checked.line;
     record_.blocks.push_back(std::move(checked));
@@ -337,6 +356,8 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
     record_.blocks.resize(blocks);
     record_.findings.resize(findings);
     record_.stopped.reset();
+    readings_->forget_from(blocks);
+    record_.readings.clear();
     record_.verdict = core::Verdict::clear;
     record_.removed = 0.0;
     last_line_ = 0;
@@ -356,6 +377,8 @@ void ProgramRunner::end() {
     for (core::Finding& finding : core::end_of_run(runner_->setup(), state_->machine))
         record_.findings.push_back(std::move(finding));
     if (check_.stock_is_stated) compare_with_stock();
+    for (core::Finding& finding : implausible_findings(check_, record_, *state_, runner_->setup()))
+        record_.findings.push_back(std::move(finding));
     if (!record_.stopped) report_missing_moves();
     std::vector<core::BlockTime> timed;
     core::stop_clock(state_->clock, timed);
@@ -380,6 +403,8 @@ void ProgramRunner::run_to_end() {
 }
 
 void ProgramRunner::conclude(bool needs_surface) {
+    readings_->follow(record_, state_->control,
+                      [this] { return !after_block || after_block(progress()); });
     app::conclude(check_, state_->machine, length_mismatches(), needs_surface);
 }
 

@@ -17,6 +17,7 @@ struct BlockTime;
 namespace app {
 
 class BlockRunner;
+class OtherReadings;
 struct CheckInput;
 struct CheckProgress;
 struct CheckRecord;
@@ -41,7 +42,7 @@ public:
 
     /// Judges blocks by `judge` in place of the distance core. Findings caused by a wrong tool
     /// length are then reported for each block.
-    void run_judge(BlockJudge judge);
+    void use_judge(BlockJudge judge);
 
     /// Starts in the middle of the program, at a line ("120") or block number ("N210"), with the
     /// control in its power-on state.
@@ -88,6 +89,8 @@ private:
     /// Ends the run at an error. An alarm of the control becomes a block and, if a rule names it, a
     /// finding.
     void stop(core::Error error);
+    /// Adds the block of an error that ends the program, with a finding.
+    void add_last_block(const core::Error& error, core::Finding finding);
     /// Stores final times in the blocks.
     void enter(const std::vector<core::BlockTime>& timed);
     /// Adds findings about the whole program.
@@ -103,8 +106,10 @@ private:
     const CheckInput& input_;
     CheckRecord& record_;
     std::unique_ptr<BlockRunner> runner_;
+    std::unique_ptr<OtherReadings> readings_;
     std::unique_ptr<RunState> state_;
-    uint32_t last_line_ = 0; // of the main program
+    uint32_t last_line_ = 0;  // of the main program
+    bool is_partial_ = false; // started in the middle
     std::unique_ptr<CorrectedRun> correction_;
     std::vector<LengthMismatch> corrections_; // results, by the first block of the mismatch
     size_t first_to_time_ = 0;                // blocks before it have their final times

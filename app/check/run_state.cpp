@@ -2,6 +2,7 @@
 
 #include <bit>
 
+#include "core/motion/path.h"
 #include "core/sim/setup.h"
 #include "gcode/language/environment.h"
 
@@ -31,11 +32,40 @@ void add(StateDigest& digest, const core::ScanLines& lines) {
         }
 }
 
+void add(StateDigest& digest, const core::CutModel& stock) {
+    for (const core::ScanLines& family : stock.lines.families) add(digest, family);
+    add(digest, stock.columns);
+    digest.add(stock.log.size());
+    digest.add(stock.volume_owed);
+}
+
+void add(StateDigest& digest, const core::CornerLimit& limit) {
+    digest.add(limit.deviation);
+    digest.add(limit.distance);
+}
+
+void add(StateDigest& digest, const core::RoundedCorners& corners) {
+    digest.add(corners.by);
+    digest.add(corners.by_arc);
+    digest.add(corners.of_cuts);
+    digest.add(corners.mode_of_cuts);
+    add(digest, corners.rapids);
+    add(digest, corners.mixed);
+    digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);
+    for (const core::Leg& leg : corners.last.legs)
+        for (const core::AxisValues& position : leg.positions)
+            for (const double value : position) digest.add(value);
+    digest.add(corners.tool ? uint64_t(core::value_of(*corners.tool)) + 1 : 0);
+    digest.add(uint64_t(corners.by_several));
+}
+
 void add(StateDigest& digest, const core::SimulatorState& machine) {
-    for (const core::ScanLines& family : machine.stock.lines.families) add(digest, family);
-    add(digest, machine.stock.columns);
-    digest.add(machine.stock.log.size());
-    digest.add(machine.stock.volume_owed);
+    add(digest, machine.stock);
+    if (machine.certain_stock) add(digest, *machine.certain_stock);
+    digest.add(machine.memory.passages.size());
+    for (const auto& [fixture, cuts] : machine.memory.cuts) digest.add(cuts.size());
+    digest.add(uint64_t(machine.centre.trail.size()));
+    digest.add(machine.centre.top);
     for (const auto& value : machine.position) {
         digest.add(uint64_t(value.has_value()));
         digest.add(value.value_or(0.0));
@@ -43,20 +73,30 @@ void add(StateDigest& digest, const core::SimulatorState& machine) {
     digest.add(machine.tool ? uint64_t(core::value_of(*machine.tool)) + 1 : 0);
     digest.add(uint64_t(machine.tool_known));
     for (const bool is_there : machine.mounted_fixtures) digest.add(uint64_t(is_there));
+    for (const bool is_assumed : machine.is_assumed) digest.add(uint64_t(is_assumed));
     digest.add(static_cast<uint64_t>(machine.spindle.direction));
     digest.add(machine.spindle.speed);
     digest.add(machine.length_offset.length);
     digest.add(machine.time);
-    digest.add(machine.corners.by);
-    digest.add(machine.corners.of_cuts);
+    add(digest, machine.corners);
 }
 
 } // namespace
 
 RunState start_of_program(const gcode::Environment& environment, const core::Setup& setup,
                           core::SimulatorState machine) {
-    return {gcode::initial_state(environment), gcode::initial_lowering(environment),
-            std::move(machine), core::start_clock(setup.machine)};
+    RunState start{gcode::initial_state(environment), gcode::initial_lowering(environment),
+                   std::move(machine), core::start_clock(setup.machine)};
+    const gcode::SetPathMode mode = gcode::path_mode_of(start.control.modal);
+    if (mode == gcode::path_mode_of({})) return start;
+    // Start-up code has set it.
+    for (const core::Event& event : gcode::Lowering(start.lowering).lower(mode))
+        if (const auto* change = std::get_if<core::PathModeChange>(&event)) {
+            core::change_mode(start.machine.corners, *change, setup.machine);
+            start.clock.plan.blending = change->blending;
+            start.clock.plan.tolerance = change->tolerance.value_or(core::default_blend_tolerance);
+        }
+    return start;
 }
 
 uint64_t digest_of(const RunState& state) {
@@ -65,6 +105,7 @@ uint64_t digest_of(const RunState& state) {
     digest.add(uint64_t(state.control.next_block));
     add(digest, state.machine);
     digest.add(state.clock.time);
+    digest.add(uint64_t(state.said_displaced));
     digest.add(uint64_t(state.clock.first_open));
     return digest.value;
 }

@@ -2,8 +2,8 @@
 
 #include <set>
 
+#include "app/check/feed_use.h"
 #include "app/check/length_mismatch.h"
-#include "app/check/offset_use.h"
 #include "core/sim/run/block_clock.h"
 #include "core/sim/run/simulator.h"
 #include "gcode/exec/interpreter.h"
@@ -27,8 +27,9 @@ struct RunState {
     core::BlockClock clock;
     LengthTracker lengths = {};
     OffsetUses offsets = {};
-    UnitsTracker units = {};
+    FeedFacts feeds = {};
     std::set<size_t> moves_made = {}; // indices of the set-up's fixture moves
+    bool said_displaced = false;      // that an axis that nobody described is away from 0
 };
 
 /// The state before the first block, with the given simulator state.

@@ -1,9 +1,5 @@
 #include "app/commands/batch_ending.h"
 
-#include <cstdlib>
-
-#include <unistd.h>
-
 #include "app/commands/output.h"
 #include "app/commands/report_formats.h"
 #include "app/library/shard/shard.h"
@@ -43,9 +39,7 @@ BatchOutput output_for(const BatchStyle& asked, const std::vector<ReportTarget>&
     BatchOutput talk{.style = asked};
     for (const ReportTarget& target : targets)
         if (target.path.empty() && target.format != "text") talk.stream = stderr;
-    const char* no_colour = std::getenv("NO_COLOR");
-    const bool may_colour = !no_colour || *no_colour == '\0';
-    talk.style.colour = may_colour && ::isatty(::fileno(talk.stream)) == 1;
+    talk.style.colour = terminal_style(talk.stream).colour;
     return talk;
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
+#include "app/commands/suggestion.h"
 #include "app/report/text/bench_report.h"
 
 namespace app {
@@ -40,9 +41,9 @@ void add_bench(CLI::App& cli, ExitCode& exit_code) {
         .add_option("tables", options->tables,
                     "paper: the cases of Uddin and Yamazaki (2010), with both engines")
         ->required()
-        ->check(CLI::IsMember({"paper"}));
+        ->check(one_of({"paper"}));
     command.add_option("--format", options->format, "text or csv")
-        ->check(CLI::IsMember({"text", "csv"}))
+        ->check(one_of({"text", "csv"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the tables to this file");
     command.callback([options, &exit_code] { exit_code = run_bench(*options); });

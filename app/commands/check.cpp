@@ -27,6 +27,7 @@
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
 #include "app/commands/report_formats.h"
+#include "app/commands/suggestion.h"
 #include "app/library/find/project_file.h"
 #include "app/library/result/batch_result.h"
 #include "app/library/run/batch_job.h"
@@ -34,6 +35,8 @@
 #include "app/report/html/html_report.h"
 #include "app/report/html/pictured_run.h"
 #include "app/report/text/batch_text.h"
+#include "app/setup/coverage.h"
+#include "app/tolerance/tolerances.h"
 
 namespace app {
 
@@ -54,7 +57,13 @@ struct Checked {
 
 std::string report_text(const ReportTarget& target, const Checked& checked) {
     ProgramReport report = checked.report;
-    if (!target.path.empty()) report.shown_assumptions.clear(); // a file lists all assumptions
+    if (!target.path.empty()) {
+        report.shown_assumptions.clear(); // a file lists all assumptions
+    } else {
+        const TerminalStyle style = terminal_style(stdout);
+        report.width = style.width;
+        report.colour = style.colour;
+    }
     return report_format(target.format).of_program(report);
 }
 
@@ -195,6 +204,11 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
     line.clear();
     if (!run) return fail(*job, run.error(), targets, read);
     if (run->stopped) print_error(*run->stopped);
+    if (options.tolerances) {
+        auto tolerances = tolerances_of(*job, *run, [](double) { return !is_interrupted(); });
+        if (!tolerances) return fail(*job, tolerances.error(), targets, read);
+        run->tolerances = std::make_shared<const Tolerances>(*std::move(tolerances));
+    }
     const auto saved = save_results(options, *run, read);
     if (!saved) print_error(saved.error());
     const bool all_written = write_reports(options,
@@ -245,12 +259,20 @@ ExitCode check(const CheckOptions& options) {
     return watch(outputs, [&](WatchedFiles& files) { return pass(&files); });
 }
 
+constexpr const char* examples = R"(
+Examples:
+  feeler check plate.nc                           what the program alone shows
+  feeler check plate.nc --setup mill.toml         with machine, stock, fixtures and tools
+  feeler check plate.nc --format html -o r.html   a report with pictures for any browser
+  feeler check jobs/ --require coverage           many programs; status 1 also if a set-up lacks something)";
+
 void add_report_options(CLI::App& command, CheckOptions& options) {
+    const OptionGroup group(command, "Reports");
     command
         .add_option("--format", options.formats,
                     format_help(true) + "; repeat it with one -o each, in the same order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(format_names(true)))
+        ->check(one_of(format_names(true)))
         ->default_str("text");
     command.add_option("-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);
@@ -270,6 +292,7 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
 }
 
 void add_batch_options(CLI::App& command, CheckOptions& options) {
+    const OptionGroup group(command, "Many programs");
     CLI::Option* cache = command.add_option(
         "--cache", options.cache,
         "Many programs: database of results; unchanged programs are not checked again. Default: "
@@ -300,6 +323,7 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
 }
 
 void add_watch(CLI::App& command, CheckOptions& options) {
+    const OptionGroup group(command, "How to check");
     command.add_flag("--watch", options.watch,
                      "Check again whenever a program, a set-up or a file they use changes, "
                      "until Ctrl-C");
@@ -319,8 +343,21 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     add_report_options(command, *options);
     add_batch_options(command, *options);
     add_watch(command, *options);
+    command.footer(examples);
+    {
+        const OptionGroup group(command, "Set-up, clearances and limits");
+        command
+            .add_option("--require", options->required,
+                        "Status 1 if the verdict does not cover this; coverage: stock, holders, "
+                        "fixtures, work offsets, axis limits or start position are not described")
+            ->delimiter(',')
+            ->allow_extra_args(false)
+            ->check(one_of({required_words.begin(), required_words.end()}));
+    }
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: list every pair of bodies in every block");
+    pairs->group("Reports");
+    const OptionGroup group(command, "How to check");
     command
         .add_option_function<std::string>(
             "--engine",
@@ -329,12 +366,15 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
                     name == name_of(Engine::exact) ? Engine::exact : Engine::coprocessor;
             },
             "Engine that measures: exact, or coprocessor (see feeler coproc)")
-        ->check(CLI::IsMember({name_of(Engine::exact), name_of(Engine::coprocessor)}))
+        ->check(one_of({name_of(Engine::exact), name_of(Engine::coprocessor)}))
         ->default_str(name_of(Engine::exact));
     command
         .add_flag("--verdict-only", options->verdict_only,
                   "Faster: no exact clearance for blocks that a bound proves clear")
         ->excludes(pairs);
+    command.add_flag("--tolerances", options->tolerances,
+                     "Also find how far each value of the set-up may deviate; takes some hundred "
+                     "times as long");
     command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 

@@ -49,6 +49,9 @@ public:
     /// Waits until all results are written.
     void flush();
 
+    /// Whether the database did not exist before.
+    bool is_new() const { return is_new_; }
+
     /// The number of results found in the database.
     size_t found() const { return found_; }
 
@@ -63,6 +66,7 @@ private:
     std::atomic<bool> is_lost_ = false; // the database cannot be read in this run
     size_t found_ = 0;
     std::string path_;
+    bool is_new_ = false;
 };
 
 namespace {
@@ -88,6 +92,8 @@ BatchStore::BatchStore(const CheckOptions& options) {
     path_ = path_of_store(options);
     const std::string store_path = path_.empty() && options.watch ? Database::in_memory : path_;
     if (store_path.empty()) return;
+    std::error_code ignored;
+    is_new_ = options.cache.empty() && !path_.empty() && !std::filesystem::exists(path_, ignored);
     auto store = ResultStore::open(store_path, build_version(),
                                    std::make_shared<RetryBudget>(is_interrupted));
     if (!store) {
@@ -151,6 +157,7 @@ core::Result<void> refuse_single_options(const CheckOptions& options) {
         {"--start-line", !options.what.start_line.empty()},
         {"--blocks", options.blocks},
         {"--pairs", options.pairs},
+        {"--tolerances", options.tolerances},
     };
     for (const auto& [name, is_given] : singles)
         if (is_given)
@@ -302,6 +309,10 @@ ExitCode pass(const CheckOptions& options, const CheckJob& asked,
     if (store.found() > 0 && !watch.is_again)
         talk.say(fmt::format("{} of {} results come from earlier checks: nothing has changed\n",
                              store.found(), batch.programs.size()));
+    if (store.is_new() && !watch.is_again)
+        talk.say(fmt::format("results are stored in {} for later runs; --no-cache stores "
+                             "none\n",
+                             store.path()));
     if (is_interrupted())
         print_note(fmt::format("feeler: interrupted; {} of {} programs were checked\n",
                                batch.programs.size(),

@@ -4,6 +4,7 @@
 
 #include "app/check/check_run.h"
 #include "app/commands/output.h"
+#include "app/setup/setup_file.h"
 
 namespace app {
 namespace {
@@ -45,6 +46,8 @@ std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets) {
 core::Result<CheckJob> job_of(const CheckOptions& options) {
     FEELER_TRY(CheckJob job, job_of(options.what));
     job.engine = options.engine;
+    for (const std::string& required : options.required)
+        job.rules[required_rule(required)] = core::Severity::error;
     if (options.pairs)
         job.detail = core::Detail::every_pair;
     else if (options.verdict_only)

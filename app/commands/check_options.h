@@ -22,11 +22,13 @@ struct CheckOptions {
     std::vector<std::string> programs;
     std::vector<std::string> formats, outputs;
     std::string stock, comparison, cache;
+    std::vector<std::string> required; // of --require
     bool no_cache = false;
     Engine engine{}; // exact
     bool blocks = false;
     bool pairs = false;
     bool verdict_only = false;
+    bool tolerances = false;
     bool quiet = false;
     bool verbose = false;
     bool watch = false;

@@ -7,6 +7,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/coproc/study/coprocessor_report.h"
 #include "hwsim/vcd_trace.h"
 
@@ -96,7 +97,7 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--config", options->config,
                        "Device file (TOML): [device], [control], [energy]");
     command.add_option("--format", options->format, "text, json or csv")
-        ->check(CLI::IsMember({"text", "json", "csv"}))
+        ->check(one_of({"text", "json", "csv"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     auto* vcd = command.add_option(

@@ -10,6 +10,7 @@
 #include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/report/text/diff_report.h"
 
 namespace app {
@@ -78,7 +79,7 @@ void add_diff(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--setup-b", options->later_setup,
                        "Set-up of the later version; default: that of the earlier one");
     command.add_option("--format", options->format, "text or json")
-        ->check(CLI::IsMember({"text", "json"}))
+        ->check(one_of({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     command.add_flag("--blocks", options->blocks, "Text report: all blocks instead of the worst");

@@ -11,6 +11,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/report/text/bench_report.h"
 #include "core/geom/mesh_file.h"
 
@@ -91,10 +92,10 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     command
         .add_option("--engine", options->engine,
                     "fast, or paper (the published search); both find the same distance")
-        ->check(CLI::IsMember({"fast", "paper"}))
+        ->check(one_of({"fast", "paper"}))
         ->capture_default_str();
     command.add_option("--format", options->format, "text or json")
-        ->check(CLI::IsMember({"text", "json"}))
+        ->check(one_of({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the answer to this file");
     command.callback([options, &exit_code] { exit_code = distance(*options); });

@@ -8,6 +8,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
+#include "app/commands/suggestion.h"
 #include "app/library/store/result_key.h"
 #include "app/library/store/store_file.h"
 #include "app/report/history/history_report.h"
@@ -109,7 +110,7 @@ void add_history(CLI::App& cli, ExitCode& exit_code) {
         "--cache", options->cache,
         "Database of results; default: .feeler/results.db in the nearest folder above");
     command.add_option("--format", options->format, "text or json")
-        ->check(CLI::IsMember({"text", "json"}))
+        ->check(one_of({"text", "json"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the report to this file");
     command.callback([options, &exit_code] { exit_code = history(*options); });

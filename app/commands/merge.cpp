@@ -9,6 +9,7 @@
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
 #include "app/commands/report_formats.h"
+#include "app/commands/suggestion.h"
 #include "app/library/shard/shard.h"
 #include "app/library/store/result_key.h"
 #include "core/base/file_reads.h"
@@ -114,7 +115,7 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
         .add_option("--format", options->formats,
                     format_help(false) + "; repeat it with one -o each, in the same order")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(format_names(false)))
+        ->check(one_of(format_names(false)))
         ->default_str("text");
     command.add_option("-o,--output", options->outputs, "Write the report to this file")
         ->allow_extra_args(false);

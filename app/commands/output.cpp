@@ -1,13 +1,16 @@
 #include "app/commands/output.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "app/base/text.h"
@@ -143,6 +146,20 @@ core::Result<void> write_output(const std::string& path, const std::string& text
     FEELER_TRY(OutputStream stream, OutputStream::open(path));
     if (auto written = stream.write(text); !written) return written;
     return stream.finish();
+}
+
+TerminalStyle terminal_style(std::FILE* stream) {
+    constexpr double narrowest = 40.0, widest = 500.0;
+    TerminalStyle style;
+    if (::isatty(::fileno(stream)) != 1) return style;
+    const char* const no_colour = std::getenv("NO_COLOR");
+    style.colour = !no_colour || *no_colour == '\0';
+    winsize size{};
+    const char* const columns = std::getenv("COLUMNS");
+    double width = columns ? number_in(columns).value_or(0.0) : 0.0;
+    if (width <= 0.0 && ::ioctl(::fileno(stream), TIOCGWINSZ, &size) == 0) width = size.ws_col;
+    if (width > 0.0) style.width = static_cast<size_t>(std::clamp(width, narrowest, widest));
+    return style;
 }
 
 void print_error(const core::Error& error) {

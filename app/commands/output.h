@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -55,6 +56,15 @@ private:
 
     std::unique_ptr<State> state_;
 };
+
+/// How text for people may look on a stream.
+struct TerminalStyle {
+    size_t width = 80;   // columns: those of the terminal or of COLUMNS; 80 if it is no terminal
+    bool colour = false; // on a terminal, unless NO_COLOR is set
+};
+
+/// The style for `stream`.
+TerminalStyle terminal_style(std::FILE* stream);
 
 /// Prints to standard error, without control characters. Failures to write are ignored.
 void print_error(const core::Error& error);

@@ -7,6 +7,7 @@
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/commands/suggestion.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
 #include "gcode/language/dialect.h"
@@ -32,18 +33,19 @@ std::string why_no_count(const std::string& text) {
 } // namespace
 
 void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
+    const OptionGroup group(command, "Reading the program");
     const auto dialects = gcode::dialect_names();
     command
         .add_option("--dialect", arguments.dialect,
                     "Dialect of the control; default: recognised from the program")
-        ->check(CLI::IsMember(std::vector<std::string>(dialects.begin(), dialects.end())));
+        ->check(one_of(std::vector<std::string>(dialects.begin(), dialects.end())));
     command
         .add_option("--start-position", arguments.start_position,
                     "Machine coordinates before the first block, mm: X=-100,Y=-50,Z=0")
         ->check(CLI::Validator(why_no_position, "AXIS=MM,..."));
     command
         .add_option("--block-delete", arguments.block_delete, "on: skip blocks that begin with /")
-        ->check(CLI::IsMember({"on", "off"}));
+        ->check(one_of({"on", "off"}));
     command.add_option("--parameters", arguments.parameters, "LinuxCNC variables file");
     command.add_option("--tool-table", arguments.tool_table, "LinuxCNC tool table");
     command.add_option("--ini", arguments.ini,
@@ -51,11 +53,15 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
     command
         .add_option("--machine-unit", arguments.machine_unit,
                     "Unit of lengths in the variables file and the tool table")
-        ->check(CLI::IsMember({"mm", "inch"}));
+        ->check(one_of({"mm", "inch"}));
+    command
+        .add_option("--units", arguments.units,
+                    "Unit of the program until its first G20 or G21; default: that of the control")
+        ->check(one_of({"mm", "inch"}));
     command
         .add_option("--no-decimal-point", arguments.no_decimal_point,
                     "Fanuc, Haas: X1000 means 1000 units, or 1000 least input increments (steps)")
-        ->check(CLI::IsMember({"units", "steps"}));
+        ->check(one_of({"units", "steps"}));
     command
         .add_option("--search-path", arguments.search_path,
                     "Folder with subprograms; separate several with ':' or repeat the option")
@@ -74,6 +80,9 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
     if (!arguments.machine_unit.empty())
         settings.machine_unit =
             arguments.machine_unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    if (!arguments.units.empty())
+        settings.units_at_start =
+            arguments.units == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
     if (!arguments.no_decimal_point.empty())
         settings.counts_smallest_steps = arguments.no_decimal_point == "steps";
     settings.parameters = arguments.parameters;
@@ -99,23 +108,28 @@ CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
 }
 
 void add_check_options(CLI::App& command, CheckArguments& arguments) {
+    const OptionGroup group(command, "Set-up, clearances and limits");
     command.add_option(
         "--setup", arguments.setup,
         "Set-up file (TOML); default: NAME.toml next to NAME.nc, else inferred from the program");
     command
         .add_option("--allowance", arguments.allowance,
                     "Minimum clearance to fixtures, and of the holder to the stock, mm")
-        ->check(number_range(0.0, 1000.0));
+        ->check(number_range(0.0, 1000.0))
+        ->option_text("MM");
     command.add_option("--mesh-size", arguments.mesh_size, "Spacing of the scan lines, mm")
-        ->check(number_range(1e-300, 1e300));
+        ->check(number_range(1e-300, 1e300))
+        ->option_text("MM");
     command
         .add_option("--memory-limit", arguments.memory_limit,
                     "Memory for the model of the stock, MB; default 8590")
-        ->check(number_range(1.0, 1e9));
+        ->check(number_range(1.0, 1e9))
+        ->option_text("MB");
     add_program_arguments(command, arguments.reading);
 }
 
 void add_start_line(CLI::App& command, CheckArguments& arguments) {
+    const OptionGroup group(command, "Reading the program");
     command.add_option("--start-line", arguments.start_line,
                        "Start at this line, or at block N210, as after power-on, and report what "
                        "the program relies on");

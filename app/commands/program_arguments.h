@@ -20,7 +20,7 @@ struct ProgramSettings;
 /// The options that control how a program is read, as given on the command line.
 struct ProgramArguments {
     std::string dialect, start_position, block_delete, parameters, tool_table, ini, machine_unit,
-        no_decimal_point;
+        units, no_decimal_point;
     std::vector<std::string> search_path;
     std::optional<uint64_t> max_blocks;
 };

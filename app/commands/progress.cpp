@@ -1,6 +1,7 @@
 #include "app/commands/progress.h"
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -36,15 +37,19 @@ extern "C" void note_interrupt(int signal) {
     std::raise(signal);
 }
 
-std::string bar_text(double fraction, const std::string& what, double seconds) {
+/// Seconds as coarse as an estimate is: to 5 s below a minute, to 10 s above.
+double rounded_up(double seconds) {
+    const double unit = seconds < 10.0 ? 1.0 : seconds < 60.0 ? 5.0 : 10.0;
+    return std::ceil(seconds / unit) * unit;
+}
+
+std::string bar_text(double fraction, const std::string& what, std::optional<double> left) {
     constexpr int width = 20;
     const int filled = static_cast<int>(fraction * width);
     std::string text =
         fmt::format("[{}{}] {:3.0f} %  {}", std::string(static_cast<size_t>(filled), '#'),
                     std::string(static_cast<size_t>(width - filled), '.'), 100.0 * fraction, what);
-    // Early estimates are unreliable.
-    if (fraction > 0.02 && seconds > 1.0)
-        text += fmt::format(", {} left", duration_text(seconds * (1.0 - fraction) / fraction));
+    if (left) text += fmt::format(", {} left", duration_text(rounded_up(*left)));
     return text.substr(0, 79);
 }
 
@@ -61,18 +66,28 @@ void ignore_broken_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool is_interrupted() { return interrupted_at != 0; }
 
-std::string progress_text(const CheckProgress& progress, double seconds) {
+std::string progress_text(const CheckProgress& progress, std::optional<double> left) {
     return bar_text(
         progress.fraction,
-        fmt::format("{} blocks, {}", progress.blocks, counted(progress.findings, "finding")),
-        seconds);
+        fmt::format("{} blocks, {}", progress.blocks, counted(progress.findings, "finding")), left);
 }
 
-std::string progress_text(const BatchProgress& progress, double seconds) {
+std::string progress_text(const BatchProgress& progress, std::optional<double> left) {
     return bar_text(progress.fraction,
                     fmt::format("{} of {} programs, {} with errors", progress.done,
                                 progress.programs, progress.with_errors),
-                    seconds);
+                    left);
+}
+
+std::optional<double> TimeLeft::after(double seconds, double fraction) {
+    constexpr double window = 10.0, least = 2.0;                                  // s
+    if (!samples_.empty() && fraction < samples_.back().second) samples_.clear(); // a loop
+    samples_.emplace_back(seconds, fraction);
+    // Keep one sample that is older than the window.
+    while (samples_.size() > 2 && samples_[1].first < seconds - window) samples_.pop_front();
+    const auto [begin, done] = samples_.front();
+    if (seconds - begin < least || fraction <= done || fraction >= 1.0) return std::nullopt;
+    return (seconds - begin) * (1.0 - fraction) / (fraction - done);
 }
 
 ProgressLine::ProgressLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -89,7 +104,10 @@ void ProgressLine::show_any(const Progress& progress) {
     last_ = now;
     is_shown_ = true;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    std::fputs(fmt::format("\r{:<79}", progress_text(progress, seconds)).c_str(), stderr);
+    std::fputs(fmt::format("\r{:<79}",
+                           progress_text(progress, time_left_.after(seconds, progress.fraction)))
+                   .c_str(),
+               stderr);
     std::fflush(stderr);
 }
 

@@ -1,6 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace app {
 
@@ -17,6 +21,17 @@ void ignore_broken_pipes();
 
 /// Whether a stop was requested.
 bool is_interrupted();
+
+/// Estimates the time left from the progress of the last seconds: blocks at the end of a program
+/// often take much longer, or much less, than those at its beginning.
+class TimeLeft {
+public:
+    /// The estimate in seconds; empty while it would be unreliable. Call it with rising times.
+    std::optional<double> after(double seconds, double fraction);
+
+private:
+    std::deque<std::pair<double, double>> samples_; // seconds and fraction
+};
 
 /// A progress line on standard error; prints nothing if that is not a terminal.
 class ProgressLine {
@@ -40,10 +55,11 @@ private:
     bool is_shown_ = false;
     Clock::time_point start_ = Clock::now();
     Clock::time_point last_ = start_;
+    TimeLeft time_left_;
 };
 
-/// Text of the line `seconds` after the start, at most 79 characters.
-std::string progress_text(const CheckProgress& progress, double seconds);
-std::string progress_text(const BatchProgress& progress, double seconds);
+/// Text of the line, at most 79 characters, with the estimated time left, seconds, if any.
+std::string progress_text(const CheckProgress& progress, std::optional<double> left);
+std::string progress_text(const BatchProgress& progress, std::optional<double> left);
 
 } // namespace app

@@ -30,7 +30,9 @@ constexpr ReportFormat formats[] = {
     {"text", "",
      [](const ProgramReport& report) {
          return text_report(report.run, {.blocks = report.blocks || report.pairs,
-                                         .shown_assumptions = report.shown_assumptions});
+                                         .shown_assumptions = report.shown_assumptions,
+                                         .width = report.width,
+                                         .colour = report.colour});
      },
      [](const BatchResult& batch, const BatchStyle& style) {
          return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});

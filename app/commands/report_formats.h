@@ -19,6 +19,8 @@ struct ProgramReport {
     bool blocks = false; // text: add the table of all blocks that move
     bool pairs = false;  // JSON: list every pair of bodies in every block
     std::vector<std::string> shown_assumptions = {}; // assumptions already shown on the terminal
+    size_t width = 80;                               // text: columns of a line
+    bool colour = false;                             // text
 };
 
 /// When a report of an incomplete check may replace a file.

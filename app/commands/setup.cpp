@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -17,12 +18,21 @@ namespace {
 
 struct SetupOptions {
     std::string program, output;
+    bool force = false;
     ProgramArguments reading;
 };
 
 core::Result<void> write_setup(const SetupOptions& options) {
     const ReadFiles read;
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
+    std::error_code ignored;
+    if (!options.force && std::filesystem::is_regular_file(options.output, ignored))
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::invalid_value,
+             {},
+             "is there already and may contain what you have written: choose another file for -o, "
+             "or replace it with --force",
+             options.output});
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
     FEELER_TRY(const SetupFile setup, infer_setup(program, settings));
@@ -44,6 +54,7 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
         *cli.add_subcommand("setup", "Infer a set-up from a program and write it to a file");
     command.add_option("program", options->program, "NC program")->required();
     command.add_option("-o,--output", options->output, "File for the set-up");
+    command.add_flag("--force", options->force, "Replace the file if it is there already");
     add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] { exit_code = setup(*options); });
 }

@@ -20,6 +20,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
 #include "core/sim/verdict.h"
@@ -360,11 +361,11 @@ void add_subject(CLI::App& command, ShotOptions& options) {
 void add_view_options(CLI::App& command, ShotOptions& options) {
     command.add_option("--size", options.size, "Width and height in pixels")->capture_default_str();
     command.add_option("--view", options.view, "Direction of view")
-        ->check(CLI::IsMember({"iso", "top", "front", "witness"}))
+        ->check(one_of({"iso", "top", "front", "witness"}))
         ->capture_default_str();
     command.add_flag("--no-ui", options.no_ui, "Only the 3D view, without panels");
     command.add_option("--theme", options.theme, "Colours")
-        ->check(CLI::IsMember({"dark", "light"}))
+        ->check(one_of({"dark", "light"}))
         ->capture_default_str();
 }
 

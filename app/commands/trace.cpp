@@ -7,6 +7,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/report/text/trace_report.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
@@ -46,7 +47,7 @@ core::Result<gcode::DialectId> choose_dialect(std::optional<gcode::DialectId> st
                                               const gcode::Program& program) {
     if (!stated) {
         const gcode::Recognition seen = gcode::recognise(program);
-        stated = seen.dialect;
+        FEELER_TRY(stated, gcode::supported(seen));
         print_note(fmt::format("feeler: dialect {}, because {}\n", gcode::dialect(*stated).name,
                                seen.reason));
     }
@@ -146,7 +147,7 @@ void add_trace(CLI::App& cli, ExitCode& exit_code) {
                        "Set-up file (TOML), for offsets, tool lengths and start position");
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or jsonl")
-        ->check(CLI::IsMember({"text", "jsonl"}))
+        ->check(one_of({"text", "jsonl"}))
         ->capture_default_str();
     command.add_option("-o,--output", options->output, "Write the trace to this file");
     command.callback([options, &exit_code] { exit_code = trace(*options); });

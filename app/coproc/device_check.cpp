@@ -248,8 +248,10 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                                             PushedBlock& block) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
-    at.off_motion = motion.kind == core::MotionKind::rapid ? 0.0 : at.corners.by;
     const bool rapid = motion.kind == core::MotionKind::rapid;
+    // A permit is needed before the next motion is known, so whole rapids count as rounded.
+    at.off_motion = rapid ? std::max(at.corners.rapids.deviation, at.corners.mixed.deviation)
+                          : at.corners.of_feed(motion.arc.has_value());
     // A spindle of unknown content counts as empty until the program feeds.
     if (!at.tool && !(!at.called && (at.tool_known || rapid))) {
         deny(block.permit, "the tool is unknown", Teller::run);
@@ -262,9 +264,13 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     }
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
-    if (cutting) at.corners.note_cut(at.called);
+    if (cutting) at.corners.note_cut(at.called, motion.arc.has_value());
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
-    at.follows = follows_cuts(at.corners, at.called, rises, rapid && !at.is_cycle);
+    // A rapid that rises leaves its cut sideways at a rounded corner before it.
+    const bool is_rounded =
+        rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
+    at.follows = follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
+    at.corners.last.kind = motion.kind;
     for (const core::Leg& leg : path.legs) {
         if (auto done = update_models(at); !done) return done;
         if (pushes_centre(leg, cutting, at))

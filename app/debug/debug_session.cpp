@@ -178,8 +178,10 @@ bool SessionWalk::stops_before(const Breakpoint& breakpoint, size_t block,
     if (!breakpoint.enabled) return false;
     if (breakpoint.line && (at.line != *breakpoint.line || at.file != breakpoint.file))
         return false;
-    if (breakpoint.tool && (at.result.tool != breakpoint.tool || !changes_tool(block)))
-        return false;
+    // With a condition, any block with the tool may meet it; a tool change has no clearance.
+    const bool only_at_change = breakpoint.tool && !breakpoint.condition;
+    if (only_at_change && !changes_tool(block)) return false;
+    if (breakpoint.tool && at.result.tool != breakpoint.tool) return false;
     if (!breakpoint.rule.empty()) {
         const Findings* findings = findings_of(block);
         const bool any = breakpoint.rule == "finding";

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -34,12 +35,16 @@ struct IniReader {
     std::filesystem::path folder;
     IniFile file{};
     std::string section{};
+    std::set<std::string> read{}; // keys with their sections; LinuxCNC takes the first of several
 
     std::string resolved(const std::string& name) const { return (folder / name).string(); }
 
     /// Stores a number. Programs can read only numbers whose section and key have no lower-case
     /// letters.
     void note_number(const std::string& key, const std::string& value);
+
+    /// Stores TOOL_CHANGE_POSITION, of which LinuxCNC reads the first 9, 6 or 3 numbers.
+    std::string take_change_position(const std::string& value);
 
     /// Stores a setting. Returns why its value is invalid; empty if it is valid or irrelevant.
     std::string take(const std::string& key, const std::string& value);
@@ -54,9 +59,45 @@ void IniReader::note_number(const std::string& key, const std::string& value) {
     file.values.insert_or_assign(core::lower_case(name), *number);
 }
 
+std::string IniReader::take_change_position(const std::string& value) {
+    std::istringstream stream(value);
+    std::vector<double> numbers;
+    for (double number = 0.0; numbers.size() < core::axis_count && stream >> number;)
+        numbers.push_back(number);
+    numbers.resize(numbers.size() / 3 * 3);
+    if (numbers.empty()) return "TOOL_CHANGE_POSITION must have 3, 6 or 9 numbers";
+    file.tool_change_position = std::move(numbers);
+    return {};
+}
+
+/// The first word of a value; some values end with a comment.
+std::string first_word(const std::string& value) {
+    return value.substr(0, value.find_first_of(" \t#;"));
+}
+
+bool is_on(const std::string& value) {
+    const std::string word = core::lower_case(first_word(value));
+    return word == "yes" || word == "true" || word == "on" || number_in(word).value_or(0.0) != 0.0;
+}
+
+/// Kinematics under which straight moves of the program are straight moves of X, Y and Z.
+bool keeps_linear_axes(const std::string& module) {
+    for (const char* one : {"trivkins", "gantrykins", "corexykins", "lineardeltakins", "rotatekins",
+                            "rotarydeltakins", "scarakins", "tripodkins"})
+        if (module == one) return true;
+    return false;
+}
+
+/// The letter of [AXIS_A], or of [AXIS_3] in older files.
+std::string axis_of_section(const std::string& section) {
+    const std::string axis = section.substr(5);
+    if (axis.size() != 1 || axis[0] < '0' || axis[0] > '8') return axis;
+    return std::string(1, core::axis_letters[static_cast<size_t>(axis[0] - '0')]);
+}
+
 std::string IniReader::take(const std::string& key, const std::string& value) {
     const std::string name = section + " " + key;
-    if (value.empty()) return {};
+    if (value.empty() || !read.insert(name).second) return {};
     note_number(key, value);
     if (name == "TRAJ LINEAR_UNITS") {
         file.machine_unit = unit_named(value);
@@ -65,6 +106,16 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
         file.parameters = resolved(value);
     } else if (name == "EMCIO TOOL_TABLE") {
         file.tool_table = resolved(value);
+    } else if (name == "EMCIO TOOL_CHANGE_POSITION") {
+        return take_change_position(value);
+    } else if (name == "EMCIO TOOL_CHANGE_QUILL_UP") {
+        file.quill_up = is_on(value);
+    } else if (name == "EMCIO TOOL_CHANGE_AT_G30") {
+        file.tool_change_at_g30 = is_on(value);
+    } else if (name == "EMCIO TOOL_CHANGE_WITH_SPINDLE_ON") {
+        file.tool_change_with_spindle_on = is_on(value);
+    } else if (name == "KINS KINEMATICS") {
+        file.kinematics = first_word(value);
     } else if (name == "DISPLAY PROGRAM_PREFIX") {
         file.search_path.insert(file.search_path.begin(), resolved(value));
     } else if (name == "RS274NGC SUBROUTINE_PATH") {
@@ -72,8 +123,12 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
             file.search_path.push_back(resolved(each));
     } else if (name == "RS274NGC RS274NGC_STARTUP_CODE") {
         file.startup_code = value;
-    } else if (key == "WRAPPED_ROTARY" && value != "0" && section.starts_with("AXIS_")) {
-        file.wrapped_axes += section.substr(5);
+    } else if (key == "WRAPPED_ROTARY" && is_on(value) && section.starts_with("AXIS_")) {
+        file.wrapped_axes += axis_of_section(section);
+    } else if (key == "LOCKING_INDEXER_JOINT" && section.starts_with("AXIS_")) {
+        file.locking_indexers += axis_of_section(section);
+    } else if (key == "LOCKING_INDEXER" && is_on(value)) {
+        file.locking_indexers += file.locking_indexers.empty() ? section : " " + section;
     }
     return {};
 }
@@ -102,7 +157,29 @@ core::Result<IniFile> read_ini(const std::string& path) {
                                               std::string(core::stripped(text.substr(equals + 1))));
         if (!wrong.empty()) return tl::unexpected(line_error(path, line, wrong));
     }
+    const std::string& module = reader.file.kinematics;
+    if (!module.empty() && !keeps_linear_axes(module))
+        return tl::unexpected(core::Error{
+            core::ErrorCode::unsupported,
+            {},
+            fmt::format(
+                "KINEMATICS = {} is not supported: it can move the linear axes while rotary "
+                "axes turn. If the program moves no rotary axis, state in the set-up what "
+                "it needs of this file instead",
+                module),
+            path});
     return std::move(reader.file);
+}
+
+gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit machine_unit) {
+    gcode::ToolChangeMotion motion{.quill_up = ini.quill_up,
+                                   .goes_to_second_home = ini.tool_change_at_g30,
+                                   .keeps_spindle_running = ini.tool_change_with_spindle_on};
+    for (size_t i = 0; i < ini.tool_change_position.size(); ++i) {
+        const double value = ini.tool_change_position[i];
+        motion.position[i] = core::is_rotary(i) ? value : gcode::to_mm(value, machine_unit);
+    }
+    return motion;
 }
 
 namespace {

@@ -14,6 +14,7 @@ struct Machine;
 namespace gcode {
 enum class LengthUnit : uint8_t;
 struct Environment;
+struct ToolChangeMotion;
 } // namespace gcode
 
 namespace app {
@@ -21,6 +22,12 @@ namespace app {
 /// The settings in a LinuxCNC ini file that affect how programs are read; empty if not stated.
 /// Paths are resolved against the file's folder.
 struct IniFile {
+    // [EMCIO] TOOL_CHANGE_POSITION: 3, 6 or 9 numbers for X Y Z, A B C and U V W, in units of the
+    // machine; TOOL_CHANGE_QUILL_UP, TOOL_CHANGE_AT_G30, TOOL_CHANGE_WITH_SPINDLE_ON
+    std::vector<double> tool_change_position;
+    bool quill_up = false, tool_change_at_g30 = false, tool_change_with_spindle_on = false;
+    std::string kinematics;       // [KINS] KINEMATICS: the name of the module
+    std::string locking_indexers; // letters of axes, or joints, that only turn on their own
     std::optional<gcode::LengthUnit> machine_unit; // [TRAJ] LINEAR_UNITS
     std::string parameters;                        // [RS274NGC] PARAMETER_FILE
     std::string tool_table;                        // [EMCIO] TOOL_TABLE
@@ -31,8 +38,12 @@ struct IniFile {
 };
 
 /// Errors: io if the file cannot be read; syntax, with its line, for units that are neither mm nor
-///         inches; unsupported for #INCLUDE.
+///         inches, and for a tool change position of fewer than three numbers; unsupported for
+///         #INCLUDE, and for kinematics that move linear axes while rotary ones turn.
 core::Result<IniFile> read_ini(const std::string& path);
+
+/// What the machine of an ini file does at a tool change.
+gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit machine_unit);
 
 /// Adds limits, speeds, accelerations and homes from a LinuxCNC ini file to axes of a machine that
 /// lack them: from [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a machine whose joints

@@ -12,6 +12,8 @@
 #include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/text.h"
+#include "gcode/exec/interpreter.h"
+#include "gcode/exec/startup.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/parameters.h"
@@ -65,22 +67,31 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
     FEELER_TRY(const IniFile ini, read_ini(settings.ini));
     environment.ini_values = ini.values;
     ProgramSettings stated;
+    environment.tool_change = tool_change_motion(
+        ini, settings.machine_unit.value_or(ini.machine_unit.value_or(environment.machine_unit)));
+    if (!ini.locking_indexers.empty())
+        notes.push_back(fmt::format("{}: LOCKING_INDEXER of {} is ignored: in a block with several "
+                                    "axes, it turns with the others instead of before them",
+                                    settings.ini, ini.locking_indexers));
     stated.machine_unit = ini.machine_unit;
     stated.parameters = existing(ini.parameters, settings, notes);
     stated.tool_table = existing(ini.tool_table, settings, notes);
     stated.search_path = ini.search_path;
-    if (!ini.startup_code.empty())
-        notes.push_back(fmt::format(
-            "{}: RS274NGC_STARTUP_CODE is not run; if needed, add it to the program: {}",
-            settings.ini, ini.startup_code));
-    if (!ini.wrapped_axes.empty())
-        notes.push_back(fmt::format("{}: WRAPPED_ROTARY of {} is ignored: an absolute position is "
-                                    "an angle in degrees, not a direction and an angle",
-                                    settings.ini, ini.wrapped_axes));
+    environment.startup_code = ini.startup_code;
+    environment.wrapped_axes = ini.wrapped_axes;
     return overlaid(stated, settings);
 }
 
 } // namespace
+
+core::Result<void> check_startup_code(const gcode::Environment& environment) {
+    gcode::Environment plain = environment;
+    plain.dialect = gcode::DialectId::linuxcnc;
+    plain.startup_code.clear();
+    gcode::InterpreterState state = gcode::initial_state(plain);
+    plain.startup_code = environment.startup_code;
+    return gcode::run_startup_code(state, plain);
+}
 
 ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) {
     replace(settings.dialect, over.dialect);
@@ -88,6 +99,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         replace(settings.start[axis], over.start[axis]);
     replace(settings.machine_unit, over.machine_unit);
+    replace(settings.units_at_start, over.units_at_start);
     replace(settings.max_blocks, over.max_blocks);
     replace(settings.counts_smallest_steps, over.counts_smallest_steps);
     replace(settings.ini, over.ini);
@@ -97,6 +109,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.machine_codes, over.machine_codes);
     replace(settings.tool_at_start, over.tool_at_start);
     replace(settings.spindle_at_start, over.spindle_at_start);
+    replace(settings.values, over.values);
     replace(settings.speed_by_hand, over.speed_by_hand);
     return settings;
 }
@@ -106,11 +119,20 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
     std::vector<std::string> notes;
     FEELER_TRY(const ProgramSettings settings, with_ini(given, environment, notes));
     if (settings.dialect) environment.dialect = *settings.dialect;
-    if (settings.block_delete) environment.block_delete = *settings.block_delete;
+    if (settings.block_delete) {
+        environment.block_delete = *settings.block_delete;
+        environment.control.answers[gcode::ControlQuestion::blocks_are_deleted] =
+            environment.block_delete;
+    }
     if (settings.machine_unit) environment.machine_unit = *settings.machine_unit;
+    if (settings.units_at_start) environment.units_at_start = settings.units_at_start;
     if (settings.max_blocks) environment.limits.blocks = *settings.max_blocks;
-    if (settings.counts_smallest_steps)
+    if (settings.counts_smallest_steps) {
         environment.counts_smallest_steps = *settings.counts_smallest_steps;
+        environment.control.answers[gcode::ControlQuestion::point_is_implied] =
+            !*settings.counts_smallest_steps;
+    }
+    environment.control.values = settings.values;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         replace(environment.start[axis], settings.start[axis]);
     replace(environment.search_path, settings.search_path);
@@ -122,6 +144,12 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
     if (!settings.tool_table.empty()) {
         FEELER_TRY(environment.length_offsets,
                    read_tool_file(settings.tool_table, environment.machine_unit));
+    }
+    if (!environment.startup_code.empty()) {
+        if (const auto run = check_startup_code(environment); !run)
+            return tl::unexpected(core::in_file(run.error(), settings.ini));
+        notes.push_back(fmt::format("{}: RS274NGC_STARTUP_CODE is executed before the program: {}",
+                                    settings.ini, environment.startup_code));
     }
     return notes;
 }
@@ -174,6 +202,31 @@ void read_machine_codes(TableReader& table, std::set<int>& codes) {
     }
 }
 
+/// The number of a variable such as #500, R5 or Q12; empty for any other name.
+std::optional<int> variable_number(std::string_view name) {
+    if (name.size() < 2 || std::string_view("#RQ").find(name[0]) == std::string_view::npos)
+        return std::nullopt;
+    int number = 0;
+    const auto [end, failure] = std::from_chars(name.data() + 1, name.data() + name.size(), number);
+    if (failure != std::errc() || end != name.data() + name.size()) return std::nullopt;
+    if (number == 0 && name[0] == 'R') return gcode::highest_parameter;
+    if (number < 0 || number > gcode::highest_parameter) return std::nullopt;
+    return number;
+}
+
+void read_values(TableReader& table, std::map<int, double>& values) {
+    for (const std::string& name : table.keys()) {
+        const auto value = table.number(name.c_str());
+        const auto number = variable_number(name);
+        if (!number)
+            table.refuse(name.c_str(),
+                         "is not the name of a variable, such as \"#500\", R5 or Q12");
+        else if (value)
+            values[*number] = *value;
+    }
+    table.finish();
+}
+
 } // namespace
 
 std::optional<gcode::DialectId> read_dialect(TableReader& table) {
@@ -187,6 +240,8 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
     if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);
     if (const auto unit = table.word("unit", {"mm", "inch"}))
         settings.machine_unit = *unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
+    if (const auto units = table.word("units_at_start", {"mm", "inch"}))
+        settings.units_at_start = *units == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
     if (const auto steps = table.word("no_decimal_point", {"units", "steps"}))
         settings.counts_smallest_steps = *steps == "steps";
     settings.parameters = path_of(table, "parameters", folder);
@@ -198,6 +253,8 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
         if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
         settings.max_blocks = static_cast<uint64_t>(*blocks);
     }
+    if (auto values = table.table("values", "[program.values]"))
+        read_values(*values, settings.values);
     settings.speed_by_hand = table.boolean("speed_by_hand");
     if (const auto tool = table.integer("tool_at_start"))
         settings.tool_at_start = core::ToolNumber{*tool};

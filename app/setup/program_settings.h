@@ -29,6 +29,7 @@ struct ProgramSettings {
     std::optional<bool> block_delete;
     core::AxisPosition start{}; // machine coordinates, mm and degrees
     std::optional<gcode::LengthUnit> machine_unit;
+    std::optional<gcode::LengthUnit> units_at_start; // of the program, until it states one
     std::optional<uint64_t> max_blocks;
     std::optional<bool> counts_smallest_steps; // Fanuc, Haas: X1000 is 1 mm
     std::string ini, parameters, tool_table;   // paths
@@ -36,6 +37,7 @@ struct ProgramSettings {
     std::set<int> machine_codes; // M codes of the machine builder
     std::optional<core::ToolNumber> tool_at_start;
     std::optional<core::SpindleDirection> spindle_at_start;
+    std::map<int, double> values;      // of variables that only the machine knows, by number
     std::optional<bool> speed_by_hand; // the spindle turns although the program has no S
 };
 
@@ -49,6 +51,9 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over);
 /// Errors: those of the files, with file and line.
 core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
                                              gcode::Environment& environment);
+
+/// Executes the start-up code of the environment once, for its errors.
+core::Result<void> check_startup_code(const gcode::Environment& environment);
 
 /// A position such as `X=10,Y=-5.5,A=90` or `X10 Y-5.5`, in mm and degrees; axes that are not named
 /// stay unknown. Empty if the text has another form.

@@ -1,12 +1,15 @@
 #include "app/setup/setup_file.h"
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "app/setup/body_table.h"
+#include "app/setup/control_table.h"
+#include "app/setup/coverage.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/table_reader.h"
@@ -18,11 +21,14 @@
 #include "core/base/text.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
+#include "gcode/language/control.h"
 
 namespace app {
 
 /// Reads `[machine]` or a machine file. Values that it does not state are unchanged.
-void read_machine(TableReader& table, core::Machine& machine, const MeshSource& source);
+///
+/// Result: whether it states axes.
+bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source);
 
 namespace {
 
@@ -182,19 +188,25 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
 
 } // namespace
 
-void read_machine(TableReader& table, core::Machine& machine, const MeshSource& source) {
+bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source) {
     AxisList list;
     for (TableReader& axis : table.tables("axis", "[[axis]]")) read_axis(axis, machine, list);
-    if (!list.order.empty()) connect(table, machine, std::move(list));
+    const bool has_axes = !list.order.empty();
+    if (has_axes) connect(table, machine, std::move(list));
     for (TableReader& body : table.tables("body", "[[body]]"))
         read_machine_body(body, machine, source);
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
         machine.rapid = *rapid == "dogleg" ? core::RapidStyle::dogleg : core::RapidStyle::straight;
-    machine.corner_tolerance = table.number("corner_tolerance");
-    if (machine.corner_tolerance && *machine.corner_tolerance < 0.0)
-        table.refuse("corner_tolerance", "must be 0 or above");
+    const auto tolerance = [&](const char* key) {
+        const auto value = table.number(key);
+        if (value && *value < 0.0) table.refuse(key, "must be 0 or above");
+        return value;
+    };
+    machine.corner_tolerance = tolerance("corner_tolerance");
+    machine.rapid_corner_tolerance = tolerance("rapid_corner_tolerance");
     check_directions(table, machine);
     table.finish();
+    return has_axes;
 }
 
 namespace {
@@ -303,14 +315,16 @@ void read_rules(TableReader& table, SetupFile& file) {
 }
 
 /// Reads the machine from its own file. Errors name that file.
-void read_machine_file(const std::string& path, core::Machine& machine,
-                       std::vector<std::string>& assumptions, std::optional<core::Error>& error) {
+void read_machine_file(const std::string& path, SetupFile& file,
+                       std::optional<core::Error>& error) {
     const auto parsed = parse(path);
     if (!parsed) {
         error = parsed.error();
     } else {
         TableReader table(*parsed, "machine", error);
-        read_machine(table, machine, {std::filesystem::path(path).parent_path(), assumptions});
+        read_control(table, file.control);
+        file.has_axes = read_machine(table, file.setup.machine,
+                                     {std::filesystem::path(path).parent_path(), file.assumptions});
     }
     if (error && error->file.empty()) error->file = path;
 }
@@ -319,9 +333,8 @@ void read_machine_table(TableReader& table, BodyContext& context,
                         std::optional<core::Error>& error) {
     core::Machine& machine = context.file.setup.machine;
     if (const auto name = table.string("file"))
-        read_machine_file((context.folder / *name).string(), machine, context.file.assumptions,
-                          error);
-    read_machine(table, machine, context.meshes());
+        read_machine_file((context.folder / *name).string(), context.file, error);
+    if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
     const core::AxisPosition home = machine.home();
     if (home[0] && home[1] && home[2] && !context.file.environment.home) {
         gcode::AxisValues& values = context.file.environment.home.emplace();
@@ -345,6 +358,79 @@ void place_offsets(BodyContext& context) {
     }
 }
 
+/// Whether a body of the set-up is placed in machine coordinates.
+bool has_machine_frame(const toml::node& node) {
+    if (const toml::array* list = node.as_array())
+        return std::any_of(list->begin(), list->end(), has_machine_frame);
+    const toml::table* table = node.as_table();
+    return table && (*table)["frame"].value_or(std::string()) == "machine";
+}
+
+/// Whether nothing in a set-up says where the work is in the machine. A machine with rotary axes
+/// relates to the work in too many ways to assume a place: there G54 is at machine zero.
+bool states_no_work_position(const toml::table& root, const SetupFile& file) {
+    for (const char* key : {"stock", "fixture", "part"})
+        if (const toml::node* body = root.get(key); body && has_machine_frame(*body)) return false;
+    for (const gcode::AxisValues& offset : file.environment.work_offsets)
+        if (offset != gcode::AxisValues{}) return false;
+    return file.offsets_set.empty() && file.environment.parameters.empty()
+           && !file.setup.machine.has_rotary();
+}
+
+/// The highest point of a body as it is mounted, with all axes at 0.
+double top_of(const core::Aabb& box, const core::Transform& machine_from_body) {
+    double top = -core::infinity;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const core::Vec3 p((corner & 1U) != 0 ? box.max.x : box.min.x,
+                           (corner & 2U) != 0 ? box.max.y : box.min.y,
+                           (corner & 4U) != 0 ? box.max.z : box.min.z);
+        top = std::max(top, (machine_from_body * p).z);
+    }
+    return top;
+}
+
+/// Where X, Y and Z are assumed to start: at machine zero, or above the highest body if machine
+/// zero is too near to the work; within the limits of the axes.
+core::Vec3 assumed_start(const SetupFile& file) {
+    constexpr double room = 100.0, above = 500.0, usual_longest = 250.0; // mm
+    const core::Setup& setup = file.setup;
+    core::Vec3 start(0.0);
+    double top = -core::infinity;
+    if (!file.needs_stock)
+        top = top_of(core::bounds(setup.stock), setup.stock_mount.link_from_body);
+    for (const core::Fixture& fixture : setup.fixtures)
+        if (!fixture.is_machine)
+            top = std::max(top, top_of(core::bounds(fixture.body), fixture.mount.link_from_body));
+    double longest = file.infers_tools ? usual_longest : 0.0;
+    for (const auto& [number, tool] : setup.tools) longest = std::max(longest, tool.length);
+    if (top + longest + room > 0.0) start.z = top + longest + above;
+    for (int axis = 0; axis < 3; ++axis) {
+        const core::MachineAxis& range = setup.machine.axes[static_cast<size_t>(axis)];
+        if (axis == 2 && range.max && start.z > *range.max) start.z = *range.max;
+        if (range.max) start[axis] = std::min(start[axis], *range.max);
+        if (range.min) start[axis] = std::max(start[axis], *range.min);
+    }
+    return start;
+}
+
+/// Assumes the start position of X, Y and Z where nothing states it.
+void assume_start(SetupFile& file) {
+    const core::Vec3 assumed = assumed_start(file);
+    std::string axes;
+    for (size_t i = 0; i < 3; ++i) {
+        if (file.environment.start[i]) continue;
+        file.environment.start[i] = assumed[static_cast<int>(i)];
+        file.setup.start_is_assumed[i] = true;
+        axes += fmt::format("{}{}{}", axes.empty() ? "" : " ", core::axis_letters[i],
+                            core::number_text(assumed[static_cast<int>(i)], 3));
+    }
+    if (axes.empty()) return;
+    file.start_assumption = fmt::format(
+        "the set-up does not state where the machine starts: {} (machine coordinates) is assumed",
+        axes);
+    file.assumptions.push_back(file.start_assumption);
+}
+
 /// Sets the machine position at the first block: as stated, else the home position, per axis.
 void settle_start(SetupFile& file) {
     const core::AxisPosition home = file.setup.machine.home();
@@ -355,6 +441,7 @@ void settle_start(SetupFile& file) {
         file.assumptions.push_back(
             fmt::format("axis {} is at 0 at the first block", core::axis_letters[i]));
     }
+    assume_start(file);
     if (file.setup.machine.has_rotary())
         file.environment.machine = std::make_shared<const core::Machine>(file.setup.machine);
 }
@@ -364,16 +451,30 @@ void read_bodies(TableReader& root, BodyContext& context) {
         read_stock(*stock, context);
     else
         infer_stock(context);
-    for (TableReader& fixture : root.tables("fixture", "[[fixture]]"))
+    const auto fixtures = root.word("fixtures", {"none"});
+    for (TableReader& fixture : root.tables("fixture", "[[fixture]]")) {
+        if (fixtures) root.refuse("fixtures", "= \"none\" contradicts the [[fixture]] tables");
         read_fixture(fixture, context);
-    add_machine_bodies(root, context.file.setup);
+    }
+    if (fixtures || !context.file.setup.fixtures.empty())
+        context.file.fixtures_known = Known::described;
+    if (!context.file.infers_frame) add_machine_bodies(root, context.file.setup);
     if (auto part = root.table("part", "[part]")) read_part(*part, context);
 }
 
-void read_root(TableReader& root, BodyContext& context, const ProgramSettings& over,
-               std::optional<core::Error>& error) {
+Known known_limits(const core::Machine& machine) {
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        const core::MachineAxis& axis = machine.axes[i];
+        if (axis.present && !core::is_rotary(i) && !(axis.min && axis.max)) return Known::missing;
+    }
+    return Known::described;
+}
+
+void read_root(TableReader& root, const toml::table& text, BodyContext& context,
+               const ProgramSettings& over, std::optional<core::Error>& error) {
     SetupFile& file = context.file;
     core::Setup& setup = file.setup;
+    file.mesh_is_stated = root.has("mesh_size");
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
     if (const auto megabytes = root.number("memory_limit")) {
@@ -385,9 +486,15 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
         settings = read_program_table(*table, context.folder);
     apply_settings(overlaid(std::move(settings), over), file, error);
     if (auto table = root.table("machine", "[machine]")) read_machine_table(*table, context, error);
+    read_control(root, file.control);
+    if (!file.dialect && file.control.preset) file.dialect = file.control.preset->dialect;
     const std::string note = complete_machine(setup.machine, file.environment, true);
     if (!note.empty()) file.assumptions.push_back(note);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
+    file.infers_frame = states_no_work_position(text, file);
+    if (file.infers_frame)
+        file.assumptions.push_back("the set-up states no work offset: "
+                                   + assume_machine_zero(file));
     place_offsets(context);
     if (const auto library = root.string("tool_library")) {
         auto tools =
@@ -398,16 +505,54 @@ void read_root(TableReader& root, BodyContext& context, const ProgramSettings& o
             root.refuse_with(tools.error());
     }
     for (TableReader& table : root.tables("tool", "[[tool]]")) read_tool(table, context);
+    for (const auto& [number, found] : file.library)
+        if (!setup.tools.contains(number))
+            file.environment.tool_names.emplace(found.tool.name, number);
+    file.infers_tools = setup.tools.empty() && file.library.empty() && file.tool_table.empty();
     for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
         read_length_offset(table, file);
     read_bodies(root, context);
     read_allowances(root, setup);
     check_allowance_names(root, setup);
+    file.limits_known = known_limits(setup.machine);
     if (auto table = root.table("rules", "[rules]")) read_rules(*table, file);
     root.finish();
 }
 
 } // namespace
+
+std::string assume_machine_zero(SetupFile& file) {
+    constexpr double above_program = 500.0; // mm
+    gcode::Environment& environment = file.environment;
+    core::Machine& machine = file.setup.machine;
+    const core::MachineAxis& z = machine.axes[2];
+    const double top = z.max.value_or(z.home.value_or(environment.start[2].value_or(0.0)));
+    for (gcode::AxisValues& offset : environment.work_offsets)
+        offset = {0.0, 0.0, top - above_program};
+    const core::AxisPosition home = machine.home();
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (!environment.start[axis]) {
+            environment.start[axis] = home[axis].value_or(axis == 2 ? top : 0.0);
+            file.infers_start = file.infers_start || !home[axis];
+        }
+    if (!environment.home) environment.home = gcode::AxisValues{0.0, 0.0, top};
+    if (!environment.second_home && top != 0.0)
+        environment.second_home = gcode::AxisValues{0.0, 0.0, top};
+    bool has_limits = false;
+    for (core::MachineAxis& axis : machine.axes) {
+        has_limits = has_limits || axis.min || axis.max;
+        axis.min.reset();
+        axis.max.reset();
+    }
+    const bool is_zero = top == 0.0;
+    return fmt::format(
+        "all work offsets are equal; machine {}, which is also the start and home position, is "
+        "{:g} mm above them{}",
+        is_zero ? "zero" : "Z" + core::number_text(top, 3), above_program,
+        has_limits || !machine.bodies.empty()
+            ? "; axis limits and machine bodies that do not move with the tool are not checked"
+            : "");
+}
 
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over) {
     SetupFile file;
@@ -417,7 +562,7 @@ core::Result<SetupFile> read_setup(const std::string& path, const ProgramSetting
     if (parsed) {
         BodyContext context{std::filesystem::path(path).parent_path(), {}, file};
         TableReader root(*parsed, "set-up", error);
-        read_root(root, context, over, error);
+        read_root(root, *parsed, context, over, error);
         settle_start(file);
     } else {
         error = parsed.error();
@@ -432,6 +577,11 @@ std::string setup_next_to(const std::string& program) {
     const bool is_one =
         setup.filename() != project_file_name && setup != program && core::is_there(setup);
     return is_one ? setup.string() : std::string();
+}
+
+std::string required_rule(std::string_view word) {
+    assert(word == required_words[0]);
+    return core::rule_id("incomplete-setup");
 }
 
 core::RuleSeverities read_severities(TableReader& table, const std::string& but) {

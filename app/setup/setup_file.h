@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "app/setup/tools/found_tool.h"
@@ -10,17 +13,38 @@
 #include "core/sim/setup.h"
 #include "gcode/language/environment.h"
 
+namespace gcode {
+struct ControlPreset;
+}
+
 namespace app {
 
 class TableReader;
+enum class Known : uint8_t;
 struct ProgramSettings;
+
+/// What a set-up or machine file states about the control.
+struct StatedControl {
+    const gcode::ControlPreset* preset = nullptr;
+    std::map<std::string, double> parameters; // by the maker's number, such as "5006#6"
+    // gcode::SettingValue by the name of the setting, such as "1240"
+    std::map<std::string, std::variant<bool, double, gcode::Position, std::string>> settings;
+};
+
+/// Puts the stated parameters of a control into the environment, whose dialect is known, and into
+/// the machine. Returns notes about parameters that this control does not have.
+///
+/// Errors: those of the start-up code.
+core::Result<std::vector<std::string>>
+apply(const StatedControl& control, gcode::Environment& environment, core::Machine& machine);
 
 /// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it
     core::Setup setup;
     gcode::Environment environment;
-    std::optional<gcode::DialectId> dialect;  // empty: to be recognised
+    std::optional<gcode::DialectId> dialect; // empty: to be recognised
+    StatedControl control;
     std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
@@ -31,8 +55,15 @@ struct SetupFile {
     std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, a sentence
     std::string inferred_stock;                             // reason; empty: stated
     bool speed_by_hand = false;                             // M3 starts the spindle without S
-    bool allow_comments = false;          // (feeler: allow RULE) in the program has effect
-    bool is_inferred = false;             // no file was read
+    bool allow_comments = false; // (feeler: allow RULE) in the program has effect
+    bool is_inferred = false;    // no file was read
+    bool has_axes = false;       // it states the machine's axes
+    bool infers_tools = false;   // no tool is stated: those of the program are inferred
+    bool infers_frame = false;   // no work offset is stated
+    bool mesh_is_stated = false; // the mesh size
+    Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
+    bool infers_start = false;            // the start position, with the work offsets
+    std::string start_assumption;         // of a start position that nothing states; or empty
     std::string not_judged;               // why motions are not checked; empty if they are
     std::vector<std::string> assumptions; // facts that the file does not state, and mesh repairs
 };
@@ -43,12 +74,20 @@ struct SetupFile {
 ///         value, an open mesh, an impossible tool.
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over);
 
+/// Assumes a place of the work in the machine: all work offsets are equal and far below the highest
+/// position of the machine, where it starts and has its home unless stated otherwise. Axis limits
+/// are dropped, because they would be compared with a guess. Returns the assumption as a clause.
+std::string assume_machine_zero(SetupFile& file);
+
 /// The name of the project file, which assigns set-ups to the programs of a folder.
 constexpr const char* project_file_name = "feeler.toml";
 
 /// The set-up next to a program, `plate.toml` for `plate.nc`; empty if there is none. A project
 /// file is not a set-up. A folder or a broken link of that name is returned and fails when read.
 std::string setup_next_to(const std::string& program);
+
+/// The rule that reports the lack of what a word of `require` names.
+std::string required_rule(std::string_view word);
 
 /// The severities in a table `[rules]`, by rule. The key `but`, if any, is left to the caller. An
 /// unknown rule is an error that suggests the nearest name.

@@ -7,6 +7,7 @@
 
 #include "app/base/text.h"
 #include "app/setup/setup_file.h"
+#include "gcode/language/control.h"
 #include "gcode/language/dialect.h"
 
 namespace app {
@@ -136,6 +137,9 @@ std::string program_text(const SetupFile& setup) {
                         toml_number(start[0].value_or(0.0)), toml_number(start[1].value_or(0.0)),
                         toml_number(start[2].value_or(0.0)));
     if (setup.environment.machine_unit == gcode::LengthUnit::inch) text += "unit = \"inch\"\n";
+    if (const auto units = setup.environment.units_at_start)
+        text += fmt::format("units_at_start = \"{}\"\n",
+                            *units == gcode::LengthUnit::inch ? "inch" : "mm");
     if (setup.environment.counts_smallest_steps) text += "no_decimal_point = \"steps\"\n";
     if (setup.environment.block_delete) text += "block_delete = true\n";
     if (setup.setup.tool_at_start)
@@ -144,6 +148,23 @@ std::string program_text(const SetupFile& setup) {
         text += "spindle_at_start = \"clockwise\"     # the program never starts it\n";
     if (setup.speed_by_hand) text += "speed_by_hand = true     # the program has no S\n";
     return text;
+}
+
+/// The parameters of the control that a user should state, as comments.
+std::string control_text(const SetupFile& setup) {
+    if (!setup.dialect) return {};
+    std::string text;
+    for (const gcode::ControlParameter& parameter : gcode::control_parameters()) {
+        if (!parameter.is_open() || parameter.key.empty()
+            || gcode::find_parameter(parameter.key, *setup.dialect) != &parameter)
+            continue;
+        const gcode::ParameterValue& other = parameter.values[1];
+        text += comment(fmt::format(
+            "\"{}\" = {}, {}; {}: {}", parameter.key, parameter.choices(), parameter.name,
+            other.word.empty() ? fmt::format("{:g}", other.number) : std::string(other.word),
+            other.text));
+    }
+    return text.empty() ? text : "\n# [control]     # how the control is set\n" + text;
 }
 
 /// The axes with their assumed home.
@@ -188,7 +209,7 @@ std::string setup_text(const SetupFile& setup, const std::string& program) {
     text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));
     if (setup.setup.allowance)
         text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
-    text += program_text(setup) + machine_text(setup) + offsets_text(setup)
+    text += program_text(setup) + control_text(setup) + machine_text(setup) + offsets_text(setup)
             + stock_table(setup.setup.stock, "G54");
     for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_table(tool.description);
     return text + rules_text(setup);

@@ -14,7 +14,7 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
     std::string best;
     size_t least = 3; // a suggestion must be closer than this
     for (const std::string& candidate : known) {
-        const size_t apart = core::letters_apart(word, candidate);
+        const size_t apart = core::edit_distance(word, candidate);
         if (apart >= least) continue;
         least = apart;
         best = candidate;

@@ -78,6 +78,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     if (!assembled) return table.refuse_whole(assembled.error().message);
     if (!file.setup.tools.emplace(tool.number, *assembled).second)
         table.refuse("number", fmt::format("= {} is defined twice", *number));
+    file.environment.tool_names.emplace(tool.name, tool.number);
     file.environment.tool_lengths[tool.number] = assembled->length;
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
     for (std::string& note : notes_on(tool)) file.assumptions.push_back(std::move(note));

@@ -19,8 +19,9 @@ const char* name_of(Severity severity);
 
 /// A kind of finding: one entry in the table of rules. SARIF, HTML and the manual show its texts.
 struct RuleEntry {
-    std::string_view name; // stable id; set-ups and comments in programs refer to it
-    Severity severity;     // unless the set-up overrides it
+    std::string_view name;  // stable id; set-ups and comments in programs refer to it
+    std::string_view title; // in plain words, a few
+    Severity severity;      // unless the set-up overrides it
     std::string_view meaning;
     std::string_view cure;
 };
@@ -30,6 +31,9 @@ std::span<const RuleEntry> rule_table();
 
 /// The rule with this name; null if there is none.
 const RuleEntry* find_rule(std::string_view name);
+
+/// The title of the rule with this name; the name itself if there is no such rule.
+std::string title_of_rule(const std::string& name);
 
 /// The names of all rules.
 std::vector<std::string> rule_names();

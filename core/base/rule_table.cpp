@@ -28,6 +28,11 @@ const RuleEntry* find_rule(std::string_view name) {
     return found == std::end(all_rules) ? nullptr : found;
 }
 
+std::string title_of_rule(const std::string& name) {
+    const RuleEntry* rule = find_rule(name);
+    return rule ? std::string(rule->title) : name;
+}
+
 std::vector<std::string> rule_names() {
     std::vector<std::string> names;
     for (const RuleEntry& rule : all_rules) names.emplace_back(rule.name);

@@ -26,7 +26,7 @@ std::string_view stripped(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-size_t letters_apart(std::string_view a, std::string_view b) {
+size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});
     for (size_t i = 0; i < a.size(); ++i) {
@@ -42,7 +42,7 @@ size_t letters_apart(std::string_view a, std::string_view b) {
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names) {
     const auto nearest = std::min_element(names.begin(), names.end(), [&](auto& a, auto& b) {
-        return letters_apart(name, a) < letters_apart(name, b);
+        return edit_distance(name, a) < edit_distance(name, b);
     });
     return nearest == names.end() ? std::string() : *nearest;
 }

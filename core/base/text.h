@@ -21,7 +21,7 @@ std::string lower_case(std::string_view text);
 std::string_view stripped(std::string_view text);
 
 /// The edit distance of two words: letters to change, insert or delete.
-size_t letters_apart(std::string_view a, std::string_view b);
+size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The name with the least edit distance, the first of several; empty if `names` is empty.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);

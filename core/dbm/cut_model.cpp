@@ -42,19 +42,6 @@ void append(SharedLog<SweepRun>& runs, uint32_t number) {
 
 namespace {
 
-/// Runs `act` over the logged sweeps that may reach into a square of cell (i, j).
-template <typename Act>
-void for_sweeps_over(const CutModel& model, int i, int j, const Square& square, const Act& act) {
-    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
-    for (size_t k = 0; k < runs.size(); ++k)
-        for (uint32_t number = runs[k].first; number <= runs[k].last; ++number) {
-            const Aabb box = model.log.box(number);
-            if (box.min.x <= square.x1 && box.max.x >= square.x0 && box.min.y <= square.y1
-                && box.max.y >= square.y0)
-                act(model.log[number].sweep);
-        }
-}
-
 /// Positions of the lines, padded to fill the last tile.
 std::vector<double> line_coordinates(const ScanGrid& grid, int axis) {
     std::vector<double> positions;
@@ -92,7 +79,7 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
                                 WithColumns with_columns) {
     FEELER_TRY(Dbm lines, scan(solid, spacing, memory_limit));
     CutModel model;
-    model.outer_box = bounds(solid).grown(solid.tolerance);
+    model.outer_box = outer_bounds(solid);
     model.solid = std::move(solid);
     model.lines = std::move(lines);
     for (int axis = 0; axis < 3; ++axis)
@@ -134,24 +121,151 @@ Square cell_square(const CutModel& model, int i, int j) {
             j == 0 ? box.min.y : within(1, j - 1), last_j ? box.max.y : within(1, j)};
 }
 
+namespace {
+
+bool overlaps(const Aabb& box, const Square& square) {
+    return box.min.x <= square.x1 && box.max.x >= square.x0 && box.min.y <= square.y1
+           && box.max.y >= square.y0;
+}
+
+bool overlaps(const Aabb& box, const Square& square, const Interval& heights) {
+    return overlaps(box, square) && box.min.z <= heights.upper && box.max.z >= heights.lower;
+}
+
+/// The part of the intervals between two heights.
+IntervalList clipped(IntervalList all, const Interval& heights) {
+    all.subtract({-infinity, heights.lower});
+    all.subtract({heights.upper, infinity});
+    return all;
+}
+
+} // namespace
+
+std::vector<LoggedSweep> sweeps_near_cell(const CutModel& model, int i, int j) {
+    const Square cell = cell_square(model, i, j);
+    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
+    std::vector<LoggedSweep> sweeps;
+    for (size_t k = 0; k < runs.size(); ++k)
+        for (uint32_t number = runs[k].first; number <= runs[k].last; ++number)
+            if (overlaps(model.log.box(number), cell)) sweeps.push_back(model.log[number]);
+    return sweeps;
+}
+
+SquareCuts::SquareCuts(const CutModel& model, const std::vector<LoggedSweep>& sweeps,
+                       const Square& square, const Interval& heights)
+    : SquareCuts(model, square, heights) {
+    for (const LoggedSweep& sweep : sweeps)
+        if (overlaps(sweep.box, square_, heights_))
+            for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
+                cuts_.push_back({&sweep, &piece, {}, {}});
+}
+
+SquareCuts SquareCuts::within(int number, const Interval& heights) const {
+    SquareCuts part(
+        *model_, quarter(number),
+        {std::max(heights_.lower, heights.lower), std::min(heights_.upper, heights.upper)});
+    const int column = number % 2, row = number / 2;
+    for (const PieceCut& cut : cuts_) {
+        if (!overlaps(cut.sweep->box, part.square_, part.heights_)) continue;
+        PieceCut& same = part.cuts_.emplace_back(PieceCut{cut.sweep, cut.piece, {}, {}});
+        for (const int i : {0, 1})
+            for (const int j : {0, 1}) {
+                const auto from = static_cast<size_t>(column + i + 3 * (row + j));
+                const auto to = static_cast<size_t>(2 * i + 6 * j);
+                same.at[to] = cut.at[from];
+                same.is_known[to] = cut.is_known[from];
+            }
+    }
+    return part;
+}
+
+double SquareCuts::x(int column) const {
+    if (column == 1) return 0.5 * (square_.x0 + square_.x1);
+    return column == 0 ? square_.x0 : square_.x1;
+}
+
+double SquareCuts::y(int row) const {
+    if (row == 1) return 0.5 * (square_.y0 + square_.y1);
+    return row == 0 ? square_.y0 : square_.y1;
+}
+
+Square SquareCuts::quarter(int number) const {
+    const int column = number % 2, row = number / 2;
+    return {x(column), x(column + 1), y(row), y(row + 1)};
+}
+
+const std::optional<Interval>& SquareCuts::segment(PieceCut& cut, int column, int row) const {
+    const auto at = static_cast<size_t>(column + 3 * row);
+    if (!cut.is_known[at]) {
+        cut.at[at] = line_interval(cut.piece->within, cut.sweep->sweep, 2, x(column), y(row));
+        cut.is_known[at] = true;
+    }
+    return cut.at[at];
+}
+
+std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number) const {
+    const CutterSweep& sweep = cut.sweep->sweep;
+    // The corner that is farthest from the move is the first to be missed.
+    const int right = sweep.from.x + sweep.to.x < 2.0 * x(1) ? 1 : 0;
+    const int back = sweep.from.y + sweep.to.y < 2.0 * y(1) ? 1 : 0;
+    Interval common{-infinity, infinity};
+    for (const int i : {right, 1 - right})
+        for (const int j : {back, 1 - back}) {
+            const auto& corner = segment(cut, number % 2 + i, number / 2 + j);
+            if (!corner) return std::nullopt;
+            common.lower = std::max(common.lower, corner->lower);
+            common.upper = std::min(common.upper, corner->upper);
+        }
+    return safely_within(common);
+}
+
+IntervalList SquareCuts::column(int number) {
+    const Square part = quarter(number);
+    IntervalList column = clipped(column_of(model_->solid, part), heights_);
+    for (PieceCut& cut : cuts_) {
+        if (column.empty()) return column;
+        const Interval left{column[0].lower, column[column.size() - 1].upper};
+        if (!overlaps(cut.sweep->box, part, left)) continue;
+        if (const auto gone = covered(cut, number)) column.subtract(*gone);
+    }
+    return column;
+}
+
+IntervalList SquareCuts::line_at_centre() const {
+    const double at_x = x(1), at_y = y(1);
+    IntervalList line = clipped(line_of(model_->solid, 2, at_x, at_y), heights_);
+    for (const PieceCut& cut : cuts_) {
+        if (line.empty()) return line;
+        if (!overlaps(cut.sweep->box, {at_x, at_x, at_y, at_y})) continue;
+        if (const auto gone = line_interval(cut.piece->around, cut.sweep->sweep, 2, at_x, at_y))
+            line.subtract(*gone);
+    }
+    return line;
+}
+
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square) {
     IntervalList column = column_of(model.solid, square);
-    for_sweeps_over(model, i, j, square, [&](const CutterSweep& sweep) {
-        for (const Cutter::Piece& piece : sweep.cutter->pieces) {
-            if (column.empty()) return;
-            if (const auto gone = covered_heights(piece.within, sweep, square))
+    for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
+        if (!overlaps(one.box, square)) continue;
+        for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
+            if (column.empty()) return column;
+            if (const auto gone = covered_heights(piece.within, one.sweep, square))
                 column.subtract(*gone);
         }
-    });
+    }
     return column;
 }
 
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
     IntervalList line = line_of(model.solid, 2, x, y);
-    for_sweeps_over(model, i, j, {x, x, y, y}, [&](const CutterSweep& sweep) {
-        for (const Cutter::Piece& piece : sweep.cutter->pieces)
-            if (const auto gone = line_interval(piece.around, sweep, 2, x, y)) line.subtract(*gone);
-    });
+    for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
+        if (!overlaps(one.box, {x, x, y, y})) continue;
+        for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
+            if (line.empty()) return line;
+            if (const auto gone = line_interval(piece.around, one.sweep, 2, x, y))
+                line.subtract(*gone);
+        }
+    }
     return line;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <memory>
 #include <span>
 #include <vector>
@@ -97,7 +98,7 @@ void append(SharedLog<SweepRun>& runs, uint32_t number);
 /// copy is a snapshot; it shares everything that neither side has changed since.
 struct CutModel {
     Solid solid;
-    Aabb outer_box; // of the solid with its tolerance
+    Aabb outer_box; // of the solid with its tolerance and play
     Dbm lines;
     ScanLines columns; // empty if the model has no columns
     std::array<TileBoxes, 3> line_boxes;
@@ -144,6 +145,55 @@ void note_search(CutModel& model, size_t box_tests);
 
 /// The square of a column, clipped to the extent of the stock.
 Square cell_square(const CutModel& model, int i, int j);
+
+/// The logged moves that may have cut cell (i, j) of a model, in order.
+std::vector<LoggedSweep> sweeps_near_cell(const CutModel& model, int i, int j);
+
+/// What is left of the stock in a square within a cell, between two heights, recomputed from the
+/// moves that may have cut there. The square is divided into quarters; what a move sweeps at a
+/// corner is computed once for all quarters, and quarters of quarters, that share it.
+class SquareCuts {
+public:
+    /// `sweeps`: of the cell; they and the model must outlive this.
+    SquareCuts(const CutModel& model, const std::vector<LoggedSweep>& sweeps, const Square& square,
+               const Interval& heights);
+
+    const Square& square() const { return square_; }
+
+    /// The material on the line along Z through the centre.
+    IntervalList line_at_centre() const;
+
+    /// Quarter 0, 1: those at the lower Y, by X; 2, 3: those at the upper Y.
+    Square quarter(int number) const;
+
+    /// The heights at which a quarter may contain material.
+    IntervalList column(int quarter);
+
+    /// The same as this for a quarter, and heights within these.
+    SquareCuts within(int quarter, const Interval& heights) const;
+
+private:
+    /// A convex piece of a cutter on one move. `at`: the segments that it sweeps on lines along Z
+    /// through the corners of the quarters, by X and then Y; computed on demand.
+    struct PieceCut {
+        const LoggedSweep* sweep;
+        const Cutter::Piece* piece;
+        std::array<std::optional<Interval>, 9> at;
+        std::bitset<9> is_known;
+    };
+
+    SquareCuts(const CutModel& model, const Square& square, const Interval& heights)
+        : model_(&model), square_(square), heights_(heights) {}
+    double x(int column) const;
+    double y(int row) const;
+    const std::optional<Interval>& segment(PieceCut& cut, int column, int row) const;
+    std::optional<Interval> covered(PieceCut& cut, int quarter) const;
+
+    const CutModel* model_;
+    Square square_;
+    Interval heights_;
+    std::vector<PieceCut> cuts_;
+};
 
 /// The heights at which the part `square` of cell (i, j) may contain material, recomputed from the
 /// log.

@@ -168,18 +168,31 @@ Result<bool> scan_family(const Mesh& mesh, const ScanGrid& grid, double rounding
 
 } // namespace
 
-Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing, double memory_limit) {
+namespace {
+
+Result<MeshScan> scan_within(const Mesh& mesh, const Aabb& box, double spacing,
+                             double memory_limit) {
     if (mesh.triangles.empty()) return fail(ErrorCode::invalid_value, "the mesh has no triangles");
-    const Aabb bounds = mesh.bounds();
-    FEELER_TRY(Dbm dbm, empty_dbm(bounds, spacing, memory_limit));
+    FEELER_TRY(Dbm dbm, empty_dbm(box, spacing, memory_limit));
     bool shells_overlap = false;
     for (int axis = 0; axis < 3; ++axis) {
-        FEELER_TRY(const bool overlap, scan_family(mesh, dbm.grid, rounding_of(bounds, axis),
+        FEELER_TRY(const bool overlap, scan_family(mesh, dbm.grid, rounding_of(mesh.bounds(), axis),
                                                    dbm.families[static_cast<size_t>(axis)]));
         shells_overlap |= overlap;
     }
     FEELER_TRY(Dbm met, checked_not_empty(std::move(dbm)));
     return MeshScan{std::move(met), shells_overlap};
+}
+
+} // namespace
+
+Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing, double memory_limit) {
+    return scan_within(mesh, mesh.bounds(), spacing, memory_limit);
+}
+
+Result<Dbm> scan(const Mesh& mesh, const Aabb& box, double spacing, double memory_limit) {
+    FEELER_TRY(MeshScan scan, scan_within(mesh, box, spacing, memory_limit));
+    return std::move(scan.dbm);
 }
 
 Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit) {

@@ -27,6 +27,10 @@ Result<MeshScan> scan_mesh(const Mesh& mesh, double spacing,
 /// Scans a closed mesh, for callers that accept overlapping shells.
 Result<Dbm> scan(const Mesh& mesh, double spacing, double memory_limit = default_memory_limit);
 
+/// The same with a grid centred on a box that contains the mesh.
+Result<Dbm> scan(const Mesh& mesh, const Aabb& box, double spacing,
+                 double memory_limit = default_memory_limit);
+
 /// For callers that need one line only: the intersection of a closed mesh with the line along
 /// `axis` at (u, v) of the next two axes.
 ///

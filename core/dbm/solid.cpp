@@ -13,6 +13,8 @@ template <typename... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 Aabb bounds_of(const SolidCylinder& c) {
     Aabb box{c.base - Vec3(c.radius), c.base + Vec3(c.radius)};
@@ -158,22 +160,30 @@ IntervalList line_of(const Solid& solid, int axis, double u, double v) {
         solid.shape);
 }
 
+Aabb outer_bounds(const Solid& solid) {
+    return displaced(bounds(solid), solid.play).grown(solid.tolerance);
+}
+
 IntervalList column_of(const Solid& solid, const Square& square) {
     const double t = solid.tolerance;
-    if (t == 0.0) return nominal_column(solid, square);
+    if (t == 0.0 && solid.play.none()) return nominal_column(solid, square);
+    const Vec3 least = solid.play.least() - Vec3(t), most = solid.play.most() + Vec3(t);
     IntervalList grown;
-    const Square wide{square.x0 - t, square.x1 + t, square.y0 - t, square.y1 + t};
+    const Square wide{square.x0 - most.x, square.x1 - least.x, square.y0 - most.y,
+                      square.y1 - least.y};
     for (const Interval& interval : nominal_column(solid, wide))
-        grown.add({interval.lower - t, interval.upper + t});
+        grown.add({interval.lower + least.z, interval.upper + most.z});
     return grown;
 }
 
 Result<Dbm> scan(const Solid& solid, double spacing, double memory_limit) {
+    Aabb box = bounds(solid);
+    box.extend(displaced(box, solid.play));
     if (const auto* m = std::get_if<SolidMesh>(&solid.shape))
-        return scan(*m->mesh, spacing, memory_limit);
+        return scan(*m->mesh, box, spacing, memory_limit);
     return scan_lines_of(
-        bounds(solid), spacing,
-        [&](int axis, double u, double v) { return line_of(solid, axis, u, v); }, memory_limit);
+        box, spacing, [&](int axis, double u, double v) { return line_of(solid, axis, u, v); },
+        memory_limit);
 }
 
 } // namespace core

@@ -84,6 +84,10 @@ inline Quadratic operator-(const Quadratic& p, const Quadratic& q) {
 
 namespace {
 
+/// The length of a vector in the plane. Unlike std::hypot it may overflow, and it is five times
+/// faster.
+double length_of(double x, double y) { return std::sqrt(x * x + y * y); }
+
 /// Half the chord of a circle at a distance from its centre; at a cone's tip, both may be rounding
 /// errors.
 double half_chord(double radius, double away) {
@@ -146,8 +150,7 @@ std::optional<Interval> ball_interval(const ElementSweep& sweep, int axis, doubl
     if (range.first > range.last) return std::nullopt;
     const Linear along{-line[axis].at, -line[axis].by};
     const auto half = [&](double t) {
-        const double d = std::hypot(line[(axis + 1) % 3](t), line[(axis + 2) % 3](t));
-        return half_chord(r, d);
+        return half_chord(r, length_of(line[(axis + 1) % 3](t), line[(axis + 2) % 3](t)));
     };
     return extent_with_root(along, {-outside.a, -outside.b, -outside.c}, half, range);
 }
@@ -199,7 +202,8 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     const Linear rise{-line[2].at, -line[2].by};
     const auto offer = [&](double at) {
         const double t = range.clamp(at);
-        const Interval ends = cone_heights(e, std::hypot(line[0](t), line[1](t)));
+        const Interval ends = e.r0 == e.r1 ? Interval{e.z0, e.z1}
+                                           : cone_heights(e, length_of(line[0](t), line[1](t)));
         extent.add(rise(t) + ends.lower, rise(t) + ends.upper);
     };
     offer(range.first);
@@ -213,7 +217,7 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     // On the slant: d/dt (rise + k sqrt(across)) = 0.
     const double k = (e.z1 - e.z0) / (e.r1 - e.r0);
     const double middle = -across.b / across.a;
-    const double nearest = std::hypot(line[0](middle), line[1](middle));
+    const double nearest = length_of(line[0](middle), line[1](middle));
     const double steepness = k * k * across.a - rise.by * rise.by;
     if (steepness > 0.0) {
         const double away = std::abs(rise.by) * nearest / std::sqrt(across.a * steepness);
@@ -223,14 +227,77 @@ std::optional<Interval> cone_along(const ElementSweep& sweep, double x, double y
     return extent.interval();
 }
 
-/// A disc with a margin (the rounded corner of a bull nose).
-std::optional<Interval> round_interval(const ElementSweep& sweep, int axis, double u, double v) {
+/// How far beyond the disc the lowest point of a rounded corner is on a line along Z, if the tool
+/// rises by `slope` per travel: where the normal of the corner, in the direction of travel, is
+/// perpendicular to the motion. `nearest` is the distance of the line from the path, seen from
+/// above.
+double lowest_beyond(double radius, double margin, double nearest, double slope) {
+    double low = std::max(0.0, nearest - radius), high = margin;
+    double beyond = std::max(low, margin * slope / std::sqrt(1.0 + slope * slope));
+    constexpr int rounds = 40;
+    for (int i = 0; i < rounds; ++i) {
+        const double away = radius + beyond;
+        const double part = nearest / away;
+        const double along = std::sqrt(std::max(0.0, (1.0 - part) * (1.0 + part)));
+        const double half = half_chord(margin, beyond);
+        const double excess = beyond * along - slope * half;
+        (excess > 0.0 ? high : low) = beyond;
+        const double bend = along + beyond * part * part / (away * along) + slope * beyond / half;
+        double next = beyond - excess / bend;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (std::abs(next - beyond) <= 1e-9 * margin) return next;
+        beyond = next;
+    }
+    return beyond;
+}
+
+/// A disc with a margin (the rounded corner of a bull nose) met by a line along Z. The lower end is
+/// convex in time, the upper concave.
+std::optional<Interval> round_along(const ElementSweep& sweep, double x, double y) {
+    const ProfileElement& e = sweep.element;
+    const LineMotion line(sweep, 2, x, y);
+    const Quadratic across = squared(line[0]) + squared(line[1]);
+    const double radius = std::max(e.r0, e.r1), widest = radius + e.margin;
+    const Range range =
+        where_not_positive({across.a, across.b, across.c - widest * widest}, whole_motion);
+    if (range.first > range.last) return std::nullopt;
+
+    Extent extent;
+    const Linear rise{-line[2].at, -line[2].by};
+    const auto offer = [&](double at) {
+        const double t = range.clamp(at);
+        const double beyond = std::max(0.0, length_of(line[0](t), line[1](t)) - radius);
+        const double half = half_chord(e.margin, beyond);
+        extent.add(rise(t) + e.z0 - half, rise(t) + e.z0 + half);
+    };
+    if (across.a == 0.0) {
+        offer(range.first);
+        offer(range.last);
+        return extent.interval();
+    }
+    const double middle = -across.b / across.a;
+    if (rise.by == 0.0) {
+        offer(middle);
+        return extent.interval();
+    }
+    const double travel = std::sqrt(across.a);
+    const double nearest = std::min(length_of(line[0](middle), line[1](middle)), widest);
+    const double away =
+        radius + lowest_beyond(radius, e.margin, nearest, std::abs(rise.by) / travel);
+    const double half_way = half_chord(away, nearest) / travel;
+    offer(middle - half_way);
+    offer(middle + half_way);
+    return extent.interval();
+}
+
+/// A disc with a margin crossed by a line along X or Y.
+std::optional<Interval> round_across(const ElementSweep& sweep, int axis, double u, double v) {
     const ProfileElement& e = sweep.element;
     // Most lines near a sweep miss it: the cylinder around the piece rules them out without a
     // search.
     const double widest = std::max(e.r0, e.r1) + e.margin;
     const ProfileElement round{e.z0 - e.margin, widest, e.z0 + e.margin, widest, 0.0};
-    if (!line_interval({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
+    if (!cone_across({round, sweep.from, sweep.to}, axis, u, v)) return std::nullopt;
     return tilted_line_interval(sweep, Mat3(1.0), axis, u, v);
 }
 
@@ -241,7 +308,7 @@ std::optional<Interval> line_interval(const ElementSweep& sweep, int axis, doubl
     if (e.margin > 0.0) {
         assert(e.z0 == e.z1);
         if (e.r0 == 0.0 && e.r1 == 0.0) return ball_interval(sweep, axis, u, v);
-        return round_interval(sweep, axis, u, v);
+        return axis == 2 ? round_along(sweep, u, v) : round_across(sweep, axis, u, v);
     }
     if (axis == 2) return cone_along(sweep, u, v);
     return cone_across(sweep, axis, u, v);

@@ -252,53 +252,102 @@ private:
     /// A lower bound of the distance to the boxes of a column, or at least `limit`.
     double bound_of(const Square& square, const LineView& column, double limit) {
         double bound = infinity;
-        for (const Interval& heights : column) {
-            const Aabb box{{square.x0, square.y0, heights.lower},
-                           {square.x1, square.y1, heights.upper}};
-            const double here = box_bound(box, limit);
-            if (here >= limit) {
-                bound = std::min(bound, here);
-                continue;
-            }
-            bound = std::min(bound, is_exact_ ? here - same : nearest(box, limit).lower);
-        }
+        for (const Interval& heights : column)
+            bound = std::min(bound, bound_of(square, heights, limit));
         return bound;
     }
 
+    double bound_of(const Square& square, const Interval& heights, double limit) {
+        const Aabb box{{square.x0, square.y0, heights.lower},
+                       {square.x1, square.y1, heights.upper}};
+        const double bound = box_bound(box, limit);
+        if (bound >= limit) return bound;
+        return is_exact_ ? bound - same : nearest(box, limit).lower;
+    }
+
+    /// Material at this distance or farther does not matter to the refinement.
+    double near_enough() const { return goal_.threshold + same; }
+
     void refine_columns() {
         // Every column that is skipped here, wholly or in part, is at least this far away.
-        refined_lower_ = goal_.threshold + same;
-        const auto near_enough = [&] { return goal_.threshold + same; };
-        for_near_tiles(stock_.column_boxes, 2, near_enough, [&](size_t tile) {
-            for_columns(tile, near_enough, [&](int i, int j, const Square& square) {
-                refine(i, j, square, stock_.columns.line(i, j));
-            });
+        refined_lower_ = near_enough();
+        const auto limit = [&] { return near_enough(); };
+        for_near_tiles(stock_.column_boxes, 2, limit, [&](size_t tile) {
+            for_columns(tile, limit,
+                        [&](int i, int j, const Square& square) { refine_cell(i, j, square); });
         });
         lower_ = std::max(lower_, std::min(refined_lower_ - same, goal_.limit));
     }
 
     bool decided_near() const { return upper_.upper < goal_.threshold; }
 
-    /// Divides a square until its bound reaches the threshold; the least remaining bound is kept.
-    void refine(int i, int j, const Square& square, const LineView& column) {
-        const double bound = bound_of(square, column, goal_.threshold + same);
-        const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
-        if (bound >= goal_.threshold + same || decided_near() || side <= goal_.finest
-            || result_.refined >= goal_.work_limit) {
-            refined_lower_ = std::min(refined_lower_, bound);
+    /// Whether dividing more squares is useless or has used up its budget.
+    bool ends_refining() const {
+        return decided_near() || result_.refined >= goal_.work_limit
+               || result_.futile > goal_.futile_limit;
+    }
+
+    void refine_cell(int i, int j, const Square& square) {
+        const Near near = near_part(square, stock_.columns.line(i, j));
+        if (near.bound >= near_enough()) return;
+        if (ends_refining()) {
+            refined_lower_ = std::min(refined_lower_, near.bound);
             return;
         }
+        if (keeps_whole(square, near)) return;
+        const std::vector<LoggedSweep> sweeps = sweeps_near_cell(stock_, i, j);
+        refine(SquareCuts(stock_, sweeps, square, near.heights));
+    }
+
+    /// The part of a column that is too near, and its bound.
+    struct Near {
+        double bound = infinity;
+        Interval heights{infinity, -infinity};
+    };
+
+    template <typename Column>
+    Near near_part(const Square& square, const Column& column) {
+        Near near;
+        for (const Interval& matter : column) {
+            const double bound = bound_of(square, matter, near_enough());
+            if (bound >= near_enough()) continue;
+            near.bound = std::min(near.bound, bound);
+            near.heights.lower = std::min(near.heights.lower, matter.lower);
+            near.heights.upper = std::max(near.heights.upper, matter.upper);
+        }
+        // Material above or below the shapes by more than the threshold does not matter.
+        const double slack = near_enough() + 10.0 * same;
+        near.heights.lower = std::max(near.heights.lower, whole_.min.z - slack);
+        near.heights.upper = std::min(near.heights.upper, whole_.max.z + slack);
+        return near;
+    }
+
+    /// Keeps the bound of a square that is too near, but is not divided any more; returns whether
+    /// it is one.
+    bool keeps_whole(const Square& square, const Near& near) {
+        const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
+        const bool finest = side <= goal_.finest;
+        if (!finest && !ends_refining()) return false;
+        refined_lower_ = std::min(refined_lower_, near.bound);
+        result_.futile += finest && result_.futile == 0;
+        return true;
+    }
+
+    /// Divides a square that is too near until its bound reaches the threshold; the least remaining
+    /// bound is kept.
+    void refine(SquareCuts cuts) {
+        const Square& square = cuts.square();
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
-        for (const Interval& matter : fresh_line(stock_, i, j, x, y))
+        for (const Interval& matter : cuts.line_at_centre())
             offer_matter({x, y, matter.lower}, {x, y, matter.upper});
         keep_promise();
-        const Square parts[] = {{square.x0, x, square.y0, y},
-                                {x, square.x1, square.y0, y},
-                                {square.x0, x, y, square.y1},
-                                {x, square.x1, y, square.y1}};
-        for (const Square& part : parts) {
+        for (int quarter = 0; quarter < 4; ++quarter) {
             ++result_.refined;
-            refine(i, j, part, fresh_column(stock_, i, j, part));
+            if (result_.futile > 0) ++result_.futile;
+            const Square part = cuts.quarter(quarter);
+            const Near left = near_part(part, cuts.column(quarter));
+            if (left.bound >= near_enough() || keeps_whole(part, left)) continue;
+            refine(cuts.within(quarter, left.heights));
         }
     }
 

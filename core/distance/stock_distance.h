@@ -17,10 +17,13 @@ enum class StockBound : uint8_t { both, lower, upper };
 struct StockGoal {
     double limit = 50.0; // mm: larger distances do not matter
     StockBound bound = StockBound::both;
-    double enough = 0.0;              // mm: an upper bound of at most this need not be improved
-    double threshold = 0.0;           // mm: the interval is narrowed until it does not contain this
-    double finest = 0.03;             // mm: squares are not divided below this side
-    size_t work_limit = 100'000;      // squares that may be recomputed
+    double enough = 0.0;         // mm: an upper bound of at most this need not be improved
+    double threshold = 0.0;      // mm: the interval is narrowed until it does not contain this
+    double finest = 0.03;        // mm: squares are not divided below this side
+    size_t work_limit = 100'000; // squares that may be recomputed
+    // Squares that may be recomputed once a square of the finest side is too near: `lower` cannot
+    // reach the threshold any more, but material nearer than the threshold may still be found.
+    size_t futile_limit = 100'000;
     std::optional<LineId> first_line; // searched first; the last answer is a good guess
 };
 
@@ -29,6 +32,7 @@ struct StockSeparation {
     Separation separation;      // `upper` to material on a scan line, `lower` to the outer model
     std::optional<LineId> line; // that gave `upper`
     size_t refined = 0;         // recomputed squares
+    size_t futile = 0;          // those of them that count against StockGoal::futile_limit
     size_t box_tests = 0;       // pairs of boxes compared
     size_t shape_tests = 0;     // exact distances of convex shapes
 };
@@ -38,8 +42,8 @@ struct StockSeparation {
 /// Result:  lower <= distance to the stock as cut by the logged sweeps <= upper. `upper` is
 ///          infinite if no material on a scan line is within `goal.limit`; `lower` is at most the
 ///          limit. While the interval contains `goal.threshold`, columns that are too near are
-///          divided and recomputed; it may still contain it when the budget or the finest square is
-///          reached.
+///          divided and recomputed; it may still contain it when a limit of the goal or the finest
+///          square is reached.
 /// Source:  the column and corner rule, see README.md.
 StockSeparation separation(std::span<const ConvexShape> shapes, const CutModel& stock,
                            const StockGoal& goal = {});

@@ -49,6 +49,27 @@ ConvexShape posed(const ConvexShape& shape, const Transform& target_from_shape);
 /// at the last.
 ConvexShape swept(const ConvexShape& shape, std::span<const Vec3> positions);
 
+/// The displacements that a body may have: all points of a segment. The default is none at all.
+struct Play {
+    Vec3 from = Vec3(0.0), to = Vec3(0.0);
+
+    bool none() const { return from == Vec3(0.0) && to == Vec3(0.0); }
+    Vec3 least() const { return glm::min(from, to); }
+    Vec3 most() const { return glm::max(from, to); }
+
+    bool operator==(const Play&) const = default;
+};
+
+/// The segment seen from another frame.
+inline Play rotated(const Mat3& target_from_frame, const Play& play) {
+    return {target_from_frame * play.from, target_from_frame * play.to};
+}
+
+/// The box that contains a box under all displacements.
+inline Aabb displaced(const Aabb& box, const Play& play) {
+    return {box.min + play.least(), box.max + play.most()};
+}
+
 /// The farthest point of the shape in a direction, without the margin.
 struct SupportPoint {
     Vec3 point;

@@ -65,6 +65,14 @@ struct TipPath {
     double tool_length = 0.0; // as used by the control
 };
 
+/// How far the motions of a block are known.
+enum class PathCertainty : uint8_t {
+    known,
+    doubtful,     // as far as is known: measured, but never clear
+    pose_unknown, // the axis positions are known, but not where they put the bodies: not measured
+    unknown,      // the axes may be anywhere: not measured, and limits are not checked
+};
+
 /// One rapid, feed or arc move. Machine coordinates of the gauge line, not of the tip.
 struct Motion {
     MotionKind kind = MotionKind::rapid;
@@ -104,8 +112,12 @@ enum class Blending : uint8_t { exact_stop, exact_path, continuous };
 /// The new way in which corners are passed.
 struct PathModeChange {
     Blending blending = Blending::continuous;
-    std::optional<double> tolerance; // mm; empty: not stated
-    double joining = 0.0;            // short moves this close to a line may be joined into it, mm
+    std::optional<double> tolerance; // of corners between feeds, mm; empty: not stated
+    double joining =
+        0.0; // feeds this close to a line may be joined into it, mm; adds to `tolerance`
+    std::optional<double> distance = {}; // of the path at which such a corner is rounded, mm
+    std::optional<double> rapid_tolerance = {}, rapid_distance = {}; // of corners between rapids
+    bool between_kinds = false; // rounds corners between a rapid and a feed by the smaller distance
 };
 
 /// A fixture that is mounted or removed, by its index in the set-up.

@@ -281,8 +281,11 @@ double tip_reach(const Machine& machine, const Vec3& tip, double tool_length) {
                     chain_reach(machine, machine.spindle, Vec3(0.0, 0.0, -tool_length)));
 }
 
-RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Mover& mover,
-                         const Leg& leg) {
+namespace {
+
+/// The leg of a body without its play.
+RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& mover,
+                      const Leg& leg) {
     if (!machine.has_rotary()) return without_turning(machine, target, mover, leg);
     const std::vector<size_t> axes = axes_between(machine, target.link, mover.mount.link);
     double turn = 0.0, travel = 0.0;
@@ -313,6 +316,36 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     const double curve = 0.25 * turn * (turn * reach + travel);
     relative.error = leg.path_error + mover.form_error + curve + 0.5 * turn * mover.reach;
     relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
+    return relative;
+}
+
+} // namespace
+
+void add_play_as_error(RelativeLeg& leg, const Play& play) {
+    for (Vec3& position : leg.positions) position += 0.5 * (play.from + play.to);
+    leg.error += 0.5 * glm::distance(play.from, play.to);
+}
+
+void add_play(RelativeLeg& leg, const Play& play) {
+    if (play.none()) return;
+    if (2 * leg.positions.size() > ConvexShape::max_positions) return add_play_as_error(leg, play);
+    std::vector<Vec3> positions;
+    for (const Vec3& by : {play.from, play.to})
+        for (const Vec3& position : leg.positions) positions.push_back(position + by);
+    leg.positions = std::move(positions);
+}
+
+RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Mover& mover,
+                         const Leg& leg) {
+    if (mover.play.none()) return rigid_leg(machine, target, mover, leg);
+    RelativeLeg relative = rigid_leg(machine, target, mover, leg);
+    add_play(relative, rotated(relative.orientation, mover.play));
+    if (!relative.turns) return relative;
+    // The body, and with it the displacement, turns by half of the leg's angle to either side.
+    const double turn = turn_of(machine, leg.positions.front(), leg.positions.back());
+    const double longest = std::max(glm::length(mover.play.from), glm::length(mover.play.to));
+    relative.error += 0.5 * turn * longest;
+    relative.travel += turn * longest;
     return relative;
 }
 

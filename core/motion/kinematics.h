@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/geom/gjk.h"
 #include "core/motion/event.h"
 
 namespace core {
@@ -58,7 +59,15 @@ struct Mover {
     Vec3 centre = Vec3(0.0);
     double reach = 0.0;
     double form_error = 0.0; // of its shape; added to the errors of its legs
+    Play play = {};          // in its own frame
 };
+
+/// Adds displacements to the motion of a body: its origin may be displaced by any vector of the
+/// segment. Frame: the target's.
+void add_play(RelativeLeg& leg, const Play& play);
+
+/// Adds displacements as an error of the path: half of the segment's length, from its middle.
+void add_play_as_error(RelativeLeg& leg, const Play& play);
 
 /// The leg as seen from the target.
 ///

@@ -46,9 +46,11 @@ struct MachineBody {
 struct Machine {
     std::array<MachineAxis, axis_count> axes = three_axes();
     RapidStyle rapid = RapidStyle::straight;
-    std::optional<double> corner_tolerance; // mm, if the program gives none
-    LinkId spindle = link_of(2);            // carries the tool
-    LinkId table = LinkId::base;            // carries the work
+    // How far the control leaves the path at corners, mm, where the program does not say.
+    std::optional<double> corner_tolerance;       // between feeds
+    std::optional<double> rapid_corner_tolerance; // between rapids
+    LinkId spindle = link_of(2);                  // carries the tool
+    LinkId table = LinkId::base;                  // carries the work
     std::vector<MachineBody> bodies;
 
     bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }

@@ -155,6 +155,9 @@ double bend(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
     return 0.125 * std::hypot(std::max(first, last), drift);
 }
 
+/// The greatest number of chords of an arc; enough for a circle with a radius of some kilometres.
+constexpr double most_chords = 100'000.0;
+
 void add_arc(Path& path, const Motion& motion, const AxisValues& from, const AxisValues& to,
              double max_error) {
     const ArcPath& arc = *motion.arc;
@@ -165,7 +168,11 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     // If the radius changes fast, that chord would be too long.
     const double most = std::sqrt(max_error / std::max(bend(arc, from, to), 1e-12));
     const double step = std::min({widest, most, std::numbers::pi / 2.0});
-    const int count = std::max(1, static_cast<int>(std::ceil(std::abs(arc.angle) / step)));
+    const double needed = std::max(1.0, std::ceil(std::abs(arc.angle) / step));
+    const int count = static_cast<int>(std::min(needed, most_chords));
+    // The distance from a chord grows with the square of its angle; 1 % for the terms beyond.
+    const double error =
+        needed > count ? 1.01 * max_error * (needed / count) * (needed / count) : max_error;
     const auto normal = static_cast<size_t>(arc.normal);
     const double rise = to[normal] - from[normal];
     const double length = std::hypot(radius * arc.angle, rise);
@@ -176,8 +183,7 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     for (int i = 1; i <= count; ++i) {
         const double fraction = static_cast<double>(i) / count;
         const AxisValues next = i == count ? to : on_arc(motion, from, to, fraction);
-        Leg chord{
-            {here, next}, path.duration * (i - 1) / count, path.duration * fraction, max_error};
+        Leg chord{{here, next}, path.duration * (i - 1) / count, path.duration * fraction, error};
         chord.arc = {whole, before, fraction};
         path.legs.push_back(std::move(chord));
         here = next;

@@ -59,11 +59,11 @@ double chord_error(double mesh_size);
 /// The legs of a motion.
 ///
 /// Shape:   a straight move is one leg. An arc or helix becomes chords within `max_error` of it
-///          that end on it. A dog-leg rapid is one leg for each change of direction, or, if speeds
-///          are unknown, one box of the moving axes. A motion from an unknown position is the hull
-///          of the limits. A path of the tip becomes legs on which the axes stay within `max_error`
-///          of the control's path. If a rotary axis starts or ends at an unknown angle, the path is
-///          empty.
+///          that end on it; an arc that would need more than 100,000 has a greater error. A dog-leg
+///          rapid is one leg for each change of direction, or, if speeds are unknown, one box of
+///          the moving axes. A motion from an unknown position is the hull of the limits. A path of
+///          the tip becomes legs on which the axes stay within `max_error` of the control's path.
+///          If a rotary axis starts or ends at an unknown angle, the path is empty.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
 /// The least and the greatest value of each axis.

@@ -116,6 +116,7 @@ void merge(PairClearance& known, const PairClearance& later) {
     const bool is_worse = later.verdict > known.verdict && later.upper == known.upper;
     known.verdict = std::max(known.verdict, later.verdict);
     known.lower = std::min(known.lower, later.lower);
+    known.unless_removed = known.unless_removed || later.unless_removed;
     if (later.upper >= known.upper && !(is_worse && later.found())) return;
     known.upper = later.upper;
     known.on_tool = later.on_tool;
@@ -123,16 +124,71 @@ void merge(PairClearance& known, const PairClearance& later) {
     known.time = later.time;
 }
 
+CornerStart::CornerStart() = default;
+CornerStart::CornerStart(const CornerStart&) = default;
+CornerStart::CornerStart(CornerStart&&) noexcept = default;
+CornerStart& CornerStart::operator=(const CornerStart&) = default;
+CornerStart& CornerStart::operator=(CornerStart&&) noexcept = default;
+CornerStart::~CornerStart() = default;
+
 RoundedCorners corners_at_start(const Machine& machine) {
-    return {.by = machine.corner_tolerance.value_or(0.0)};
+    RoundedCorners corners;
+    change_mode(corners, {}, machine);
+    return corners;
 }
 
-bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
-    const bool rounds = change.blending == Blending::continuous;
-    const std::optional<double> stated =
-        change.tolerance ? change.tolerance : machine.corner_tolerance;
-    corners.by = rounds ? std::max(stated.value_or(0.0), change.joining) : 0.0;
-    return rounds && !stated;
+namespace {
+
+/// The limit that a program states, with at least one value; else that of the machine, if any.
+CornerLimit limit_of(std::optional<double> deviation, std::optional<double> distance,
+                     const std::optional<double>& of_machine) {
+    if (!deviation && !distance) return {.deviation = of_machine.value_or(0.0)};
+    // Between straight moves, the curve is in the triangle of the corner and the points at this
+    // distance, all of which is within half of the distance of the path.
+    CornerLimit limit{std::max(deviation.value_or(0.0), 0.5 * distance.value_or(0.0))};
+    if (!deviation) limit.distance = *distance;
+    return limit;
+}
+
+CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
+    return {std::min(a.deviation, b.deviation), std::min(a.distance, b.distance)};
+}
+
+} // namespace
+
+void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
+    corners.by = corners.by_arc = 0.0;
+    corners.rapids = corners.mixed = {};
+    corners.unknown = corners.unknown_rapids = false;
+    if (change.blending != Blending::continuous) return;
+    const auto is_stated = [](const auto& a, const auto& b, const auto& c) { return a || b || c; };
+    const CornerLimit feeds = limit_of(change.tolerance, change.distance, machine.corner_tolerance);
+    // Next to an arc, a point between two points of the path is within the distance of one of them.
+    // Joining may take an arc as two chords, of which each is half as far off, and join those.
+    corners.by = std::max(feeds.deviation, change.distance.value_or(0.0)) + change.joining;
+    corners.by_arc = corners.by + change.joining;
+    corners.rapids =
+        limit_of(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
+    if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
+    corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
+    corners.unknown_rapids =
+        !is_stated(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
+}
+
+void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {
+    constexpr size_t most_legs = 4096; // more chords of an arc are longer than any rounding
+    if (motion.from == motion.to && !motion.arc) return;
+    corners.last.kind = motion.kind;
+    corners.last.legs.clear();
+    corners.last.rapids = corners.rapids;
+    corners.last.mixed = corners.mixed;
+    const bool rapid = motion.kind == MotionKind::rapid;
+    if (!(rapid && corners.rapids.rounds()) && !corners.mixed.rounds()) return;
+    // From an unknown start, the whole region was checked, or is reported as unchecked.
+    if (path.legs.empty() || !path.legs.front().start_known) return;
+    const size_t first = path.legs.size() > most_legs ? path.legs.size() - most_legs : 0;
+    corners.last.legs.assign(path.legs.begin() + static_cast<std::ptrdiff_t>(first),
+                             path.legs.end());
 }
 
 double path_deviation(const Pair& pair, double of_block, const RoundedCorners& corners) {
@@ -149,15 +205,17 @@ bool rises(const Leg& leg) {
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
                   bool is_rapid) {
     if (corners.by_several || (corners.tool && corners.tool != tool)) return false;
-    return rises || (!is_rapid && corners.by == corners.of_cuts);
+    return rises || (!is_rapid && corners.by == corners.mode_of_cuts);
 }
 
-void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts) {
+void widen(PairClearance& pair, double of_block, double of_rapids, const RoundedCorners& corners,
+           bool follows_cuts) {
     const double off = path_deviation(pair.pair, of_block, corners);
-    if (off == 0.0) return;
+    const double off_above = std::max(off, path_deviation(pair.pair, of_rapids, corners));
+    if (off_above == 0.0) return;
     pair.lower = std::max(0.0, pair.lower - off);
     if (pair.verdict == Verdict::collision) return;
-    pair.upper += off;
+    pair.upper += off_above;
     if (pair.allowance.distance > resolution) {
         pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
     } else if ((pair.pair.fixture || !follows_cuts) && pair.lower == 0.0

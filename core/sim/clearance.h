@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,8 +14,12 @@
 
 namespace core {
 
+enum class MotionKind : uint8_t;
+
 struct Leg;
 struct Machine;
+struct Motion;
+struct Path;
 struct PathModeChange;
 struct Setup;
 
@@ -64,6 +69,7 @@ struct PairClearance {
     Vec3 on_tool = Vec3(0.0), on_body = Vec3(0.0); // witness of `upper`, in the stock's frame
     double time = 0.0;                             // of the witness, seconds from the block's start
     Verdict verdict = Verdict::clear;
+    bool unless_removed = false; // too near unless an earlier, undecided motion removed the stock
 
     bool found() const { return upper < infinity; }
     double margin() const { return (found() ? upper : lower) - allowance.distance; }
@@ -101,32 +107,67 @@ const Clearance* deciding_pair(const std::vector<Clearance>& pairs) {
     return worst;
 }
 
+/// How far a control may round the corner between two motions.
+struct CornerLimit {
+    double deviation = 0.0;     // greatest distance from the programmed path, mm; 0: not rounded
+    double distance = infinity; // at most this far before and after the corner, mm along the path
+
+    bool rounds() const { return deviation > 0.0; }
+};
+
+/// A motion that ends at a corner.
+struct CornerStart {
+    CornerStart();
+    CornerStart(const CornerStart&);
+    CornerStart(CornerStart&&) noexcept;
+    CornerStart& operator=(const CornerStart&);
+    CornerStart& operator=(CornerStart&&) noexcept;
+    ~CornerStart();
+
+    std::optional<MotionKind> kind; // empty: the machine comes from rest
+    std::vector<Leg> legs;          // its last legs, if the corner after it may be rounded
+    CornerLimit rapids, mixed;      // as in `RoundedCorners`, when it was programmed
+};
+
 /// How far the tool may deviate from its programmed path because the control rounds corners, mm.
 ///
-/// Where a corner is rounded depends on the next motion, on speeds and on short moves that the
+/// Where feeds are rounded depends on the next motion, on speeds and on short moves that the
 /// control joins, so a whole feed is assumed to deviate as far as its corners. Rapids are not
-/// rounded.
+/// joined: they deviate only at the corner between two of them, which belongs to the second.
 struct RoundedCorners {
-    double by = 0.0;                // of feeds in the current mode; 0 under G61 and G61.1
-    double of_cuts = 0.0;           // largest of all feeds that cut: the stock's own uncertainty
+    double by = 0.0;             // of feeds in the current mode; 0 under exact stops
+    double by_arc = 0.0;         // of feeds on arcs
+    double of_cuts = 0.0;        // largest of all feeds that cut: the stock's own uncertainty
+    double mode_of_cuts = 0.0;   // largest `by` of all modes in which feeds cut
+    bool unknown = false;        // the control may round feeds by an unknown amount
+    CornerLimit rapids;          // between rapids
+    bool unknown_rapids = false; // the control may round rapids by an unknown amount
+    CornerLimit mixed;           // between a rapid and a feed
+    CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
 
+    /// Deviation of a feed.
+    double of_feed(bool is_arc) const { return is_arc ? by_arc : by; }
+
     /// Records a cutting feed.
-    void note_cut(const std::optional<ToolNumber>& by_tool) {
+    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {
         if (by == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
-        of_cuts = std::max(of_cuts, by);
+        mode_of_cuts = std::max(mode_of_cuts, by);
+        of_cuts = std::max(of_cuts, of_feed(is_arc));
     }
 };
 
 /// State before the first block, from the machine's corner tolerance.
 RoundedCorners corners_at_start(const Machine& machine);
 
-/// Applies a change of the path mode. Returns whether the control now rounds corners by an unknown
-/// tolerance.
-bool change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine);
+/// Applies a change of the path mode.
+void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine);
+
+/// Records a motion, at whose end the next corner begins. A motion without length changes nothing.
+void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path);
 
 /// Possible deviation between the bodies of a pair, mm, in a block whose feeds deviate by up to
 /// `of_block`.
@@ -146,7 +187,9 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
 /// same tool deviates as its cuts did or leaves them upwards: it moves where it has cut. Otherwise
 /// it is kept if the material that may be left at a corner is less than the contact depth.
 ///
-/// `of_block`: possible deviation of the block's feeds, mm; 0 if it has none.
-void widen(PairClearance& pair, double of_block, const RoundedCorners& corners, bool follows_cuts);
+/// `of_block`: possible deviation of the block's feeds, mm; 0 if it has none. `of_rapids`: that of
+/// its rapids, which only widens the upper bound: `lower` includes their corners.
+void widen(PairClearance& pair, double of_block, double of_rapids, const RoundedCorners& corners,
+           bool follows_cuts);
 
 } // namespace core

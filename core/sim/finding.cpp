@@ -1,5 +1,9 @@
 #include "core/sim/finding.h"
 
+#include <cmath>
+
+#include <fmt/format.h>
+
 #include "core/sim/setup.h"
 #include "core/sim/verdict.h"
 
@@ -16,6 +20,35 @@ const char* name_of(Verdict verdict) {
     default:
         return "collision";
     }
+}
+
+bool is_worse(const Finding& finding, const Finding& than) {
+    if (finding.shortfall != than.shortfall) return finding.shortfall > than.shortfall;
+    const auto depth = [](const Finding& each) {
+        return each.overlap ? each.overlap->most.value_or(infinity) : 0.0;
+    };
+    return depth(finding) > depth(than);
+}
+
+std::string direction_text(const Vec3& direction) {
+    constexpr double significant = 0.3; // some 17 degrees
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(direction[axis]) >= significant)
+            text += fmt::format("{}{}{}", text.empty() ? "" : " ", "XYZ"[axis],
+                                direction[axis] > 0.0 ? '+' : '-');
+    return text;
+}
+
+std::string overlap_text(const Overlap& overlap) {
+    constexpr int digits = 2;
+    const std::string least = clearance_at_least(overlap.least, digits);
+    if (!overlap.most) return fmt::format("The overlap is at least {} mm deep.", least);
+    const std::string depth = overlap.least < 0.01
+                                  ? "up to " + at_most(*overlap.most, digits)
+                                  : bounds_text(overlap.least, *overlap.most, " to ", digits);
+    return fmt::format("The overlap is {} mm deep; the shortest way out is towards {}.", depth,
+                       direction_text(overlap.way_out));
 }
 
 Severity severity_of(const Setup& setup, const std::string& rule) {

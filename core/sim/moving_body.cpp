@@ -7,6 +7,14 @@
 namespace core {
 namespace {
 
+/// The play of a part against the tip. A shank that is pulled out of the holder becomes longer; one
+/// that is pushed in disappears in it.
+Play play_of(PartKind kind, const ToolAssembly& tool) {
+    if (kind == PartKind::flutes) return {};
+    if (kind == PartKind::shank) return {.to = glm::max(tool.holder_play.most(), Vec3(0.0))};
+    return tool.holder_play;
+}
+
 MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolPart& part) {
     const Aabb box = bounds(part.profile);
     const Vec3 centre(0.0, 0.0, box.center().z);
@@ -16,17 +24,22 @@ MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolP
             .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})},
                       centre,
                       reach,
-                      part.profile.form_error}};
+                      part.profile.form_error,
+                      play_of(part.kind, tool)}};
 }
 
-MovingBody moving_machine_body(const Setup& setup, size_t index) {
+MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, size_t index) {
     const MachineBody& body = setup.machine.bodies[index];
     const Aabb box = bounds(body.body);
     const bool nose = body.name == name_of(PartKind::nose);
     return {.kind = nose ? PartKind::nose : PartKind::machine,
             .carried = index,
             .body = &body.body,
-            .mover = {{body.link, {}}, box.center(), 0.5 * glm::length(box.size())}};
+            .mover = {{body.link, {}},
+                      box.center(),
+                      0.5 * glm::length(box.size()),
+                      0.0,
+                      setup.body_play.empty() ? tool.holder_play : setup.body_play[index]}};
 }
 
 ConvexShape moved(const ConvexShape& shape, const RelativeLeg& leg) {
@@ -61,7 +74,7 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
     for (const ToolPart& part : tool.parts) bodies.push_back(moving_part(setup, tool, part));
     for (size_t i = 0; i < setup.machine.bodies.size(); ++i)
         if (!is_on_table_side(setup.machine, setup.machine.bodies[i].link))
-            bodies.push_back(moving_machine_body(setup, i));
+            bodies.push_back(moving_machine_body(setup, tool, i));
     return bodies;
 }
 

@@ -27,6 +27,7 @@ struct Fixture {
     Mount mount = {};        // its link and its frame in that link
     bool is_there = true;    // at the start of the program
     bool is_machine = false;
+    Play play = {}; // it may stand anywhere on this segment; in the frame of its link
 };
 
 /// Default tolerance of the comparison with the part, mm.
@@ -70,10 +71,17 @@ struct Setup {
     std::map<ToolNumber, ToolAssembly> tools;
     std::optional<ToolNumber> tool_at_start;
     SpindleDirection spindle_at_start = SpindleDirection::stopped;
+    std::array<bool, 3> start_is_assumed{}; // of X, Y, Z: nobody states their start position
     RuleSeverities rules;
     Detail detail = Detail::every_pair;
     double search_limit = 50.0;                 // clearances beyond it are not measured
     double memory_limit = default_memory_limit; // bytes, of the stock's model
+    // For checks that must hold for a range of set-ups (docs/decisions/tolerances.md):
+    double cut_error = 0.0;      // a cut removes for certain only what is this deep in it, mm
+    std::vector<Play> body_play; // of each machine body on the tool side; empty: none
+    // Bounds on a leg that turns are not sharpened further than its verdict needs, and after a pair
+    // that is not clear nothing more is measured on it.
+    bool needs_only_verdict = false;
 };
 
 } // namespace core

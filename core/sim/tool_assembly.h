@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/geom/gjk.h"
 #include "core/geom/profile.h"
 #include "core/sim/tool_description.h"
 
@@ -48,6 +50,9 @@ struct ToolAssembly {
     ToolDescription description;
     std::vector<ToolPart> parts; // existing parts, from the flutes up
     double length = 0.0;         // gauge length, mm; if touched off, the length in the control
+    // For checks that must hold for a range of tools (docs/decisions/tolerances.md):
+    std::optional<RevolvedProfile> certain_flutes = {}; // cut instead of the flutes
+    Play holder_play = {}; // of the holder and the spindle against the tip, along Z
 };
 
 /// Makes the bodies of a tool. A neck is part of the shank. If no shank is described, a cylinder

@@ -296,12 +296,34 @@ void release(Contour& contour) {
     }
 }
 
-core::Result<void> end_path(Contour& contour) {
-    if (!contour.path) return {};
-    FEELER_TRY(const CompensatedMoves moves, end_compensation(*contour.path));
-    for (const CompensatedMove& move : moves) place_move(contour, move);
+/// Ends the compensation and returns its last moves that belong to the exit, if there is one.
+core::Result<CompensatedMoves> end_path(Contour& contour, const ContourMove* exit = nullptr) {
+    CompensatedMoves around;
+    if (!contour.path) return around;
+    FEELER_TRY(const CompensatedMoves moves, end_compensation(*contour.path, exit));
+    for (const CompensatedMove& move : moves)
+        if (exit && move.id == exit->id)
+            around.push_back(move);
+        else
+            place_move(contour, move);
     contour.path.reset();
-    return {};
+    return around;
+}
+
+/// The first motion of the block with G40, if it is straight.
+std::optional<ContourMove> exit_of(const Contour& contour, const BlockCommands& block) {
+    for (size_t i = 0; i < block.commands.size(); ++i) {
+        const Position* end = end_of(block.commands[i]);
+        if (!end) continue;
+        const auto to = flat(*end, contour.plane);
+        if (!to || std::holds_alternative<ArcFeed>(block.commands[i])) return std::nullopt;
+        const size_t number = contour.first_pending + contour.pending.size();
+        return ContourMove{.id = number * commands_of_a_block + i,
+                           .rapid = std::holds_alternative<StraightTraverse>(block.commands[i]),
+                           .end = *to,
+                           .where = {.line = block.line, .column = block.columns[i]}};
+    }
+    return std::nullopt;
 }
 
 /// Fanuc controls look ahead only a few blocks. If too many of them have no move in the plane, the
@@ -368,19 +390,27 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
         after.compensation == Side::left ? ContourSide::left : ContourSide::right;
     contour.path = begin_compensation(side, after.compensation_radius, *at);
     contour.path->extends_corners = contour.style == ContourStyle::fanuc;
+    contour.path->extends_ends = contour.extends_ends;
+    contour.path->enters_upright = contour.enters_upright;
     contour.tip = contour.path->radius * tip_of(after.turning_orientation, after.plane);
     return {};
 }
 
+/// Takes the commands of a block. `around` are the moves that come before its exit.
 core::Result<void> take_commands(Contour& contour, const BlockCommands& block,
-                                 const ModalState& before) {
+                                 const ModalState& before, const CompensatedMoves& around) {
     contour.pending.push_back({block, std::vector<PendingBlock::Slot>(block.commands.size())});
     Position position = before.position;
     for (size_t i = 0; i < block.commands.size(); ++i) {
         PendingBlock::Slot& slot = contour.pending.back().slots[i];
         slot.start = position;
         if (std::holds_alternative<ProgramEnd>(block.commands[i]))
-            if (auto ended = end_path(contour); !ended) return ended;
+            if (auto ended = end_path(contour); !ended) return tl::unexpected(ended.error());
+        for (const CompensatedMove& move : around)
+            if (move.id % commands_of_a_block == i)
+                slot.moves.push_back(
+                    command_of(move, block.commands[i], position, contour.plane, contour.tip));
+        if (!slot.moves.empty()) slot.moves.push_back(block.commands[i]);
         const Position* end = end_of(block.commands[i]);
         if (!end) continue;
         if (contour.path)
@@ -396,8 +426,11 @@ core::Result<void> take_with_corners(Contour& contour, const BlockCommands& bloc
     const bool changed = before.compensation != after.compensation
                          || before.compensation_radius != after.compensation_radius;
     const bool pauses = std::exchange(contour.pauses, false);
-    if (contour.path && (!on || changed || pauses))
-        if (auto ended = end_path(contour); !ended) return ended;
+    CompensatedMoves around;
+    if (contour.path && (!on || changed || pauses)) {
+        const auto exit = on || pauses ? std::nullopt : exit_of(contour, block);
+        FEELER_TRY(around, end_path(contour, exit ? &*exit : nullptr));
+    }
     if (on && !contour.path && !pauses)
         if (auto begun = begin_path(contour, before, after, block); !begun) return begun;
     if (contour.pending.size() >= most_pending)
@@ -405,7 +438,7 @@ core::Result<void> take_with_corners(Contour& contour, const BlockCommands& bloc
                           "too many blocks without a move in the plane while cutter radius "
                           "compensation is on: cancel it with G40",
                           {.line = block.line, .column = 1});
-    if (auto taken = take_commands(contour, block, before); !taken) {
+    if (auto taken = take_commands(contour, block, before, around); !taken) {
         contour.pending.pop_back();
         return taken;
     }

@@ -87,6 +87,8 @@ struct Contour {
     FlatPoint tip{};     // from the centre of a turning tool's nose to the controlled point
     bool pauses = false; // the block being executed leaves the contour
     ContourStyle style = ContourStyle::rs274;
+    bool extends_ends = false;   // of the next path, as in RadiusCompensation
+    bool enters_upright = false; // likewise
     std::deque<PendingBlock> pending{};
     std::deque<BlockCommands> ready{};
     size_t first_pending = 0;             // number of blocks before the pending ones

@@ -173,9 +173,31 @@ core::Result<void> check_fit(const RadiusCompensation& compensation, const Conto
                                            compensation.radius, radius));
 }
 
+void add_straight(CompensatedMoves& moves, const ContourMove& move, FlatPoint end) {
+    moves.push_back(
+        {.id = move.id, .rapid = move.rapid, .rounds_corner = true, .end = end, .arc = {}});
+}
+
+/// Fanuc, type C: after G41 or G42 alone, the tool shifts to the offset start point of the first
+/// move, at right angles to it.
+core::Result<CompensatedMoves> enter_upright(RadiusCompensation& compensation,
+                                             const ContourMove& move) {
+    if (auto fits = check_fit(compensation, move); !fits) return tl::unexpected(fits.error());
+    const FlatPoint at = compensation.programmed;
+    const FlatPoint leaving = move.arc ? tangent(*move.arc, at) : direction(move.end - at);
+    const FlatPoint heading = move.arc ? tangent(*move.arc, move.end) : leaving;
+    CompensatedMoves moves;
+    compensation.reached = at + offset_from(compensation, leaving);
+    add_straight(moves, move, compensation.reached);
+    wait_with(compensation, move, move.end + offset_from(compensation, heading), move.arc);
+    compensation.entered = true;
+    return moves;
+}
+
 /// On Fanuc the entry ends at the offset start point of the next move.
 core::Result<CompensatedMoves> enter_straight(RadiusCompensation& compensation,
                                               const ContourMove& move) {
+    if (compensation.enters_upright) return enter_upright(compensation, move);
     if (move.arc)
         return refusal(move.where,
                        "the first move with cutter radius compensation must be a straight line; "
@@ -216,11 +238,6 @@ core::Result<CompensatedMoves> enter(RadiusCompensation& compensation, const Con
     compensation.entered = true;
     compensation.entering = true;
     return CompensatedMoves{};
-}
-
-void add_straight(CompensatedMoves& moves, const ContourMove& move, FlatPoint end) {
-    moves.push_back(
-        {.id = move.id, .rapid = move.rapid, .rounds_corner = true, .end = end, .arc = {}});
 }
 
 /// Outside corner on Fanuc: straight on along both tangents to their intersection or, where the
@@ -282,12 +299,15 @@ core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, con
 /// Ends the waiting moves so that the tool is at the start of the next move.
 core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corner& corner,
                                     const ContourMove& move) {
+    const Bend bend = bend_of(compensation, corner, move);
     if (compensation.extends_corners && compensation.entering) {
-        CompensatedMoves moves = end_waiting(compensation, corner.tool_leaving);
+        const bool passes = compensation.extends_ends && bend == Bend::outside;
+        FEELER_TRY(CompensatedMoves moves,
+                   passes ? pass_straight(compensation, corner, move)
+                          : CompensatedMoves(end_waiting(compensation, corner.tool_leaving)));
         moves.front().turned_round = false; // an entry may have any direction
         return moves;
     }
-    const Bend bend = bend_of(compensation, corner, move);
     if (bend != Bend::outside) return stay_inside(compensation, corner, bend, move);
     if (compensation.extends_corners) return pass_straight(compensation, corner, move);
     if (!move.arc)
@@ -331,7 +351,15 @@ core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const 
     return moves;
 }
 
-core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation) {
+core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation,
+                                                const ContourMove* exit) {
+    const bool leaves = exit && !compensation.waiting.empty() && !compensation.entering
+                        && !exit->arc && !(exit->end == compensation.programmed);
+    if (compensation.extends_ends && leaves) {
+        const Corner corner = corner_before(compensation, *exit);
+        if (bend_of(compensation, corner, *exit) == Bend::outside)
+            return pass_straight(compensation, corner, *exit);
+    }
     if (auto checked = check_direction(compensation, compensation.tool); !checked)
         return tl::unexpected(checked.error());
     return end_waiting(compensation, compensation.tool);

@@ -49,6 +49,8 @@ struct RadiusCompensation {
     ContourSide side = ContourSide::left;
     double radius = 0.0;          // mm, positive
     bool extends_corners = false; // Fanuc: outside corners are extended; otherwise rounded
+    bool extends_ends = false;    // Fanuc, type B: also those after the entry and before the exit
+    bool enters_upright = false;  // Fanuc, type C: a shift at right angles comes before the entry
     FlatPoint programmed;         // position in the program
     FlatPoint tool;               // tool centre if no further move follows
     FlatPoint reached;            // tool centre after the final moves
@@ -78,10 +80,13 @@ RadiusCompensation begin_compensation(ContourSide side, double radius, FlatPoint
 ///         cannot reach without cutting into the contour. Then the compensation is unchanged.
 core::Result<CompensatedMoves> add_move(RadiusCompensation& compensation, const ContourMove& move);
 
-/// Returns the waiting moves with their compensated ends, for G40, M2 and M30.
+/// Returns the waiting moves with their compensated ends, for G40, M2 and M30. With `extends_ends`,
+/// an outside corner between them and the exit, the move of the block with G40, is passed as on the
+/// contour; its moves have the id of the exit.
 ///
 /// After that, the next move starts at `programmed` in the program but at `tool` on the machine.
 /// Errors: the last move is so short that its inside corner reverses it.
-core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation);
+core::Result<CompensatedMoves> end_compensation(RadiusCompensation& compensation,
+                                                const ContourMove* exit = nullptr);
 
 } // namespace gcode

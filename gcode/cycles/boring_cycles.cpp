@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include "gcode/cycles/cycles.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -11,15 +13,30 @@ bool shifts_by_words(const CannedCycle& cycle) {
     return cycle.shift[0] != 0.0 || cycle.shift[1] != 0.0 || cycle.shift[2] != 0.0;
 }
 
-/// The shift off centre: I, J and K of the plane, else Q along its first axis.
+bool has_shift_parameter(const Drilling& hole) {
+    return find_parameter(ControlQuestion::shift_direction, hole.execution.environment.dialect);
+}
+
+/// The shift off centre: I, J and K of the plane, else Q in the direction that a parameter states.
 std::array<double, 2> shift_of(const Drilling& hole) {
     const CannedCycle& cycle = hole.cycle;
-    if (!shifts_by_words(cycle)) return {cycle.peck.value_or(0.0), 0.0};
-    return {cycle.shift[hole.first], cycle.shift[hole.second]};
+    if (shifts_by_words(cycle)) return {cycle.shift[hole.first], cycle.shift[hole.second]};
+    const double by = cycle.peck.value_or(0.0);
+    if (by == 0.0 || !has_shift_parameter(hole)) return {by, 0.0};
+    Execution& execution = hole.execution;
+    const double direction = number_for(execution.state, execution.environment,
+                                        ControlQuestion::shift_direction, execution.block.line);
+    const double signed_by = direction < 0.0 ? -by : by;
+    if (std::abs(direction) == 2.0) return {0.0, signed_by};
+    return {signed_by, 0.0};
 }
 
 void warn_of_direction(Drilling& hole) {
     if (shifts_by_words(hole.cycle) || !hole.cycle.peck) return;
+    const ControlSettings& control = hole.execution.environment.control;
+    const bool is_known =
+        control.reports_premises || control.number(ControlQuestion::shift_direction);
+    if (is_known && has_shift_parameter(hole)) return;
     hole.execution.warn(
         moving_word(hole.execution).span,
         fmt::format(
@@ -132,6 +149,31 @@ void tap(Drilling& hole) {
     thread_to(hole, hole.bottom, in, out);
     if (before != in) hole.turn(before);
     if (hole.clear != hole.r) hole.traverse(hole.clear);
+}
+
+core::Result<void> tap_to_point(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    const auto refuse = [&](std::string_view why) {
+        return core::fail(core::ErrorCode::missing_value,
+                          fmt::format("{} {}", written(*entry.word), why), entry.word->span);
+    };
+    if (!execution.statement.has_axis_word()) return refuse("needs X, Y or Z, the end of the hole");
+    ModalState& modal = execution.modal();
+    if (modal.speed == 0.0) return refuse("needs S, the speed of the spindle");
+    const Position start = modal.position;
+    FEELER_TRY(const Position end, target_of(execution));
+    FEELER_TRY(const double rate, feed_rate(execution, distance_between(start, end)));
+    const bool left = entry.code->number == g_code(174);
+    const SpindleDirection clockwise = SpindleDirection::clockwise,
+                           reverse = SpindleDirection::counterclockwise;
+    execution.result.is_cycle = true;
+    execution.emit(Spindle{left ? reverse : clockwise, modal.speed});
+    execution.feed(end, rate);
+    execution.emit(Spindle{left ? clockwise : reverse, modal.speed});
+    execution.feed(start, rate);
+    const bool stopped = modal.spindle == SpindleDirection::stopped;
+    execution.emit(Spindle{modal.spindle, stopped ? 0.0 : modal.speed});
+    return {};
 }
 
 } // namespace gcode

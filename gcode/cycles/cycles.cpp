@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "gcode/cycles/rs274_cycles.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -33,6 +35,27 @@ const Word* shift_word(const Execution& execution, const CycleTraits& traits, si
     const bool repeats = axis == 2 && execution.dialect.repeats_with_k && !shrinks;
     if ((!shrinks && !traits.shifts) || repeats) return nullptr;
     return execution.statement.word("IJK"[axis]);
+}
+
+/// The axes of a cycle: those of the plane, or X, Y and Z.
+PlaneAxes axes_of_cycle(Execution& execution) {
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    constexpr ControlQuestion question = ControlQuestion::drills_normal_to_plane;
+    if (axes.normal == 2 || !find_parameter(question, execution.environment.dialect)) return axes;
+    const bool follows =
+        answer_to(execution.state, execution.environment, question, execution.block.line);
+    return follows ? axes : axes_of(Plane::xy);
+}
+
+/// Whether the block only defines its cycle, on a control that then waits for X or Y.
+bool only_defines(Execution& execution, const PlaneAxes& axes) {
+    const Statement& statement = execution.statement;
+    constexpr ControlQuestion question = ControlQuestion::drills_where_defined;
+    if (!statement.of(ModalGroup::cycle) || hole_pattern(execution)
+        || statement.word(axis_letters[axes.first]) || statement.word(axis_letters[axes.second])
+        || !find_parameter(question, execution.environment.dialect))
+        return false;
+    return !answer_to(execution.state, execution.environment, question, execution.block.line);
 }
 
 /// R and the bottom. Values programmed with G90 stay absolute for holes in G91, except where a
@@ -135,9 +158,8 @@ core::Result<double> cycle_rate(const Execution& execution, const DrillingCycle&
 }
 
 core::Result<Drilling> drilling_of(Execution& execution, const DrillingCycle& kind,
-                                   const CannedCycle& cycle) {
+                                   const CannedCycle& cycle, const PlaneAxes& axes) {
     const ModalState& modal = execution.modal();
-    const PlaneAxes axes = axes_of(modal.plane);
     const core::SourceSpan where = moving_word(execution).span;
     if (cycle.r_is_incremental && !cycle.initial_level)
         return core::fail(ErrorCode::missing_value,
@@ -203,7 +225,8 @@ Position step_between(const Position& from, const Position& to) {
 
 core::Result<void> run_canned_cycle(Execution& execution) {
     ModalState& modal = execution.modal();
-    const size_t normal = axes_of(modal.plane).normal;
+    const PlaneAxes axes = axes_of_cycle(execution);
+    const size_t normal = axes.normal;
     FEELER_TRY(Position target, target_of(execution));
     const DrillingCycle& kind = drilling_cycle(modal.cycle->code, execution.dialect);
     FEELER_TRY(const CannedCycle cycle, cycle_with_words(execution, kind, normal));
@@ -211,8 +234,8 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     modal.cycle = cycle;
     modal.cycle_dwell = cycle.dwell.value_or(modal.cycle_dwell);
     execution.result.is_cycle = true;
-    if (repeats == 0) return {};
-    FEELER_TRY(Drilling hole, drilling_of(execution, kind, cycle));
+    if (repeats == 0 || only_defines(execution, axes)) return {};
+    FEELER_TRY(Drilling hole, drilling_of(execution, kind, cycle, axes));
 
     // RS274/NGC 3.5.16: from below R the axis first moves up to R. On other controls the move to
     // the hole is made at the current level.
@@ -307,7 +330,8 @@ core::Result<void> run_hole_pattern(Execution& execution) {
     if (!execution.modal().cycle)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{}: no canned cycle to drill the holes with: program one, "
-                                      "such as G81 with L0, first",
+                                      "such as G81 with L0, first; cycles of lathes are not "
+                                      "supported",
                                       written(*entry.word)),
                           entry.word->span);
     return run_canned_cycle(execution);

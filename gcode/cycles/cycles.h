@@ -119,6 +119,12 @@ core::Result<void> run_canned_cycle(Execution& execution);
 /// Source: Haas mill operator's manual, G12 and G13; D, I, K, L, Q.
 core::Result<void> mill_circular_pocket(Execution& execution);
 
+/// G174 and G184: rigid tapping from the current position straight to the end and back, in any
+/// direction, left-hand (G174) or right-hand. The control starts the spindle.
+///
+/// Source: Haas mill operator's manual 96-8000, G174 and G184.
+core::Result<void> tap_to_point(Execution& execution);
+
 /// G5 and G5.1: curves in X and Y, as straight feed moves within 0.001 mm of them.
 core::Result<void> follow_spline(Execution& execution);
 

@@ -4,6 +4,8 @@
 
 #include "gcode/cycles/cycles.h"
 #include "gcode/cycles/rs274_cycles.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -28,15 +30,34 @@ double stretch_along(const Execution& execution, size_t normal) {
     return scaling ? std::abs(scaling->factors[static_cast<int>(normal)]) : 1.0;
 }
 
+/// What a parameter of the control says of pecks, mm; empty if this control has none.
+std::optional<double> said_of_pecks(Execution& execution, ControlQuestion question) {
+    if (!find_parameter(question, execution.environment.dialect)) return std::nullopt;
+    return number_for(execution.state, execution.environment, question, execution.block.line);
+}
+
+/// How far a peck retracts in the hole, or from where the next one feeds again. Haas has one
+/// setting for both.
+double peck_clearance(Execution& execution, bool out_of_the_hole) {
+    if (out_of_the_hole)
+        if (const auto said = said_of_pecks(execution, ControlQuestion::peck_clearance))
+            return *said;
+    return said_of_pecks(execution, ControlQuestion::peck_retract)
+        .value_or(execution.dialect.peck_clearance);
+}
+
 void peck(Drilling& hole, bool out_of_the_hole) {
     const double stretch = stretch_along(hole.execution, hole.normal);
-    const double back = hole.execution.dialect.peck_clearance / stretch;
+    const double back = peck_clearance(hole.execution, out_of_the_hole) / stretch;
+    double out = hole.r;
+    if (out_of_the_hole)
+        out += said_of_pecks(hole.execution, ControlQuestion::peck_lift).value_or(0.0) / stretch;
     const std::array<double, 3>& shrinking = hole.cycle.shift;
     double step = (shrinking[0] > 0.0 ? shrinking[0] : *hole.cycle.peck) / stretch;
     const bool stays_low = !hole.execution.dialect.cycles_are_rs274;
     for (double depth = hole.r - step; depth > hole.bottom; depth -= step) {
         hole.feed(depth);
-        if (out_of_the_hole) hole.traverse(hole.r);
+        if (out_of_the_hole) hole.traverse(out);
         hole.traverse(stays_low ? std::min(depth + back, hole.r) : depth + back);
         if (shrinking[0] > 0.0)
             step = std::max(step - shrinking[1] / stretch, shrinking[2] / stretch);

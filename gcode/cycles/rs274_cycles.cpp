@@ -144,8 +144,7 @@ void begin_exact_path(Execution& execution) {
 
 void end_exact_path(Execution& execution) {
     const ModalState& modal = execution.modal();
-    if (modal.path != PathMode::exact_path)
-        execution.emit(SetPathMode{modal.path, modal.path_tolerance, modal.naive_tolerance});
+    if (modal.path != PathMode::exact_path) execution.emit(path_mode_of(modal));
 }
 
 void tap_with_reversal(Drilling& hole) {

@@ -32,10 +32,18 @@ core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const d
                           fmt::format("{}: the arc has no radius: its centre is on its {}",
                                       arc.code, to_start < reach_tolerance ? "start" : "end"),
                           arc.where);
-    const ArcTolerance& allowed = execution.dialect.arc;
-    const double absolute = execution.modal().unit == LengthUnit::inch
-                                ? to_mm(allowed.absolute_inch, LengthUnit::inch)
-                                : allowed.absolute_mm;
+    ArcTolerance allowed = execution.dialect.arc;
+    const ControlSettings& control = execution.environment.control;
+    const bool inch = execution.modal().unit == LengthUnit::inch;
+    if (const auto stated = control.number(ControlQuestion::arc_tolerance)) {
+        allowed.absolute_mm = *stated;
+        allowed.absolute_inch = from_mm(*stated, LengthUnit::inch);
+        allowed.warned_mm = 0.0;
+    }
+    if (const auto stated = control.number(ControlQuestion::arc_tolerance_inch))
+        allowed.absolute_inch = *stated;
+    const double absolute =
+        inch ? to_mm(allowed.absolute_inch, LengthUnit::inch) : allowed.absolute_mm;
     const double difference = std::abs(to_start - to_end);
     const bool relative = difference <= absolute * allowed.limit
                           && difference <= allowed.relative * std::max(to_start, to_end);
@@ -69,7 +77,7 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
     const bool absolute = execution.modal().arc_distance == DistanceMode::absolute;
     const auto origin = [&](const Word* word, double start) {
         const bool own = word && word->addressing != Addressing::modal;
-        return (own ? word->addressing == Addressing::absolute : absolute) ? 0.0 : start;
+        return (own ? is_absolute(word->addressing) : absolute) ? 0.0 : start;
     };
     if (absolute && !(words.first && words.second))
         return core::fail(
@@ -122,9 +130,13 @@ core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, con
                                statement.word(offset_letters[axes.second])};
     const Word* other = statement.word(offset_letters[axes.normal]);
     const Word* radius = statement.word('R');
-    const Word* surplus = other    ? other
-                          : radius ? (words.first ? words.first : words.second)
-                                   : nullptr;
+    const bool is_ignored = other && !radius && execution.dialect.third_offset_is_ignored;
+    if (is_ignored && other->value != 0.0)
+        execution.warn(other->span, fmt::format("{}: the control ignores this word in {} here",
+                                                written(*other), arc.code));
+    const Word* surplus = other && !is_ignored ? other
+                          : radius             ? (words.first ? words.first : words.second)
+                                               : nullptr;
     if (surplus) {
         const std::string message =
             fmt::format("{}: {} does not use this word here", written(*surplus), arc.code);
@@ -145,7 +157,8 @@ core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, con
 core::Result<void> find_centre(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
                                double* centre) {
     auto found = centre_of_words(execution, arc, axes, centre);
-    if (!found) found.error().code = wrong_arc;
+    // A word that is not used says nothing about the arc.
+    if (!found && found.error().code != ErrorCode::syntax) found.error().code = wrong_arc;
     return found;
 }
 
@@ -214,6 +227,10 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
                                           arc.code, axis_letters[axes.first], scale[0],
                                           axis_letters[axes.second], scale[1], std::abs(size)));
     const double step = 2.0 * std::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
+    constexpr double most_chords = 1e6;
+    if (!(std::abs(angle) <= most_chords * step))
+        return core::fail(wrong_arc, fmt::format("{}: a radius of {:.6g} mm is too large for G51",
+                                                 arc.code, std::abs(size)));
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(angle) / step)));
     const double from = std::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
     const Position start = execution.modal().position;

@@ -1,10 +1,12 @@
 #include "gcode/exec/assignments.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "gcode/exec/fanuc_parameters.h"
+#include "gcode/exec/readings.h"
 
 namespace gcode {
 namespace {
@@ -36,6 +38,58 @@ core::Result<Value> value_of_word(const Assigning& assigning, const Word& word) 
                     assigning.parameters, arithmetic);
 }
 
+} // namespace
+
+bool is_dwell(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return word.letter == 'G' && !word.expression && word.value == 4.0;
+    });
+}
+
+namespace {
+
+/// A feed or speed in place of one that only the machine knows, so that the path is checked to its
+/// end.
+double assumed_rate(const Assigning& assigning, char letter) {
+    if (letter == 'S') return 1000.0;
+    const FeedMode mode = assigning.parameters.state().modal.feed_mode;
+    if (mode == FeedMode::inverse_time) return 1.0;
+    const double rate = mode == FeedMode::per_turn ? 0.1 : 100.0;
+    return assigning.inch ? rate / 25.0 : rate;
+}
+
+void assume_rate(const Assigning& assigning, const Word& word, Value& value) {
+    if (value.value_or(0.0) > 0.0) return;
+    value = assumed_rate(assigning, word.letter);
+    const std::string& name = assigning.parameters.unpredictable_reads().front();
+    auto& reported = assigning.parameters.state().readings.write().reported;
+    if (!reported.insert(fmt::format("{} of {}", word.letter, name)).second) return;
+    assigning.result.warnings.push_back(
+        {Severity::note, word.span,
+         fmt::format("{} depends on {}, which only the machine knows here; {}{:g} is assumed, and "
+                     "that the {}",
+                     word.letter, name, word.letter, *value,
+                     word.letter == 'F' ? "tool moves" : "spindle turns")});
+}
+
+/// Marks a word whose value is unpredictable. Feeds, speeds and dwells do not change the path;
+/// arguments of macros are followed.
+void note_unknown(const Assigning& assigning, Word& word, Value& value) {
+    if (assigning.parameters.unpredictable_reads().empty()) return;
+    if (!assigning.parameters.environment().control.reports_premises) return;
+    if (word.letter == 'N') return;
+    if (is_dwell(assigning.block)) {
+        value = value.value_or(0.0);
+        return;
+    }
+    const bool is_rate = word.letter == 'F' || word.letter == 'S';
+    if (is_rate && !calls_macro(assigning.block)) return assume_rate(assigning, word, value);
+    word.is_unknown = true;
+    if (!calls_macro(assigning.block))
+        report_unknown(assigning.parameters, assigning.result, word.span,
+                       std::string(1, word.letter));
+}
+
 /// Evaluates the words and removes those whose value is vacant (Fanuc).
 core::Result<void> work_out_words(const Assigning& assigning) {
     std::vector<Word>& words = assigning.block.words;
@@ -43,9 +97,11 @@ core::Result<void> work_out_words(const Assigning& assigning) {
     for (size_t i = 0; i < words.size(); ++i) {
         Word& word = words[i];
         if (word.expression) {
-            FEELER_TRY(const Value value, value_of_word(assigning, word));
-            if (!value) continue;
-            word.value = *value;
+            assigning.parameters.forget_reads();
+            FEELER_TRY(Value value, value_of_word(assigning, word));
+            note_unknown(assigning, word, value);
+            if (!value && !word.is_unknown) continue;
+            word.value = value.value_or(0.0);
         }
         if (used != i) words[used] = word;
         ++used;
@@ -55,8 +111,13 @@ core::Result<void> work_out_words(const Assigning& assigning) {
 }
 
 core::Result<Value> right_side(const Assigning& assigning, const Assignment& entry) {
+    assigning.parameters.forget_reads();
     if (!entry.value) return Value(entry.plain);
     return value_of(assigning, entry.value);
+}
+
+bool follows_values(const Assigning& assigning) {
+    return assigning.parameters.environment().control.reports_premises;
 }
 
 core::Result<double> number_of(const Assigning& assigning, const Assignment& entry) {
@@ -65,19 +126,36 @@ core::Result<double> number_of(const Assigning& assigning, const Assignment& ent
     return number.value_or(0.0);
 }
 
+/// Whether the value of the last right side is unpredictable.
+bool is_unknown(const Assigning& assigning) {
+    return !assigning.parameters.unpredictable_reads().empty();
+}
+
+/// Reports an offset that is set to a value that only the machine knows: all positions under it
+/// depend on it. Called after both sides have been evaluated.
+void note_unknown_offset(const Assigning& assigning, const Assignment& entry, double number) {
+    const Environment& environment = assigning.parameters.environment();
+    if (entry.is_named || !is_unknown(assigning)) return;
+    if (!sets_the_machine(environment, static_cast<int>(std::lround(number)))) return;
+    report_unknown(assigning.parameters, assigning.result, entry.span,
+                   fmt::format("{}{:g}", assigning.dialect.parameter_letter, number));
+}
+
 core::Result<void> set(const Assigning& assigning, const Assignment& entry, double number,
-                       Value value) {
+                       Value value, bool unknown) {
     ProgramParameters& parameters = assigning.parameters;
     if (entry.is_named) {
         const std::string& name = assigning.block.pool.names[entry.name];
         const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
                                                  : core::Result<Value>(Value{});
         if (auto done = parameters.set_named(name, value, entry.span); !done) return done;
+        if (follows_values(assigning)) parameters.mark_named(name, unknown);
         assigning.undos.push_back({true, 0.0, name, *old});
         return {};
     }
     const Value old = parameters.stored_value(number);
     if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
+    if (follows_values(assigning)) parameters.mark_numbered(number, unknown);
     assigning.undos.push_back({false, number, {}, old});
     return execute_alarm(assigning.block, assigning.dialect, number, value, entry.span,
                          assigning.result);
@@ -88,14 +166,18 @@ core::Result<void> assign(const Assigning& assigning) {
     std::vector<Value>& values = assigning.values;
     values.clear();
     std::vector<double> numbers;
+    std::vector<bool> unknown;
     for (const Assignment& entry : assigning.block.assignments) {
         FEELER_TRY(const Value value, right_side(assigning, entry));
+        unknown.push_back(is_unknown(assigning));
         values.push_back(value);
         FEELER_TRY(const double number, number_of(assigning, entry));
+        note_unknown_offset(assigning, entry, number);
         numbers.push_back(number);
     }
     for (size_t i = 0; i < numbers.size(); ++i)
-        if (auto done = set(assigning, assigning.block.assignments[i], numbers[i], values[i]);
+        if (auto done =
+                set(assigning, assigning.block.assignments[i], numbers[i], values[i], unknown[i]);
             !done)
             return done;
     return {};
@@ -106,7 +188,9 @@ core::Result<void> work_out_in_order(const Assigning& assigning) {
     const auto words_up_to = [&](uint32_t column) -> core::Result<void> {
         for (; word != assigning.block.words.end() && word->span.column < column; ++word) {
             if (!word->expression) continue;
-            FEELER_TRY(const Value value, value_of(assigning, word->expression));
+            assigning.parameters.forget_reads();
+            FEELER_TRY(Value value, value_of(assigning, word->expression));
+            note_unknown(assigning, *word, value);
             word->value = value.value_or(0.0);
         }
         return {};
@@ -114,8 +198,9 @@ core::Result<void> work_out_in_order(const Assigning& assigning) {
     for (const Assignment& entry : assigning.block.assignments) {
         if (auto done = words_up_to(entry.span.column); !done) return done;
         FEELER_TRY(const Value value, right_side(assigning, entry));
+        const bool unknown = is_unknown(assigning);
         FEELER_TRY(const double number, number_of(assigning, entry));
-        if (auto done = set(assigning, entry, number, value); !done) return done;
+        if (auto done = set(assigning, entry, number, value, unknown); !done) return done;
     }
     return words_up_to(UINT32_MAX);
 }

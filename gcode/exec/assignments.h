@@ -34,6 +34,9 @@ struct Assigning {
 /// Errors: those of the expressions and parameters.
 core::Result<void> evaluate_block(const Assigning& assigning);
 
+/// Whether a block has G4, in which X and P are times.
+bool is_dwell(const Block& block);
+
 /// Whether words with this letter are lengths or angles, which controls count in least increments.
 bool counts_increments(char letter);
 

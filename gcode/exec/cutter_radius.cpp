@@ -8,6 +8,7 @@
 #include "gcode/contour/contour.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
+#include "gcode/exec/readings.h"
 
 namespace gcode {
 namespace {
@@ -185,6 +186,34 @@ core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry
     return 0.0;
 }
 
+namespace {
+
+/// Whether G41, G42 or G40 of this block shifts the tool at right angles to the contour before the
+/// next move. Without the parameter for it they wait for that move.
+bool asks_for_upright_shift(Execution& execution, bool is_on, bool ends) {
+    if (execution.dialect.contour_style != ContourStyle::fanuc || is_on != ends) return false;
+    const PlaneAxes axes = axes_of(execution.modal().plane);
+    const Statement& statement = execution.statement;
+    if (statement.word(axis_letters[axes.first]) || statement.word(axis_letters[axes.second]))
+        return false;
+    return answer_to(execution.state, execution.environment, ControlQuestion::entry_is_upright,
+                     execution.block.line);
+}
+
+/// How the tool comes to the contour and leaves it, which depends on the parameters of the control.
+void choose_entry(Execution& execution, bool is_upright) {
+    if (execution.dialect.contour_style != ContourStyle::fanuc) return;
+    const bool extends = answer_to(execution.state, execution.environment,
+                                   ControlQuestion::entry_has_corner, execution.block.line);
+    const Contour& now = *execution.state.contour;
+    if (now.extends_ends == extends && now.enters_upright == is_upright) return;
+    Contour& contour = execution.state.contour.write();
+    contour.extends_ends = extends;
+    contour.enters_upright = is_upright;
+}
+
+} // namespace
+
 core::Result<void> set_cutter_radius(Execution& execution) {
     ModalState& modal = execution.modal();
     const ContourStyle style = execution.dialect.contour_style;
@@ -206,11 +235,21 @@ core::Result<void> set_cutter_radius(Execution& execution) {
         if (auto checked = check_contour(execution); !checked) return checked;
     }
     if (!entry) return {};
+    const bool is_on = modal.compensation != Side::none;
+    const bool is_upright = asks_for_upright_shift(execution, is_on, ends);
     if (ends) {
+        const bool shifts =
+            is_upright && execution.state.contour->path && execution.state.contour->path->entered;
         modal.leaves_contour |=
             execution.state.contour->path && execution.state.contour->path->entered;
         modal.compensation = Side::none;
         modal.compensation_radius = 0.0;
+        if (!shifts) return {};
+        // The programmed position stays: the tool moves onto it.
+        if (modal.motion == MotionCode::rapid || !modal.feed)
+            execution.traverse(modal.position);
+        else
+            execution.feed(modal.position, *modal.feed);
         return {};
     }
     const bool third =
@@ -228,6 +267,7 @@ core::Result<void> set_cutter_radius(Execution& execution) {
     FEELER_TRY(const double stretch, stretch_of_plane(execution, *entry));
     modal.compensation_radius = diameter / 2.0 / stretch;
     modal.turning_orientation = orientation;
+    choose_entry(execution, is_upright);
     return {};
 }
 

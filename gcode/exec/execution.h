@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 #include "gcode/exec/interpreter.h"
@@ -36,7 +38,7 @@ struct Execution {
     void feed(const Position& end, double rate);
 };
 
-/// Whether the block has G53.
+/// Whether the block moves in machine coordinates: G53, G153 or SUPA.
 bool in_machine_coordinates(const Execution& execution);
 
 /// The word that makes the block move: its motion or cycle code, else its first axis word.
@@ -54,8 +56,14 @@ inline constexpr size_t most_commands = 200000;
 /// Whether an H word without G43 changes the active length offset.
 bool changes_length_alone(const Execution& execution);
 
+/// Takes the active length offset from the table again. The machine does not move.
+void reload_length(Execution& execution);
+
 /// The value of an axis word: mm; degrees for a rotary axis; halved for X with G7.
 double axis_value(const Execution& execution, size_t axis, const Word& word);
+
+/// Whether an axis word counts from the current position: by G91, or by itself.
+bool is_incremental(const Execution& execution, const Word& word);
 
 /// The end position given by the axis words, in program coordinates.
 core::Result<Position> target_of(const Execution& execution);
@@ -110,33 +118,55 @@ core::Result<void> set_diameter_mode(Execution& execution);     // G7 G8
 core::Result<void> set_cutter_radius(Execution& execution);     // G40 G41 G42
 core::Result<void> set_path_mode(Execution& execution);         // G61 G61.1 G64
 core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44 G49, H
-core::Result<void> select_offset(Execution& execution);         // G54 to G59.3
-core::Result<void> set_distance_mode(Execution& execution);     // G90 G91 G90.1 G91.1
-core::Result<void> set_retract_mode(Execution& execution);      // G98 G99
-core::Result<void> set_frame(Execution& execution);             // G15 G16 G50 G51 G68 G69
-core::Result<void> ask_for_corner(Execution& execution);        // ,R ,C
-core::Result<void> stop(Execution& execution);                  // M0 M1 M2 M30 M60
-core::Result<void> call(Execution& execution);                  // M96 to M99, M198, G65 to G67
+void cancel_length_offset(Execution& execution);
+core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
+core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
+core::Result<void> set_retract_mode(Execution& execution);  // G98 G99
+core::Result<void> set_frame(Execution& execution);         // G15 G16 G50 G51 G68 G69
+core::Result<void> ask_for_corner(Execution& execution);    // ,R ,C
+core::Result<void> stop(Execution& execution);              // M0 M1 M2 M30 M60
+core::Result<void> call(Execution& execution);              // M96 to M99, M198, G65 to G67
 
 core::Result<void> write_offset(Execution& execution);               // G10
 core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
 core::Result<void> name_tool(Execution& execution);                  // M61
+void move_to_tool_change(Execution& execution);                      // before the tool is exchanged
 core::Result<void> go_home(Execution& execution);                    // G28 G30
 core::Result<void> check_home(Execution& execution);                 // G27
 core::Result<void> return_from_home(Execution& execution);           // G29
-core::Result<void> skip_move(Execution& execution);                  // G31
-core::Result<void> store_home(Execution& execution);                 // G28.1 G30.1
-core::Result<void> set_local_offset(Execution& execution);           // G52
-core::Result<void> set_axis_offset(Execution& execution);            // G92 to G92.3
-core::Result<void> move_along_arc(Execution& execution);             // G2 G3
-core::Result<void> feed_with_spindle(Execution& execution);          // G33 G33.1
-core::Result<void> probe(Execution& execution);                      // G38.2 to G38.5
-core::Result<void> call_subprogram(Execution& execution);            // M96 to M99, M198
-core::Result<void> call_macro(Execution& execution); // G65 to G67, and the calls of G66
+/// G60: a rapid past the end and back, so that the last part has always the same direction.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, 4.2 "Single direction positioning"; Haas mill
+///         operator's manual 96-8000, G60.
+core::Result<void> move_one_way(Execution& execution);
+
+core::Result<void> skip_move(Execution& execution);         // G31
+core::Result<void> measure(Execution& execution);           // G35 G36 G136
+core::Result<void> forbid_area(Execution& execution);       // G22
+core::Result<void> store_home(Execution& execution);        // G28.1 G30.1
+core::Result<void> set_local_offset(Execution& execution);  // G52
+core::Result<void> set_axis_offset(Execution& execution);   // G92 to G92.3
+core::Result<void> move_along_arc(Execution& execution);    // G2 G3
+core::Result<void> feed_with_spindle(Execution& execution); // G33 G33.1
+core::Result<void> probe(Execution& execution);             // G38.2 to G38.5
+core::Result<void> call_subprogram(Execution& execution);   // M96 to M99, M198
+core::Result<void> call_macro(Execution& execution);        // G65 to G67, and the calls of G66
+
+/// The number of a tool that the program calls by name: that of the set-up's tool of this name; the
+/// name itself if it is a number; else the lowest number that no tool of the set-up has and that
+/// none of `others` got, the names called before that the set-up does not have. Adds such a name
+/// to `others`, with a remark.
+core::ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where,
+                              std::vector<std::string>& others);
 
 /// The diameter in the control's table for the D word of a block, mm; 0 with a warning if it is
 /// unknown.
 core::Result<double> offset_diameter(Execution& execution, const CodeWord& entry);
+
+/// G10 P R: the entry of a control that keeps one value for each offset number.
+///
+/// Source: Fanuc series 0 and 16 operator's manuals, "Tool compensation memory A".
+core::Result<void> write_single_entry(Execution& execution);
 
 /// G10 L10 to L13: tool offset table, with P the number and R the value. L2 P0: external work
 /// offset. L3, L50, L52: ignored with a warning.

@@ -275,6 +275,17 @@ core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environmen
     return true;
 }
 
+bool is_modelled_variable(const Environment& environment, int number) {
+    const bool is_haas = dialect(environment.dialect).system_parameters == SystemParameters::haas;
+    return range_of(environment, number) || is_zero_at_first(number)
+           || (is_haas && number == tool_of_8000s);
+}
+
+bool sets_fanuc_offset(const Environment& environment, int number) {
+    const Range* range = range_of(environment, number);
+    return range && range->write;
+}
+
 bool is_of_clock(int number) {
     return number == milliseconds_timer || number == hours_timer || number == date
            || number == time_of_day;

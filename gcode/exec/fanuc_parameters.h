@@ -22,6 +22,13 @@ std::optional<Value> fanuc_parameter(const InterpreterState& state, const Enviro
 core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environment& environment,
                                        int number, Value value, core::SourceSpan where);
 
+/// Whether a system variable has the value that it has on the machine. The others hold what only
+/// the machine knows, such as the wear of a tool or a setting.
+bool is_modelled_variable(const Environment& environment, int number);
+
+/// Whether an assignment to this variable changes an offset.
+bool sets_fanuc_offset(const Environment& environment, int number);
+
 /// Whether this is a clock variable. Programs are checked without a clock.
 bool is_of_clock(int number);
 

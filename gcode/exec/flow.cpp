@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/readings.h"
 #include "gcode/language/flow_index.h"
 #include "gcode/language/language.h"
 
@@ -14,11 +16,14 @@ core::Result<void> run_flow(const FlowStep& step) {
     return functions_of(step.dialect.language).run_flow(step);
 }
 
-core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
-                                   const Dialect& dialect) {
+core::Result<bool> condition_holds(InterpreterState& state, const Block& block,
+                                   const ProgramParameters& parameters, const Dialect& dialect) {
+    Margins margins;
+    parameters.forget_reads();
     FEELER_TRY(const Value value, evaluate(block.pool, block.flow.condition, block.line, parameters,
-                                           dialect.arithmetic));
-    return value.value_or(0.0) != 0.0;
+                                           dialect.arithmetic, &margins));
+    note_condition(state, block.line, block.pool, block.flow.condition, margins, value);
+    return outcome_of(parameters, block, value.value_or(0.0) != 0.0);
 }
 
 std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
@@ -45,6 +50,7 @@ core::Result<void> enter(InterpreterState& state, const Environment& environment
                                       deepest),
                           where);
     state.next = frame.begin;
+    if (!frame.shares_locals) note_new_locals(state);
     state.frames.push_back(std::move(frame));
     return {};
 }
@@ -53,6 +59,7 @@ void leave(InterpreterState& state) {
     Frame& frame = state.frames.back();
     if (frame.rounds_left > 0) {
         --frame.rounds_left;
+        note_repetitions(state, frame.called_from, frame.rounds_left);
         frame.repeats.clear();
         if (frame.again) frame.locals = *frame.again;
         state.next = frame.begin;
@@ -69,23 +76,6 @@ void leave_to(InterpreterState& state, uint32_t line) {
         state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
     state.next = {frame.called_from.source, line};
     state.frames.pop_back();
-}
-
-core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from) {
-    constexpr uint64_t interval = 16; // jumps between two checks
-    const bool back = state.next.source != from.source || state.next.line <= from.line;
-    LoopDetector& loops = state.loops;
-    if (!back || ++loops.jumps % interval != 0) return {};
-    const uint64_t now = digest_of(state);
-    if (now == loops.noted && loops.next_note > 1)
-        return core::fail(
-            ErrorCode::invalid_value,
-            "the program never ends: it returns here in exactly the same state again and again",
-            {.line = from.line, .column = 1});
-    if (loops.jumps / interval < loops.next_note) return {};
-    loops.noted = now;
-    loops.next_note *= 2;
-    return {};
 }
 
 } // namespace gcode

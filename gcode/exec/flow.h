@@ -33,9 +33,9 @@ inline tl::unexpected<core::Error> refuse_step(const FlowStep& step, std::string
 ///         invalid_value when calls are nested too deeply.
 core::Result<void> run_flow(const FlowStep& step);
 
-/// Evaluates the condition of a block.
-core::Result<bool> condition_holds(const Block& block, const ProgramParameters& parameters,
-                                   const Dialect& dialect);
+/// Evaluates the condition of a block, and notes it for the search for endless loops.
+core::Result<bool> condition_holds(InterpreterState& state, const Block& block,
+                                   const ProgramParameters& parameters, const Dialect& dialect);
 
 /// Enters a new call level at its first line.
 ///
@@ -54,10 +54,5 @@ void leave_to(InterpreterState& state, uint32_t line);
 /// the next begins.
 std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
                                       uint32_t from);
-
-/// Checks whether a backward jump has led to a state that the program was in before.
-///
-/// Errors: invalid_value if so: the program would never end.
-core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from);
 
 } // namespace gcode

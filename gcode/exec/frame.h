@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct ModalMacro {
     std::string name;
     ProgramLine begin;           // its first line
     LocalParameters arguments{}; // as left by the last call
+    uint64_t unpredictable = 0;  // arguments with such values, one bit for each number
     int64_t rounds = 1;
     bool each_block = false; // G66.1: every block is a list of its arguments
 
@@ -47,6 +49,8 @@ struct Frame {
     LocalParameters locals{};
     bool shares_locals = false; // M98: uses #1 to #33 of the caller
     NamedValues named{};
+    uint64_t unpredictable_locals = 0; // one bit for each of #1 to #33
+    std::set<std::string, std::less<>> unpredictable_names{};
     std::map<std::string, VariableType, std::less<>> types{}; // of declared names that are not REAL
     std::map<uint32_t, int64_t> repeats{};     // remaining repetitions, by the line of `repeat`
     int64_t rounds_left = 0;                   // remaining repetitions of M98 L
@@ -54,6 +58,7 @@ struct Frame {
     Shared<std::optional<ModalState>> saved{}; // M70, M73
     bool restores = false;                     // M73: restore at the return
     size_t modal_macro = 0;                    // the G66 that called it, counted from 1; 0 for none
+    std::vector<uint32_t> known_subs{}; // main program: lines of O word subs called or passed
 
     bool operator==(const Frame&) const = default;
 };

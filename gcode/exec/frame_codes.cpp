@@ -8,6 +8,8 @@
 #include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -28,16 +30,20 @@ core::Result<double> centre_along(const Execution& execution, const CodeWord& en
 }
 
 core::Result<double> factor_of(Execution& execution, const Word& word) {
-    const bool thousandths =
-        execution.dialect.scale_without_point_is_thousandths && !word.has_point;
-    const double factor = thousandths ? word.value / 1000.0 : word.value;
+    const bool counts = execution.dialect.scale_without_point_is_thousandths && !word.has_point;
+    double factor = word.value;
+    if (counts) {
+        const double unit = number_for(execution.state, execution.environment,
+                                       ControlQuestion::scale_unit, word.span.line);
+        factor = unit == 0.00001 ? word.value / 100000.0 : word.value / 1000.0;
+    }
     if (factor == 0.0)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: a scaling factor must not be 0", written(word)),
                           word.span);
-    if (thousandths && std::abs(factor) < 0.05)
-        execution.warn(word.span, fmt::format("{}: without a decimal point this control reads "
-                                              "thousandths, so the scaling factor is {:.4g}",
+    if (counts && std::abs(factor) < 0.05)
+        execution.warn(word.span, fmt::format("{}: without a decimal point this control counts "
+                                              "small steps, so the scaling factor is {:.4g}",
                                               written(word), factor));
     return factor;
 }
@@ -54,11 +60,14 @@ core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
         said = true;
         FEELER_TRY(scaling.factors[axis], factor_of(execution, *word));
     }
-    if (!said)
+    const auto stored = execution.environment.control.number(ControlQuestion::scale_default);
+    if (!said && !stored)
         return core::fail(ErrorCode::missing_value,
                           "G51 has no scaling factor: add P, or I, J and K; a factor stored in the "
-                          "parameters of the control is not known here",
+                          "parameters of the control is not known here (Fanuc: state \"5411\" "
+                          "under [control])",
                           entry.word->span);
+    if (!said) scaling.factors = core::Vec3(*stored);
     for (int axis = 0; axis < 3; ++axis) {
         if (scaling.factors[axis] == 1.0) continue;
         FEELER_TRY(scaling.centre[axis], centre_along(execution, entry, static_cast<size_t>(axis)));
@@ -92,18 +101,27 @@ void cancel_mirror(Execution& execution) {
 /// The angle of G68; with G91 it may be relative to the previous angle.
 core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry) {
     const Word* word = execution.statement.word('R');
+    const ControlSettings& control = execution.environment.control;
+    const auto stored = control.number(ControlQuestion::rotation_default);
+    if (!word && stored) return *stored;
     if (!word)
         return core::fail(ErrorCode::missing_value,
                           "G68 has no angle: add R; an angle stored in the parameters of the "
-                          "control is not known here",
+                          "control is not known here (Fanuc: state \"5410\" under [control])",
                           entry.word->span);
     const auto& before = execution.modal().transforms.rotation;
     if (execution.modal().distance == DistanceMode::absolute || !before) return word->value;
-    execution.warn(word->span,
-                   fmt::format("{}: assumed to be relative to the previous angle, which with G91 "
-                               "depends on a parameter of the control; use G90 to be sure",
-                               written(*word)));
-    return before->degrees + word->value;
+    constexpr ControlQuestion question = ControlQuestion::rotation_adds;
+    const bool is_parameter = find_parameter(question, execution.environment.dialect);
+    const bool adds =
+        !is_parameter
+        || answer_to(execution.state, execution.environment, question, word->span.line);
+    if (!is_parameter || !(control.answer(question) || control.reports_premises))
+        execution.warn(word->span,
+                       fmt::format("{}: assumed to be relative to the previous angle, which with "
+                                   "G91 depends on a parameter of the control; use G90 to be sure",
+                                   written(*word)));
+    return (adds ? before->degrees : 0.0) + word->value;
 }
 
 /// G68: both words of the centre are absolute, even with G91.

@@ -1,27 +1,57 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "gcode/exec/execution.h"
+#include "gcode/exec/readings.h"
 
 namespace gcode {
 namespace {
 
-/// Home in machine coordinates; if not given, machine zero with a warning on first use.
-Position home_of(Execution& execution, const CodeWord& entry) {
-    Position home =
-        entry.code->number == g_code(28) ? execution.modal().home : execution.modal().second_home;
+/// A reference point in machine coordinates; if not given, machine zero with a warning on first
+/// use.
+Position known_home(Execution& execution, Position home, core::SourceSpan where,
+                    const std::string& mover) {
     const bool known = home[0] && home[1] && home[2];
     if (!known && !execution.state.said_home) {
         execution.state.said_home = true;
         execution.warn(
-            entry.word->span,
-            fmt::format("{}: the home position is not given and assumed to be machine zero",
-                        written(*entry.word)));
+            where, fmt::format("{}: the home position is not given and assumed to be machine zero",
+                               mover));
     }
     for (std::optional<double>& axis : home)
         if (!axis) axis = 0.0;
     return home;
+}
+
+Position home_of(Execution& execution, const CodeWord& entry) {
+    const ModalState& modal = execution.modal();
+    const Word* p_word = execution.statement.word('P');
+    if (entry.code->number == g_code(30) && p_word && p_word->value >= 3.0) {
+        Position home;
+        const AxisValues& stated =
+            *execution.environment.further_homes[p_word->value == 3.0 ? 0 : 1];
+        std::copy(stated.begin(), stated.end(), home.begin());
+        return home;
+    }
+    return known_home(execution, entry.code->number == g_code(28) ? modal.home : modal.second_home,
+                      entry.word->span, written(*entry.word));
+}
+
+/// A rapid to a position in machine coordinates; axes without a value stay.
+void traverse_in_machine(Execution& execution, const Position& to) {
+    const ModalState& modal = execution.modal();
+    const Offsets offsets = without_rotary_tool(modal.offsets);
+    Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (to[axis]) machine[axis] = to[axis];
+    const bool turned = mixes_axes(modal.offsets);
+    const Position position = program_from_machine(offsets, machine);
+    Position end = modal.position;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (to[axis] || (turned && axis < 3)) end[axis] = position[axis];
+    if (end != modal.position) execution.traverse(end);
 }
 
 /// Stores the intermediate point for G29. Axes that this block does not name keep theirs.
@@ -62,7 +92,26 @@ core::Result<void> go_home(Execution& execution) {
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (moves[axis] || (turned && axis < 3)) end[axis] = position[axis];
     execution.traverse(end);
+    if (entry.code->number == g_code(28) && execution.dialect.home_cancels_length) {
+        cancel_length_offset(execution);
+        execution.state.rules.length_cancelled = modal.tool.has_value();
+    }
     return {};
+}
+
+void move_to_tool_change(Execution& execution) {
+    const ToolChangeMotion& motion = execution.environment.tool_change;
+    if (motion.quill_up) {
+        Position up;
+        up[2] = 0.0;
+        traverse_in_machine(execution, up);
+    }
+    if (motion.goes_to_second_home)
+        traverse_in_machine(execution,
+                            known_home(execution, execution.modal().second_home,
+                                       {.line = execution.block.line, .column = execution.column},
+                                       "tool change"));
+    traverse_in_machine(execution, motion.position);
 }
 
 core::Result<void> check_home(Execution& execution) {
@@ -104,6 +153,34 @@ core::Result<void> return_from_home(Execution& execution) {
     return {};
 }
 
+core::Result<void> move_one_way(Execution& execution) {
+    const Word& word = *execution.statement.of(ModalGroup::action)->word;
+    const auto& approach = execution.environment.one_way_approach;
+    if (!approach)
+        return core::fail(
+            core::ErrorCode::unsupported,
+            fmt::format("{}: the control moves past the end point and back, by a distance that is "
+                        "not known here: state it under [control] in the set-up (Fanuc 5440, "
+                        "Haas setting 35), or program that point and then the end with G0",
+                        written(word)),
+            word.span);
+    if (answer_to(execution.state, execution.environment, ControlQuestion::one_way_is_modal,
+                  execution.block.line))
+        return core::fail(core::ErrorCode::unsupported,
+                          fmt::format("{}: G60 that stays active (parameter 5431#0 = 1) is not "
+                                      "supported: program the points with G0",
+                                      written(word)),
+                          word.span);
+    FEELER_TRY(const Position end, target_of(execution));
+    Position before = end;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (before[axis] && execution.statement.word(axis_letters[axis]))
+            *before[axis] -= (*approach)[axis];
+    execution.traverse(before);
+    execution.traverse(end);
+    return {};
+}
+
 core::Result<void> skip_move(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     FEELER_TRY(const Position end, target_of(execution));
@@ -116,6 +193,35 @@ core::Result<void> skip_move(Execution& execution) {
             written(*entry.word)));
     execution.modal().position = end;
     execution.emit(StraightProbe{end, rate, true, false});
+    return {};
+}
+
+/// Haas: a skip move whose end sets the diameter of a tool (G35) or the work offset (G36, G136).
+///
+/// Source: Haas mill operator's manual 96-8000, G35, G36 and G136.
+core::Result<void> measure(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::action);
+    if (!execution.statement.has_axis_word())
+        return core::fail(
+            core::ErrorCode::missing_value,
+            fmt::format("{} needs an axis word, the end of its move", written(*entry.word)),
+            entry.word->span);
+    const std::string_view what =
+        entry.code->number == g_code(35) ? "tool diameter" : "work offset";
+    execution.warn(entry.word->span,
+                   fmt::format("{}: the {} that is measured is assumed to be the one that the "
+                               "control has already",
+                               written(*entry.word), what));
+    return skip_move(execution);
+}
+
+core::Result<void> forbid_area(Execution& execution) {
+    const Word& word = *execution.statement.of(ModalGroup::action)->word;
+    execution.warn(word.span,
+                   fmt::format("{}: the forbidden area is not modelled: the control would stop at "
+                               "it, and the program is checked as if it goes on",
+                               written(word)),
+                   Severity::note);
     return {};
 }
 

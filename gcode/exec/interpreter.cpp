@@ -12,12 +12,17 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/flow.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/exec/quick_move.h"
+#include "gcode/exec/readings.h"
+#include "gcode/exec/startup.h"
 #include "gcode/exec/statement.h"
 #include "gcode/exec/subprogram.h"
 #include "gcode/language/codes.h"
+#include "gcode/language/control.h"
 #include "gcode/language/language.h"
 #include "gcode/text/source.h"
 
@@ -55,9 +60,27 @@ void restore_calls(InterpreterState& state, const BeforeBlock& before); // if th
 /// count least increments read the latter as a thousandth.
 void note_points(const Block& block, InterpreterState& state, BlockCommands& result);
 
+/// Whether a block has a length without a decimal point that is not 0.
+bool lacks_point(const Block& block);
+
+/// Whether the control reads the lengths of a block without a decimal point as least increments.
+bool counts_steps(const Block& block, InterpreterState& state, const Environment& environment);
+
 /// Scales lengths and angles without a decimal point to least increments: 0.001 mm, 0.0001 inch,
-/// 0.001 degrees. F, P and counts are not changed.
-void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect);
+/// 0.001 degrees, or `scale` times as much. F, P and counts are not changed.
+void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect, double scale);
+
+/// The least increment of the control, as a multiple of 0.001 mm.
+double increment_scale(InterpreterState& state, const Environment& environment, uint32_t line);
+
+/// Settles which modes the control starts with, as far as a block relies on them.
+void ask_for_first_modes(Execution& execution);
+
+/// G500: the work offset has no effect.
+void leave_work_offset(ModalState& modal);
+
+/// The modes that the control is stated to start with.
+void begin_modes(ModalState& modal, const Environment& environment);
 
 namespace {
 
@@ -96,6 +119,7 @@ struct Interpreter::Scratch {
 
     Scratch& speaking(const InterpreterState& state);
     core::Result<bool> read_line(InterpreterState& state);
+    bool deletes_blocks(InterpreterState& state, uint32_t line) const;
     core::Result<bool> end_of_text(InterpreterState& state);
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
@@ -132,7 +156,7 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         std::string_view text = language.block_at ? language.block_at(program, number) : *found;
         if (language.lines_of) state.next.line = number + language.lines_of(text);
         if (program.windows) text = line_text.assign(text); // flow statements read other lines
-        if (environment.block_delete && is_deleted(text)) continue;
+        if (is_deleted(text) && deletes_blocks(state, number)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
         const bool inside = state.frames.size() > 1;
@@ -144,13 +168,18 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         }
         if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
-        if (block.words_before_slash && environment.block_delete)
+        if (block.words_before_slash && deletes_blocks(state, number))
             block.words.erase(block.words.begin()
                                   + static_cast<std::ptrdiff_t>(*block.words_before_slash),
                               block.words.end());
-        if (block.is_empty() || (environment.block_delete && block.block_delete)) continue;
+        if (block.is_empty() || (block.block_delete && deletes_blocks(state, number))) continue;
         return true;
     }
+}
+
+bool Interpreter::Scratch::deletes_blocks(InterpreterState& state, uint32_t line) const {
+    return environment.block_delete
+           || answer_to(state, environment, ControlQuestion::blocks_are_deleted, line);
 }
 
 /// Where O numbers begin separate programs, a program ends where the next begins.
@@ -196,6 +225,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
     for (size_t level = 1; level < state.frames.size(); ++level)
         result.calls.push_back(state.frames[level].called_from.line);
     result.is_cycle = result.goes_home = false;
+    result.path = core::PathCertainty::known;
     result.commands.clear();
     result.columns.clear();
     result.warnings.clear();
@@ -218,12 +248,14 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     undos.clear();
     if (!is_plain) {
         if (block.flow.kind == FlowKind::if_then) {
-            FEELER_TRY(const bool holds, condition_holds(block, parameters, dialect));
+            FEELER_TRY(const bool holds, condition_holds(state, block, parameters, dialect));
             if (!holds) return {};
         }
         const bool inch = state.modal.unit == LengthUnit::inch;
         const Assigning assigning{block, dialect, parameters, undos, values, result, inch};
         if (auto done = evaluate_block(assigning); !done) return done;
+        for (const AssignmentUndo& set : undos)
+            note_written(state, set.is_named ? key_of(set.name) : key_of(set.number));
         if (!block.assignments.empty()) announce_offsets(before.modal.offsets, state.modal, result);
         if (remembers_words(dialect.system_parameters)) note_clock(block, state, result);
         if (changes_level(block.flow.kind)) keep_calls(state, before);
@@ -231,20 +263,27 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
             return run_flow({library, environment, dialect, block, state, result});
     }
     if (dialect.decimal_points_matter) {
-        if (environment.counts_smallest_steps)
-            count_smallest_steps(block, state.modal, dialect.id);
+        if (counts_steps(block, state, environment))
+            count_smallest_steps(block, state.modal, dialect.id,
+                                 increment_scale(state, environment, block.line));
         else
             note_points(block, state, result);
     }
     if (auto checked = look_up(block, dialect, environment, statement, blocks_are_arguments(state));
         !checked)
         return checked;
+    if (!block.pool.instructions.empty()
+        && (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)))
+        note_computed_target(state);
     if (statement.of(ModalGroup::subprogram) || statement.of(ModalGroup::macro)
         || !state.modal_macros.empty()
         || (language.changes_level && language.changes_level(statement, state)))
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
-    return language.execute(execution, before.modal);
+    ask_for_first_modes(execution);
+    if (auto done = language.execute(execution, before.modal); !done) return done;
+    mark_uncertain_motions(execution, before.modal);
+    return {};
 }
 
 core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
@@ -269,7 +308,9 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
         return core::fail(ErrorCode::io, "the program was stopped", {.line = block.line});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
-    if (auto checked = detect_endless_loop(state, here); !checked)
+    if (std::any_of(result.commands.begin(), result.commands.end(), is_motion)) note_motion(state);
+    const bool follows_decisions = dialect.language == Language::words && !state.is_iso_mode;
+    if (auto checked = detect_endless_loop(state, here, follows_decisions); !checked)
         return tl::unexpected(std::move(checked).error());
     return true;
 }
@@ -277,9 +318,9 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
 /// Executes a line that is only a straight move; otherwise returns false and changes nothing. It
 /// cannot fail, so nothing is saved.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
-    if (!language.read_plain || environment.counts_smallest_steps
-        || state.next_block >= environment.limits.blocks || asks_for_stop(state)
-        || !moves_quickly(state))
+    if (!language.read_plain || environment.counts_smallest_steps || state.points.counts_steps
+        || !environment.wrapped_axes.empty() || state.next_block >= environment.limits.blocks
+        || asks_for_stop(state) || !moves_quickly(state))
         return false;
     const auto found = library.program(state.next.source).find_line(state.next.line);
     if (!found || !*found) return false;
@@ -287,11 +328,14 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     block.line = state.next.line;
     block.text = **found;
     if (!language.read_plain(block.text, block.line, dialect, block)) return false;
+    if (lacks_point(block) && is_open(state, environment, ControlQuestion::point_is_implied))
+        return false;
     begin_result(state, {state.next.source, block.line});
     if (!run_quick_move(block, state, result)) return false;
     if (dialect.decimal_points_matter) note_points(block, state, result);
     ++state.next.line;
     ++state.next_block;
+    note_motion(state);
     remember_words(state);
     return true;
 }
@@ -377,9 +421,12 @@ InterpreterState initial_state(const Environment& environment) {
     ModalState& modal = state.modal;
     const Dialect& rules = dialect(environment.dialect);
     if (const auto begin = functions_of(rules.language).begin)
-        state.language = SharedLanguageState(begin());
-    modal.unit = rules.unit_is_machines ? environment.machine_unit : rules.unit;
+        state.language = SharedLanguageState(begin(environment));
+    modal.unit = environment.units_at_start.value_or(
+        rules.unit_is_machines ? environment.machine_unit : rules.unit);
+    modal.unit_said = environment.units_at_start.has_value();
     modal.retract = dialect(environment.dialect).retract;
+    begin_modes(modal, environment);
     Tables& tables = state.tables.write();
     for (size_t i = 0; i < plain_offset_count; ++i)
         tables.work[i].origin = environment.work_offsets[i];
@@ -388,6 +435,8 @@ InterpreterState initial_state(const Environment& environment) {
     tables.tool_diameters = environment.tool_diameters;
     load_parameters(state, environment);
     modal.offsets.work = tables.work[0];
+    if (environment.control.answer(ControlQuestion::starts_without_work) == true)
+        leave_work_offset(modal);
     if (environment.machine && environment.machine->has_rotary())
         modal.offsets.machine = environment.machine.get();
     restore_offsets(state, environment);
@@ -400,6 +449,8 @@ InterpreterState initial_state(const Environment& environment) {
         if (environment.home) modal.home[axis] = (*environment.home)[axis];
         if (environment.second_home) modal.second_home[axis] = (*environment.second_home)[axis];
     }
+    // An error was reported when the code was read.
+    (void)run_startup_code(state, environment);
     return state;
 }
 
@@ -481,6 +532,22 @@ bool has_other_meanings(const Block& block) {
 
 } // namespace
 
+bool lacks_point(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return counts_increments(word.letter) && !word.has_point && !word.expression
+               && word.value != 0.0;
+    });
+}
+
+bool counts_steps(const Block& block, InterpreterState& state, const Environment& environment) {
+    if (environment.counts_smallest_steps || state.points.counts_steps) return true;
+    if (!environment.control.reports_premises || is_dwell(block) || !lacks_point(block))
+        return false;
+    state.points.counts_steps =
+        !answer_to(state, environment, ControlQuestion::point_is_implied, block.line);
+    return state.points.counts_steps;
+}
+
 void note_points(const Block& block, InterpreterState& state, BlockCommands& result) {
     DecimalPoints& points = state.points;
     if (points.said || has_other_meanings(block)) return;
@@ -503,9 +570,75 @@ void note_points(const Block& block, InterpreterState& state, BlockCommands& res
     }
 }
 
-void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect) {
-    const bool waits = has_code(block, 'G', [](double code) { return code == 4.0; });
-    if (waits) return; // X is a time; without a point it is in milliseconds anyway
+double increment_scale(InterpreterState& state, const Environment& environment, uint32_t line) {
+    if (environment.control.answer(ControlQuestion::increment_is_coarser) == true) return 10.0;
+    return answer_to(state, environment, ControlQuestion::increment_is_finer, line) ? 0.1 : 1.0;
+}
+
+void begin_modes(ModalState& modal, const Environment& environment) {
+    const ControlSettings& control = environment.control;
+    const auto inches = control.answer(ControlQuestion::starts_in_inches);
+    if (inches && !environment.units_at_start) {
+        modal.unit = *inches ? LengthUnit::inch : LengthUnit::mm;
+        modal.unit_said = true;
+    }
+    const double plane = control.number(ControlQuestion::starts_in_plane).value_or(17.0);
+    if (plane == 18.0) modal.plane = Plane::zx;
+    if (plane == 19.0 || control.answer(ControlQuestion::starts_in_yz) == true)
+        modal.plane = Plane::yz;
+    if (const auto tolerance = control.number(ControlQuestion::corner_tolerance))
+        modal.path_tolerance = *tolerance;
+    modal.distance_said = !find_parameter(ControlQuestion::starts_incremental, environment.dialect);
+    modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect);
+}
+
+void leave_work_offset(ModalState& modal) {
+    Offsets offsets = modal.offsets;
+    offsets.active = no_work_offset;
+    offsets.work = {};
+    change_offsets(modal, offsets);
+}
+
+namespace {
+
+/// Whether the axis words of a block, if any, are positions or distances of the program.
+bool has_coordinates(const Execution& execution) {
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const bool others = action
+                        && (action->code->number == g_code(4) || action->code->number == g_code(92)
+                            || action->code->number == g_code(10));
+    return execution.statement.has_axis_word() && !others && !in_machine_coordinates(execution);
+}
+
+} // namespace
+
+void ask_for_first_modes(Execution& execution) {
+    ModalState& modal = execution.modal();
+    if (modal.distance_said && modal.work_said) return;
+    const Statement& statement = execution.statement;
+    const bool relies = has_coordinates(execution);
+    const auto asks = [&](ControlQuestion question) {
+        return answer_to(execution.state, execution.environment, question, execution.block.line);
+    };
+    const bool says_distance = statement.of(ModalGroup::distance);
+    if (!modal.distance_said && (relies || says_distance)) {
+        if (!says_distance && asks(ControlQuestion::starts_incremental))
+            modal.distance = DistanceMode::incremental;
+        modal.distance_said = true;
+    }
+    const bool says_work = statement.of(ModalGroup::work_offset);
+    const bool matters = relies && modal.offsets.work != WorkOffset{};
+    if (!modal.work_said && (matters || says_work)) {
+        if (!says_work && asks(ControlQuestion::starts_without_work)) {
+            leave_work_offset(modal);
+            execution.emit(SetOffset{modal.offsets});
+        }
+        modal.work_said = true;
+    }
+}
+
+void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect, double scale) {
+    if (is_dwell(block)) return; // X is a time; without a point it is in milliseconds anyway
     const bool to_inch = has_code(block, 'G', [](double code) { return code == 20.0; });
     const bool to_mm = has_code(block, 'G', [](double code) { return code == 21.0; });
     const bool inch = to_inch || (modal.unit == LengthUnit::inch && !to_mm);
@@ -520,7 +653,7 @@ void count_smallest_steps(Block& block, const ModalState& modal, DialectId diale
         if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && calls)) continue;
         const bool angle =
             (word.letter >= 'A' && word.letter <= 'C') || (word.letter == 'R' && turns);
-        word.value /= inch && !angle ? 10000.0 : 1000.0;
+        word.value /= (inch && !angle ? 10000.0 : 1000.0) / scale;
     }
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,9 +22,11 @@
 
 namespace gcode {
 
+enum class ControlQuestion : uint8_t;
 struct Contour;
 class Digest;
 struct Environment;
+struct LoopDetector;
 struct SplineState;
 
 /// Whether and how a program ended.
@@ -79,17 +84,50 @@ private:
     std::shared_ptr<LanguageState> state_;
 };
 
-/// Finds endless loops. Stores the hash of one state at growing intervals, so that a recurring
-/// state is found however long the loop is.
-///
-/// Source: R. P. Brent, "An improved Monte Carlo factorization algorithm", 1980, section 7.
-struct LoopDetector {
-    uint64_t jumps = 0, next_note = 1, noted = 0;
+/// Identifies a premise within a run: a property of the control, or a condition that depends on a
+/// value that only the machine knows.
+struct PremiseId {
+    std::optional<ControlQuestion> question; // empty: a condition
+    ProgramLine line{};                      // of the condition
+    uint32_t occurrence = 0;                 // how often it was evaluated before
+
+    auto operator<=>(const PremiseId&) const = default;
+};
+
+/// One way to read a premise.
+struct Reading {
+    std::string when;   // a clause: "parameter 5006#6 (TOS) is 0"
+    std::string effect; // what the control then does; may be empty
+};
+
+/// A premise that the set-up leaves open and that matters to a block.
+struct OpenPremise {
+    PremiseId id;
+    uint32_t line = 0;             // of the block
+    std::string reason;            // "The set-up does not state parameter 5006#6 (TOS)"
+    std::string cure;              // a sentence: how to state it
+    std::vector<Reading> readings; // one if the others are not followed
+    size_t taken = 0;              // index of the reading that the run follows
+    bool is_chosen = false;        // that reading was chosen beforehand
+    bool outcome = false;          // of a condition
+    uint64_t state_digest = 0;     // of the interpreter, at a condition
+};
+
+/// The open premises that a run has met, and those for which a reading was chosen beforehand.
+struct Readings {
+    std::vector<OpenPremise> met;
+    std::map<PremiseId, size_t> chosen;
+    std::map<std::string, bool> answers; // outcomes of conditions, by their text
+    std::set<std::string> repeated;      // conditions whose answer was used again
+    std::set<std::string> reported;      // values that are unknown, once each
+
+    bool operator==(const Readings& other) const { return met.size() == other.met.size(); }
 };
 
 /// Whether a program has written lengths with a decimal point, without one, or both.
 struct DecimalPoints {
     bool present = false, missing = false, said = false;
+    bool counts_steps = false; // the control reads lengths without a point as least increments
 
     bool operator==(const DecimalPoints&) const = default;
 };
@@ -117,8 +155,9 @@ struct InterpreterState {
     Shared<SplineState> spline;
     SharedLanguageState language;
     bool is_iso_mode = false; // Siemens: ISO mode since G291
-    LoopDetector loops;
+    Shared<LoopDetector> loops;
     RuleState rules;
+    Shared<Readings> readings; // not restored when a block fails
 };
 
 /// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.

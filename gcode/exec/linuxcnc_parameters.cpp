@@ -165,7 +165,7 @@ constexpr Named named_values[] = {
     {"_call_level",
      [](const InterpreterState& s) { return static_cast<double>(s.frames.size()) - 1.0; }},
     {"_remap_level", [](const InterpreterState&) { return 0.0; }},
-    {"_task", [](const InterpreterState&) { return 0.0; }},
+    {"_task", [](const InterpreterState&) { return 1.0; }}, // 0 in a preview only
     {"_vmajor", [](const InterpreterState&) { return 2.9; }},
     {"_vminor", [](const InterpreterState&) { return 0.0; }},
 };
@@ -221,6 +221,11 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
     const bool of_calls = name == "_value" || name == "_value_returned";
     if (of_calls && !state.parameters->named().contains(name)) return Value{0.0};
     return std::nullopt;
+}
+
+bool sets_linuxcnc_position(int number) {
+    return is_axis_of(number, first_home) || is_axis_of(number, second_home)
+           || is_axis_of(number, first_g92) || offset_parameter(number);
 }
 
 core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environment& environment,

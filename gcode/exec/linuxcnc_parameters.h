@@ -25,6 +25,9 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
 core::Result<bool> set_linuxcnc_parameter(InterpreterState& state, const Environment& environment,
                                           int number, Value value, core::SourceSpan where);
 
+/// Whether setting this parameter changes an offset or a reference position.
+bool sets_linuxcnc_position(int number);
+
 /// Activates what the variables file marks as active: the work offset (5220) and G92 (5210).
 ///
 /// The other parameters must already be in `state`.

@@ -32,7 +32,7 @@ core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// M66: the state of the input is unknown; the program continues as if it were off.
+/// M66: the input counts as off. A check also follows the other outcome of conditions on #5399.
 core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
     const bool digital = execution.statement.word('P') != nullptr;
     const bool analog = execution.statement.word('E') != nullptr;
@@ -91,6 +91,7 @@ core::Result<void> switch_machine(Execution& execution) {
 }
 
 core::Result<void> save_or_restore_modes(Execution& execution) {
+    if (!execution.dialect.has_o_words) return {}; // M73 has other meanings elsewhere
     InterpreterState& state = execution.state;
     for (const CodeWord& entry : execution.statement.codes()) {
         const CodeNumber code = entry.code->number;

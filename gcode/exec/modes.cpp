@@ -232,22 +232,56 @@ core::Result<void> set_retract_mode(Execution& execution) {
     return {};
 }
 
+namespace {
+
+/// P and Q of G64. In LinuxCNC, P rounds corners between feeds and between rapids, and Q joins
+/// feeds.
+///
+/// Source: tp.c (handleModeChange), interp_convert.cc (Q defaults to P).
+void set_blending(Execution& execution, bool rounds) {
+    ModalState& modal = execution.modal();
+    modal.path_tolerance = modal.naive_tolerance = 0.0;
+    modal.corner_tolerances = {};
+    if (!rounds) return;
+    if (const Word* word = execution.statement.word('P'))
+        modal.path_tolerance = modal.naive_tolerance = length_of(execution, *word);
+    if (const Word* word = execution.statement.word('Q'))
+        modal.naive_tolerance = length_of(execution, *word);
+    if (modal.path_tolerance > 0.0 && execution.dialect.id == DialectId::linuxcnc)
+        modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
+}
+
+/// G187 of Haas: E states how far corners may be rounded, until G187 without it, which restores
+/// setting 85. With 0, the control stops at each corner.
+void set_accuracy(Execution& execution) {
+    ModalState& modal = execution.modal();
+    modal.path_tolerance =
+        execution.environment.control.number(ControlQuestion::corner_tolerance).value_or(0.0);
+    modal.path = PathMode::continuous;
+    const Word* word = execution.statement.word('E');
+    if (!word) return;
+    modal.path_tolerance = length_of(execution, *word);
+    if (modal.path_tolerance == 0.0) modal.path = PathMode::exact_stop;
+}
+
+} // namespace
+
 core::Result<void> set_path_mode(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::path_control);
     if (!entry) return {};
     ModalState& modal = execution.modal();
-    modal.path_tolerance = modal.naive_tolerance = 0.0;
-    modal.path = PathMode::continuous;
-    if (entry->code->number == g_code(61)) modal.path = PathMode::exact_path;
-    if (entry->code->number == g_code(61, 1)) modal.path = PathMode::exact_stop;
-    if (entry->code->number == g_code(64)) {
-        if (const Word* word = execution.statement.word('P'))
-            modal.path_tolerance = modal.naive_tolerance = length_of(execution, *word);
-        if (const Word* word = execution.statement.word('Q'))
-            modal.naive_tolerance = length_of(execution, *word);
+    const CodeNumber code = entry->code->number;
+    if (code == g_code(187)) {
+        set_accuracy(execution);
+    } else {
+        modal.path = PathMode::continuous;
+        if (code == g_code(61)) modal.path = PathMode::exact_path;
+        if (code == g_code(61, 1) || code == g_code(60)) modal.path = PathMode::exact_stop;
+        // E of G187 outlives G61 and G64.
+        if (execution.dialect.id != DialectId::haas) set_blending(execution, code == g_code(64));
     }
     execution.column = entry->word->span.column;
-    execution.emit(SetPathMode{modal.path, modal.path_tolerance, modal.naive_tolerance});
+    execution.emit(path_mode_of(modal));
     return {};
 }
 
@@ -378,8 +412,9 @@ void announce_modes(BlockCommands& result, uint32_t column, const ModalState& be
     without_tool.tool = after.offsets.tool;
     if (without_tool != after.offsets) say(SetOffset{after.offsets});
     if (before.path != after.path || before.path_tolerance != after.path_tolerance
-        || before.naive_tolerance != after.naive_tolerance)
-        say(SetPathMode{after.path, after.path_tolerance, after.naive_tolerance});
+        || before.naive_tolerance != after.naive_tolerance
+        || before.corner_tolerances != after.corner_tolerances)
+        say(path_mode_of(after));
     if (before.mist != after.mist || before.flood != after.flood)
         say(Coolant{after.mist, after.flood});
     announce_overrides(before, after, say);
@@ -401,6 +436,7 @@ void restore_modes(InterpreterState& state, const ModalState& saved) {
     modal.path = saved.path;
     modal.path_tolerance = saved.path_tolerance;
     modal.naive_tolerance = saved.naive_tolerance;
+    modal.corner_tolerances = saved.corner_tolerances;
     modal.diameter_mode = saved.diameter_mode;
     if (saved.compensation == Side::none) modal.compensation = Side::none;
     restore_coolant(modal, saved);

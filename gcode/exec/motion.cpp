@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
+#include "gcode/exec/readings.h"
 
 namespace gcode {
 namespace {
@@ -39,7 +40,7 @@ void Execution::feed(const Position& end, double rate) {
 
 bool in_machine_coordinates(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
-    return action && action->code->number == g_code(53);
+    return action && is_machine_move(action->code->number);
 }
 
 const Word& moving_word(const Execution& execution) {
@@ -108,6 +109,93 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
     return {};
 }
 
+/// The angle to which a wrapped rotary axis turns for an absolute position: the next one in the
+/// direction of its sign, also that of -0.
+///
+/// Errors: invalid_value for a turn or more.
+core::Result<double> unwrapped(const Execution& execution, size_t axis, const Word& word) {
+    constexpr double turn = 360.0;
+    if (std::abs(word.value) >= turn)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: a wrapped rotary axis takes absolute positions below 360 "
+                        "degrees",
+                        written(word)),
+            word.span);
+    const double now = execution.modal().position[axis].value_or(0.0);
+    const double angle = std::abs(word.value) + std::floor(now / turn) * turn;
+    const bool backwards = std::signbit(word.value);
+    if (!backwards && angle < now) return angle + turn;
+    return backwards && angle > now ? angle - turn : angle;
+}
+
+} // namespace
+
+namespace {
+
+/// mm or degrees; no machine reaches it.
+constexpr double farthest = 1e9;
+
+/// Refuses a position that is out of reach of every machine, so that no later number overflows.
+core::Result<Position> within_reach(const Execution& execution, const Position& target) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (!target[axis] || std::abs(*target[axis]) <= farthest) continue;
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        const Word& named = word ? *word : moving_word(execution);
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: {} would go to {:.6g} mm, further than any machine "
+                                      "reaches",
+                                      written(named), axis_letters[axis], *target[axis]),
+                          named.span);
+    }
+    return target;
+}
+
+} // namespace
+
+bool is_incremental(const Execution& execution, const Word& word) {
+    return word.addressing == Addressing::modal
+               ? execution.modal().distance == DistanceMode::incremental
+               : word.addressing == Addressing::incremental;
+}
+
+namespace {
+
+/// How much further than its word an incremental move goes because offsets have changed.
+double travel_of_offsets(const Execution& execution, size_t axis) {
+    constexpr double slack = 1e-9;
+    const ModalState& modal = execution.modal();
+    const auto travels = [&](double change, ControlQuestion question) {
+        return std::abs(change) > slack
+               && answer_to(execution.state, execution.environment, question, execution.block.line);
+    };
+    const double offset = modal.offset_travel[axis], length = modal.length_travel[axis];
+    return (travels(offset, ControlQuestion::increment_has_offset) ? offset : 0.0)
+           + (travels(length, ControlQuestion::increment_has_length) ? length : 0.0);
+}
+
+/// The machine coordinate of the gauge line to which a word of G53, G153, SUPA or M91 moves.
+core::Result<std::optional<double>> machine_target(const Execution& execution, size_t axis,
+                                                   const Word& word,
+                                                   const std::optional<double>& from) {
+    const double value = axis_value(execution, axis, word);
+    const Language language = execution.dialect.language;
+    if (language != Language::words && is_incremental(execution, word)) {
+        if (language == Language::klartext)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("I{}: incremental words with M91 and M92 are not "
+                                          "supported: program the machine coordinate",
+                                          written(word)),
+                              word.span);
+        return from ? std::optional(*from + value) : std::nullopt;
+    }
+    const double length = execution.modal().offsets.tool[axis];
+    const bool is_tips = length != 0.0
+                         && answer_to(execution.state, execution.environment,
+                                      ControlQuestion::machine_moves_tip, execution.block.line);
+    return value + (is_tips ? length : 0.0);
+}
+
 } // namespace
 
 core::Result<Position> target_of(const Execution& execution) {
@@ -118,17 +206,15 @@ core::Result<Position> target_of(const Execution& execution) {
             return tl::unexpected(std::move(checked).error());
         Position machine = machine_from_program(modal.offsets, modal.position);
         for (size_t axis = 0; axis < axis_count; ++axis)
-            if (const Word* word = execution.statement.word(axis_letters[axis]))
-                machine[axis] =
-                    axis_value(execution, axis, *word)
-                    + (execution.dialect.machine_coordinates_are_of_tip ? modal.offsets.tool[axis]
-                                                                        : 0.0);
+            if (const Word* word = execution.statement.word(axis_letters[axis])) {
+                FEELER_TRY(machine[axis], machine_target(execution, axis, *word, machine[axis]));
+            }
         const Position position = program_from_machine(without_rotary_tool(modal.offsets), machine);
         const bool turned = mixes_axes(modal.offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
                 target[axis] = position[axis];
-        return target;
+        return within_reach(execution, target);
     }
     if (execution.statement.polar_radius || execution.statement.polar_angle)
         if (auto placed = place_polar(execution, target); !placed)
@@ -141,13 +227,17 @@ core::Result<Position> target_of(const Execution& execution) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (polar && (axis == plane.first || axis == plane.second)) continue;
         const double value = axis_value(execution, axis, *word);
-        const bool absolute = word->addressing == Addressing::modal
-                                  ? modal.distance == DistanceMode::absolute
-                                  : word->addressing == Addressing::absolute;
-        if (absolute)
+        const bool absolute = !is_incremental(execution, *word);
+        if (word->is_unknown)
+            target[axis].reset();
+        else if (absolute
+                 && execution.environment.wrapped_axes.find(axis_letters[axis])
+                        != std::string::npos) {
+            FEELER_TRY(target[axis], unwrapped(execution, axis, *word));
+        } else if (absolute)
             target[axis] = value;
         else if (target[axis])
-            *target[axis] += value;
+            *target[axis] += value + travel_of_offsets(execution, axis);
     }
     if (auto pointed = point_by_vector(execution, target); !pointed)
         return tl::unexpected(std::move(pointed).error());
@@ -155,7 +245,7 @@ core::Result<Position> target_of(const Execution& execution) {
         return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
-    return target;
+    return within_reach(execution, target);
 }
 
 namespace {

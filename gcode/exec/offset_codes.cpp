@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/execution.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -183,7 +185,16 @@ core::Result<void> select_offset(Execution& execution) {
 core::Result<void> write_offset(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     const Word* kind = execution.statement.word('L');
-    if (!kind) return core::fail(ErrorCode::missing_value, "G10 needs L2 or L20", entry.word->span);
+    const bool is_older = !kind && execution.dialect.has_older_tool_entries;
+    if (is_older && execution.statement.word('P') && execution.statement.word('R')
+        && !execution.statement.has_axis_word())
+        return write_single_entry(execution);
+    if (!kind)
+        return core::fail(ErrorCode::missing_value,
+                          is_older ? "G10 needs L2 or L20 for a work offset, or P and R for a tool "
+                                     "offset"
+                                   : "G10 needs L2 or L20",
+                          entry.word->span);
     if (kind->value == 0.0 && execution.dialect.tool_entries_by_axes) {
         execution.warn(
             kind->span,
@@ -195,9 +206,10 @@ core::Result<void> write_offset(Execution& execution) {
     if (is_tool && execution.dialect.tool_entries_by_axes)
         return write_tool_entry(execution, static_cast<int>(kind->value));
     if (execution.dialect.has_extended_offsets) {
-        if (kind->value >= 10.0 && kind->value <= 13.0) {
+        const bool is_wear = kind->value == 1.0 && execution.dialect.has_older_tool_entries;
+        if (is_wear || (kind->value >= 10.0 && kind->value <= 13.0)) {
             FEELER_TRY(const int table, whole_number(*kind));
-            return write_fanuc_entry(execution, table);
+            return write_fanuc_entry(execution, is_wear ? 11 : table);
         }
         if (kind->value == 3.0 || kind->value == 50.0 || kind->value == 52.0) {
             skip_data(execution, *kind);
@@ -233,6 +245,15 @@ core::Result<void> need_an_axis(const Execution& execution) {
 
 core::Result<void> set_local_offset(Execution& execution) {
     if (auto checked = need_an_axis(execution); !checked) return checked;
+    if (answer_to(execution.state, execution.environment, ControlQuestion::local_is_work,
+                  execution.block.line)) {
+        const Word& word = *execution.statement.of(ModalGroup::action)->word;
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: with setting 33 = YASNAC this is a work offset of its "
+                                      "own, which is not supported: use G54 to G59",
+                                      written(word)),
+                          word.span);
+    }
     Offsets offsets = execution.modal().offsets;
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
@@ -263,7 +284,12 @@ core::Result<void> set_axis_offset(Execution& execution) {
     modal.axis_offset_on = code == g_code(92) || code == g_code(92, 3);
     switch (code) {
     case g_code(92, 1):
-        offsets.axis = modal.suspended_axis = zero_position;
+        // On Fanuc, axis words choose the axes. They are zero, and nothing moves.
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (!execution.statement.has_axis_word()
+                || execution.statement.word(axis_letters[axis]))
+                offsets.axis[axis] = modal.suspended_axis[axis] = 0.0;
+        modal.axis_offset_on = offsets.axis != zero_position;
         break;
     case g_code(92, 2):
         offsets.axis = zero_position; // the offset of G92 stays stored for G92.3
@@ -308,6 +334,23 @@ void write(const Execution& execution, double value, double& position) {
     position = (adds ? position : 0.0) + value;
 }
 
+/// An offset that is written while it is in use takes effect at once or at the next G43 or H.
+void apply_offset_in_use(Execution& execution, int index, const Word& value) {
+    if (execution.modal().length_sign == 0.0
+        || execution.modal().length_number != OffsetNumber(index))
+        return;
+    constexpr ControlQuestion question = ControlQuestion::length_is_reloaded;
+    if (answer_to(execution.state, execution.environment, question, execution.block.line))
+        reload_length(execution);
+    const ControlSettings& control = execution.environment.control;
+    const bool is_known = control.answer(question) || control.reports_premises;
+    if (is_known && find_parameter(question, execution.environment.dialect)) return;
+    execution.warn(value.span,
+                   fmt::format("H{} is in use: the new length is assumed to take effect at the "
+                               "next G43 or H, which depends on a parameter of the control",
+                               index));
+}
+
 } // namespace
 
 core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
@@ -320,8 +363,6 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
                                       number ? "an R word, the value" : "a P word, the number"),
                           entry.word->span);
     FEELER_TRY(const int index, whole_number(*number, 1, 999));
-    const bool is_active = execution.modal().length_sign != 0.0
-                           && execution.modal().length_number == OffsetNumber(index);
     Tables& tables = execution.state.tables.write();
     const bool known = tables.lengths.count(OffsetNumber(index)) != 0;
     const double length = known ? 0.0 : length_under(tables, index).value_or(0.0);
@@ -343,11 +384,35 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
         write(execution, 0.5 * radii * written_value, offset.radius_wear);
         break;
     }
-    if (is_active && kind <= 11)
-        execution.warn(value->span,
-                       fmt::format("H{} is in use: the new length is assumed to take effect at the "
-                                   "next G43 or H, which depends on a parameter of the control",
-                                   index));
+    if (kind <= 11) apply_offset_in_use(execution, index, *value);
+    return {};
+}
+
+core::Result<void> write_single_entry(Execution& execution) {
+    const Word& number = *execution.statement.word('P');
+    const Word& value = *execution.statement.word('R');
+    FEELER_TRY(const int index, whole_number(number, 1, 999));
+    Tables& tables = execution.state.tables.write();
+    const auto known = tables.lengths.find(OffsetNumber(index));
+    const LengthOffset old = known == tables.lengths.end() ? LengthOffset{} : known->second;
+    if (old.length != 0.0 && old.diameter != 0.0 && old.diameter != 2.0 * old.length)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: G10 without L writes the one value of an offset number, "
+                                      "but offset {} has a length and a diameter: use L10 to L13",
+                                      written(number), index),
+                          number.span);
+    LengthOffset entry = old;
+    entry.length = length_under(tables, index).value_or(0.0);
+    write(execution, length_of(execution, value), entry.length);
+    entry.wear = entry.radius_wear = 0.0;
+    entry.diameter = 2.0 * entry.length;
+    tables.lengths[OffsetNumber(index)] = entry;
+    execution.warn(execution.statement.of(ModalGroup::action)->word->span,
+                   fmt::format("G10 without L: offset {} is taken as one value, used as a length "
+                               "under H and as a radius under D (tool offset memory A)",
+                               index),
+                   Severity::note);
+    apply_offset_in_use(execution, index, value);
     return {};
 }
 

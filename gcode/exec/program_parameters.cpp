@@ -1,11 +1,14 @@
 #include "gcode/exec/program_parameters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "gcode/exec/fanuc_parameters.h"
+#include "gcode/exec/klartext_parameters.h"
 #include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/exec/readings.h"
 #include "gcode/language/block.h"
 #include "gcode/language/language.h"
 
@@ -58,14 +61,26 @@ core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan 
     FEELER_TRY(const int index,
                parameter_number(number, dialect_.unset_is_vacant ? 0 : 1, dialect_, where));
     if (index == 0) return Value{};
+    if (environment_.control.reports_premises) {
+        const auto stated = environment_.control.values.find(index);
+        if (stated != environment_.control.values.end()
+            && knowledge_of(environment_, index) != Knowledge::unknown_until_set)
+            return Value{stated->second};
+        note_read(index, index <= dialect_.local_count);
+    }
     const Value unset = dialect_.unset_is_vacant ? Value{} : Value{0.0};
     if (index <= dialect_.local_count) {
         const Value local = locals().locals[static_cast<size_t>(index)];
         return local ? local : unset;
     }
-    if (const auto shown = system_parameter(state_, environment_, index)) return *shown;
+    if (const auto shown = system_parameter(state_, environment_, index)) return told(*shown);
     const Value value = state_.parameters->numbered(index);
     return value ? value : unset;
+}
+
+Value ProgramParameters::told(Value system_value) const {
+    if (environment_.on_system_read) environment_.on_system_read(system_value.value_or(0.0));
+    return system_value;
 }
 
 tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
@@ -81,7 +96,8 @@ tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
 }
 
 core::Result<Value> ProgramParameters::named(std::string_view name, core::SourceSpan where) const {
-    if (const auto shown = system_parameter(state_, environment_, name)) return *shown;
+    if (const auto shown = system_parameter(state_, environment_, name)) return told(*shown);
+    if (environment_.control.reports_premises) note_read(name);
     const NamedValues& all = named_values(name);
     const auto found = all.find(name);
     if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
@@ -157,18 +173,79 @@ core::Result<void> ProgramParameters::set_named(std::string_view name, Value val
     return {};
 }
 
+void ProgramParameters::forget_reads() const {
+    unpredictable_.clear();
+    reads_vary_ = false;
+}
+
+void ProgramParameters::note_read(int number, bool is_local) const {
+    const Knowledge knowledge = is_local ? Knowledge::known : knowledge_of(environment_, number);
+    const bool is_set = !is_local && state_.parameters->numbered(number).has_value();
+    const bool is_unknown = (knowledge == Knowledge::unknown_until_set && !is_set)
+                            || (knowledge == Knowledge::unknown_once_set && is_set)
+                            || knowledge == Knowledge::unknown;
+    const bool is_marked = is_local
+                               ? locals().unpredictable_locals >> static_cast<unsigned>(number) & 1U
+                               : state_.parameters->is_unpredictable(number);
+    if (!is_unknown && !is_marked) return;
+    reads_vary_ |= knowledge == Knowledge::unknown;
+    const int shown = number == highest_parameter ? 0 : number;
+    unpredictable_.push_back(fmt::format("{}{}", dialect_.parameter_letter, shown));
+}
+
+void ProgramParameters::note_read(std::string_view name) const {
+    const auto& marked = is_global(name) ? state_.parameters->unpredictable_names()
+                                         : state_.frames.back().unpredictable_names;
+    if (marked.find(name) == marked.end()) return;
+    unpredictable_.push_back(dialect_.names_are_declared ? std::string(name)
+                                                         : fmt::format("#<{}>", name));
+}
+
+void ProgramParameters::mark_numbered(double number, bool unpredictable) {
+    const auto index = parameter_number(number, 1, dialect_, {});
+    if (!index) return;
+    if (unpredictable) state_.readings.write().answers.clear();
+    if (*index <= dialect_.local_count) {
+        const uint64_t bit = uint64_t{1} << static_cast<unsigned>(*index);
+        uint64_t& marks = locals().unpredictable_locals;
+        marks = unpredictable ? marks | bit : marks & ~bit;
+    } else if (state_.parameters->is_unpredictable(*index) != unpredictable) {
+        state_.parameters.write().mark(*index, unpredictable);
+    }
+}
+
+void ProgramParameters::mark_named(std::string_view name, bool unpredictable) {
+    if (unpredictable) state_.readings.write().answers.clear();
+    if (is_global(name)) {
+        const auto& marked = state_.parameters->unpredictable_names();
+        if ((marked.find(name) != marked.end()) != unpredictable)
+            state_.parameters.write().mark(name, unpredictable);
+    } else if (unpredictable) {
+        state_.frames.back().unpredictable_names.emplace(name);
+    } else if (auto& marked = state_.frames.back().unpredictable_names; !marked.empty()) {
+        if (const auto found = marked.find(name); found != marked.end()) marked.erase(found);
+    }
+}
+
 void load_parameters(InterpreterState& state, const Environment& environment) {
     for (const auto& [number, value] : environment.parameters) {
         const auto taken = set_system_parameter(state, environment, number, value, {});
         const bool own = number > 0 && number <= highest_parameter;
         if (own && !(taken && *taken)) state.parameters.write().set_numbered(number, value);
     }
+    for (const auto& [number, value] : environment.control.values)
+        if (knowledge_of(environment, number) == Knowledge::unknown_until_set)
+            state.parameters.write().set_numbered(number, value);
 }
 
 namespace {
 
 bool is_siemens(const Environment& environment) {
     return dialect(environment.dialect).system_parameters == SystemParameters::siemens;
+}
+
+bool is_klartext(const Environment& environment) {
+    return dialect(environment.dialect).language == Language::klartext;
 }
 
 bool is_fanuc(const Environment& environment) {
@@ -180,6 +257,7 @@ bool is_fanuc(const Environment& environment) {
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       int number) {
     if (is_siemens(environment)) return std::nullopt;
+    if (is_klartext(environment)) return q_parameter(state, number);
     if (is_fanuc(environment)) return fanuc_parameter(state, environment, number);
     return linuxcnc_parameter(state, environment, number);
 }
@@ -195,9 +273,15 @@ std::optional<Value> system_parameter(const InterpreterState& state, const Envir
 
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
                                         int number, Value value, core::SourceSpan where) {
-    if (is_siemens(environment)) return false;
+    if (is_siemens(environment) || is_klartext(environment)) return false;
     if (is_fanuc(environment)) return set_fanuc_parameter(state, environment, number, value, where);
     return set_linuxcnc_parameter(state, environment, number, value, where);
+}
+
+bool sets_the_machine(const Environment& environment, int number) {
+    if (is_siemens(environment) || is_klartext(environment)) return false;
+    if (is_fanuc(environment)) return sets_fanuc_offset(environment, number);
+    return sets_linuxcnc_position(number);
 }
 
 double converted_to(VariableType type, double value) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
@@ -28,7 +31,25 @@ public:
     void restore_numbered(double number, Value stored_value);
     void restore_named(std::string_view name, Value value);
 
+    /// The unpredictable variables that were read since the last forget_reads(), as written. Always
+    /// empty unless the environment reports premises.
+    const std::vector<std::string>& unpredictable_reads() const { return unpredictable_; }
+    /// Whether one of them can change between two reads, as an input can.
+    bool reads_vary() const { return reads_vary_; }
+    void forget_reads() const;
+    /// Records whether the value of a variable, which was just set, is unpredictable.
+    void mark_numbered(double number, bool unpredictable);
+    void mark_named(std::string_view name, bool unpredictable);
+
+    InterpreterState& state() const { return state_; }
+    const Environment& environment() const { return environment_; }
+
 private:
+    void note_read(int number, bool is_local) const;
+    /// Passes on the value of a system variable that an expression reads.
+    Value told(Value system_value) const;
+    void note_read(std::string_view name) const;
+
     Frame& locals();
     const Frame& locals() const;
     bool is_global(std::string_view name) const;
@@ -38,6 +59,8 @@ private:
     InterpreterState& state_;
     const Environment& environment_;
     const Dialect& dialect_;
+    mutable std::vector<std::string> unpredictable_;
+    mutable bool reads_vary_ = false;
 };
 
 /// The value of a system variable; empty when the number or name is not one.
@@ -51,6 +74,9 @@ std::optional<Value> system_parameter(const InterpreterState& state, const Envir
 /// Errors: invalid_value when the variable is read-only.
 core::Result<bool> set_system_parameter(InterpreterState& state, const Environment& environment,
                                         int number, Value value, core::SourceSpan where);
+
+/// Whether setting this parameter moves an offset or a reference position.
+bool sets_the_machine(const Environment& environment, int number);
 
 /// Copies the parameters of the environment to the state before the first block.
 void load_parameters(InterpreterState& state, const Environment& environment);

@@ -1,6 +1,9 @@
 #include "gcode/exec/quick_move.h"
 
+#include <cmath>
+
 #include "gcode/contour/contour.h"
+#include "gcode/exec/following.h"
 #include "gcode/language/codes.h"
 
 namespace gcode {
@@ -17,6 +20,9 @@ constexpr std::array<uint8_t, 26> axes_by_letter = [] {
         axes[static_cast<size_t>(axis_letters[axis] - 'A')] = static_cast<uint8_t>(axis);
     return axes;
 }();
+
+/// Larger positions are left to the general implementation, mm or degrees.
+constexpr double largest_quick_value = 1e7;
 
 /// The changes that a block makes, collected while it is read.
 struct Move {
@@ -39,13 +45,16 @@ struct Move {
         }
         const size_t axis = axes_by_letter[static_cast<size_t>(word.letter - 'A')];
         if (axis == axis_count) return false;
+        if (is_rotary(axis) && (modal.following.may_be_on || modal.offsets.follows_tip))
+            return false;
         has_axis = true;
+        if (std::abs(word.value) > largest_quick_value) return false;
         const double value = is_rotary(axis) ? word.value : to_mm(word.value, modal.unit);
         if (modal.distance == DistanceMode::absolute)
             end[axis] = value;
         else if (end[axis])
             *end[axis] += value;
-        return true;
+        return std::abs(end[axis].value_or(0.0)) <= largest_quick_value;
     }
 };
 
@@ -55,8 +64,8 @@ bool moves_quickly(const InterpreterState& state) {
     const ModalState& modal = state.modal;
     const ProgramTransforms& transforms = modal.transforms;
     return is_straight(modal.motion) && !modal.cycle && modal.compensation == Side::none
-           && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode
-           && (modal.unit_said || state.said_unit) && !transforms.polar
+           && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode && modal.distance_said
+           && (modal.unit_said || state.said_unit) && !transforms.polar && !is_uncertain(modal)
            && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
            && state.contour->is_idle() && !state.is_iso_mode;
 }
@@ -73,6 +82,7 @@ bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& 
     modal.position = move.end;
     modal.leaves_contour = false;
     state.rules.has_moved = true;
+    if (modal.doubt) result.path = core::PathCertainty::doubtful;
     if (move.motion == rapid)
         result.commands.emplace_back(StraightTraverse{move.end});
     else

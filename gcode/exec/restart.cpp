@@ -45,7 +45,7 @@ struct Meeting {
     std::optional<MotionCode> motion; // modal code of an earlier block that the other run lacked
 };
 
-bool is_motion(const CanonicalCommand& command) {
+bool is_plain_motion(const CanonicalCommand& command) {
     return is_feed(command) || std::holds_alternative<StraightTraverse>(command);
 }
 
@@ -55,7 +55,7 @@ bool goes_on_moving(const BlockCommands& block) {
         return block.text.find(code) != std::string_view::npos;
     };
     return !block.is_cycle && !has("G53") && !has("g53")
-           && std::any_of(block.commands.begin(), block.commands.end(), is_motion);
+           && std::any_of(block.commands.begin(), block.commands.end(), is_plain_motion);
 }
 
 /// Lists what the run from the line lacks.

@@ -14,7 +14,15 @@ namespace {
 
 using core::SourceSpan;
 
+/// Whether the block has the motion of a tool change, and none of its own words.
+bool only_changes_tool(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    return statement.of(ModalGroup::tool_change) && !statement.has_axis_word()
+           && !statement.of(ModalGroup::action);
+}
+
 bool moves(const Execution& execution) {
+    if (only_changes_tool(execution)) return false;
     const auto& commands = execution.result.commands;
     return std::any_of(commands.begin(), commands.end(), is_motion);
 }
@@ -36,7 +44,7 @@ bool moves_in_machine_coordinates(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action) return false;
     return action->code->number == g_code(28) || action->code->number == g_code(30)
-           || action->code->number == g_code(53);
+           || is_machine_move(action->code->number);
 }
 
 void advise(Execution& execution, SourceSpan where, std::string_view rule, std::string message,
@@ -96,6 +104,8 @@ void check_length(Execution& execution, const ModalState& before) {
     const ModalState& modal = execution.modal();
     if (moves_in_machine_coordinates(execution) || modal.position[2] == before.position[2]) return;
     if (!moves(execution)) return; // a frame changed the coordinates, not the position
+    // The tool change moved Z, with the length of the tool before.
+    if (execution.statement.of(ModalGroup::tool_change) && !execution.statement.word('Z')) return;
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
     const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
@@ -113,7 +123,7 @@ void check_length(Execution& execution, const ModalState& before) {
                cure);
     else if (before.position[2] && modal.position[2] < before.position[2])
         advise(execution, where, core::rule_id("length-offset-cancelled"),
-               fmt::format("tool {} moves down after G49 cancelled its length offset", tool), cure);
+               fmt::format("tool {} moves down after its length offset was cancelled", tool), cure);
     else
         return; // moves up after G49
     memory.lacks_length = memory.length_cancelled = false;
@@ -159,7 +169,7 @@ void check_machine_moves(Execution& execution, const ModalState& before) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action || !moves(execution)) return;
     const ModalState& modal = execution.modal();
-    if (action->code->number == g_code(53)) {
+    if (is_machine_move(action->code->number)) {
         std::string on = left_over(modal, false);
         if (modal.distance == DistanceMode::incremental)
             on += fmt::format("{}G91", on.empty() ? "" : ", ");

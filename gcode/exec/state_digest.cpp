@@ -109,6 +109,10 @@ void add_modes(Digest& digest, const ModalState& modal) {
          {modal.path_tolerance, modal.naive_tolerance, modal.compensation_radius,
           modal.fastest_speed, modal.speed, modal.length_sign, modal.cycle_dwell})
         digest.add(value);
+    const CornerTolerances& corners = modal.corner_tolerances;
+    for (const auto& value : {corners.distance, corners.rapid_tolerance, corners.rapid_distance})
+        digest.add(value);
+    digest.add(uint64_t{corners.between_kinds});
 }
 
 void add(Digest& digest, const ModalState& modal) {
@@ -117,6 +121,9 @@ void add(Digest& digest, const ModalState& modal) {
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *position);
     digest.add(uint64_t{modal.axis_offset_on});
+    digest.add(number_of(int(modal.distance_said) + 2 * int(modal.work_said)));
+    add_all(digest, modal.offset_travel);
+    add_all(digest, modal.length_travel);
     digest.add(modal.feed);
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
@@ -129,6 +136,8 @@ void add(Digest& digest, const ModalState& modal) {
     digest.add(uint64_t{modal.way_home.has_value()});
     if (modal.way_home) add_all(digest, *modal.way_home);
     add_all(digest, modal.direction);
+    digest.add(number_of(int(modal.following.may_be_on) + 2 * modal.following.unknown_axes
+                         + 1024 * int(modal.following.rotary_unknown) + 16 * modal.doubt));
 }
 
 void add(Digest& digest, const ProgramLine& position) {
@@ -143,6 +152,8 @@ void add(Digest& digest, const Frame& frame) {
     add(digest, frame.begin);
     digest.add(frame.name);
     add_all(digest, frame.locals);
+    digest.add(frame.unpredictable_locals);
+    for (const std::string& name : frame.unpredictable_names) digest.add(name);
     for (const auto& [name, value] : frame.named) {
         digest.add(name);
         digest.add(value);
@@ -155,6 +166,7 @@ void add(Digest& digest, const Frame& frame) {
         digest.add(number_of(line));
         digest.add(number_of(left));
     }
+    for (const uint32_t line : frame.known_subs) digest.add(number_of(line));
     digest.add(number_of(frame.rounds_left));
     digest.add(
         number_of(int(frame.shares_locals) + 2 * int(frame.restores) + 4 * int(frame.modal_macro)));
@@ -207,6 +219,12 @@ uint64_t digest_of(const InterpreterState& state) {
     add(digest, *state.tables);
     add(digest, *state.spline);
     if (const LanguageState* own = state.language.get()) own->add_to(digest);
+    digest.add(uint64_t{state.points.counts_steps});
+    for (const OpenPremise& premise : state.readings->met) {
+        if (!premise.id.question) continue;
+        digest.add(number_of(static_cast<int>(*premise.id.question)));
+        digest.add(uint64_t{premise.taken});
+    }
     return digest.value();
 }
 

@@ -56,9 +56,20 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
 
 /// Hint at the equivalent code on this control.
 std::string_view meant_instead(const Word& word) {
-    if (word.value == 70.0) return "; if it means inches, use G20";
-    if (word.value == 71.0) return "; if it means millimetres, use G21";
+    if (word.value == 70.0) return "; if it means inches, use G20; lathe cycles are not supported";
+    if (word.value == 71.0)
+        return "; if it means millimetres, use G21; lathe cycles are not supported";
+    if (word.value == 72.0) return "; lathe cycles are not supported";
     return {};
+}
+
+/// Puts a G code in the place of an earlier one of its group.
+void overrule(Statement& statement, const Code* code, const Word& word) {
+    for (CodeWord& entry : std::span(statement.code_words.data(), statement.code_count)) {
+        if (entry.code->group != code->group) continue;
+        statement.overruled.push_back(entry.word);
+        entry = {code, &word};
+    }
 }
 
 core::Result<void> add_code(Statement& statement, const Word& word, const Dialect& dialect,
@@ -76,6 +87,11 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
                           fmt::format("{}: {}", written(word), code->refusal), word.span);
     const CodeWord* other = rival_of(statement, *code, dialect);
     const bool repeated = other && other->code == code && !dialect.repeated_codes_are_errors;
+    if (other && !repeated && word.letter == 'G' && dialect.last_of_group_counts
+        && code->group != ModalGroup::action && other->code->group == code->group) {
+        overrule(statement, code, word);
+        return {};
+    }
     if (other && !repeated)
         return core::fail(
             ErrorCode::syntax,
@@ -91,6 +107,9 @@ core::Result<void> add_code(Statement& statement, const Word& word, const Dialec
     statement.groups |= uint64_t{1} << static_cast<unsigned>(code->group);
     return {};
 }
+
+/// No word of a program has a larger value.
+constexpr double largest_value = 1e12;
 
 /// Whether all following words are arguments: after G65, G66 and G66.1.
 bool calls_macro(const Statement& statement) {
@@ -110,7 +129,7 @@ const CodeWord* Statement::axis_word_owner() const {
     for (const CodeWord& entry : codes()) {
         const Code& code = *entry.code;
         const bool moves = code.group == ModalGroup::motion || code.group == ModalGroup::cycle
-                           || code.number == g_code(53);
+                           || is_machine_move(code.number);
         const bool dwells = code.number == g_code(4) && !word('P');
         if ((!moves && code.uses_axes()) || dwells) return &entry;
     }
@@ -127,8 +146,14 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
     statement.groups = 0;
     statement.letters = 0;
     statement.unknown_m_codes.clear();
+    statement.overruled.clear();
     statement.arguments.clear();
     for (const Word& word : block.words) {
+        if (std::abs(word.value) > largest_value)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{}: this number is too large for a control", written(word)),
+                word.span);
         const bool is_argument =
             calls_macro(statement) || (words_are_arguments && word.letter != 'G');
         if (is_argument) {

@@ -42,6 +42,7 @@ struct Statement {
     uint64_t groups = 0;                        // one bit for each modal group present
     uint32_t letters = 0;                       // one bit for each of `words` present
     std::vector<const Word*> unknown_m_codes{}; // of a machine builder
+    std::vector<const Word*> overruled{};       // G codes before another of their group
     std::vector<const Word*> arguments{};       // of a macro call: the words after G65 or G66
 
     std::span<const CodeWord> codes() const { return {code_words.data(), code_count}; }

@@ -9,6 +9,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/flow.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/readings.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/codes.h"
 #include "gcode/language/flow_index.h"
@@ -243,17 +244,19 @@ core::Result<void> jump_on_input(Execution& execution, const CodeWord& entry) {
     const ProgramLine here{execution.state.next.source, execution.block.line};
     FEELER_TRY(const uint32_t line, block_named(execution, *target, here, "this program"));
     const Word* input = execution.statement.word('Q');
-    const std::string name = input ? written(*input) : "its input";
+    const std::string name = input ? fmt::format("input {:g}", input->value) : "its input";
     if (line <= execution.block.line) {
         execution.warn(
             entry.word->span,
             fmt::format("M96 waits for {}: assumed to be on, so the program continues", name));
         return {};
     }
-    execution.warn(entry.word->span, fmt::format("M96: {} is assumed to be off, so the program "
-                                                 "jumps; the blocks up to {} were not checked",
-                                                 name, written(*target)));
-    execution.state.next.line = line;
+    if (!execution.environment.control.reports_premises)
+        execution.warn(entry.word->span, fmt::format("M96: {} is assumed to be off, so the program "
+                                                     "jumps; the blocks up to {} were not checked",
+                                                     name, written(*target)));
+    if (outcome_of_input(execution.state, execution.environment, execution.block, name, true))
+        execution.state.next.line = line;
     return {};
 }
 
@@ -317,6 +320,20 @@ std::vector<const Word*> words_of_call(const Execution& execution) {
     return words;
 }
 
+/// The arguments with unpredictable values, one bit for each number. Of repeated I, J and K, all
+/// count as such.
+uint64_t unpredictable_arguments(const std::vector<const Word*>& words) {
+    uint64_t bits = 0;
+    for (const Word* word : words)
+        for (size_t number = argument_number(word->letter);
+             word->is_unknown && number > 0 && number < std::tuple_size_v<LocalParameters>;
+             number += 3) {
+            bits |= uint64_t{1} << number;
+            if (!is_offset(word->letter)) break;
+        }
+    return bits;
+}
+
 /// The macro called by G65 or G66, with its arguments.
 core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry) {
     const Word* program = argument(execution, 'P');
@@ -339,7 +356,9 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
         FEELER_TRY(macro.rounds, whole_number(*rounds));
         if (macro.rounds == 0) execution.warn(rounds->span, "L0: the macro is not run");
     }
-    FEELER_TRY(macro.arguments, arguments_of(words_of_call(execution)));
+    const std::vector<const Word*> words = words_of_call(execution);
+    FEELER_TRY(macro.arguments, arguments_of(words));
+    macro.unpredictable = unpredictable_arguments(words);
     macro.each_block = entry.code->number == g_code(66, 1);
     return macro;
 }
@@ -351,6 +370,7 @@ core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, si
                 .begin = macro.begin,
                 .name = macro.name,
                 .locals = macro.arguments,
+                .unpredictable_locals = macro.unpredictable,
                 .rounds_left = macro.rounds - 1,
                 .modal_macro = modal};
     if (macro.rounds > 1 && modal == 0) frame.again = macro.arguments;

@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <charconv>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/lexer.h"
 
 namespace gcode {
 namespace {
@@ -13,23 +17,71 @@ using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 
-void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
-                bool follows_tip = false) {
-    Offsets offsets = execution.modal().offsets;
-    offsets.tool = offset;
-    offsets.follows_tip = follows_tip;
-    change_offsets(execution, offsets);
-    execution.modal().length_number = number;
-    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
+/// Whether a change of the length offset moves an axis in this block although the block does not
+/// say where to.
+///
+/// Source: Fanuc B-63943EN-1, 12.5.2: with TOS = 1 a block without a move command does not move.
+bool moves_by_change(Execution& execution, const AxisValues& offset) {
+    const ModalState& modal = execution.modal();
+    const bool are_positions =
+        modal.distance == DistanceMode::absolute || in_machine_coordinates(execution);
+    const auto is_left_out = [&](size_t axis) {
+        const bool is_said = execution.statement.word(axis_letters[axis]) && are_positions;
+        return offset[axis] != modal.offsets.tool[axis] && !is_said && modal.position[axis];
+    };
+    if (!is_left_out(0) && !is_left_out(1) && !is_left_out(2)) return false;
+    return answer_to(execution.state, execution.environment, ControlQuestion::length_change_moves,
+                     execution.block.line);
 }
 
-/// The tool offset with a number: `length` along Z, the table's values along the other axes.
-AxisValues offset_under(const Execution& execution, int number, double length) {
+void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
+                bool follows_tip = false) {
+    ModalState& modal = execution.modal();
+    Offsets offsets = modal.offsets;
+    offsets.tool = offset;
+    offsets.follows_tip = follows_tip;
+    const bool moves = moves_by_change(execution, offset);
+    const Position position = modal.position;
+    const AxisValues old = modal.offsets.tool;
+    change_offsets(execution, offsets);
+    modal.length_number = number;
+    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
+    if (!moves) return;
+    // The programmed position stays, so the machine moves: with the axes of this block, or alone.
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (offset[axis] != old[axis]) modal.position[axis] = position[axis];
+    if (execution.statement.has_axis_word()) return;
+    if (modal.motion == MotionCode::straight && modal.feed)
+        execution.feed(modal.position, *modal.feed);
+    else
+        execution.traverse(modal.position);
+}
+
+/// The axis along which the length of G43 and G44 acts. The parameters for it matter only where
+/// another axis than Z comes into question.
+///
+/// Source: Fanuc B-63943EN-1, 12.5.2: types A (Z), B (normal to the plane), C (as programmed).
+size_t length_axis(Execution& execution) {
+    constexpr size_t z = 2;
+    const auto asks = [&](ControlQuestion question) {
+        return answer_to(execution.state, execution.environment, question, execution.block.line);
+    };
+    const bool has_x = execution.statement.word('X'), has_y = execution.statement.word('Y');
+    const bool names_other = has_x != has_y && !execution.statement.word('Z');
+    if (names_other && asks(ControlQuestion::length_follows_axis)) return has_x ? 0 : 1;
+    const size_t normal = axes_of(execution.modal().plane).normal;
+    if (normal < z && asks(ControlQuestion::length_follows_plane)) return normal;
+    return z;
+}
+
+/// The tool offset with a number: `length` along an axis, usually Z, the table's values along the
+/// others.
+AxisValues offset_under(const Execution& execution, int number, double length, size_t along = 2) {
     AxisValues offset{};
     const auto& lengths = execution.state.tables->lengths;
     if (const auto entry = lengths.find(OffsetNumber(number)); entry != lengths.end())
         offset = entry->second.shift;
-    offset[2] = length;
+    offset[along] = length;
     return offset;
 }
 
@@ -62,8 +114,9 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     if (!length)
         execution.warn(where, fmt::format("{}: length offset H{} is unknown and assumed to be 0",
                                           written(word), *number));
+    const size_t along = follows_tip ? 2 : length_axis(execution);
     use_offset(execution, OffsetNumber(*number),
-               offset_under(execution, *number, sign * length.value_or(0.0)), follows_tip);
+               offset_under(execution, *number, sign * length.value_or(0.0), along), follows_tip);
     const auto& tool = execution.modal().tool;
     if (tool && *number != 0 && *number != value_of(*tool))
         execution.result.warnings.push_back(
@@ -135,12 +188,91 @@ void leave_vectors(Execution& execution) {
 
 } // namespace
 
+void reload_length(Execution& execution) {
+    const ModalState& modal = execution.modal();
+    const int number = value_of(*modal.length_number);
+    const double length = length_under(*execution.state.tables, number).value_or(0.0);
+    Offsets offsets = modal.offsets;
+    // The axis along which the length acts stays.
+    size_t along = 2;
+    for (const size_t axis : {size_t{0}, size_t{1}})
+        if (offsets.tool[axis] != 0.0 && offsets.tool[2] == 0.0) along = axis;
+    offsets.tool = offset_under(execution, number, modal.length_sign * length, along);
+    change_offsets(execution, offsets);
+    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, offsets.follows_tip});
+}
+
 bool changes_length_alone(const Execution& execution) {
     const auto uses = [](const CodeWord& entry) { return entry.code->uses('H'); };
     const std::span<const CodeWord> codes = execution.statement.codes();
     return execution.dialect.lone_h_is_length_offset && execution.modal().length_sign != 0.0
            && execution.statement.word('H') && !execution.statement.of(ModalGroup::tool_length)
            && std::none_of(codes.begin(), codes.end(), uses);
+}
+
+namespace {
+
+/// The tools of the set-up with this name; if there is none, those whose name differs in case only.
+std::vector<ToolNumber> tools_named(const Environment& environment, std::string_view name) {
+    std::vector<ToolNumber> exact, similar;
+    const auto same_letter = [](char a, char b) { return upper(a) == upper(b); };
+    for (const auto& [known, number] : environment.tool_names) {
+        if (known.empty()) continue;
+        if (known == name) exact.push_back(number);
+        if (std::ranges::equal(known, name, same_letter)) similar.push_back(number);
+    }
+    return exact.empty() ? similar : exact;
+}
+
+/// The number of the tool whose name is the one at `place` among those that the set-up lacks.
+ToolNumber free_tool_number(const Environment& environment, size_t place) {
+    std::set<ToolNumber> taken;
+    for (const auto& [name, number] : environment.tool_names) taken.insert(number);
+    int number = 1;
+    while (taken.contains(ToolNumber(number)) || place-- > 0) ++number;
+    return ToolNumber(number);
+}
+
+std::string list_of(const std::vector<ToolNumber>& numbers) {
+    std::string list;
+    for (const ToolNumber number : numbers)
+        list += fmt::format("{}{}", list.empty() ? "" : " or ", value_of(number));
+    return list;
+}
+
+} // namespace
+
+ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where,
+                        std::vector<std::string>& others) {
+    const Environment& environment = execution.environment;
+    const std::vector<ToolNumber> found = tools_named(environment, name);
+    if (found.size() > 1) {
+        execution.modal().doubt |= tool_is_in_doubt;
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("\"{}\" is the name of tool {}: which of them the control takes is not "
+                         "known; tool {} is checked here",
+                         name, list_of(found), value_of(found[0])),
+             core::rule_id("undecided"),
+             "Check the program with each of these tools alone under this name."});
+    }
+    if (!found.empty()) return found[0];
+    int number = 0;
+    const char* end = name.data() + name.size();
+    const auto read = std::from_chars(name.data(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number >= 0) return ToolNumber(number);
+    const auto known = std::find(others.begin(), others.end(), name);
+    const auto place = static_cast<size_t>(known - others.begin());
+    const ToolNumber chosen = free_tool_number(environment, place);
+    if (known != others.end()) return chosen;
+    others.emplace_back(name);
+    const bool has_tools = !environment.tool_names.empty();
+    execution.warn(where,
+                   fmt::format("\"{}\" is tool {} here: {}", name, value_of(chosen),
+                               has_tools ? "the set-up has no tool of this name"
+                                         : "tool names are numbered in order of appearance"),
+                   has_tools ? Severity::warning : Severity::note);
+    return chosen;
 }
 
 core::Result<void> select_tool(Execution& execution) {
@@ -170,10 +302,12 @@ core::Result<void> change_tool(Execution& execution) {
                           entry->word->span);
     modal.tool = modal.selected_tool;
     // RS274/NGC 3.6.3: the spindle is stopped when the tool change is complete.
-    if (modal.spindle != core::SpindleDirection::stopped) {
+    if (modal.spindle != core::SpindleDirection::stopped
+        && !execution.environment.tool_change.keeps_spindle_running) {
         modal.spindle = core::SpindleDirection::stopped;
         execution.emit(Spindle{modal.spindle, 0.0});
     }
+    move_to_tool_change(execution);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
     return {};
@@ -201,10 +335,14 @@ core::Result<void> set_tool_length(Execution& execution) {
         modal.length_sign = 0.0;
         return use_given_offset(execution);
     default:
-        modal.length_sign = 0.0;
-        use_offset(execution, std::nullopt, {});
+        cancel_length_offset(execution);
         return {}; // G49
     }
+}
+
+void cancel_length_offset(Execution& execution) {
+    execution.modal().length_sign = 0.0;
+    use_offset(execution, std::nullopt, {});
 }
 
 namespace {

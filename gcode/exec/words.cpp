@@ -26,12 +26,17 @@ const Code* going_on(const Execution& execution) {
     return number ? find_code(*number, execution.dialect.id) : nullptr;
 }
 
-/// Whether the block has G30 P2, which is the same as G30.
-bool names_second_home(const Execution& execution) {
+/// Whether the block has G30 with the P of a reference position that is known: P2, which is the
+/// same as G30, or one that the set-up states.
+bool names_known_home(const Execution& execution) {
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     const Word* p_word = execution.statement.word('P');
-    return execution.dialect.p_selects_more_offsets && action && action->code->number == g_code(30)
-           && p_word && p_word->value == 2.0;
+    if (!execution.dialect.p_selects_more_offsets || !action || action->code->number != g_code(30)
+        || !p_word)
+        return false;
+    const auto& further = execution.environment.further_homes;
+    return p_word->value == 2.0 || (p_word->value == 3.0 && further[0])
+           || (p_word->value == 4.0 && further[1]);
 }
 
 /// Reports a P that selects a reference position of G30 that is not supported.
@@ -40,12 +45,12 @@ core::Result<void> refuse_unknown_home(const Execution& execution) {
     const Word* p_word = statement.word('P');
     if (!p_word || !execution.dialect.p_selects_more_offsets) return {};
     const CodeWord* action = statement.of(ModalGroup::action);
-    if (action && action->code->number == g_code(30) && !names_second_home(execution))
+    if (action && action->code->number == g_code(30) && !names_known_home(execution))
         return core::fail(
             ErrorCode::unsupported,
-            fmt::format(
-                "{}: G30 supports the second reference position only: go to others with G53",
-                written(*p_word)),
+            fmt::format("{}: this reference position is not known: state it under [control] in the "
+                        "set-up (Fanuc: \"1242\" for P3, \"1243\" for P4), or go there with G53",
+                        written(*p_word)),
             p_word->span);
     return {};
 }
@@ -63,7 +68,7 @@ bool is_used(const Execution& execution, char letter) {
     if (letter == 'H' && changes_length_alone(execution)) return true;
     if (letter == 'P' && names_extended_offset(execution)) return true;
     if (execution.modal().transforms.follows_vectors && letter >= 'I' && letter <= 'K') return true;
-    if (letter == 'P' && names_second_home(execution)) return true;
+    if (letter == 'P' && names_known_home(execution)) return true;
     const auto uses = [&](const CodeWord& entry) { return entry.code->uses(letter); };
     if (std::any_of(statement.codes().begin(), statement.codes().end(), uses)) return true;
     if (statement.of(ModalGroup::motion) || statement.of(ModalGroup::cycle)) return false;
@@ -104,9 +109,26 @@ void warn_of_unknown_m_codes(Execution& execution) {
                         written(*word)));
 }
 
+namespace {
+
+/// Warns of G codes that have no effect because a later one of their group counts.
+///
+/// Source: Fanuc 30i user's manual B-63944EN, "Preparatory function (G function)".
+void warn_of_overruled_codes(Execution& execution) {
+    for (const Word* word : execution.statement.overruled)
+        execution.warn(word->span,
+                       fmt::format("{} has no effect in this block: of several codes of a modal "
+                                   "group, the control uses only the last one; write them in "
+                                   "separate blocks",
+                                   written(*word)));
+}
+
+} // namespace
+
 core::Result<void> check_words(Execution& execution) {
     if (auto checked = refuse_unknown_home(execution); !checked) return checked;
     warn_of_unknown_m_codes(execution);
+    warn_of_overruled_codes(execution);
     if (!(execution.statement.letters & bits_that_need_a_code)) return {};
     for (const char letter : letters_that_need_a_code)
         if (const Word* word = execution.statement.word(letter))

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/readings.h"
 #include "gcode/iso/flow_parser.h"
 #include "gcode/iso/iso.h"
 #include "gcode/language/dialect.h"
@@ -51,7 +53,7 @@ private:
     core::Result<const FlowMark*> partner(std::initializer_list<FlowKind> kinds, bool ahead,
                                           std::string_view wanted) const;
     core::Result<bool> holds(const Block& block) const {
-        return condition_holds(block, parameters_, step_.dialect);
+        return condition_holds(step_.state, block, parameters_, step_.dialect);
     }
 
     core::Result<void> check_skipped(uint32_t up_to) const;
@@ -59,8 +61,9 @@ private:
     void warn_of_second_use() const;
     core::Result<void> end_if_statement();
     core::Result<void> skip_sub();
+    bool meet_sub(uint32_t line);
     core::Result<void> call_sub();
-    core::Result<void> give_back();
+    core::Result<void> return_statement();
     core::Result<void> take_branch();
     core::Result<void> while_statement();
     core::Result<void> repeat_statement();
@@ -85,9 +88,12 @@ core::Result<void> Flowing::find_name() {
     const Flow& flow = step_.block.flow;
     if (flow.has_label) name_ = step_.block.pool.names[flow.label_name];
     if (!flow.label) return {};
+    parameters_.forget_reads();
     FEELER_TRY(const Value value, evaluate(step_.block.pool, flow.label, line_, parameters_,
                                            step_.dialect.arithmetic));
+    report_unknown(parameters_, step_.result, step_.block.flow.span, "the target");
     name_ = label_of(std::round(value.value_or(0.0)));
+    note_computed_target(step_.state);
     return {};
 }
 
@@ -111,8 +117,18 @@ core::Result<void> Flowing::go_after_partner(std::initializer_list<FlowKind> kin
     return {};
 }
 
-/// A subprogram is executed when it is called; when the program reaches its definition, it is
-/// skipped.
+/// Remembers a subprogram of the main program; whether it is new.
+bool Flowing::meet_sub(uint32_t line) {
+    std::vector<uint32_t>& known = step_.state.frames.front().known_subs;
+    if (std::find(known.begin(), known.end(), line) != known.end()) return false;
+    known.push_back(line);
+    return true;
+}
+
+/// A subprogram is executed when it is called; when the program first reaches its definition, it is
+/// skipped. A definition that was called or passed before stops the control.
+///
+/// Source: rs274 2.9, probed.
 core::Result<void> Flowing::skip_sub() {
     const FlowMark* first = index_.first(sub, name_);
     if (first->line != line_)
@@ -133,6 +149,12 @@ core::Result<void> Flowing::skip_sub() {
     }
     if (!end) return refuse(fmt::format("subprogram {} has no endsub", name_));
     if (auto read = check_skipped(end->line); !read) return read;
+    if (source_ == 0 && step_.state.frames.size() == 1 && !meet_sub(line_))
+        return refuse(
+            fmt::format("the program runs into subprogram {}, which it has already called "
+                        "or passed: the control stops here; end the program with M2 "
+                        "before it",
+                        name_));
     go_after(end->line);
     return {};
 }
@@ -185,18 +207,22 @@ core::Result<void> Flowing::call_sub() {
         return refuse(fmt::format("there is no subprogram {} in this program, and no file {}.ngc "
                                   "with it in the search path",
                                   name_, name_));
+    if (source == 0) meet_sub(mark->line);
     Frame next{.called_from = {source_, line_}, .begin = {source, mark->line + 1}, .name = name_};
     for (size_t i = 1; i <= static_cast<size_t>(step_.dialect.local_count); ++i)
         next.locals[i] = 0.0;
     for (size_t i = 0; i < step_.block.flow.arguments.size(); ++i) {
+        parameters_.forget_reads();
         FEELER_TRY(next.locals[i + 1], evaluate(step_.block.pool, step_.block.flow.arguments[i],
                                                 line_, parameters_, step_.dialect.arithmetic));
+        if (!parameters_.unpredictable_reads().empty())
+            next.unpredictable_locals |= uint64_t{1} << (i + 1);
     }
     return enter(step_.state, step_.environment, std::move(next), step_.block.flow.span);
 }
 
 /// `return` and `endsub`, with or without a value.
-core::Result<void> Flowing::give_back() {
+core::Result<void> Flowing::return_statement() {
     const bool inside = step_.state.frames.size() > 1;
     if (!inside) return refuse("return outside a subprogram");
     Value value;
@@ -244,8 +270,9 @@ core::Result<void> Flowing::end_if_statement() {
     if (step_.block.flow.kind == end_if) return {};
     // The control evaluates the condition even when it is not needed.
     if (step_.block.flow.kind == else_if) {
-        FEELER_TRY(const bool unused, holds(step_.block));
-        (void)unused;
+        const auto unused = evaluate(step_.block.pool, step_.block.flow.condition, line_,
+                                     parameters_, step_.dialect.arithmetic);
+        if (!unused) return tl::unexpected(unused.error());
     }
     return go_after_partner({end_if}, true, "endif");
 }
@@ -260,8 +287,10 @@ core::Result<void> Flowing::while_statement() {
 }
 
 core::Result<void> Flowing::repeat_statement() {
+    parameters_.forget_reads();
     FEELER_TRY(const Value count, evaluate(step_.block.pool, step_.block.flow.condition, line_,
                                            parameters_, step_.dialect.arithmetic));
+    report_unknown(parameters_, step_.result, step_.block.flow.span, "the number of repetitions");
     const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
     if (rounds < 1) return go_after_partner({end_repeat}, true, "endrepeat");
     frame().repeats[line_] = rounds;
@@ -272,7 +301,9 @@ core::Result<void> Flowing::end_repeat_statement() {
     FEELER_TRY(const FlowMark* const head, partner({repeat}, false, "repeat"));
     const auto left = frame().repeats.find(head->line);
     if (left == frame().repeats.end()) return {};
-    if (--left->second > 0)
+    --left->second;
+    note_repetitions(step_.state, {source_, line_}, left->second);
+    if (left->second > 0)
         go_after(head->line);
     else
         frame().repeats.erase(left);
@@ -305,7 +336,10 @@ core::Result<void> Flowing::jump() {
         if (!taken) return {};
     }
     const auto line = line_of_block(step_.library, source_, std::stod(name_), line_);
-    if (!line) return refuse(fmt::format("there is no block N{} to go to", name_));
+    const bool is_computed = step_.block.flow.kind == go_to && step_.block.flow.label;
+    if (!line)
+        return refuse(fmt::format("there is no block N{} to go to{}", name_,
+                                  is_computed ? cause_of_number(parameters_) : ""));
     const auto other = line_of_block(step_.library, source_, std::stod(name_), *line);
     if (other && *other != *line)
         step_.result.warnings.push_back(
@@ -326,7 +360,7 @@ core::Result<void> Flowing::run() {
         return Flowing::call_sub();
     case return_value:
     case end_sub:
-        return give_back();
+        return return_statement();
     case if_branch:
         warn_of_second_use();
         return take_branch();
@@ -396,14 +430,39 @@ bool may_begin_flow(char c) {
 
 } // namespace
 
+namespace {
+
+/// Finds the end of the text: the second tape mark, if the first is the first line.
+class TapeMarks {
+public:
+    /// Whether the text ends at this line.
+    bool end_at(std::string_view line) {
+        Lexer lexer{.line = line};
+        const char first = lexer.peek();
+        if (first == '\0') return false;
+        const bool is_mark = first == '%';
+        const bool ends = is_mark && begun_ && opened_;
+        opened_ = opened_ || (is_mark && !begun_);
+        begun_ = true;
+        return ends;
+    }
+
+private:
+    bool begun_ = false, opened_ = false;
+};
+
+} // namespace
+
 FlowIndex iso_index(const Program& program, const Dialect& dialect) {
     FlowIndex index;
     Block block;
     uint32_t scope = 0;
     std::vector<std::string> open_loops;
+    TapeMarks tape_marks;
     for (size_t number = 1; program.has_line(number).value_or(false); ++number) {
         const auto line = static_cast<uint32_t>(number);
         Lexer lexer{.line = program.line(number), .line_number = line};
+        if (dialect.has_o_words && tape_marks.end_at(lexer.line)) break;
         if (const auto block_number = take_block_number(lexer))
             index.numbers.push_back({*block_number, line});
         if (!may_begin_flow(lexer.peek())) continue;

@@ -129,7 +129,12 @@ private:
                           || kind == FlowKind::while_loop || kind == FlowKind::repeat;
         const bool answers = kind == FlowKind::return_value || kind == FlowKind::end_sub;
         if (kind == FlowKind::call) {
-            while (lexer_.peek() == '[') {
+            while (lexer_.peek() == '[' || lexer_.peek() == '(') {
+                if (lexer_.peek() == '(') { // comments may stand between the arguments
+                    FEELER_TRY(const Comment comment, lexer_.bracket_comment());
+                    block_.comments.push_back(comment);
+                    continue;
+                }
                 FEELER_TRY(const Expression argument,
                            parse_bracketed(lexer_, dialect_.expressions, block_.pool));
                 flow().arguments.push_back(argument);

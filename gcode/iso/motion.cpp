@@ -7,6 +7,7 @@
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
+#include "gcode/exec/readings.h"
 #include "gcode/iso/iso.h"
 
 namespace gcode {
@@ -154,13 +155,15 @@ core::Result<void> move_without_mode(Execution& execution) {
                               fmt::format("{}: no motion code is active; program G0, G1, G2 or G3",
                                           written(word)),
                               word.span);
-        execution.warn(
-            word.span,
-            fmt::format(
-                "{}: no motion code is active; G0, the power-on default of the control, is assumed",
-                written(word)));
-        execution.modal().motion = MotionCode::rapid;
-        return move_straight(execution, true);
+        const bool feeds = answer_to(execution.state, execution.environment,
+                                     ControlQuestion::starts_with_feed, word.span.line);
+        if (!execution.environment.control.answer(ControlQuestion::starts_with_feed))
+            execution.warn(word.span,
+                           fmt::format("{}: no motion code is active; {}, the power-on default of "
+                                       "the control, is assumed",
+                                       written(word), feeds ? "G1" : "G0"));
+        execution.modal().motion = feeds ? MotionCode::straight : MotionCode::rapid;
+        return move_straight(execution, !feeds);
     }
     return {};
 }

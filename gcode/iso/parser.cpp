@@ -188,8 +188,31 @@ private:
         return word(letter, static_cast<char>(lower(letter)), begin);
     }
 
+    /// DPRNT, BPRNT, POPEN and PCLOS: output to a printer or file, without effect on the motion.
+    /// Returns whether there was one.
+    core::Result<bool> print_statement() {
+        const size_t begin = lexer_.at;
+        if (lexer_.accept_word("POPEN") || lexer_.accept_word("PCLOS")) return block_.prints = true;
+        if (!lexer_.accept_word("DPRNT") && !lexer_.accept_word("BPRNT")) return false;
+        int depth = 0;
+        while (lexer_.peek() != '\0') {
+            const char c = lexer_.line[lexer_.at++];
+            depth += (c == '[') - (c == ']');
+            if (c == ']' && depth == 0) return block_.prints = true;
+            if (depth == 0) break;
+        }
+        return core::fail(ErrorCode::syntax,
+                          fmt::format("'{}' needs a list in brackets, such as [X#100[53]]",
+                                      lexer_.line.substr(begin, 5)),
+                          lexer_.span_from(begin));
+    }
+
     core::Result<void> lettered(char letter) {
         const size_t begin = lexer_.at;
+        if (dialect_.has_fanuc_flow && (letter == 'P' || letter == 'D' || letter == 'B')) {
+            FEELER_TRY(const bool prints, print_statement());
+            if (prints) return {};
+        }
         const bool has_flow = block_.flow.kind != FlowKind::none;
         FEELER_TRY(const bool flows, parse_flow(lexer_, dialect_, block_));
         if (flows && has_flow)

@@ -161,10 +161,21 @@ core::Result<void> act(Execution& execution) {
     case g_code(12):
     case g_code(13):
         return mill_circular_pocket(execution);
+    case g_code(22):
+        return forbid_area(execution);
+    case g_code(35):
+    case g_code(36):
+    case g_code(136):
+        return measure(execution);
+    case g_code(174):
+    case g_code(184):
+        return tap_to_point(execution);
     case g_code(27):
         return check_home(execution);
     case g_code(29):
         return return_from_home(execution);
+    case g_code(60):
+        return move_one_way(execution);
     case g_code(31):
         return skip_move(execution);
     case g_code(70):

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/following.h"
 #include "gcode/exec/state_digest.h"
 #include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
@@ -27,12 +28,38 @@ bool ends_block(const Execution& execution, ModalGroup group, CodeNumber last) {
     return entry && entry->code->number == last;
 }
 
-void warn_of_m_codes(Execution& execution) {
-    warn_of_unknown_m_codes(execution);
-    for (const CodeWord& entry : execution.statement.codes())
-        if (entry.code->number == m_code(128))
-            execution.warn(entry.word->span, "M128 is not modelled: the linear axes do not follow "
-                                             "the rotary axes; end points are used as programmed");
+/// M128 and M129; FUNCTION TCPM and FUNCTION RESET TCPM are read as these.
+void switch_tip_control(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        const bool on = entry.code->number == m_code(128);
+        if (!on && entry.code->number != m_code(129)) continue;
+        const core::SourceSpan where = entry.word->span;
+        std::string_view code = execution.block.text.substr(where.column - 1, where.length);
+        if (code.starts_with("FUNCTION")) code = on ? "FUNCTION TCPM" : "FUNCTION RESET TCPM";
+        switch_following(execution, where, code, on ? FollowingSwitch::on : FollowingSwitch::off);
+    }
+}
+
+/// M126 and M127: rotary axes take the short way. M94: reduces their positions to less than a turn.
+core::Result<void> turn_rotary_axes(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        const CodeNumber code = entry.code->number;
+        const bool on = code == m_code(126);
+        if ((on || code == m_code(127)) && klartext_of(execution.state).turns_short_way != on)
+            writable_klartext(execution.state).turns_short_way = on;
+        if (code != m_code(94)) continue;
+        for (size_t axis = 3; axis < 6; ++axis) {
+            const double angle = execution.modal().position[axis].value_or(0.0);
+            if (angle < 0.0 || angle >= 360.0)
+                return core::fail(
+                    ErrorCode::unsupported,
+                    fmt::format("M94 is not supported while axis {} is at {:g} degrees: turn it to "
+                                "between 0 and 360 degrees first",
+                                axis_letters[axis], angle),
+                    entry.word->span);
+        }
+    }
+    return {};
 }
 
 core::Result<void> take_feed(Execution& execution) {
@@ -61,6 +88,10 @@ core::Result<void> run_statement(Execution& execution) {
     case note:
     case modes:
         return {};
+    case level:
+        if (!is_work_turned(execution.modal())) return {};
+        return refuse_statement(execution, "turning back a tilted plane is not supported yet: turn "
+                                           "the rotary axes to 0 first");
     case rounding:
     case chamfer:
         return make_corner(execution);
@@ -108,19 +139,20 @@ core::Result<void> call_cycle(Execution& execution) {
     return calls ? call_defined_cycle(execution) : core::Result<void>{};
 }
 
-} // namespace
-
-core::Result<void> run_klartext(Execution& execution, const ModalState&) {
+core::Result<void> run_klartext_block(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
-    warn_of_m_codes(execution);
+    warn_of_unknown_m_codes(execution);
+    switch_tip_control(execution);
     const bool late_spindle = ends_block(execution, ModalGroup::spindle, m_code(5));
     const bool late_coolant = ends_block(execution, ModalGroup::coolant, m_code(9));
-    for (const auto step : {set_units, select_plane, take_feed})
+    for (const auto step : {turn_rotary_axes, set_units, select_plane, take_feed})
         if (auto done = step(execution); !done) return done;
     if (begins_block(execution, ModalGroup::spindle, m_code(5)))
         if (auto done = turn_spindle(execution); !done) return done;
     if (begins_block(execution, ModalGroup::coolant, m_code(9)))
         if (auto done = set_coolant(execution); !done) return done;
+    if (in_machine_coordinates(execution) && is_motion(command.kind) && command.kind != straight)
+        return refuse_statement(execution, "M91 is only supported with L");
     if (auto done = run_statement(execution); !done) return done;
     const bool calls = command.calls_cycle || command.calls_from_here
                        || klartext_of(execution.state).calls_after_motions;
@@ -131,6 +163,17 @@ core::Result<void> run_klartext(Execution& execution, const ModalState&) {
     if (late_coolant)
         if (auto done = set_coolant(execution); !done) return done;
     return stop(execution);
+}
+
+} // namespace
+
+core::Result<void> run_klartext(Execution& execution, const ModalState& before) {
+    if (auto done = run_klartext_block(execution); !done) return done;
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (klartext_of(execution.state).turns_short_way
+            && execution.statement.word(axis_letters[axis]))
+            check_turn(execution, before, axis, Addressing::shortest, "M126");
+    return {};
 }
 
 tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why) {
@@ -177,23 +220,29 @@ void put_into_spindle(Execution& execution, ToolNumber tool) {
         modal.spindle = core::SpindleDirection::stopped;
         execution.emit(Spindle{modal.spindle, 0.0});
     }
+    move_to_tool_change(execution);
     execution.emit(ChangeTool{tool == ToolNumber(0) ? std::nullopt : std::optional(tool)});
 }
 
-double radius_of(const Execution& execution, int number) {
-    const auto& lengths = execution.state.tables->lengths;
-    const auto entry = lengths.find(OffsetNumber(number));
-    return entry == lengths.end() ? 0.0 : entry->second.diameter / 2.0 + entry->second.radius_wear;
+/// From the tool table, else of the tool of the set-up; empty if neither has it.
+std::optional<double> radius_of(const Execution& execution, int number) {
+    const Tables& tables = *execution.state.tables;
+    const auto entry = tables.lengths.find(OffsetNumber(number));
+    if (entry != tables.lengths.end() && entry->second.diameter != 0.0)
+        return entry->second.diameter / 2.0 + entry->second.radius_wear;
+    const auto tool = tables.tool_diameters.find(ToolNumber(number));
+    if (tool == tables.tool_diameters.end()) return std::nullopt;
+    return tool->second / 2.0;
 }
 
 /// Activates the length of the tool and sets the Q parameters with its size.
-void use_length(Execution& execution, int number, const Word& tool) {
+void use_length(Execution& execution, int number) {
     const std::optional<double> length =
         number == 0 ? std::optional(0.0) : length_under(*execution.state.tables, number);
     if (!length)
-        execution.warn(tool.span,
-                       fmt::format("{}: the length of tool {} is unknown and assumed to be 0",
-                                   written(tool), number));
+        execution.warn(
+            klartext_of(execution.block).span,
+            fmt::format("TOOL CALL: the length of tool {} is unknown and assumed to be 0", number));
     const Word* longer = execution.statement.word('L');
     const Word* wider = execution.statement.word('D');
     Offsets offsets = execution.modal().offsets;
@@ -203,11 +252,11 @@ void use_length(Execution& execution, int number, const Word& tool) {
     change_offsets(execution, offsets);
     execution.modal().length_number = OffsetNumber(number);
     execution.emit(UseToolLengthOffset{OffsetNumber(number), offsets.tool, offsets.follows_tip});
-    const double radius =
-        radius_of(execution, number) + (wider ? length_of(execution, *wider) : 0.0);
+    std::optional<double> radius = radius_of(execution, number);
+    if (radius && wider) *radius += length_of(execution, *wider);
     const LengthUnit unit = execution.modal().unit;
     Parameters& parameters = execution.state.parameters.write();
-    parameters.set_numbered(q_radius, from_mm(radius, unit));
+    parameters.set_numbered(q_radius, radius ? Value(from_mm(*radius, unit)) : Value{});
     parameters.set_numbered(q_axis, static_cast<double>(normal));
     parameters.set_numbered(q_length_of_tool, from_mm(offsets.tool[normal], unit));
 }
@@ -223,16 +272,36 @@ void warn_of_other_length(Execution& execution, int number, double length, const
 
 } // namespace
 
+namespace {
+
+/// The number or name after TOOL CALL and TOOL DEF; empty if there is neither.
+core::Result<std::optional<ToolNumber>> tool_of_block(Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    if (!command.tool_name.empty()) {
+        std::vector<std::string> names = klartext_of(execution.state).tool_names;
+        const ToolNumber number = tool_of_name(execution, command.tool_name, command.span, names);
+        if (names.size() > klartext_of(execution.state).tool_names.size())
+            writable_klartext(execution.state).tool_names = std::move(names);
+        return number;
+    }
+    const Word* tool = execution.statement.word('T');
+    if (!tool) return std::nullopt;
+    FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
+    return ToolNumber(number);
+}
+
+} // namespace
+
 core::Result<void> call_klartext_tool(Execution& execution) {
     const Statement& statement = execution.statement;
-    if (const Word* tool = statement.word('T')) {
-        FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
-        put_into_spindle(execution, ToolNumber(number));
-        use_length(execution, number, *tool);
-    } else if (const Word* longer = statement.word('L')) {
+    FEELER_TRY(const std::optional<ToolNumber> tool, tool_of_block(execution));
+    if (tool) {
+        put_into_spindle(execution, *tool);
+        use_length(execution, value_of(*tool));
+    } else if (statement.word('L')) {
         if (!execution.modal().tool)
             return refuse_statement(execution, "DL without a tool in the spindle");
-        use_length(execution, value_of(*execution.modal().tool), *longer);
+        use_length(execution, value_of(*execution.modal().tool));
     }
     if (statement.word('F')) writable_klartext(execution.state).call_feed = execution.modal().feed;
     return set_speed(execution);
@@ -240,16 +309,16 @@ core::Result<void> call_klartext_tool(Execution& execution) {
 
 core::Result<void> define_klartext_tool(Execution& execution) {
     const Statement& statement = execution.statement;
-    const Word* tool = statement.word('T');
+    FEELER_TRY(const std::optional<ToolNumber> tool, tool_of_block(execution));
     if (!tool) return refuse_statement(execution, "the tool number is missing");
-    FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
     const Word* length = statement.word('L');
     const Word* radius = statement.word('R');
     if (!length && !radius) { // preselection of the next tool
-        execution.modal().selected_tool = ToolNumber(number);
-        execution.emit(SelectTool{ToolNumber(number)});
+        execution.modal().selected_tool = *tool;
+        execution.emit(SelectTool{*tool});
         return {};
     }
+    const int number = value_of(*tool);
     if (length) warn_of_other_length(execution, number, length_of(execution, *length), *length);
     LengthOffset& entry = execution.state.tables.write().lengths[OffsetNumber(number)];
     if (length) entry.length = length_of(execution, *length);
@@ -281,8 +350,10 @@ core::Result<void> read_system_datum(Execution& execution) {
                        fmt::format("FN 18: the {} position is unknown and assumed to be 0; set "
                                    "[program] start in the set-up",
                                    axis_letters[axis]));
+    const double value = position[axis].value_or(0.0);
+    if (execution.environment.on_system_read) execution.environment.on_system_read(value);
     execution.state.parameters.write().set_numbered(static_cast<int>(statement.word('Q')->value),
-                                                    position[axis].value_or(0.0));
+                                                    value);
     return {};
 }
 
@@ -322,14 +393,17 @@ void add(Digest& digest, const KlartextState& klartext) {
         digest.add(number_of(klartext.corner->turn + 4 * int(klartext.corner->is_done)));
     }
     add(digest, klartext.cycle);
-    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)));
+    digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)
+                         + 4 * int(klartext.turns_short_way)));
     digest.add(klartext.call_feed);
+    digest.add(klartext.datum);
+    for (const std::string& name : klartext.tool_names) digest.add(name);
     add(digest, klartext.transforms);
 }
 
 namespace {
 
-std::shared_ptr<LanguageState> begin_klartext() {
+std::shared_ptr<LanguageState> begin_klartext(const Environment&) {
     return std::make_shared<StateOf<KlartextState>>();
 }
 

@@ -17,7 +17,9 @@ extern const LanguageFunctions klartext_language;
 core::Result<void> run_klartext(Execution& execution, const ModalState& before);
 
 // The statements.
-core::Result<void> move_in_klartext(Execution& execution);     // L LP CC C CP CR CT CTP
+core::Result<void> move_in_klartext(Execution& execution); // L LP CC C CP CR CT CTP
+/// CYCL CALL POS: to the point in the plane, and to the height `above` the surface.
+core::Result<void> go_to_cycle(Execution& execution, double surface, double above);
 core::Result<void> make_corner(Execution& execution);          // RND CHF
 core::Result<void> call_klartext_tool(Execution& execution);   // TOOL CALL
 core::Result<void> define_klartext_tool(Execution& execution); // TOOL DEF

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/klartext/klartext.h"
 
@@ -265,6 +266,9 @@ void read_old_cycle(Execution& execution, DefinedCycle& cycle) {
     }
 }
 
+/// Whether Q395 says what the depth of a cycle refers to.
+bool has_depth_reference(int number) { return number == 200 || number == 203 || number == 205; }
+
 DefinedCycle new_cycle(const Execution& execution, int number) {
     const auto length = [&](int q) { return q_length(execution, q); };
     const auto plain = [&](int q) { return q_number(execution, q); };
@@ -273,8 +277,9 @@ DefinedCycle new_cycle(const Execution& execution, int number) {
             .clearance = std::abs(length(200)),
             .depth = length(201),
             .feed = length(206),
-            .peck = taps || number == 202 || number == 201 || number == 208 ? 0.0
-                                                                            : std::abs(length(202)),
+            .peck = taps || number == 202 || number == 201 || number == 208 || number == 240
+                        ? 0.0
+                        : std::abs(length(202)),
             .surface = length(203),
             .second_clearance = std::abs(length(204)),
             .dwell_above = number == 200 || number == 203 ? plain(210) : 0.0,
@@ -294,6 +299,46 @@ DefinedCycle new_cycle(const Execution& execution, int number) {
             .diameter = number == 208 ? length(335) : 0.0};
 }
 
+/// CYCL DEF 32.1 T0.05: the permitted deviation from the path; without T, that of the machine.
+void set_path_tolerance(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Word* word = execution.statement.word('P');
+    modal.path_tolerance = word ? length_of(execution, *word) : 0.0;
+    modal.corner_tolerances = {};
+    if (modal.path_tolerance > 0.0)
+        modal.corner_tolerances = {.rapid_tolerance = modal.path_tolerance, .between_kinds = true};
+    execution.emit(path_mode_of(modal));
+}
+
+/// CYCL DEF 247: the first row of the preset table is that of the set-up. Where the datum of
+/// another row is, and how it is turned, is not known.
+void set_datum(Execution& execution) {
+    const core::SourceSpan where = klartext_of(execution.block).span;
+    const double row = q_number(execution, 339);
+    KlartextState& klartext = writable_klartext(execution.state);
+    uint8_t& doubt = execution.modal().doubt;
+    if (!klartext.datum) {
+        klartext.datum = row;
+        execution.warn(where,
+                       fmt::format("CYCL DEF 247: datum {:.12g} of the preset table is assumed to "
+                                   "be the work offset of the set-up",
+                                   row),
+                       Severity::note);
+    } else if (row == *klartext.datum) {
+        doubt &= static_cast<uint8_t>(~datum_is_in_doubt);
+    } else if ((doubt & datum_is_in_doubt) == 0) {
+        doubt |= datum_is_in_doubt;
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("CYCL DEF 247: the work offset of the set-up is datum {:.12g} of the "
+                         "preset table; where datum {:.12g} is, is not known. Motions are followed "
+                         "as if it were the same, and are not proven clear",
+                         *klartext.datum, row),
+             core::rule_id("undecided"),
+             "Check the parts of the program for each datum separately, with its work offset."});
+    }
+}
+
 } // namespace
 
 core::Result<void> define_cycle(Execution& execution) {
@@ -311,31 +356,63 @@ core::Result<void> define_cycle(Execution& execution) {
             execution.emit(Dwell{std::max(word->value, 0.0)});
         return {};
     case 13:
+        return {};
     case 32:
+        if (command.part == 1) set_path_tolerance(execution);
         return {};
     case 220:
     case 221:
         return run_pattern(execution);
     case 247:
-        execution.warn(command.span,
-                       fmt::format("CYCL DEF 247: datum {:.12g} of the preset table is assumed to "
-                                   "be the work offset of the set-up",
-                                   q_number(execution, 339)),
-                       Severity::note);
+        set_datum(execution);
         return {};
     default:
         break;
     }
     KlartextState& klartext = writable_klartext(execution.state);
     klartext.calls_after_motions = false;
-    if (number != 1)
+    if (number != 1) {
+        if (q_number(execution, 395) != 0.0 && has_depth_reference(number))
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("CYCL DEF {}: Q395={:g} counts the depth to the full "
+                                          "diameter of the drill, which depends on T-ANGLE in the "
+                                          "tool table and is not supported: program Q395=+0 and "
+                                          "the depth of the tip",
+                                          number, q_number(execution, 395)),
+                              command.span);
+        if (number == 240 && q_number(execution, 343) != 0.0)
+            return core::fail(ErrorCode::unsupported,
+                              "CYCL DEF 240: Q343=1 centres to a diameter, and its depth depends "
+                              "on T-ANGLE in the tool table, which is not supported: program "
+                              "Q343=+0 and the depth Q201",
+                              command.span);
         klartext.cycle = new_cycle(execution, number);
-    else if (command.part == 0)
+        if (command.feed_of_call) {
+            if (!klartext.call_feed)
+                return core::fail(ErrorCode::missing_value,
+                                  "FAUTO: no TOOL CALL with F has been programmed yet",
+                                  command.span);
+            klartext.cycle.feed = *klartext.call_feed;
+        }
+    } else if (command.part == 0)
         klartext.cycle = {.number = 1};
     else
         read_old_cycle(execution, klartext.cycle);
     return {};
 }
+
+namespace {
+
+/// CYCL CALL POS: the word of the tool axis shifts the surface of the workpiece.
+double shift_of_call(const Execution& execution) {
+    const size_t normal = axes_of(execution.modal().plane).normal;
+    const Word* word = klartext_of(execution.block).calls_at_point
+                           ? execution.statement.word(axis_letters[normal])
+                           : nullptr;
+    return word ? length_of(execution, *word) : 0.0;
+}
+
+} // namespace
 
 core::Result<void> call_defined_cycle(Execution& execution) {
     const DefinedCycle cycle = klartext_of(execution.state).cycle;
@@ -350,12 +427,20 @@ core::Result<void> call_defined_cycle(Execution& execution) {
     if (cycle.number == 1 && !here)
         return refuse_statement(execution,
                                 "cycle 1 starts at the current position, which is unknown");
-    const double surface = cycle.number == 1 ? *here - cycle.clearance : cycle.surface;
+    const bool at_point = klartext_of(execution.block).calls_at_point;
+    if (at_point && cycle.number == 1)
+        return refuse_statement(execution, "cycle 1 has no surface coordinate: program the point "
+                                           "in a block of its own before CYCL CALL");
+    const double surface =
+        cycle.number == 1 ? *here - cycle.clearance : cycle.surface + shift_of_call(execution);
+    if (at_point)
+        if (auto done = go_to_cycle(execution, surface, surface + cycle.clearance); !done)
+            return done;
     execution.result.is_cycle = true;
     KlartextHole hole{
         execution, cycle, axes, surface, surface + cycle.clearance, surface + cycle.depth};
     const std::optional<double> feed = modal.feed;
-    if (cycle.number != 1) hole.rapid(hole.above);
+    if (cycle.number != 1 && !at_point) hole.rapid(hole.above);
     if (auto done = machine(hole); !done) return done;
     modal.feed = feed;
     const double second = surface + cycle.second_clearance;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/readings.h"
 #include "gcode/klartext/klartext.h"
 #include "gcode/language/flow_index.h"
 
@@ -46,6 +47,7 @@ core::Result<void> repeat_part(const FlowStep& step, uint32_t label) {
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value count, evaluate(step.block.pool, step.block.flow.condition,
                                            step.block.line, parameters, step.dialect.arithmetic));
+    report_unknown(parameters, step.result, step.block.flow.span, "the number of repetitions");
     auto& repeats = step.state.frames.back().repeats;
     const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
     int64_t& left = repeats.try_emplace(step.block.line, rounds).first->second;
@@ -114,7 +116,7 @@ core::Result<void> run_klartext_flow(const FlowStep& step) {
         break;
     }
     const ProgramParameters parameters(step.state, step.environment);
-    FEELER_TRY(const bool goes, condition_holds(step.block, parameters, step.dialect));
+    FEELER_TRY(const bool goes, condition_holds(step.state, step.block, parameters, step.dialect));
     if (!goes) return {};
     FEELER_TRY(step.state.next.line, line_of_label(step));
     return {};

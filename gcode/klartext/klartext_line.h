@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "gcode/language/block.h"
 
@@ -25,6 +26,7 @@ enum class CommandKind : uint8_t {
     cycle_call,       // CYCL CALL, CYCL CALL POS
     read_system,      // FN 18
     program_error,    // FN 14
+    level,            // PLANE RESET MOVE and TURN
     note,             // read, but has no effect here
     modes,            // a line with M words only
 };
@@ -34,10 +36,13 @@ enum class CommandKind : uint8_t {
 struct KlartextLine {
     CommandKind kind = CommandKind::none;
     core::SourceSpan span{};
+    std::string_view tool_name{}; // TOOL CALL "NAME"
     int number = 0, part = 0;     // CYCL DEF 7.1: 7 and 1
     int turn = 0;                 // DR+: 1, DR-: -1
     bool rapid = false;           // FMAX
     bool calls_cycle = false;     // M99, or CYCL CALL
+    bool feed_of_call = false;    // Q206=FAUTO: the feed of TOOL CALL
+    bool calls_at_point = false;  // CYCL CALL POS
     bool calls_from_here = false; // M89: after every motion
 };
 

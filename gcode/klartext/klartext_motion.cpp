@@ -295,13 +295,33 @@ core::Result<void> set_pole(Execution& execution) {
 
 } // namespace
 
+/// Source: Heidenhain, User's Manual Cycle Programming, "Calling a cycle with CYCL CALL POS": from
+///         above the surface the tool first moves in the plane, from below it first along its axis.
+core::Result<void> go_to_cycle(Execution& execution, double surface, double above) {
+    const PlaneAxes axes = plane_of(execution);
+    FEELER_TRY(const Position target, klartext_target(execution));
+    writable_klartext(execution.state).corner.reset();
+    const auto go = [&](const Position& end) {
+        return end == execution.modal().position ? core::Result<void>{}
+                                                 : go_along(execution, {.end = end});
+    };
+    Position over = execution.modal().position;
+    if (over[axes.normal] && *over[axes.normal] < surface) over[axes.normal] = above;
+    if (auto done = go(over); !done) return done;
+    over[axes.first] = target[axes.first];
+    over[axes.second] = target[axes.second];
+    if (auto done = go(over); !done) return done;
+    over[axes.normal] = above;
+    return go(over);
+}
+
 core::Result<void> move_in_klartext(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     const Statement& statement = execution.statement;
     if (command.kind == pole) return set_pole(execution);
     const bool still =
         (command.kind == straight || command.kind == cycle_call) && !statement.has_axis_word();
-    if (still) return {};
+    if (still || command.calls_at_point) return {};
     const Position start = execution.modal().position;
     FEELER_TRY(PathElement contour, contour_of(execution));
     writable_klartext(execution.state).corner.reset();

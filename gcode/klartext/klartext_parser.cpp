@@ -29,9 +29,9 @@ constexpr StatementKeyword motions[] = {
     {"CT", CommandKind::tangent_arc}, {"CTP", CommandKind::tangent_polar},
     {"RND", CommandKind::rounding},   {"CHF", CommandKind::chamfer}};
 
-constexpr std::string_view refused[] = {"APPR",  "DEP",      "LN",   "SPL",    "FC",      "FCT",
-                                        "FL",    "FLT",      "FPOL", "SEL",    "PATTERN", "TCH",
-                                        "TRANS", "FUNCTION", "SQL",  "PRESET", "CONTOUR"};
+constexpr std::string_view refused[] = {"APPR",  "DEP", "LN",     "SPL",    "FC",      "FCT",
+                                        "FL",    "FLT", "FPOL",   "SEL",    "PATTERN", "TCH",
+                                        "TRANS", "SQL", "PRESET", "CONTOUR"};
 
 core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
     KlartextLine& command = reader.command;
@@ -51,6 +51,8 @@ core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
 
 /// `BEGIN PGM name MM`: the unit is the last word.
 core::Result<void> read_begin(KlartextReader& reader) {
+    if (!reader.accept("PGM"))
+        return reader.refuse("'BEGIN' must be followed by PGM", reader.begin);
     std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
     reader.lexer.at = reader.lexer.line.size();
     while (!rest.empty() && (is_blank(rest.back()) || is_line_end(rest.back())))
@@ -71,8 +73,21 @@ core::Result<void> read_plane(KlartextReader& reader) {
     if (!reader.accept("RESET"))
         return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
                              ErrorCode::unsupported);
+    const bool stays = reader.accept("STAY") || reader.next() == '\0';
     reader.lexer.at = reader.lexer.line.size();
-    reader.command.kind = CommandKind::note;
+    reader.command.kind = stays ? CommandKind::note : CommandKind::level;
+    return {};
+}
+
+/// `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS` and `FUNCTION RESET TCPM`, read as M128 and M129.
+core::Result<void> read_function_mode(KlartextReader& reader) {
+    const bool resets = reader.accept("RESET");
+    if (!reader.accept("TCPM"))
+        return reader.refuse("'FUNCTION' is only supported with TCPM and RESET TCPM", reader.begin,
+                             ErrorCode::unsupported);
+    reader.add_word('M', resets ? 129.0 : 128.0, reader.begin);
+    reader.lexer.at = reader.lexer.line.size();
+    reader.command.kind = CommandKind::modes;
     return {};
 }
 
@@ -82,31 +97,54 @@ core::Result<void> read_modes(KlartextReader& reader, CommandKind kind) {
         if (!is_letter(c)) return reader.stray();
         if (auto done = read_contour_word(reader); !done) return done;
     }
+    for (const Word& word : reader.block.words)
+        if (axis_letters.find(word.letter) != std::string_view::npos)
+            return core::fail(
+                ErrorCode::syntax,
+                fmt::format("'{}' is not allowed in this block: a move begins with L", word.letter),
+                word.span);
     return {};
 }
+
+core::Result<void> read_end(KlartextReader& reader) {
+    if (!reader.accept("PGM")) return reader.refuse("'END' must be followed by PGM", reader.begin);
+    reader.lexer.at = reader.lexer.line.size();
+    reader.block.flow.kind = FlowKind::end_program;
+    reader.block.flow.span = reader.span_from(reader.begin);
+    return {};
+}
+
+/// `BLK FORM`: the stock comes from the set-up.
+core::Result<void> read_blank_form(KlartextReader& reader) {
+    if (!reader.accept("FORM"))
+        return reader.refuse("'BLK' must be followed by FORM", reader.begin);
+    reader.lexer.at = reader.lexer.line.size();
+    return {};
+}
+
+core::Result<void> read_stop(KlartextReader& reader) {
+    reader.add_word('M', 0.0, reader.begin);
+    return read_modes(reader, CommandKind::modes);
+}
+
+/// A word that begins a statement other than a motion, and the function that reads what follows.
+struct OpeningWord {
+    std::string_view spelling;
+    core::Result<void> (*read)(KlartextReader&);
+};
+
+constexpr OpeningWord opening_words[] = {
+    {"BEGIN", read_begin},    {"END", read_end},
+    {"BLK", read_blank_form}, {"STOP", read_stop},
+    {"TOOL", read_tool},      {"CYCL", read_cycle},
+    {"CYCLE", read_cycle},    {"CALL", read_call},
+    {"PLANE", read_plane},    {"FUNCTION", read_function_mode}};
 
 core::Result<void> read_keyword(KlartextReader& reader, const std::string& first) {
     reader.accept(first);
     reader.command.span = reader.span_from(reader.begin);
-    if (first == "BEGIN" && reader.accept("PGM")) return read_begin(reader);
-    if (first == "END" && reader.accept("PGM")) {
-        reader.lexer.at = reader.lexer.line.size();
-        reader.block.flow.kind = FlowKind::end_program;
-        reader.block.flow.span = reader.span_from(reader.begin);
-        return {};
-    }
-    if (first == "BLK" && reader.accept("FORM")) { // the stock comes from the set-up
-        reader.lexer.at = reader.lexer.line.size();
-        return {};
-    }
-    if (first == "STOP") {
-        reader.add_word('M', 0.0, reader.begin);
-        return read_modes(reader, CommandKind::modes);
-    }
-    if (first == "TOOL") return read_tool(reader);
-    if (first == "CYCL" || first == "CYCLE") return read_cycle(reader);
-    if (first == "CALL") return read_call(reader);
-    if (first == "PLANE") return read_plane(reader);
+    for (const OpeningWord& word : opening_words)
+        if (first == word.spelling) return word.read(reader);
     for (const StatementKeyword& keyword : motions)
         if (first == keyword.spelling) return read_motion(reader, keyword.kind);
     const bool known =
@@ -232,9 +270,10 @@ FlowIndex klartext_index(const Program& program, const Dialect& dialect) {
 namespace {
 
 constexpr int first_new_cycle = 200; // cycles from here on have Q parameters
+constexpr int feed_of_plunge = 206;
 
 constexpr int cycles[] = {1,   7,   8,   9,   10,  11,  13,  19,  32,  200, 201,
-                          202, 203, 205, 206, 207, 208, 209, 220, 221, 247};
+                          202, 203, 205, 206, 207, 208, 209, 220, 221, 240, 247};
 
 void set_label(KlartextReader& reader, std::string name) {
     Flow& flow = reader.block.flow;
@@ -244,6 +283,15 @@ void set_label(KlartextReader& reader, std::string name) {
 }
 
 } // namespace
+
+std::vector<std::string> klartext_words() {
+    std::vector<std::string> words;
+    for (const OpeningWord& word : opening_words) words.emplace_back(word.spelling);
+    for (const StatementKeyword& keyword : motions) words.emplace_back(keyword.spelling);
+    for (const std::string_view word : refused) words.emplace_back(word);
+    for (const int cycle : cycles) words.push_back(fmt::format("CYCL DEF {}", cycle));
+    return words;
+}
 
 /// A number, or a name with its quotation marks.
 core::Result<void> read_label_name(KlartextReader& reader) {
@@ -361,11 +409,20 @@ core::Result<void> read_tool_call_word(KlartextReader& reader) {
     return reader.stray();
 }
 
+core::Result<void> read_tool_name(KlartextReader& reader) {
+    Lexer& lexer = reader.lexer;
+    const size_t from = ++lexer.at;
+    const size_t end = lexer.line.find('"', from);
+    if (end == std::string_view::npos)
+        return reader.refuse("the name of the tool has no closing quotation mark", reader.begin);
+    reader.command.tool_name = lexer.line.substr(from, end - from);
+    lexer.at = end + 1;
+    return {};
+}
+
 core::Result<void> read_tool_number(KlartextReader& reader) {
     const char c = reader.next();
-    if (c == '"')
-        return reader.refuse("'TOOL' by name is not supported yet: give the tool number",
-                             reader.begin, ErrorCode::unsupported);
+    if (c == '"') return read_tool_name(reader);
     if (!is_digit(c) && upper(c) != 'Q') return {};
     return reader.word('T', reader.lexer.at);
 }
@@ -410,7 +467,13 @@ core::Result<void> read_cycle_parameters(KlartextReader& reader) {
             continue;
         }
         FEELER_TRY(const int target, read_target(reader));
-        if (auto letters = reader.letters(); letters == "FAUTO" || letters == "FMAX")
+        const auto letters = reader.letters();
+        if (letters == "FAUTO" && target == feed_of_plunge) {
+            reader.lexer.at += letters.size();
+            reader.command.feed_of_call = true;
+            continue;
+        }
+        if (letters == "FAUTO" || letters == "FMAX")
             return reader.refuse(
                 fmt::format("'{}' as the feed of a cycle is not supported yet: give a number",
                             letters),
@@ -448,7 +511,9 @@ core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
                              from, ErrorCode::unsupported);
     if (cycle == 7 || cycle == 19) return read_axes(reader, true);
     if (cycle == 8) return read_axes(reader, false);
-    if (cycle == 13 || cycle == 32) { // spindle angle, tolerances
+    if (cycle == 32 && reader.command.part == 1 && reader.accept_prefix("T"))
+        return reader.word('P', from);
+    if (cycle == 13 || cycle == 32) { // spindle angle, HSC mode
         reader.lexer.at = reader.lexer.line.size();
         return {};
     }
@@ -470,7 +535,7 @@ core::Result<void> read_cycle_call(KlartextReader& reader) {
     if (reader.accept("PAT"))
         return reader.refuse("'CYCL CALL PAT' is not supported yet", reader.begin,
                              ErrorCode::unsupported);
-    reader.accept("POS");
+    command.calls_at_point = reader.accept("POS");
     while (const char c = reader.next()) {
         if (!is_letter(c)) return reader.stray();
         if (auto done = read_contour_word(reader); !done) return done;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "gcode/language/block.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/flow_index.h"
@@ -22,6 +25,10 @@ uint32_t lines_of(std::string_view text);
 
 /// Converts a position in a block of several lines to its line and the column in that line.
 core::SourceSpan position_in_lines(std::string_view text, core::SourceSpan where);
+
+/// The words with which a statement can begin, also those that are refused, and `CYCL DEF n` for
+/// each supported cycle.
+std::vector<std::string> klartext_words();
 
 /// The labels of a program.
 FlowIndex klartext_index(const Program& program, const Dialect& dialect);

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "gcode/exec/interpreter.h"
 
@@ -71,9 +73,12 @@ struct KlartextState {
     std::optional<PlanePoint> direction;       // at the end of the last motion in the plane
     std::optional<Corner> corner;
     DefinedCycle cycle;
+    std::optional<double> datum;      // the first row of the preset table that is used (cycle 247)
     bool calls_after_motions = false; // M89
     std::optional<double> call_feed;  // F of TOOL CALL, mm/min
     Transforms transforms;
+    std::vector<std::string> tool_names; // called, but not in the set-up
+    bool turns_short_way = false;        // M126
     bool looks_ahead = false; // searching the motion after a corner; corners are ignored meanwhile
 
     bool operator==(const KlartextState&) const = default;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <any>
-#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,8 +12,14 @@
 
 namespace gcode {
 
-/// How an axis word is measured: by the modal distance mode, or by its own prefix, as in `IX5`.
-enum class Addressing : uint8_t { modal, absolute, incremental };
+/// How an axis word is measured: by the modal distance mode, or by its own prefix, as in `IX5`. The
+/// last three are absolute, with the direction in which a rotary axis turns: DC, ACP and ACN of
+/// Siemens.
+enum class Addressing : uint8_t { modal, absolute, incremental, shortest, positive, negative };
+
+constexpr bool is_absolute(Addressing addressing) {
+    return addressing != Addressing::modal && addressing != Addressing::incremental;
+}
 
 /// A letter and its value as written, in the units of the program.
 struct Word {
@@ -22,7 +27,8 @@ struct Word {
         '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and `,C`
     double value = 0.0;
     core::SourceSpan span{};
-    bool has_point = false; // X5. rather than X5; also set for computed values
+    bool has_point = false;  // X5. rather than X5; also set for computed values
+    bool is_unknown = false; // its value depends on one that only the machine knows
     Addressing addressing = Addressing::modal;
     Expression expression{}; // if present, overrides the value
 
@@ -87,9 +93,9 @@ enum class FlowKind : uint8_t {
     end_endless,
     until,
     repeat_part,
-    procedure,   // PROC
-    declaration, // DEF
-    give_back,   // RET
+    procedure,        // PROC
+    declaration,      // DEF
+    return_statement, // RET
 };
 
 /// Whether a kind is a flow statement of native Siemens other than a jump.
@@ -103,7 +109,7 @@ constexpr bool is_siemens_statement(FlowKind kind) {
     case FlowKind::repeat_part:
     case FlowKind::procedure:
     case FlowKind::declaration:
-    case FlowKind::give_back:
+    case FlowKind::return_statement:
         return true;
     default:
         return false;
@@ -158,6 +164,7 @@ struct Block {
     std::optional<int> block_delete{};          // 1 for `/`, 1 to 9 for `/1` to `/9`
     bool tape_mark = false;                     // a line that begins with %
     bool is_program_name = false;               // a line that begins with <NAME>
+    bool prints = false;                        // POPEN, PCLOS, DPRNT or BPRNT
     std::optional<size_t> words_before_slash{}; // number of words before a `/` within the block
 
     bool has_message = false; // a comment that the control acts on

@@ -114,6 +114,7 @@ struct UseSpindleMode {
 struct SetPathMode {
     PathMode mode;
     double tolerance, naive_tolerance; // mm
+    CornerTolerances corners = {};
 
     bool operator==(const SetPathMode&) const = default;
 };
@@ -161,6 +162,11 @@ using CanonicalCommand =
                  SetOffset, UseToolLengthOffset, SetPathMode, EnableOverride, SetOutput,
                  WaitForInput, Message, ProgramStop, OptionalStop, ProgramEnd>;
 
+/// The command for the path mode of a modal state.
+inline SetPathMode path_mode_of(const ModalState& modal) {
+    return {modal.path, modal.path_tolerance, modal.naive_tolerance, modal.corner_tolerances};
+}
+
 /// Whether a command moves axes: a rapid, a feed, an arc, a probing move or a thread.
 bool is_motion(const CanonicalCommand& command);
 
@@ -203,6 +209,7 @@ struct BlockCommands {
     std::vector<uint32_t> calls{}; // lines of the calls that led here, outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
     bool goes_home = false;        // G28 or G30
+    core::PathCertainty path = core::PathCertainty::known;
     std::vector<CanonicalCommand> commands{};
     std::vector<uint32_t> columns{}; // of the words that produced the commands
     std::vector<Warning> warnings{};

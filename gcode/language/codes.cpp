@@ -36,6 +36,22 @@ constexpr std::string_view no_engraving =
     "the strokes of the engraving font are not published and cannot be checked: program the "
     "letters with G1, G2 and G3";
 
+constexpr std::string_view no_cylinder =
+    "cylindrical interpolation is not supported yet: program the rotary axis itself";
+constexpr std::string_view no_polar_turning =
+    "polar coordinate interpolation with a rotary axis is not supported yet: program X, Y and the "
+    "rotary axis themselves";
+constexpr std::string_view no_length_measurement =
+    "the tool moves until a probe answers, and only the control knows where: measure tools in a "
+    "program of their own, or begin the block with / and skip it";
+constexpr std::string_view no_changing_radius =
+    "compensation along I, J and K is not supported yet: program the path of the tool centre";
+constexpr std::string_view no_five_axis_length =
+    "compensation of the tool length along a tilted tool is not supported yet: use G43.4 or G234, "
+    "or program the positions of the axes";
+constexpr std::string_view no_five_axis_cycle =
+    "cycles along a tilted tool are not supported yet: program the holes with G0 and G1";
+
 constexpr std::string_view no_slanted_axis = "grinding with a slanted axis is not supported";
 constexpr std::string_view no_changing_pitch = "threads with variable pitch are not supported yet";
 constexpr std::string_view no_axis_offset =
@@ -45,6 +61,12 @@ constexpr std::string_view no_point_between =
     "then G75";
 constexpr std::string_view no_path_time =
     "a feed given as travel time is not supported yet: use G94";
+
+constexpr std::string_view no_transitions =
+    "the transitions that it inserts between contour elements are not supported: use RND";
+
+constexpr std::string_view no_builders_code =
+    "the effect of this code depends on the machine builder and is not known";
 
 constexpr std::string_view no_five_axes = "moves of rotary axes are not supported yet";
 
@@ -57,6 +79,8 @@ constexpr std::string_view no_retreat =
     "a retract along the tool axis is not supported yet: program it as L with M91";
 
 // Sorted by letter and number. The groups are those of NISTIR 6556, table 4, where it has them.
+// Codes of the group `other` with a remark switch accessories: they move no axis and set nothing
+// that a later block depends on.
 constexpr Code codes[] = {
     {g_code(0), motion, "XYZ", every | siemens, {}},
     {g_code(1), motion, "XYZ", every | siemens, {}},
@@ -72,6 +96,7 @@ constexpr Code codes[] = {
     {g_code(5, 3), motion, "XYZ", linuxcnc, {}},
     {g_code(7), diameter, "", linuxcnc, {}},
     {g_code(7), motion, "", siemens, no_slanted_axis},
+    {g_code(7, 1), other, "", fanuc & ~haas, no_cylinder},
     {g_code(8), diameter, "", linuxcnc, {}},
     {g_code(8), other, "P", fanuc, {}},
     {g_code(9), exact_stop, "", fanuc, {}},
@@ -79,6 +104,7 @@ constexpr Code codes[] = {
     {g_code(10), action, "XYZPLRQIJH", every, {}},
     {g_code(11), action, "", fanuc, {}},
     {g_code(12), action, "XYZIJKQDL", haas, {}},
+    {g_code(12, 1), other, "", fanuc & ~haas, no_polar_turning},
     {g_code(13), action, "XYZIJKQDL", haas, {}},
     {g_code(13, 1), other, "", fanuc & ~haas, {}},
     {g_code(15), polar, "", fanuc, {}},
@@ -91,6 +117,7 @@ constexpr Code codes[] = {
     {g_code(19, 1), ModalGroup::plane, "", linuxcnc, {}},
     {g_code(20), units, "", every | klartext, {}},
     {g_code(21), units, "", every | klartext, {}},
+    {g_code(22), action, "XYZIJK", fanuc & ~haas, {}},
     {g_code(23), other, "", fanuc & ~haas, {}},
     {g_code(25), other, "", fanuc & ~haas, {}},
     {g_code(25), action, "XYZ", siemens, {}},
@@ -107,6 +134,11 @@ constexpr Code codes[] = {
     {g_code(33, 1), motion, "XYZK", linuxcnc, {}},
     {g_code(34), motion, "XYZIJK", siemens, no_changing_pitch},
     {g_code(35), motion, "XYZIJK", siemens, no_changing_pitch},
+    {g_code(35), motion, "XYZIJK", fanuc & ~haas, no_changing_pitch},
+    {g_code(35), action, "XYZD", haas, {}},
+    {g_code(36), action, "XYZIJK", haas, {}},
+    {g_code(36), action, "XYZ", fanuc & ~haas, no_length_measurement},
+    {g_code(37), action, "XYZH", fanuc, no_length_measurement},
     {g_code(38, 2), motion, "XYZ", linuxcnc | grbl, {}},
     {g_code(38, 3), motion, "XYZ", linuxcnc | grbl, {}},
     {g_code(38, 4), motion, "XYZ", linuxcnc | grbl, {}},
@@ -144,6 +176,7 @@ constexpr Code codes[] = {
     {g_code(59, 1), work_offset, "", linuxcnc, {}},
     {g_code(59, 2), work_offset, "", linuxcnc, {}},
     {g_code(59, 3), work_offset, "", linuxcnc, {}},
+    {g_code(60), action, "XYZ", fanuc, {}},
     {g_code(60), path_control, "", siemens, {}},
     {g_code(61), path_control, "", every, {}},
     {g_code(61, 1), path_control, "", mills, {}},
@@ -206,7 +239,8 @@ constexpr Code codes[] = {
     {g_code(91), distance, "", every | siemens, {}},
     {g_code(91, 1), arc_distance, "", linuxcnc | grbl, {}},
     {g_code(92), action, "XYZ", every, {}},
-    {g_code(92, 1), action, "", every, {}},
+    {g_code(92, 1), action, "", linuxcnc | grbl, {}},
+    {g_code(92, 1), action, "XYZ", fanuc, {}},
     {g_code(92, 2), action, "", linuxcnc, {}},
     {g_code(92, 3), action, "", linuxcnc, {}},
     {g_code(93), feed_mode, "", every | siemens, {}},
@@ -219,6 +253,7 @@ constexpr Code codes[] = {
     {g_code(100), mirror, "XYZ", haas, {}},
     {g_code(101), mirror, "XYZ", haas, {}},
     {g_code(103), other, "P", haas, {}},
+    {g_code(107), other, "XYZQR", fanuc, no_cylinder},
     {g_code(110), work_offset, "", haas, {}},
     {g_code(110), action, "XYZ", siemens, {}},
     {g_code(111), work_offset, "", haas, {}},
@@ -242,13 +277,21 @@ constexpr Code codes[] = {
     {g_code(127), work_offset, "", haas, {}},
     {g_code(128), work_offset, "", haas, {}},
     {g_code(129), work_offset, "", haas, {}},
+    {g_code(136), action, "XYZIJK", haas, {}},
     {g_code(140), other, "", siemens, {}, g_code(143)},
+    {g_code(141), cutter_radius, "DIJK", haas, no_changing_radius},
+    {g_code(143), tool_length, "H", haas, no_five_axis_length},
     {g_code(147), motion, "XYZ", siemens, no_smooth_approach},
     {g_code(148), motion, "XYZ", siemens, no_smooth_approach},
     {g_code(150), action, "XYZPIJKQRDS", haas, no_pocket},
     {g_code(153), action, "XYZ", siemens, {}},
+    {g_code(153), action, "XYZ", haas, no_five_axis_cycle},
     {g_code(154), work_offset, "P", haas, {}},
-    {g_code(187), other, "PE", haas, {}},
+    {g_code(155), action, "XYZ", haas, no_five_axis_cycle},
+    {g_code(161), action, "XYZ", haas, no_five_axis_cycle, g_code(169)},
+    {g_code(174), action, "XYZ", haas, {}},
+    {g_code(184), action, "XYZ", haas, {}},
+    {g_code(187), path_control, "PE", haas, {}},
     {g_code(247), motion, "XYZ", siemens, no_smooth_approach},
     {g_code(248), motion, "XYZ", siemens, no_smooth_approach},
     {g_code(290), other, "", both_siemens, {}},
@@ -268,7 +311,7 @@ constexpr Code codes[] = {
     {g_code(700), units, "", siemens, {}},
     {g_code(710), units, "", siemens, {}},
     {g_code(751), action, "XYZ", siemens, no_point_between},
-    {g_code(810), other, "", siemens, {}, g_code(819)},
+    {g_code(810), other, "", siemens, no_builders_code, g_code(819)},
     {g_code(931), feed_mode, "", siemens, no_path_time},
     {g_code(942), feed_mode, "", siemens, {}},
     {g_code(952), feed_mode, "", siemens, {}},
@@ -287,12 +330,16 @@ constexpr Code codes[] = {
     {m_code(7), coolant, "", every | klartext | siemens, {}},
     {m_code(8), coolant, "", every | klartext | siemens, {}},
     {m_code(9), coolant, "", every | klartext | siemens, {}},
+    {m_code(10), other, "", haas, {}, m_code(13)}, // brakes of rotary axes
     {m_code(16), tool_change, "", haas, no_other_change},
     {m_code(17), subprogram, "", siemens, {}},
     {m_code(19), spindle, "RQPD", mills | siemens, {}},
     {m_code(29), other, "", bit(DialectId::fanuc) | bit(DialectId::siemens_iso), {}},
     {m_code(30), stopping, "", every | klartext | siemens, {}},
+    {m_code(31), other, "", haas, {}, m_code(33)}, // chip conveyor
+    {m_code(34), other, "", haas, {}, m_code(35)}, // coolant spigot
     {m_code(40), other, "", siemens, {}, m_code(45)},
+    {m_code(41), other, "", haas, {}, m_code(42)}, // spindle gear
     {m_code(46), other, "PQ", haas, no_jump},
     {m_code(48), overrides, "", mills, {}},
     {m_code(49), overrides, "", mills, {}},
@@ -301,6 +348,8 @@ constexpr Code codes[] = {
     {m_code(51), overrides, "P", linuxcnc, {}},
     {m_code(52), overrides, "P", linuxcnc, {}},
     {m_code(53), overrides, "P", linuxcnc, {}},
+    {m_code(56), other, "P", grbl, {}}, // parking
+    {m_code(59), other, "P", haas, {}}, // output on
     {m_code(60), stopping, "", linuxcnc, {}},
     {m_code(61), tool_change, "Q", linuxcnc, {}},
     {m_code(62), other, "P", linuxcnc, {}},
@@ -310,14 +359,21 @@ constexpr Code codes[] = {
     {m_code(66), other, "PELQ", linuxcnc, {}},
     {m_code(67), other, "EQ", linuxcnc, {}},
     {m_code(68), other, "EQ", linuxcnc, {}},
+    {m_code(69), other, "P", haas, {}}, // output off
     {m_code(70), other, "", linuxcnc, {}},
     {m_code(70), other, "", siemens, {}},
     {m_code(71), other, "", linuxcnc, {}},
     {m_code(72), other, "", linuxcnc, {}},
     {m_code(73), other, "", linuxcnc, {}},
+    {m_code(73), other, "", haas, {}, m_code(74)}, // tabs of the control
+    {m_code(75), other, "", haas, {}, m_code(79)}, // probing: reference point, skip signal; display
+    {m_code(80), other, "", haas, {}, m_code(81)}, // door
+    {m_code(83), other, "", haas, {}, m_code(84)}, // air
+    {m_code(88), other, "", haas, {}, m_code(89)}, // coolant through the spindle
     {m_code(90), other, "", klartext, {}},
     {m_code(92), other, "", klartext, no_machine_point},
     {m_code(94), other, "", klartext, {}},
+    {m_code(95), other, "", haas, {}}, // sleep
     {m_code(96), subprogram, "PQ", haas, {}},
     {m_code(97), subprogram, "PL", haas, {}},
     {m_code(98), subprogram, "PLQ", mills, {}},
@@ -330,7 +386,7 @@ constexpr Code codes[] = {
     {m_code(109), other, "", klartext, {}},
     {m_code(110), other, "", klartext, {}},
     {m_code(111), other, "", klartext, {}},
-    {m_code(112), other, "", klartext, {}},
+    {m_code(112), other, "", klartext, no_transitions},
     {m_code(113), other, "", klartext, {}},
     {m_code(114), other, "", klartext, no_five_axes},
     {m_code(115), other, "", klartext, no_five_axes},
@@ -344,11 +400,13 @@ constexpr Code codes[] = {
     {m_code(128), other, "", klartext, {}},
     {m_code(129), other, "", klartext, {}},
     {m_code(130), other, "", klartext, no_five_axes},
+    {m_code(130), other, "", haas, {}, m_code(131)}, // media display
     {m_code(134), other, "", klartext, {}},
     {m_code(135), other, "", klartext, {}},
     {m_code(136), other, "", klartext, no_turn_feed},
     {m_code(137), other, "", klartext, {}},
     {m_code(138), other, "", klartext, {}},
+    {m_code(138), other, "PE", haas, {}, m_code(139)}, // variation of the spindle speed
     {m_code(140), other, "", klartext, no_retreat},
     {m_code(141), other, "", klartext, {}},
     {m_code(143), other, "", klartext, {}},
@@ -356,6 +414,8 @@ constexpr Code codes[] = {
     {m_code(145), other, "", klartext, {}},
     {m_code(148), other, "", klartext, {}},
     {m_code(149), other, "", klartext, {}},
+    {m_code(158), other, "", haas, {}, m_code(162)}, // mist condenser, minimum quantity lubrication
+    {m_code(180), other, "", haas, {}, m_code(181)}, // window
     {m_code(198), subprogram, "PLQ", fanuc, {}},
 };
 
@@ -382,6 +442,11 @@ const Code* find_code(CodeNumber number, DialectId id) {
     for (; found != std::end(codes) && found->number <= number; ++found)
         if ((found->dialects & wanted) && number <= found->last_number()) return found;
     return nullptr;
+}
+
+bool has_lathe_codes(DialectId id) {
+    const Code* code = find_code(g_code(7), id);
+    return code && code->group == ModalGroup::diameter;
 }
 
 const Code* find_code(char letter, double value, DialectId id) {

@@ -46,7 +46,7 @@ enum class ModalGroup : uint8_t {
 };
 
 /// Dialects as a set of bits, 1 << Dialect::codes.
-using DialectSet = uint8_t;
+using DialectSet = uint16_t;
 
 /// One G or M code.
 struct Code {
@@ -62,6 +62,12 @@ struct Code {
     bool uses_axes() const { return words.starts_with("XYZ"); }
     bool is_cycle() const { return group == ModalGroup::cycle && number != g_code(80); }
 };
+
+/// Whether the moves of a block with this code are in machine coordinates: G53, and G153 of
+/// Siemens. SUPA is read as G53.
+constexpr bool is_machine_move(CodeNumber code) {
+    return code == g_code(53) || code == g_code(153);
+}
 
 /// The code of a number in a dialect, or null when the dialect has none.
 const Code* find_code(CodeNumber number, DialectId dialect);

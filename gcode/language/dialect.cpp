@@ -64,6 +64,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .cycle_stays_above_r = true,
                                       .has_extended_offsets = false,
                                       .diameters_in_tool_entries = false,
+                                      .has_older_tool_entries = false,
                                       .g87_is_back_boring = false,
                                       .cycle_levels_follow_g91 = true,
                                       .boring_feeds_to_r = false,
@@ -73,6 +74,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .repeats_with_k = false,
                                       .tape_mark_ends_program = true,
                                       .repeated_codes_are_errors = true,
+                                      .last_of_group_counts = false,
                                       .language = Language::words,
                                       .iso_mode = {},
                                       .expressions = ExpressionSyntax::rs274,
@@ -94,16 +96,17 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .unset_is_vacant = false,
                                       .feed_mode_clears_feed = true,
                                       .bare_h0_is_tool = true,
+                                      .home_cancels_length = false,
                                       .repeats_in_program_number = false,
                                       .calls_stand_alone = true,
                                       .decimal_points_matter = false,
+                                      .third_offset_is_ignored = false,
                                       .assumed_feed = 0.0,
                                       .system_parameters = SystemParameters::rs274,
                                       .parameter_letter = "#",
                                       .has_parameter_zero = false,
                                       .names_are_declared = false,
                                       .assigns_in_order = false,
-                                      .machine_coordinates_are_of_tip = false,
                                       .text_end_returns = false,
                                       .radius_word = "R",
                                       .first_alarm = 0,
@@ -151,6 +154,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .cycle_stays_above_r = false,
                                    .has_extended_offsets = true,
                                    .diameters_in_tool_entries = false,
+                                   .has_older_tool_entries = true,
                                    .g87_is_back_boring = true,
                                    .cycle_levels_follow_g91 = false,
                                    .boring_feeds_to_r = true,
@@ -160,6 +164,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .repeats_with_k = true,
                                    .tape_mark_ends_program = false,
                                    .repeated_codes_are_errors = false,
+                                   .last_of_group_counts = true,
                                    .language = Language::words,
                                    .iso_mode = {},
                                    .expressions = ExpressionSyntax::fanuc,
@@ -181,16 +186,17 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .unset_is_vacant = true,
                                    .feed_mode_clears_feed = false,
                                    .bare_h0_is_tool = false,
+                                   .home_cancels_length = false,
                                    .repeats_in_program_number = true,
                                    .calls_stand_alone = false,
                                    .decimal_points_matter = true,
+                                   .third_offset_is_ignored = false,
                                    .assumed_feed = 0.0,
                                    .system_parameters = SystemParameters::fanuc,
                                    .parameter_letter = "#",
                                    .has_parameter_zero = false,
                                    .names_are_declared = false,
                                    .assigns_in_order = false,
-                                   .machine_coordinates_are_of_tip = false,
                                    .text_end_returns = false,
                                    .radius_word = "R",
                                    .first_alarm = 3000,
@@ -210,12 +216,16 @@ constexpr Dialect haas_dialect = [] {
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.diameters_in_tool_entries = true;
+    entry.has_older_tool_entries = false;
+    entry.last_of_group_counts = false;
     entry.pecks_may_shrink = true;
     entry.g87_is_back_boring = false;
     entry.scale_without_point_is_thousandths = false;
     entry.repeats_with_k = false;
     entry.repeats_in_program_number = false;
     entry.system_parameters = SystemParameters::haas;
+    // Haas mill operator's manual 96-8000, G28.
+    entry.home_cancels_length = true;
     entry.first_alarm = 1000;
     return entry;
 }();
@@ -229,6 +239,7 @@ constexpr Dialect grbl_dialect = [] {
     entry.name = "grbl";
     entry.codes = DialectId::grbl;
     entry.assumed_feed = grbl_feed;
+    entry.third_offset_is_ignored = true; // gcode.c: clears I, J and K of an arc without R
     entry.length_needs_g43 = false;
     entry.unit_is_machines = false;
     entry.arc = grbl_arc;
@@ -259,6 +270,8 @@ constexpr Dialect heidenhain = [] {
     entry.codes = DialectId::heidenhain;
     entry.contour_style = ContourStyle::rs274;
     entry.radius_number_stays = false;
+    entry.has_older_tool_entries = false;
+    entry.last_of_group_counts = false;
     entry.length_needs_g43 = false;
     entry.arc = heidenhain_arc;
     entry.machine_move_is_rapid = false;
@@ -266,6 +279,7 @@ constexpr Dialect heidenhain = [] {
     entry.dwell_without_point_is_milliseconds = false;
     entry.decimal_points_matter = false;
     entry.language = Language::klartext;
+    entry.parameter_letter = "Q";
     entry.expressions = ExpressionSyntax::klartext;
     entry.arithmetic = {};
     entry.has_fanuc_flow = false;
@@ -289,6 +303,8 @@ constexpr Dialect siemens_dialect = [] {
     entry.name = "siemens";
     entry.codes = DialectId::siemens;
     entry.arc = siemens_arc;
+    entry.has_older_tool_entries = false;
+    entry.last_of_group_counts = false;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
     entry.lone_h_is_length_offset = false;
@@ -310,7 +326,6 @@ constexpr Dialect siemens_dialect = [] {
     entry.has_parameter_zero = true;
     entry.names_are_declared = true;
     entry.assigns_in_order = true;
-    entry.machine_coordinates_are_of_tip = true;
     entry.text_end_returns = true;
     entry.radius_word = "CR=";
     entry.radius_number_stays = false;
@@ -347,6 +362,11 @@ core::Result<DialectId> supported(DialectId id) {
     return core::fail(
         core::ErrorCode::unsupported,
         fmt::format("the dialect {} is not supported by this version", dialect(id).name));
+}
+
+core::Result<DialectId> supported(const Recognition& recognition) {
+    if (recognition.refusal.empty()) return supported(recognition.dialect);
+    return core::fail(core::ErrorCode::unsupported, recognition.refusal);
 }
 
 std::span<const Dialect> all_dialects() { return dialects; }

@@ -79,6 +79,7 @@ struct Dialect {
     bool cycle_stays_above_r;   // below R, a cycle first retracts to R; that is also its G98 level
     bool has_extended_offsets;  // G54.1 P1; G10 L20 P1 writes it
     bool diameters_in_tool_entries; // G10 L12 R is a diameter; otherwise a radius
+    bool has_older_tool_entries;    // G10 P R, and L1 for L11
     bool g87_is_back_boring;        // otherwise boring with manual retract
     bool cycle_levels_follow_g91;   // with G91, R and Z programmed with G90 become distances
     bool boring_feeds_to_r;         // G85 and G89 feed to R and continue in rapid
@@ -88,6 +89,7 @@ struct Dialect {
     bool repeats_with_k;                     // K repeats a canned cycle, as L does
     bool tape_mark_ends_program;             // a second % ends the program like M2
     bool repeated_codes_are_errors;          // the same G code twice in a block
+    bool last_of_group_counts;               // of two G codes of a group; otherwise an error
 
     // language syntax besides words
     Language language;
@@ -111,20 +113,21 @@ struct Dialect {
     bool unset_is_vacant;                  // an unset parameter is vacant; otherwise 0
     bool feed_mode_clears_feed; // G94 and G95 clear the feed rate, even if the mode does not change
     bool bare_h0_is_tool;       // G43 H0 means the tool in the spindle
+    bool home_cancels_length;   // G28 cancels the length offset, as G49 does
     bool repeats_in_program_number; // M98 P31000 calls O1000 three times
     bool calls_stand_alone;         // M98 and M99 allow no other words in their block
     bool decimal_points_matter;     // X5 may mean 5 least increments
+    bool third_offset_is_ignored;   // K in an arc of the XY plane
     double assumed_feed;            // mm/min, used before the first F; 0: an error
     SystemParameters system_parameters;
     std::string_view parameter_letter; // of numbered parameters: # or R
     bool has_parameter_zero;           // R0
-    bool names_are_declared; // DEF REAL X; all names are local to a level, also those with _
-    bool assigns_in_order;   // assignments apply to the rest of the block
-    bool machine_coordinates_are_of_tip; // G53 and SUPA keep the tool length active
-    bool text_end_returns;               // the end of the text returns from a subprogram
-    std::string_view radius_word;        // of an arc: R or CR=
-    int first_alarm;                     // #3000=1 raises this alarm number plus 1
-    int local_count;                     // #1 to #n are local to a call level
+    bool names_are_declared;      // DEF REAL X; all names are local to a level, also those with _
+    bool assigns_in_order;        // assignments apply to the rest of the block
+    bool text_end_returns;        // the end of the text returns from a subprogram
+    std::string_view radius_word; // of an arc: R or CR=
+    int first_alarm;              // #3000=1 raises this alarm number plus 1
+    int local_count;              // #1 to #n are local to a call level
     size_t deepest_calls;
     bool same_offset_stays;              // G54 while G54 is active does not reload the table
     bool offset_writes_miss_axis_offset; // G10 recomputes the position without G92
@@ -138,6 +141,9 @@ const Dialect& dialect(DialectId id);
 /// Errors: unsupported, with the name of the dialect.
 core::Result<DialectId> supported(DialectId id);
 
+/// Whether a dialect has the codes of lathes: diameter mode and turning cycles.
+bool has_lathe_codes(DialectId id);
+
 /// All dialects, in the order of their enumerators.
 std::span<const Dialect> all_dialects();
 
@@ -149,8 +155,14 @@ std::optional<DialectId> dialect_named(std::string_view name);
 
 struct Recognition {
     DialectId dialect;
-    std::string reason; // "line 2 is a program number (O1000)"
+    std::string reason;    // "line 2 is a program number (O1000)"
+    std::string refusal{}; // why no dialect reads it: a control that is not supported, by name
 };
+
+/// The recognised dialect, if this version can read the program.
+///
+/// Errors: unsupported, with the name of the dialect or the control.
+core::Result<DialectId> supported(const Recognition& recognition);
 
 /// Recognises the dialect of a program and returns the evidence. Reads at most 10,000 blocks.
 Recognition recognise(const Program& program);

@@ -18,6 +18,77 @@ namespace gcode {
 
 enum class DialectId : uint8_t;
 
+/// A property of a control that its programs do not show but that decides where a tool goes. The
+/// meaning of its values is the same for all controls.
+enum class ControlQuestion : uint8_t {
+    length_change_moves, // a change of the length offset alone moves the axis
+    point_is_implied,    // X100 is 100 mm; otherwise 100 least increments
+    variables_are_kept,  // variables that the program never sets may hold any value
+    rapids_are_straight, // all axes of a rapid arrive together
+    blocks_are_deleted,  // the switch for block delete is on
+    // At the start of the program:
+    starts_in_inches,    //
+    starts_incremental,  // G91 is active
+    starts_with_feed,    // G1 is active
+    starts_in_plane,     // 17, 18 or 19
+    starts_in_yz,        // G19 is active, where that is another parameter
+    starts_without_work, // no work offset is active
+    modes_are_initial,   // a reset or M30 has restored the initial G codes
+    // Tool offsets:
+    length_follows_plane, // they act along the axis normal to the plane
+    length_follows_axis,  // they act along the axis that the block of G43 names
+    length_is_reloaded,   // G10 acts on the length offset in use
+    entry_has_corner,     // cutter radius compensation begins and ends with a corner
+    entry_is_upright,     // G41, G42 and G40 without a move shift the tool at once
+    // Cycles:
+    drills_normal_to_plane, // otherwise always along Z
+    drills_where_defined,   // a block that defines a cycle drills, also without X and Y
+    peck_retract,           // of G73, mm
+    peck_clearance,         // of G83: where the rapid ends above the last depth, mm
+    peck_lift,              // of G83: the retract above R, mm
+    shift_direction, // of G76 and G87 along the first (1) or second axis (2) of the plane, or -1,
+                     // -2
+    // Frames:
+    rotation_adds,    // R of G68 under G91 is relative to the angle before
+    rotation_default, // of G68 without R, degrees
+    scale_unit,       // of G51 without a decimal point
+    scale_default,    // of G51 without a factor
+    local_is_work,    // G52 is a work offset of its own
+    // Others:
+    increment_is_finer,   // the least increment is 0.0001 mm instead of 0.001 mm
+    increment_is_coarser, // it is 0.01 mm
+    corner_tolerance,     // how far corners are rounded unless the program states it, mm
+    arc_tolerance,        // allowed difference between the radii of an arc, mm
+    arc_tolerance_inch,   // likewise under G20, inches
+    one_way_is_modal,     // G60 belongs to the group of G0
+    // Siemens:
+    machine_moves_tip,    // machine coordinates are those of the tip; otherwise of the gauge line
+    length_keeps_axis,    // the tool length stays along Z in each plane
+    change_selects_edge,  // a tool change without D selects the first cutting edge
+    increment_has_offset, // incremental words also travel a change of the zero offset
+    increment_has_length, // incremental words also travel a change of the tool length
+};
+
+/// What is known about a control.
+struct ControlSettings {
+    // As stated in the set-up or by its preset. Yes is 1 and no is 0.
+    std::map<ControlQuestion, double> answers{};
+    /// Whether the interpreter reports open premises. Otherwise the first value of each parameter
+    /// counts, and variables that were never set are empty.
+    bool reports_premises = false;
+    /// Values of variables that the program cannot know, by number: inputs, results of probing.
+    std::map<int, double> values{};
+
+    std::optional<double> number(ControlQuestion question) const {
+        const auto found = answers.find(question);
+        return found == answers.end() ? std::nullopt : std::optional(found->second);
+    }
+    std::optional<bool> answer(ControlQuestion question) const {
+        const auto stated = number(question);
+        return stated ? std::optional(*stated != 0.0) : std::nullopt;
+    }
+};
+
 /// Limits on the run of a program.
 struct Limits {
     uint64_t blocks = 50'000'000;
@@ -25,25 +96,48 @@ struct Limits {
     std::function<bool()> is_stopped = {}; // cancelled by the user; polled from time to time
 };
 
+/// What the control does at a tool change before it exchanges the tool, in this order. The machine
+/// stays where it ends. Machine coordinates of the gauge line, mm and degrees.
+struct ToolChangeMotion {
+    bool quill_up = false;              // rapid in Z to machine zero
+    bool goes_to_second_home = false;   // rapid of all axes to the reference point of G30
+    Position position{};                // rapid to here; axes without a value stay
+    bool keeps_spindle_running = false; // otherwise M6 stops the spindle
+};
+
 /// The state of the control before the program starts. Lengths in mm, positions in machine
 /// coordinates.
 struct Environment {
-    DialectId dialect{};                      // LinuxCNC
-    bool block_delete = false;                // true: blocks with `/` are skipped
-    LengthUnit machine_unit = LengthUnit::mm; // unit of LinuxCNC's offsets and start positions
+    DialectId dialect{};                        // LinuxCNC
+    bool block_delete = false;                  // true: blocks with `/` are skipped
+    LengthUnit machine_unit = LengthUnit::mm;   // unit of LinuxCNC's offsets and start positions
+    std::optional<LengthUnit> units_at_start{}; // of the program; empty: not stated
     std::array<AxisValues, plain_offset_count> work_offsets{};
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
     std::map<core::ToolNumber, double> tool_lengths{};   // for H numbers not in the table
     std::map<core::ToolNumber, double> tool_diameters{}; // for D numbers not in the table
-    Position start{};                                    // gauge line; X, Y, Z empty if unknown
-    std::optional<AxisValues> home{};                    // G28; machine zero if not stated
-    std::optional<AxisValues> second_home{};             // G30; likewise
+    // The tools that the set-up describes, by name; under "" those without a name.
+    std::multimap<std::string, core::ToolNumber> tool_names{};
+    Position start{};                        // gauge line; X, Y, Z empty if unknown
+    std::optional<AxisValues> home{};        // G28; machine zero if not stated
+    std::optional<AxisValues> second_home{}; // G30; likewise
+    std::array<std::optional<AxisValues>, 2> further_homes{}; // G30 P3 and P4
+    // G60: the last part of its rapid, whose sign is the direction; empty: not known.
+    std::optional<AxisValues> one_way_approach{};
+    ToolChangeMotion tool_change{};
     bool counts_smallest_steps = false; // X5 is 5 um and X5. is 5 mm, where the point matters
+    ControlSettings control{};
     std::map<int, double> parameters{}; // numbered ones, as in a variables file
+    std::string startup_code{};         // executed before the first block; sets modes and offsets
+    std::string wrapped_axes{}; // letters of rotary axes with absolute positions in one turn, whose
+                                // sign is the direction (LinuxCNC's WRAPPED_ROTARY)
     std::map<std::string, double> ini_values{}; // LinuxCNC's ini file, by names such as _ini[traj]x
     std::vector<std::string> search_path{}; // folders of subprograms; empty: the program's folder
     std::set<int> known_m_codes{};          // of the machine builder; ignored without a warning
     Limits limits{};
+    // Called with each value of a system variable that the program reads: offsets, positions,
+    // modes. Empty values are passed as 0.
+    std::function<void(double)> on_system_read = {};
     std::shared_ptr<const core::Machine> machine{}; // only if the machine has rotary axes
 };
 

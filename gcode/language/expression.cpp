@@ -76,13 +76,20 @@ std::string_view objection_to(Operation operation, double a, double b) {
         return std::abs(a) > largest_whole || std::abs(b) > largest_whole
                    ? "a bit operation on a number that is too large"
                    : "";
+    case Operation::exists_numbered:
+        return a != std::floor(a) ? "the number of a parameter that is not whole" : "";
     default:
         return "";
     }
 }
 
+// RS274/NGC: #1 to #5601 always exist.
+constexpr double parameters_end = 5602.0;
+
 double of_one(Operation operation, double a) {
     switch (operation) {
+    case Operation::exists_numbered:
+        return truth(a >= 1.0 && a < parameters_end);
     case Operation::negate:
         return -a;
     case Operation::absolute:
@@ -252,14 +259,32 @@ constexpr bool takes_two_values(Operation operation) {
     }
 }
 
+constexpr bool is_comparison(Operation operation) {
+    switch (operation) {
+    case Operation::equal:
+    case Operation::not_equal:
+    case Operation::greater:
+    case Operation::greater_or_equal:
+    case Operation::less:
+    case Operation::less_or_equal:
+        return true;
+    default:
+        return false;
+    }
+}
+
 constexpr size_t deepest = 64;
 
 /// The value stack for evaluating an expression.
 class Stack {
 public:
     Stack(const ExpressionPool& pool, uint32_t line, const ParameterReader& parameters,
-          const Arithmetic& arithmetic)
-        : pool_(pool), line_(line), parameters_(parameters), arithmetic_(arithmetic) {}
+          const Arithmetic& arithmetic, Margins* margins)
+        : pool_(pool),
+          line_(line),
+          parameters_(parameters),
+          arithmetic_(arithmetic),
+          margins_(margins) {}
 
     core::Result<void> apply(const Instruction& step) {
         const core::SourceSpan where{.line = line_, .column = step.column, .length = 1};
@@ -268,6 +293,8 @@ public:
         const bool pair = takes_two_values(operation);
         const Value right = pair ? pop() : Value{};
         const Value left = pop();
+        if (margins_ && is_comparison(operation))
+            margins_->add(std::abs(left.value_or(0.0) - right.value_or(0.0)));
         if (is_comparison_with_vacant(operation, left, right)) return {};
         const double a = left.value_or(0.0), b = right.value_or(0.0);
         if (const std::string_view why = objection_to(operation, a, b); !why.empty())
@@ -320,6 +347,7 @@ private:
     const uint32_t line_;
     const ParameterReader& parameters_;
     const Arithmetic& arithmetic_;
+    Margins* margins_;
     std::array<Value, deepest> values_;
     size_t depth_ = 0;
 };
@@ -327,8 +355,9 @@ private:
 } // namespace
 
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
-                             const ParameterReader& parameters, const Arithmetic& arithmetic) {
-    Stack stack(pool, line, parameters, arithmetic);
+                             const ParameterReader& parameters, const Arithmetic& arithmetic,
+                             Margins* margins) {
+    Stack stack(pool, line, parameters, arithmetic, margins);
     for (uint32_t i = 0; i < expression.count; ++i)
         if (auto done = stack.apply(pool.instructions[expression.first + i]); !done)
             return tl::unexpected(std::move(done).error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,6 +24,7 @@ enum class Operation : uint8_t {
     named,    // pushes a named parameter
     exists,   // 1 if the named parameter exists
     // operations on one value
+    exists_numbered, // 1 if there is a parameter with that number
     negate,
     absolute,
     arc_cosine,
@@ -121,12 +123,26 @@ struct Arithmetic {
     double steps_in_one = 1.0; // ROUND rounds to 1 divided by this
 };
 
-/// Evaluates an expression.
+/// How far the comparisons of a condition are from changing their results: the differences of their
+/// two sides, in order.
+struct Margins {
+    std::array<double, 4> values{};
+    size_t count = 0; // may be more than there is room for
+
+    bool has_all() const { return count <= values.size(); }
+    void add(double margin) {
+        if (count < values.size()) values[count] = margin;
+        ++count;
+    }
+};
+
+/// Evaluates an expression; `margins`, if given, receives those of its comparisons.
 /// Units:  angles in degrees, lengths in the units of the program.
 /// Errors: invalid_value with the column: a division by zero, the root of a negative number, a
 ///         missing parameter, a result that is not finite.
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
-                             const ParameterReader& parameters, const Arithmetic& arithmetic);
+                             const ParameterReader& parameters, const Arithmetic& arithmetic,
+                             Margins* margins = nullptr);
 
 /// The numeric value of a condition: 1 or 0.
 constexpr double truth(bool holds) { return holds ? 1.0 : 0.0; }

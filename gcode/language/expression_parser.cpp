@@ -113,9 +113,15 @@ core::Result<void> ExpressionReader::arc_tangent(size_t column) {
 
 core::Result<void> ExpressionReader::exists(size_t column) {
     if (auto done = expect(open()); !done) return done;
-    if (!lexer_.accept('#') || lexer_.peek() != '<')
-        return core::fail(ErrorCode::syntax, "EXISTS needs a named parameter: EXISTS[#<name>]",
+    if (!lexer_.accept('#'))
+        return core::fail(ErrorCode::syntax,
+                          "EXISTS needs a parameter: EXISTS[#<name>] or EXISTS[#5]",
                           lexer_.span(column, lexer_.at));
+    if (lexer_.peek() != '<') {
+        if (auto done = value(); !done) return done;
+        emit(Operation::exists_numbered, column);
+        return expect(close());
+    }
     FEELER_TRY(std::string name, parse_name(lexer_));
     pool_.instructions.push_back({Operation::exists, static_cast<uint32_t>(column + 1), 0.0,
                                   static_cast<uint32_t>(pool_.names.size())});

@@ -15,7 +15,7 @@ void Block::clear() {
     flow = Flow{.arguments = std::move(flow.arguments)};
     block_delete.reset();
     tape_mark = false;
-    is_program_name = false;
+    is_program_name = prints = false;
     words_before_slash.reset();
     has_message = has_command = false;
 }

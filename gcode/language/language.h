@@ -14,6 +14,7 @@ class LanguageState;
 enum class Language : uint8_t;
 struct Block;
 struct Dialect;
+struct Environment;
 struct Execution;
 struct FlowIndex;
 struct FlowStep;
@@ -42,7 +43,7 @@ struct LanguageFunctions {
                        Block& block) = nullptr;
 
     /// Makes the state that the language keeps between blocks; null: it has only the modes.
-    std::shared_ptr<LanguageState> (*begin)() = nullptr;
+    std::shared_ptr<LanguageState> (*begin)(const Environment& environment) = nullptr;
 
     /// Whether a block without a flow statement may call or return; null: never.
     bool (*changes_level)(const Statement& statement, const InterpreterState& state) = nullptr;

@@ -198,6 +198,38 @@ struct CannedCycle {
     bool operator==(const CannedCycle&) const = default;
 };
 
+/// A transformation of the control that is not modelled and in which the linear axes follow the
+/// rotary ones: TRAORI, M128 and the like, or an unknown M code.
+struct Following {
+    std::array<char, 16> code{}; // as written, ends with 0
+    uint32_t line = 0, source = 0;
+    bool may_be_on = false;
+    bool is_unknown_code = false;
+    bool is_said = false;        // reported for this code
+    bool rotary_unknown = false; // G53.1 turned the work by unknown angles
+    bool said_turn = false;      // a rotary axis that turns the other way round was reported
+    uint8_t unknown_axes = 0;    // one bit for each of X, Y and Z whose position is unknown
+
+    bool operator==(const Following&) const = default;
+};
+
+// Reasons for which motions are followed only as far as is known, so that they cannot be clear:
+// several tools have the called name (from then on); the offset of this cutting edge is not known;
+// rapids need not be straight (RTLIOF); the approach to contours is another (KONT); the datum is
+// another than that of the set-up (cycle 247).
+constexpr uint8_t tool_is_in_doubt = 1, edge_is_in_doubt = 2, rapids_are_in_doubt = 4,
+                  approach_is_in_doubt = 8, datum_is_in_doubt = 16;
+
+/// How far the control may round corners, besides P and Q of G64, mm; empty: not stated.
+struct CornerTolerances {
+    std::optional<double> distance;        // between feeds, before and after the corner on the path
+    std::optional<double> rapid_tolerance; // between rapids, from the path
+    std::optional<double> rapid_distance;  // between rapids, before and after the corner
+    bool between_kinds = false;            // corners between a rapid and a feed are rounded, too
+
+    bool operator==(const CornerTolerances&) const = default;
+};
+
 /// The modal state between two blocks. A plain value: copy it to step back.
 ///
 /// Lengths are stored in mm, regardless of G20/G21. What the program has not defined yet is empty,
@@ -209,11 +241,14 @@ struct ModalState {
     std::optional<CannedCycle> cycle; // if present, takes the axis words
     Plane plane = Plane::xy;
     DistanceMode distance = DistanceMode::absolute;
+    bool distance_said = true; // false: as the control was left, and not asked yet
+    bool work_said = true;     // likewise, of the work offset
     DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
     FeedMode feed_mode = FeedMode::per_minute;
     RetractMode retract = RetractMode::initial_level;
     PathMode path = PathMode::continuous;
     double path_tolerance = 0.0, naive_tolerance = 0.0; // mm, P and Q of G64
+    CornerTolerances corner_tolerances;
     Side compensation = Side::none;
     double compensation_radius = 0.0; // mm; negative for the other side
     int turning_orientation = 0;      // of the compensated tool, 1 to 9; 0 for a mill
@@ -241,6 +276,11 @@ struct ModalState {
     Offsets offsets;
     std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is derived from them
+    Following following;
+    uint8_t doubt = 0; // bits: tool_is_in_doubt ...
+    // Siemens: how far the position programmed last has moved with the zero offset and the tool
+    // length since then. Incremental words may travel it, too.
+    AxisValues offset_travel{}, length_travel{};
     // Siemens: direction at the end of the last move in the plane; 0, 0 if unknown.
     std::array<double, 2> direction{};
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "gcode/text/digest.h"
 
 namespace gcode {
@@ -43,8 +45,22 @@ void Parameters::set_named(std::string_view name, Value value) {
         named_.emplace(name, *value);
 }
 
+void Parameters::mark(int number, bool unpredictable) {
+    const bool changed =
+        unpredictable ? unpredictable_.insert(number).second : unpredictable_.erase(number) > 0;
+    if (changed) digest_ ^= key_of(fmt::format("?{}", number));
+}
+
+void Parameters::mark(std::string_view name, bool unpredictable) {
+    const bool changed = unpredictable ? unpredictable_names_.emplace(name).second
+                                       : unpredictable_names_.erase(std::string(name)) > 0;
+    if (changed) digest_ ^= key_of(fmt::format("?{}", name));
+}
+
 bool Parameters::operator==(const Parameters& other) const {
-    if (digest_ != other.digest_ || named_ != other.named_) return false;
+    if (digest_ != other.digest_ || named_ != other.named_ || unpredictable_ != other.unpredictable_
+        || unpredictable_names_ != other.unpredictable_names_)
+        return false;
     const size_t common = std::min(numbered_.size(), other.numbered_.size());
     const auto is_unset = [](const Value& value) { return !value; };
     return std::equal(numbered_.begin(), numbered_.begin() + static_cast<std::ptrdiff_t>(common),

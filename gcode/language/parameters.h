@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,17 @@ public:
     const NamedValues& named() const { return named_; }
     void set_named(std::string_view name, Value value); // an empty value removes it
 
-    /// Hash of all values; kept up to date, so it costs nothing.
+    /// Variables whose value depends on one that only the machine knows.
+    bool is_unpredictable(int number) const {
+        return !unpredictable_.empty() && unpredictable_.contains(number);
+    }
+    const std::set<std::string, std::less<>>& unpredictable_names() const {
+        return unpredictable_names_;
+    }
+    void mark(int number, bool unpredictable);
+    void mark(std::string_view name, bool unpredictable);
+
+    /// Hash of all values and marks; kept up to date, so it costs nothing.
     uint64_t digest() const { return digest_; }
 
     /// A parameter that was never set equals one that was set and removed again.
@@ -48,6 +59,8 @@ public:
 private:
     std::vector<Value> numbered_; // grows as needed
     NamedValues named_;
+    std::set<int> unpredictable_;
+    std::set<std::string, std::less<>> unpredictable_names_;
     uint64_t digest_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -33,20 +35,92 @@ Clue foreign_clue(std::string_view text, size_t line) {
     return std::nullopt;
 }
 
+/// A line of a program as evidence: its code in capitals, with blanks in place of comments, and the
+/// comments in parentheses.
+struct EvidenceLine {
+    std::string code;
+    std::vector<std::string> comments{};
+};
+
+/// Whether a `(` after this code belongs to it, as in Siemens' `MSG(` and `R1=(2+3)`. Otherwise it
+/// begins a comment, as after `N10`, `T1 M6` and at the start of a line.
+bool opens_expression(std::string_view code) {
+    const size_t last = code.find_last_not_of(" \t");
+    if (last == std::string_view::npos) return false;
+    const bool has_gap = last + 1 < code.size();
+    if (!is_name_part(code[last])) return std::string_view("=,+-*/<>([").find(code[last]) < 10;
+    size_t first = last;
+    while (first > 0 && is_name_part(code[first - 1])) --first;
+    const std::string_view name = code.substr(first, last + 1 - first);
+    for (const std::string_view word : {"MSG", "IF", "WHILE", "UNTIL", "AND", "OR", "NOT"})
+        if (name == word) return true;
+    for (const std::string_view word : {"GOTO", "END", "DO"})
+        if (name.starts_with(word)) return false;
+    const auto both_letters = [](char a, char b) {
+        return (is_letter(a) || a == '_') && (is_letter(b) || b == '_');
+    };
+    return !has_gap && std::adjacent_find(name.begin(), name.end(), both_letters) != name.end();
+}
+
+/// The index of the `)` that closes a comment, or of the last character of the line.
+size_t end_of_comment(std::string_view code, size_t at) {
+    int depth = 0;
+    for (; at + 1 < code.size(); ++at) {
+        depth += (code[at] == '(') - (code[at] == ')');
+        if (depth == 0) break;
+    }
+    return at;
+}
+
+EvidenceLine evidence_of(std::string_view text) {
+    EvidenceLine line{.code = core::upper_case(text)};
+    std::string& code = line.code;
+    bool is_quoted = false;
+    int depth = 0; // of the brackets of expressions
+    for (size_t at = 0; at < code.size(); ++at) {
+        is_quoted = is_quoted != (code[at] == '"');
+        if (is_quoted) continue;
+        if (code[at] == ';') {
+            code.resize(at);
+        } else if (code[at] == ')') {
+            --depth;
+        } else if (code[at] == '(' && (depth > 0 || opens_expression(code.substr(0, at)))) {
+            ++depth;
+        } else if (code[at] == '(') {
+            const size_t end = end_of_comment(code, at);
+            line.comments.push_back(code.substr(at, end + 1 - at));
+            std::fill(code.begin() + static_cast<std::ptrdiff_t>(at),
+                      code.begin() + static_cast<std::ptrdiff_t>(end + 1), ' ');
+        }
+    }
+    return line;
+}
+
+/// The code without the block number and blanks before it.
+std::string_view after_block_number(std::string_view code) {
+    const auto skip = [&](std::string_view what) {
+        code.remove_prefix(std::min(code.find_first_not_of(what), code.size()));
+    };
+    skip(" \t/");
+    if (code.size() > 1 && code.front() == 'N' && is_digit(code[1])) {
+        code.remove_prefix(1);
+        skip("0123456789");
+    }
+    skip(" \t");
+    return code;
+}
+
 /// Features found only in the Siemens language: keywords after the block number, headers, values
 /// after `=`.
-Clue siemens_clue(std::string_view text, size_t line) {
-    std::string words = core::upper_case(text);
-    size_t first = words.find_first_not_of(" \t/");
-    if (first == std::string::npos) return std::nullopt;
-    if (std::string_view(words).substr(first).starts_with(";$PATH="))
+Clue siemens_clue(std::string_view text, const EvidenceLine& evidence, size_t line) {
+    const size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos) return std::nullopt;
+    if (core::upper_case(text.substr(first)).starts_with(";$PATH="))
         return found(DialectId::siemens, line, "has a ;$PATH=");
-    words = words.substr(first, words.find(';') - first);
-    if (words.starts_with("%_N_")) return found(DialectId::siemens, line, "has a header %_N_");
-    if (words.empty() || words.find('#') != std::string::npos) return std::nullopt;
-    if (words.front() == 'N' && words.size() > 1 && is_digit(words[1]))
-        words.erase(0, std::min(words.find_first_not_of("0123456789", 1), words.size()));
-    words.erase(0, std::min(words.find_first_not_of(" \t"), words.size()));
+    if (text.substr(first).starts_with("%_N_"))
+        return found(DialectId::siemens, line, "has a header %_N_");
+    if (evidence.code.find('#') != std::string::npos) return std::nullopt;
+    const std::string_view words = after_block_number(evidence.code);
     for (const std::string_view word :
          {"PROC ",   "DEF REAL", "DEF INT",  "DEF BOOL", "DEF STRING", "EXTERN ",
           "MCALL",   "CYCLE8",   "MSG(",     "MSG (",    "GOTOF ",     "GOTOB ",
@@ -66,6 +140,85 @@ Clue siemens_clue(std::string_view text, size_t line) {
     return std::nullopt;
 }
 
+/// Whether a text contains `word` and then a digit or one of `more`, not as part of a longer name.
+/// `letters` has no blanks.
+bool has_numbered(std::string_view letters, std::string_view word, std::string_view more = {}) {
+    for (size_t at = letters.find(word); at != std::string_view::npos;
+         at = letters.find(word, at + 1)) {
+        const size_t after = at + word.size();
+        const bool begins = at == 0 || !is_letter(letters[at - 1]);
+        if (begins && after < letters.size()
+            && (is_digit(letters[after]) || more.find(letters[after]) != std::string_view::npos))
+            return true;
+    }
+    return false;
+}
+
+std::string without_blanks(std::string_view text) {
+    std::string letters;
+    for (const char c : text)
+        if (c != ' ' && c != '\t') letters.push_back(c);
+    return letters;
+}
+
+/// Whether a program name begins the text: O and up to four letters or digits.
+bool is_okuma_name(std::string_view text) {
+    size_t end = 0;
+    while (end < text.size() && is_name_part(text[end])) ++end;
+    return end > 1 && end <= 5;
+}
+
+/// What only Okuma's control has in a line; empty if nothing.
+///
+/// Source: Okuma OSP programming manuals: file names, CALL and RTS, common variables, G15 H for the
+///         work offset, G56 HA for the length offset.
+std::string_view okuma_word(const EvidenceLine& evidence) {
+    const std::string_view words = after_block_number(evidence.code);
+    if (words.starts_with('$') && words.find(".MIN") != std::string_view::npos)
+        return "a file name after $";
+    if (words.starts_with("CALL O") && is_okuma_name(words.substr(5))) return "CALL O";
+    if (words.starts_with("NOEX ")) return "NOEX";
+    if (words.starts_with("MODIN O")) return "MODIN";
+    const std::string letters = without_blanks(words);
+    if (has_numbered(letters, "G15H")) return "G15 H";
+    if (letters.find("G56HA") != std::string::npos) return "G56 HA";
+    if (has_numbered(letters, "VC") && letters.find('=') != std::string::npos)
+        return "VC variables";
+    for (const std::string_view name : {"VZOFX[", "VZOFY[", "VZOFZ[", "VTOFH[", "VTOFD["})
+        if (letters.find(name) != std::string::npos) return "VZOF or VTOF variables";
+    return {};
+}
+
+/// `%NAME G71 *`: the first line of a Heidenhain program in DIN/ISO.
+bool begins_din_iso(const EvidenceLine& evidence) {
+    const std::string_view words = after_block_number(evidence.code);
+    if (!words.starts_with('%') || words.size() < 2 || !is_name_part(words[1])) return false;
+    const std::string_view after = words.substr(std::min(words.find(' '), words.size()));
+    const bool has_unit = after.find(" G70") != std::string_view::npos
+                          || after.find(" G71") != std::string_view::npos;
+    return has_unit && after.find('*') != std::string_view::npos;
+}
+
+/// Controls that no dialect reads, by name. Their programs may look like those of others.
+Clue unsupported_clue(const EvidenceLine& evidence, size_t line) {
+    if (const std::string_view word = okuma_word(evidence); !word.empty()) {
+        Recognition okuma = found(DialectId::fanuc, line, fmt::format("has {}", word));
+        okuma.refusal = fmt::format(
+            "line {} has {}: this is a program for an Okuma control (OSP), which is not supported; "
+            "codes such as G15 and G56 have other meanings there",
+            line, word);
+        return okuma;
+    }
+    if (begins_din_iso(evidence)) {
+        Recognition din = found(DialectId::heidenhain, line, "begins a program in DIN/ISO");
+        din.refusal = fmt::format("line {} begins a Heidenhain program in DIN/ISO, which is not "
+                                  "supported: use its Klartext form (.H)",
+                                  line);
+        return din;
+    }
+    return std::nullopt;
+}
+
 /// Evidence from the file name: Siemens programs end in .MPF and .SPF.
 Clue name_clue(const std::string& file) {
     const std::string ending =
@@ -74,23 +227,32 @@ Clue name_clue(const std::string& file) {
     return Recognition{DialectId::siemens, fmt::format("the file name ends in {}", ending)};
 }
 
-/// Whether there is a `@5` or `^30` outside comments. `letters` has no blanks.
+/// Whether there is a `@5` or `^30`. `letters` has no blanks.
 bool has_polar_word(std::string_view letters) {
-    const size_t code_end = std::min(letters.find('('), letters.find(';'));
-    const std::string_view code = letters.substr(0, code_end);
-    const size_t mark = code.find_first_of("@^");
-    if (mark == std::string_view::npos || mark + 1 >= code.size()) return false;
-    return is_digit(code[mark + 1]) || std::string_view("+-.[#").find(code[mark + 1]) < 5;
+    const size_t mark = letters.find_first_of("@^");
+    if (mark == std::string_view::npos || mark + 1 >= letters.size()) return false;
+    return is_digit(letters[mark + 1])
+           || std::string_view("+-.[#").find(letters[mark + 1]) != std::string_view::npos;
+}
+
+/// Whether a comment is an instruction for LinuxCNC: `(AXIS,hide)`, `(DEBUG, #5)`. Others may use
+/// these words in plain comments.
+bool is_active_comment(std::string_view comment) {
+    const std::string letters = without_blanks(comment);
+    for (const std::string_view word : {"(AXIS,HIDE", "(AXIS,SHOW", "(AXIS,STOP", "(AXIS,NOTIFY",
+                                        "(AXIS,XY_Z", "(AXIS,XZ_Y", "(PROBEOPEN", "(LOGOPEN,"})
+        if (letters.starts_with(word)) return true;
+    for (const std::string_view word : {"(DEBUG,", "(PRINT,", "(LOG,"})
+        if (letters.starts_with(word) && letters.find('#') != std::string::npos) return true;
+    return false;
 }
 
 /// Features of LinuxCNC that the parser of this version does not accept.
-Clue linuxcnc_clue(std::string_view text, size_t line) {
-    std::string letters;
-    for (const char c : text)
-        if (c != ' ' && c != '\t') letters.push_back(upper(c));
+Clue linuxcnc_clue(const EvidenceLine& evidence, size_t line) {
+    const std::string letters = without_blanks(evidence.code);
     if (letters.find("#<") != std::string::npos || letters.starts_with("O<"))
         return found(DialectId::linuxcnc, line, "has a named parameter or O word");
-    if (letters.find("(AXIS,") != std::string::npos || letters.find("(DEBUG,") != std::string::npos)
+    if (std::any_of(evidence.comments.begin(), evidence.comments.end(), is_active_comment))
         return found(DialectId::linuxcnc, line, "has an active comment");
     if (has_polar_word(letters))
         return found(DialectId::linuxcnc, line, "has a polar word (@ or ^)");
@@ -98,7 +260,7 @@ Clue linuxcnc_clue(std::string_view text, size_t line) {
     if (!letters.starts_with('O') || after_number == std::string::npos) return std::nullopt;
     const std::string_view rest = std::string_view(letters).substr(after_number);
     for (const std::string_view word : {"SUB", "CALL", "IF", "WHILE", "DO", "REPEAT"})
-        if (rest.starts_with(word))
+        if (rest.starts_with(word) && (rest.size() == word.size() || !is_letter(rest[word.size()])))
             return found(DialectId::linuxcnc, line, fmt::format("has an O word ({})", word));
     return std::nullopt;
 }
@@ -189,7 +351,17 @@ Clue family_clue(const Block& block) {
         return found(DialectId::fanuc, block.line, "is the name of a program in < and >");
     if (block.flow.kind != FlowKind::none)
         return found(DialectId::fanuc, block.line, "has IF, WHILE or GOTO");
+    if (block.prints) return found(DialectId::fanuc, block.line, "has DPRNT, POPEN or PCLOS");
     return std::nullopt;
+}
+
+/// Whether G70 to G72 of a block are cycles of a lathe, which Fanuc controls have too, rather than
+/// Haas's hole patterns.
+bool is_lathe_cycle(const Block& block, const Word& code) {
+    if (code.letter != 'G' || code.value < 70.0 || code.value > 72.0) return false;
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return std::string_view("PQUW").find(word.letter) != std::string_view::npos;
+    });
 }
 
 /// Codes that Haas controls have and Fanuc controls do not. On Fanuc, M97 without P is a different
@@ -200,6 +372,7 @@ Clue haas_clue(const Block& block) {
     for (const Word& word : block.words) {
         if (word.expression || (word.letter != 'G' && word.letter != 'M')) continue;
         if (word.letter == 'M' && (word.value != 97.0 || !has_target)) continue;
+        if (is_lathe_cycle(block, word)) continue;
         if (!find_code(word.letter, word.value, DialectId::haas)
             || find_code(word.letter, word.value, DialectId::fanuc))
             continue;
@@ -210,10 +383,10 @@ Clue haas_clue(const Block& block) {
     return std::nullopt;
 }
 
-Clue language_clue(std::string_view text, size_t line) {
+Clue language_clue(std::string_view text, const EvidenceLine& evidence, size_t line) {
     if (Clue clue = foreign_clue(text, line)) return clue;
-    if (Clue clue = siemens_clue(text, line)) return clue;
-    return linuxcnc_clue(text, line);
+    if (Clue clue = siemens_clue(text, evidence, line)) return clue;
+    return linuxcnc_clue(evidence, line);
 }
 
 } // namespace
@@ -228,8 +401,10 @@ Recognition recognise(const Program& program) {
     for (size_t number = 1; lines < enough_lines; ++number) {
         if (!program.has_line(number).value_or(false)) break;
         const std::string_view text = program.line(number);
+        const EvidenceLine evidence = evidence_of(text);
+        if (Clue clue = unsupported_clue(evidence, number)) return *clue;
         if (!family)
-            if (Clue clue = language_clue(text, number)) return *clue;
+            if (Clue clue = language_clue(text, evidence, number)) return *clue;
         // Of the languages with letters and numbers, Fanuc's accepts the most.
         if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
             continue;

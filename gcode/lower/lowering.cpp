@@ -217,6 +217,10 @@ struct Visitor {
         if (command.mode == PathMode::exact_stop) change.blending = core::Blending::exact_stop;
         if (command.tolerance > 0.0) change.tolerance = command.tolerance;
         change.joining = command.naive_tolerance;
+        change.distance = command.corners.distance;
+        change.rapid_tolerance = command.corners.rapid_tolerance;
+        change.rapid_distance = command.corners.rapid_distance;
+        change.between_kinds = command.corners.between_kinds;
         events.emplace_back(change);
     }
     void operator()(const EnableOverride&) {}

@@ -103,9 +103,18 @@ struct Details {
     }
     std::string operator()(const SetPathMode& command) const {
         constexpr std::string_view names[] = {"exact_path", "exact_stop", "continuous"};
-        return fmt::format(" mode={} tolerance={} naive_tolerance={}",
-                           names[static_cast<size_t>(command.mode)], number(command.tolerance),
-                           number(command.naive_tolerance));
+        std::string text = fmt::format(" mode={} tolerance={} naive_tolerance={}",
+                                       names[static_cast<size_t>(command.mode)],
+                                       number(command.tolerance), number(command.naive_tolerance));
+        const auto add = [&](const char* name, const std::optional<double>& value) {
+            if (value) text += fmt::format(" {}={}", name, number(*value));
+        };
+        add("distance", command.corners.distance);
+        // In LinuxCNC's G64 P it is the tolerance.
+        if (command.corners.rapid_tolerance != command.tolerance)
+            add("rapid_tolerance", command.corners.rapid_tolerance);
+        add("rapid_distance", command.corners.rapid_distance);
+        return text;
     }
     std::string operator()(const EnableOverride& command) const {
         constexpr std::string_view names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};

@@ -1,13 +1,16 @@
 #include "gcode/siemens/siemens.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/flow.h"
+#include "gcode/exec/following.h"
+#include "gcode/exec/readings.h"
 #include "gcode/exec/state_digest.h"
+#include "gcode/language/environment.h"
 #include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
 #include "gcode/siemens/siemens_parser.h"
@@ -27,7 +30,7 @@ core::Result<void> say(Execution& execution) {
     for (const SiemensArgument& part : siemens_of(execution.block).arguments) {
         if (part.kind == SiemensArgument::Kind::text) text += part.text;
         if (part.kind != SiemensArgument::Kind::value) continue;
-        FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), part));
+        FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), part, true));
         text += fmt::format("{:.12g}", value);
     }
     if (text.empty()) return {}; // clears the previous message from the screen
@@ -65,6 +68,15 @@ core::Result<void> dwell_in_siemens(Execution& execution) {
     return {};
 }
 
+/// Marks the motions from here on as followed only as far as is known.
+void doubt(Execution& execution, const SiemensKeywordUse& use, uint8_t reason, std::string_view why,
+           std::string cure) {
+    execution.modal().doubt |= reason;
+    execution.result.warnings.push_back({Severity::warning, use.span,
+                                         fmt::format("{}: {}", use.keyword->name, why),
+                                         core::rule_id("undecided"), std::move(cure)});
+}
+
 core::Result<void> note_keywords(Execution& execution) {
     for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
         const auto say_so = [&](std::string_view why) {
@@ -75,13 +87,32 @@ core::Result<void> note_keywords(Execution& execution) {
             say_so(use.keyword->text);
             break;
         case transformation:
-            writable_siemens(execution.state).follows_tool = true;
-            say_so("not modelled: rotary axes are followed in program coordinates, without the "
-                   "machine's moves that keep the tip in place");
+            switch_following(execution, use.span, use.keyword->name, FollowingSwitch::on);
             break;
         case transformation_off:
-            if (siemens_of(execution.state).follows_tool)
-                writable_siemens(execution.state).follows_tool = false;
+            switch_following(execution, use.span, use.keyword->name, FollowingSwitch::off);
+            break;
+        case orient_spindle:
+            turn_siemens_spindle(execution, 5);
+            break;
+        case other_approach:
+            doubt(execution, use, approach_is_in_doubt,
+                  "the approach to a compensated contour is not modelled: the straight approach of "
+                  "NORM is checked",
+                  "Use NORM.");
+            break;
+        case usual_approach:
+            execution.modal().doubt &= static_cast<uint8_t>(~approach_is_in_doubt);
+            break;
+        case bent_rapids:
+            doubt(
+                execution, use, rapids_are_in_doubt,
+                "the axes of a rapid need not arrive together; the path that the set-up states is "
+                "checked",
+                "Use RTLION, or check with rapid = \"dogleg\" under [machine] as well.");
+            break;
+        case straight_rapids:
+            execution.modal().doubt &= static_cast<uint8_t>(~rapids_are_in_doubt);
             break;
         case diameters:
             execution.modal().diameter_mode = true;
@@ -190,6 +221,82 @@ core::Result<void> end_block(Execution& execution) {
     return stop(execution);
 }
 
+/// What the path mode and its words say of the corners.
+///
+/// Source: SINUMERIK 840D sl Basic Functions, B1. G641 rounds within ADIS and ADISPOS of the
+/// corner; where only one motion is a rapid, the smaller applies. G642 to G645 keep a tolerance of
+/// the path, or these distances, as machine data MD20480 says: both are taken. Without a value, as
+/// with G64.
+void set_corner_tolerances(const SiemensState& siemens, ModalState& modal) {
+    modal.path_tolerance = modal.naive_tolerance = 0.0;
+    modal.corner_tolerances = {};
+    modal.path = siemens.path_code == 60 ? PathMode::exact_stop : PathMode::continuous;
+    if (siemens.path_code < 641) return;
+    CornerTolerances& corners = modal.corner_tolerances;
+    if (siemens.feed_rounding > 0.0) corners.distance = siemens.feed_rounding;
+    if (siemens.rapid_rounding > 0.0) corners.rapid_distance = siemens.rapid_rounding;
+    corners.between_kinds = true;
+    if (siemens.path_code == 641 || siemens.contour_tolerance == 0.0) return;
+    modal.path_tolerance = siemens.contour_tolerance;
+    corners.rapid_tolerance = siemens.contour_tolerance;
+    if (siemens.compresses) modal.naive_tolerance = siemens.contour_tolerance;
+}
+
+/// ADIS, ADISPOS or CTOL.
+core::Result<void> take_tolerance(Execution& execution, const SiemensKeywordUse& use) {
+    FEELER_TRY(const double value, value_of_argument(flow_step_of(execution), use.value));
+    SiemensState& siemens = writable_siemens(execution.state);
+    double& taken = use.keyword->name == "ADIS"      ? siemens.feed_rounding
+                    : use.keyword->name == "ADISPOS" ? siemens.rapid_rounding
+                                                     : siemens.contour_tolerance;
+    taken = std::max(0.0, to_mm(value, execution.modal().unit));
+    return {};
+}
+
+/// CYCLE832(TOLERANCE, ...): a tolerance of the contour with G645 or G642 and a compressor, as the
+/// machine builder has set it up. Without a tolerance, the machine's settings are restored.
+core::Result<void> take_smoothing(Execution& execution) {
+    const auto& arguments = siemens_of(execution.block).arguments;
+    double value = 0.0;
+    if (!arguments.empty() && arguments[0].kind == SiemensArgument::Kind::value) {
+        FEELER_TRY(value, value_of_argument(flow_step_of(execution), arguments[0]));
+    }
+    SiemensState& siemens = writable_siemens(execution.state);
+    siemens.contour_tolerance = std::max(0.0, to_mm(value, execution.modal().unit));
+    siemens.compresses = siemens.contour_tolerance > 0.0;
+    siemens.path_code = siemens.compresses ? 645 : 0;
+    return {};
+}
+
+/// G60, G64 and G641 to G645 with their tolerances.
+core::Result<void> set_siemens_path(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::path_control);
+    bool changes = entry != nullptr;
+    if (entry) {
+        writable_siemens(execution.state).path_code = static_cast<int>(entry->word->value);
+        execution.column = entry->word->span.column;
+    }
+    for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
+        const SiemensAction action = use.keyword->action;
+        if (action != tolerance && action != smoothing && action != compressor_on
+            && action != compressor_off)
+            continue;
+        if (!changes) execution.column = use.span.column;
+        changes = true;
+        if (action == tolerance) {
+            if (auto taken = take_tolerance(execution, use); !taken) return taken;
+        } else if (action == smoothing) {
+            if (auto taken = take_smoothing(execution); !taken) return taken;
+        } else {
+            writable_siemens(execution.state).compresses = action == compressor_on;
+        }
+    }
+    if (!changes) return {};
+    set_corner_tolerances(siemens_of(execution.state), execution.modal());
+    execution.emit(path_mode_of(execution.modal()));
+    return {};
+}
+
 /// G290 and G291.
 core::Result<void> switch_language(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
@@ -205,13 +312,13 @@ core::Result<void> switch_language(Execution& execution) {
 }
 
 constexpr SiemensStep siemens_steps[] = {
-    use_siemens_words,    note_keywords,      say,
-    use_siemens_tool,     turn_spindle,       set_coolant,
-    dwell_in_siemens,     select_plane,       select_siemens_offset,
-    change_siemens_frame, set_siemens_radius, use_siemens_edge,
-    set_path_mode,        set_distance_mode,  act_in_siemens,
-    set_modal_call,       move_in_siemens,    run_cycles,
-    call_modal,           switch_language,    end_block,
+    use_siemens_words,    note_keywords,        say,
+    use_siemens_tool,     turn_spindle,         set_coolant,
+    dwell_in_siemens,     select_siemens_plane, select_siemens_offset,
+    change_siemens_frame, set_siemens_radius,   use_siemens_edge,
+    set_siemens_path,     set_distance_mode,    act_in_siemens,
+    set_modal_call,       move_in_siemens,      run_cycles,
+    call_modal,           switch_language,      end_block,
 };
 
 } // namespace
@@ -276,34 +383,22 @@ namespace {
 using core::OffsetNumber;
 using core::ToolNumber;
 
-/// The number of T="NAME": the name itself if it is a number, else a number assigned in order of
-/// appearance.
-int number_of_name(Execution& execution, const SiemensArgument& name) {
-    int number = 0;
-    const char* end = name.text.data() + name.text.size();
-    const auto read = std::from_chars(name.text.data(), end, number);
-    if (read.ec == std::errc() && read.ptr == end && number >= 0) return number;
-    const auto& known = siemens_of(execution.state).tool_names;
-    const auto found = std::find(known.begin(), known.end(), name.text);
-    if (found != known.end()) return static_cast<int>(found - known.begin()) + 1;
-    auto& names = writable_siemens(execution.state).tool_names;
-    names.emplace_back(name.text);
-    number = static_cast<int>(names.size());
-    execution.warn(name.span,
-                   fmt::format("T=\"{}\" is tool {} here: tool names are numbered in order of "
-                               "appearance, as the set-up has numbers",
-                               name.text, number),
-                   Severity::note);
-    return number;
+/// The axis along which the tool length acts. With diameters the tool is that of a lathe.
+size_t length_axis(const Execution& execution) {
+    constexpr size_t z = 2;
+    const ModalState& modal = execution.modal();
+    const bool follows = modal.diameter_mode || siemens_of(execution.state).length_follows_plane;
+    return follows ? axes_of(modal.plane).normal : z;
 }
 
-/// Activates the length of the active edge along the normal of the plane.
+/// Activates the length of the active edge.
 void use_length(Execution& execution, core::SourceSpan where) {
     ModalState& modal = execution.modal();
     const int edge = siemens_of(execution.state).edge;
     const int tool = modal.tool ? value_of(*modal.tool) : 0;
     Offsets offsets = modal.offsets;
     offsets.tool = {};
+    modal.doubt &= static_cast<uint8_t>(~edge_is_in_doubt);
     std::optional<OffsetNumber> number;
     if (edge != 0 && tool != 0) {
         number = OffsetNumber(tool);
@@ -312,15 +407,21 @@ void use_length(Execution& execution, core::SourceSpan where) {
             execution.warn(where,
                            fmt::format("D{}: the length of tool {} is unknown and assumed to be 0",
                                        edge, tool));
-        else if (edge != 1)
-            execution.warn(
-                where, fmt::format(
-                           "D{}: only one cutting edge of tool {} is known, and its length is used",
-                           edge, tool));
-        offsets.tool[axes_of(modal.plane).normal] = length.value_or(0.0);
+        if (edge > 1) {
+            modal.doubt |= edge_is_in_doubt;
+            execution.result.warnings.push_back(
+                {Severity::warning, where,
+                 fmt::format("D{}: only the first cutting edge of tool {} is known; its length and "
+                             "radius are used, and motions with them are not proven clear",
+                             edge, tool),
+                 core::rule_id("undecided"),
+                 "Program D1, or check with a set-up in which the tool has the length of this "
+                 "edge."});
+        }
+        offsets.tool[length_axis(execution)] = length.value_or(0.0);
     }
     if (offsets == modal.offsets && modal.length_number == number) return;
-    change_offsets(execution, offsets);
+    change_siemens_offsets(execution, offsets, modal.length_travel);
     modal.length_number = number;
     execution.emit(UseToolLengthOffset{number, offsets.tool, offsets.follows_tip});
 }
@@ -330,12 +431,62 @@ void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {
     modal.tool = modal.selected_tool;
     if (stops_spindle && modal.spindle != core::SpindleDirection::stopped)
         turn_siemens_spindle(execution, 5);
+    move_to_tool_change(execution);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
-    // Default MD20270: the first edge is active after a tool change.
+    // MD20270: the first edge is active after a tool change, or none.
     const Word* edge = execution.statement.word('D');
-    writable_siemens(execution.state).edge = 1;
+    SiemensState& siemens = writable_siemens(execution.state);
+    siemens.edge = 1;
+    siemens.edge_is_assumed = !edge && !empty;
     if (!edge) use_length(execution, where);
+}
+
+/// Whether the block moves one of these axes, given as a bit for each.
+bool moves_along(const Execution& execution, unsigned axes) {
+    const Statement& statement = execution.statement;
+    const bool mixes = mixes_axes(execution.modal().offsets) || statement.polar_radius
+                       || statement.polar_angle || execution.result.is_cycle;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (statement.word(axis_letters[axis]) && (mixes || (axes >> axis & 1u) != 0)) return true;
+    return mixes && (statement.polar_radius || statement.polar_angle || execution.result.is_cycle);
+}
+
+bool has_length(const Execution& execution) {
+    const AxisValues& tool = execution.modal().offsets.tool;
+    return tool[0] != 0.0 || tool[1] != 0.0 || tool[2] != 0.0;
+}
+
+/// Finds out whether the edge that a tool change without D selects is active.
+void settle_edge(Execution& execution) {
+    if (!siemens_of(execution.state).edge_is_assumed) return;
+    writable_siemens(execution.state).edge_is_assumed = false;
+    if (answer_to(execution.state, execution.environment, ControlQuestion::change_selects_edge,
+                  execution.block.line))
+        return;
+    writable_siemens(execution.state).edge = 0;
+    use_length(execution, {.line = execution.block.line, .column = 1});
+}
+
+/// Finds out along which axis the length acts in G18 and G19.
+///
+/// Source: SINUMERIK Function Manual W1, 11/2006, "Activating the tool compensations": a change of
+///         the length must be travelled in a straight move. Where the first move in the plane is an
+///         arc, the length cannot have changed.
+void settle_length_axis(Execution& execution, bool straight) {
+    const ModalState& modal = execution.modal();
+    const SiemensState& siemens = siemens_of(execution.state);
+    const size_t normal = axes_of(modal.plane).normal;
+    if (normal == 2 || siemens.length_axis_is_settled || modal.diameter_mode
+        || !has_length(execution) || !moves_along(execution, 1u << normal | 1u << 2))
+        return;
+    writable_siemens(execution.state).length_axis_is_settled = true;
+    if (!straight
+        || answer_to(execution.state, execution.environment, ControlQuestion::length_keeps_axis,
+                     execution.block.line))
+        return;
+    writable_siemens(execution.state).length_follows_plane = true;
+    use_length(execution, {.line = execution.block.line, .column = 1});
 }
 
 core::Result<void> select(Execution& execution, int number, core::SourceSpan where) {
@@ -348,14 +499,44 @@ core::Result<void> select(Execution& execution, int number, core::SourceSpan whe
 
 } // namespace
 
+void change_siemens_offsets(Execution& execution, const Offsets& offsets, AxisValues& travel) {
+    const Position before = execution.modal().position;
+    change_offsets(execution, offsets);
+    const Position& after = execution.modal().position;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (before[axis] && after[axis]) travel[axis] += *before[axis] - *after[axis];
+}
+
+void forget_travel(Execution& execution, size_t axis) {
+    ModalState& modal = execution.modal();
+    modal.offset_travel[axis] = modal.length_travel[axis] = 0.0;
+}
+
+void settle_length(Execution& execution, bool straight) {
+    const size_t along = length_axis(execution);
+    if (has_length(execution) && moves_along(execution, 1u << along)) settle_edge(execution);
+    settle_length_axis(execution, straight);
+}
+
+core::Result<void> select_siemens_plane(Execution& execution) {
+    if (!execution.statement.of(ModalGroup::plane)) return {};
+    if (auto done = select_plane(execution); !done) return done;
+    if (siemens_of(execution.state).length_follows_plane && has_length(execution))
+        use_length(execution, {.line = execution.block.line, .column = 1});
+    return {};
+}
+
 core::Result<void> use_siemens_tool(Execution& execution) {
     const SiemensArgument& name = siemens_of(execution.block).tool_name;
     if (const Word* word = execution.statement.word('T')) {
         FEELER_TRY(const int number, whole_number(*word, 0, 99999999));
         if (auto done = select(execution, number, word->span); !done) return done;
     } else if (name.kind == SiemensArgument::Kind::text) {
-        if (auto done = select(execution, number_of_name(execution, name), name.span); !done)
-            return done;
+        std::vector<std::string> names = siemens_of(execution.state).tool_names;
+        const ToolNumber number = tool_of_name(execution, name.text, name.span, names);
+        if (names.size() > siemens_of(execution.state).tool_names.size())
+            writable_siemens(execution.state).tool_names = std::move(names);
+        if (auto done = select(execution, value_of(number), name.span); !done) return done;
     }
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
     if (!entry) return {};
@@ -390,6 +571,7 @@ core::Result<void> use_siemens_edge(Execution& execution) {
         change(execution, word->span, false);
     }
     writable_siemens(execution.state).edge = edge;
+    writable_siemens(execution.state).edge_is_assumed = false;
     use_length(execution, word->span);
     return {};
 }
@@ -403,12 +585,15 @@ core::Result<void> set_siemens_radius(Execution& execution) {
     Execution shared{execution.library, execution.environment, execution.dialect, execution.block,
                      without,           execution.state,       execution.result,  execution.column};
     if (auto done = set_cutter_radius(shared); !done) return done;
+    if (entry && execution.modal().compensation != Side::none) settle_edge(execution);
     if (!entry || execution.modal().compensation == Side::none) return {};
-    if (siemens_of(execution.state).edge == 0)
+    if (siemens_of(execution.state).edge == 0) {
+        execution.modal().compensation_radius = 0.0;
         execution.warn(entry->word->span,
-                       fmt::format("{}: D0 is active, so the control has no radius to compensate; "
-                                   "the tool radius is used",
+                       fmt::format("{}: D0 is active, so the control compensates no radius: the "
+                                   "centre of the tool follows the contour",
                                    written(*entry->word)));
+    }
     const core::Mat3& linear = siemens_of(execution.state).frame.linear;
     const auto first = static_cast<int>(axes_of(execution.modal().plane).first);
     const double stretch = glm::length(linear[first]);
@@ -457,13 +642,24 @@ void add(Digest& digest, const SiemensState& siemens) {
     if (siemens.modal_call) add(digest, *siemens.modal_call);
     digest.add(number_of(siemens.edge));
     digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
-                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.follows_tool)));
+                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.compresses)
+                         + 16 * int(siemens.edge_is_assumed)
+                         + 32 * int(siemens.length_follows_plane)
+                         + 64 * int(siemens.length_axis_is_settled)));
+    digest.add(number_of(siemens.path_code));
+    for (const double value :
+         {siemens.feed_rounding, siemens.rapid_rounding, siemens.contour_tolerance})
+        digest.add(value);
     for (const std::string& name : siemens.tool_names) digest.add(name);
 }
 
 namespace {
 
-std::shared_ptr<LanguageState> begin_siemens() { return std::make_shared<StateOf<SiemensState>>(); }
+std::shared_ptr<LanguageState> begin_siemens(const Environment& environment) {
+    auto state = std::make_shared<StateOf<SiemensState>>();
+    state->value.feeds_in_inches = environment.units_at_start == LengthUnit::inch; // as G700
+    return state;
+}
 
 } // namespace
 

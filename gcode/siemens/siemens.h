@@ -23,6 +23,7 @@ std::optional<Value> siemens_variable(const InterpreterState& state, std::string
 // Steps of a block.
 core::Result<void> use_siemens_words(Execution& execution);     // unused words, units, feed
 core::Result<void> use_siemens_tool(Execution& execution);      // T, M6
+core::Result<void> select_siemens_plane(Execution& execution);  // G17 G18 G19
 core::Result<void> use_siemens_edge(Execution& execution);      // D
 core::Result<void> select_siemens_offset(Execution& execution); // G54 G500 G505
 core::Result<void> set_siemens_radius(Execution& execution);    // G40 G41 G42
@@ -39,6 +40,16 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
 /// The parameters of a cycle in order; empty where one is left out.
 core::Result<std::vector<std::optional<double>>> cycle_values(Execution& execution,
                                                               const SiemensKeywordUse& use);
+
+/// Changes the offsets without moving the machine, and adds to `travel` by how much the position
+/// that was programmed last moves with them.
+void change_siemens_offsets(Execution& execution, const Offsets& offsets, AxisValues& travel);
+
+/// The axis has been moved: earlier changes of offsets have been travelled.
+void forget_travel(Execution& execution, size_t axis);
+
+/// Decides before a move which tool length is active, and along which axis.
+void settle_length(Execution& execution, bool straight);
 
 /// The block's keyword of a kind; null when it has none.
 const SiemensKeywordUse* use_of(const Execution& execution, SiemensAction action);

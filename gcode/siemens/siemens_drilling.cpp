@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/siemens/siemens.h"
@@ -239,6 +240,8 @@ core::Result<void> drill_here(Execution& execution, const SiemensDrilling& cycle
         FEELER_TRY(hole.rate, modal_rate(execution, cycle.number));
     }
     execution.result.is_cycle = true;
+    settle_length(execution, true);
+    forget_travel(execution, hole.normal);
     hole.rapid(hole.above);
     if (auto done = machine_hole(hole); !done) return done;
     hole.rapid(cycle.retract);
@@ -259,6 +262,17 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                                       "number from 1 to {}, but is {:.12g}",
                                       use.keyword->name, most_holes, count),
                           use.span);
+    const bool may_be_round = !row && values.size() > 6 && values[6].value_or(0.0) != 0.0;
+    if (may_be_round) {
+        execution.result.path = core::PathCertainty::doubtful;
+        execution.result.warnings.push_back(
+            {Severity::warning, use.span,
+             fmt::format("{}: parameter 7 is {:.12g}: the tool may travel from hole to hole on the "
+                         "circle. The straight way is checked, and is not proven clear",
+                         use.keyword->name, *values[6]),
+             core::rule_id("undecided"),
+             "Leave parameter 7 out, or program the holes one by one."});
+    }
     const std::optional<SiemensDrilling> cycle = siemens_of(execution.state).modal_cycle;
     if (!cycle)
         execution.warn(use.span, fmt::format("{}: no drilling cycle is active (MCALL), so the tool "

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "gcode/exec/flow.h"
+#include "gcode/exec/readings.h"
 #include "gcode/language/flow_index.h"
 #include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
@@ -35,8 +36,14 @@ private:
         return {};
     }
     core::Result<bool> holds(const SiemensArgument& condition) const {
-        FEELER_TRY(const double value, value_of_argument(step_, condition));
-        return value != 0.0;
+        FEELER_TRY(const double value, value_of_argument(step_, condition, true));
+        if (!condition.expression) return value != 0.0;
+        const ProgramParameters parameters(step_.state, step_.environment);
+        if (auto read = evaluate(step_.block.pool, condition.expression, line_, parameters,
+                                 step_.dialect.arithmetic);
+            !read)
+            return tl::unexpected(std::move(read).error());
+        return outcome_of(parameters, step_.block, value != 0.0);
     }
     const FlowMark* structure() const;
     core::Result<uint32_t> partner(std::string_view wanted) const;
@@ -101,10 +108,11 @@ std::optional<uint32_t> SiemensFlowing::last_in(const std::string& name, uint32_
 /// forwards, then backwards.
 std::optional<uint32_t> SiemensFlowing::line_of(const SiemensJump& jump) const {
     const ProgramLines lines = lines_around(index_, line_);
-    if (jump.way == JumpDirection::to_start) return lines.begin;
+    if (jump.direction == JumpDirection::to_start) return lines.begin;
     std::optional<uint32_t> found;
-    if (jump.way != JumpDirection::backward) found = first_in(jump.target, line_ + 1, lines.end);
-    if (!found && jump.way != JumpDirection::forward)
+    if (jump.direction != JumpDirection::backward)
+        found = first_in(jump.target, line_ + 1, lines.end);
+    if (!found && jump.direction != JumpDirection::forward)
         found = last_in(jump.target, lines.begin, line_ + 1);
     return found;
 }
@@ -120,10 +128,11 @@ core::Result<void> SiemensFlowing::jump() {
             step_.state.next.line = *line;
             return {};
         }
-        if (jump.way == JumpDirection::no_alarm) return {};
-        const std::string_view where = jump.way == JumpDirection::forward    ? "after this block"
-                                       : jump.way == JumpDirection::backward ? "before this block"
-                                                                             : "in this program";
+        if (jump.direction == JumpDirection::no_alarm) return {};
+        const std::string_view where = jump.direction == JumpDirection::forward ? "after this block"
+                                       : jump.direction == JumpDirection::backward
+                                           ? "before this block"
+                                           : "in this program";
         const SiemensJump either{.target = jump.target};
         return core::fail(
             ErrorCode::syntax,
@@ -269,7 +278,8 @@ ProgramLines lines_around(const FlowIndex& index, uint32_t line) {
     return lines;
 }
 
-core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument) {
+core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument,
+                                       bool is_condition) {
     if (argument.kind == SiemensArgument::Kind::text)
         return core::fail(
             ErrorCode::syntax,
@@ -279,6 +289,7 @@ core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgume
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value value, evaluate(step.block.pool, argument.expression, step.block.line,
                                            parameters, step.dialect.arithmetic));
+    if (!is_condition) report_unknown(parameters, step.result, argument.span, "this value");
     return value.value_or(0.0);
 }
 
@@ -293,7 +304,7 @@ core::Result<void> run_siemens_flow(const FlowStep& step) {
         return {}; // the call has set its parameters
     case call_program:
         return call_siemens_program(step);
-    case FlowKind::give_back:
+    case FlowKind::return_statement:
         return return_from(step);
     default:
         return SiemensFlowing(step).run();

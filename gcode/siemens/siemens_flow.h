@@ -27,6 +27,7 @@ core::Result<Frame> called_frame(const FlowStep& step);
 core::Result<void> declare_variables(const FlowStep& step);
 
 /// The value of an argument.
-core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument);
+core::Result<double> value_of_argument(const FlowStep& step, const SiemensArgument& argument,
+                                       bool is_condition = false);
 
 } // namespace gcode

@@ -75,7 +75,7 @@ void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues
         for (int axis = 0; axis < 3; ++axis)
             offsets.local[static_cast<size_t>(axis)] = frame.shift[axis];
     if (offsets == execution.modal().offsets) return;
-    change_offsets(execution, offsets);
+    change_siemens_offsets(execution, offsets, execution.modal().offset_travel);
     execution.emit(SetOffset{offsets});
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,11 @@ enum class SiemensAction : uint8_t {
     address,
     noted_address,   // the value has no effect on positions
     refused_address, // not supported
+    orient_spindle,  // SPOS=90
+    fixed_point,     // FP= of G75
+    tolerance,       // ADIS, ADISPOS and CTOL
+    compressor_on,
+    compressor_off,
     // motions and modes
     arc_by_point,     // CIP
     tangent_arc,      // CT
@@ -26,7 +32,11 @@ enum class SiemensAction : uint8_t {
     diameters,        // DIAMON
     radii,            // DIAMOF
     transformation_off,
-    transformation, // TRAORI
+    transformation,  // TRAORI
+    other_approach,  // KONT
+    usual_approach,  // NORM
+    bent_rapids,     // RTLIOF
+    straight_rapids, // RTLION
     // frames
     shift,
     add_shift,
@@ -39,6 +49,7 @@ enum class SiemensAction : uint8_t {
     // calls in brackets
     message,
     swivel,     // CYCLE800
+    smoothing,  // CYCLE832
     drill,      // CYCLE81 to CYCLE89, CYCLE840
     hole_row,   // HOLES1
     hole_circle // HOLES2
@@ -53,10 +64,8 @@ struct SiemensKeyword {
     constexpr bool operator<(const SiemensKeyword& other) const { return name < other.name; }
 };
 
-struct SiemensKeywordUse {
-    const SiemensKeyword* keyword;
-    core::SourceSpan span;
-};
+/// All keywords, sorted by name.
+std::span<const SiemensKeyword> siemens_keywords();
 
 /// A value in brackets or after a keyword: an expression, a string or nothing.
 struct SiemensArgument {
@@ -69,13 +78,19 @@ struct SiemensArgument {
     core::SourceSpan span{};
 };
 
+struct SiemensKeywordUse {
+    const SiemensKeyword* keyword;
+    core::SourceSpan span;
+    SiemensArgument value{}; // of a tolerance
+};
+
 /// Where a jump searches for its target.
 enum class JumpDirection : uint8_t { forward, backward, either, no_alarm, to_start };
 
 /// `GOTOF END`, `IF R1 > 5 GOTOB N100`.
 struct SiemensJump {
     SiemensArgument condition; // nothing: unconditional
-    JumpDirection way = JumpDirection::either;
+    JumpDirection direction = JumpDirection::either;
     std::string target; // in capitals
     core::SourceSpan span{};
 };

@@ -165,7 +165,7 @@ core::Result<void> move_by_point(Execution& execution) {
         const double value = to_mm(word->value, modal.unit);
         const bool absolute = word->addressing == Addressing::modal
                                   ? modal.distance == DistanceMode::absolute
-                                  : word->addressing == Addressing::absolute;
+                                  : is_absolute(word->addressing);
         between[axis] = value + (absolute ? 0.0 : between[axis].value_or(0.0));
     }
     FEELER_TRY(const Point a, plane_point(execution, modal.position));
@@ -226,7 +226,7 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
         for (size_t i = 0; i < 2; ++i)
             if (words[i])
                 centre[i] = length_of(execution, *words[i])
-                            + (words[i]->addressing == Addressing::absolute ? 0.0 : from[i]);
+                            + (is_absolute(words[i]->addressing) ? 0.0 : from[i]);
         const double along = from[0] - centre[0], across = from[1] - centre[1];
         const double turn = sign * angle;
         end[axes.first] = centre[0] + along * std::cos(turn) - across * std::sin(turn);
@@ -372,8 +372,13 @@ core::Result<void> move_in_siemens(Execution& execution) {
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
     if (!modal.motion) modal.motion = MotionCode::straight; // default: G1 is active at the start
+    settle_length(execution, !circles && modal.motion != by_point && modal.motion != by_tangent);
     const Position start = modal.position;
     if (auto moved = move_by_mode(execution); !moved) return moved;
+    const bool mixes = mixes_axes(modal.offsets) || statement.polar_radius || statement.polar_angle;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (statement.word(axis_letters[axis]) || (mixes && axis < 3))
+            forget_travel(execution, axis);
     remember_direction(execution, start);
     // G63 is not modal.
     if (modal.motion == MotionCode::compensated_tap) modal.motion = MotionCode::straight;

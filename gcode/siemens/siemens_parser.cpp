@@ -205,19 +205,28 @@ private:
         return add(entry);
     }
 
-    /// AC, IC, and for rotary axes DC, ACP and ACN.
+    struct AddressingName {
+        std::string_view name;
+        Addressing addressing;
+    };
+    static constexpr AddressingName addressings[] = {{"AC", Addressing::absolute},
+                                                     {"IC", Addressing::incremental},
+                                                     {"DC", Addressing::shortest},
+                                                     {"ACP", Addressing::positive},
+                                                     {"ACN", Addressing::negative}};
+
     bool take_addressing(Word& entry) {
         const size_t before = lexer_.at;
         lexer_.peek();
         const std::string name = siemens_name_at(lexer_);
-        const bool absolute = name == "AC" || name == "DC" || name == "ACP" || name == "ACN";
-        if (!absolute && name != "IC") return false;
+        const auto found = std::ranges::find(addressings, name, &AddressingName::name);
+        if (found == std::end(addressings)) return false;
         lexer_.at += name.size();
         if (!lexer_.accept('(')) {
             lexer_.at = before;
             return false;
         }
-        entry.addressing = absolute ? Addressing::absolute : Addressing::incremental;
+        entry.addressing = found->addressing;
         return true;
     }
 
@@ -321,7 +330,8 @@ private:
     }
 
     core::Result<void> use(const SiemensKeyword& keyword, size_t begin);
-    core::Result<void> skip_value(size_t begin);
+    core::Result<SiemensArgument> read_value(size_t begin);
+    core::Result<void> skip_brackets(size_t begin);
 
     SiemensReader& reader_;
     Lexer& lexer_;
@@ -329,11 +339,14 @@ private:
     SiemensLine& siemens_;
 };
 
-/// Skips the value of an address that has no effect on positions: `OVR=50`, `ACC[X]=80`.
-core::Result<void> SiemensParser::skip_value(size_t begin) {
+/// Reads the value of an address that is no axis: `OVR=50`, `ACC[X]=80`.
+core::Result<SiemensArgument> SiemensParser::read_value(size_t begin) {
     if (lexer_.accept('[')) {
         const size_t end = lexer_.line.find(']', lexer_.at);
-        if (end == std::string_view::npos) return reader_.expect(']', lexer_.written_from(begin));
+        if (end == std::string_view::npos) {
+            auto closed = reader_.expect(']', lexer_.written_from(begin));
+            return tl::unexpected(std::move(closed).error());
+        }
         lexer_.at = end + 1;
     }
     if (!reader_.is_at_equals())
@@ -341,8 +354,26 @@ core::Result<void> SiemensParser::skip_value(size_t begin) {
             fmt::format("'{}' must be followed by '=' and a value", lexer_.written_from(begin)),
             begin);
     ++lexer_.at;
-    if (auto value = reader_.argument(); !value) return tl::unexpected(std::move(value).error());
-    return {};
+    Word spindle; // SPOS=DC(90): how the spindle turns there does not matter
+    const bool closes = take_addressing(spindle);
+    FEELER_TRY(const SiemensArgument value, reader_.argument());
+    if (closes)
+        if (auto done = reader_.expect(')', lexer_.written_from(begin)); !done)
+            return tl::unexpected(std::move(done).error());
+    return value;
+}
+
+/// Skips brackets whose contents have no effect here, such as names of axes in `FGROUP(X,Y)`.
+core::Result<void> SiemensParser::skip_brackets(size_t begin) {
+    int depth = 0;
+    for (; lexer_.at < lexer_.line.size(); ++lexer_.at) {
+        const char c = lexer_.line[lexer_.at];
+        if (c == '(') ++depth;
+        if (c != ')' || --depth > 0) continue;
+        ++lexer_.at;
+        return {};
+    }
+    return reader_.expect(')', lexer_.written_from(begin));
 }
 
 core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begin) {
@@ -356,8 +387,16 @@ core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begi
     case address:
         return SiemensParser::address(keyword.text.front(), begin);
     case noted_address:
-        if (auto skipped = skip_value(begin); !skipped) return skipped;
+    case orient_spindle:
+        if (auto value = read_value(begin); !value) return tl::unexpected(std::move(value).error());
         break;
+    case tolerance:
+    case fixed_point: {
+        FEELER_TRY(const SiemensArgument value, read_value(begin));
+        siemens_.keywords.push_back({&keyword, lexer_.span_from(begin), value});
+        block_.has_command = true;
+        return {};
+    }
     case machine_position:
         block_.words.push_back({.letter = 'G', .value = 53.0, .span = span});
         return {};
@@ -369,7 +408,9 @@ core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begi
         return reader_.refuse(fmt::format("'{}' must be in a block by itself", keyword.name),
                               begin);
     std::vector<SiemensArgument> passed_over;
-    if (reader_.next() == '(') {
+    if (keyword.action == note && reader_.next() == '(') {
+        if (auto skipped = skip_brackets(begin); !skipped) return skipped;
+    } else if (reader_.next() == '(') {
         const bool keeps = calls || keyword.action == transformation;
         auto read = reader_.arguments(keeps ? siemens_.arguments : passed_over);
         if (!read) return read;

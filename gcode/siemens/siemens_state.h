@@ -50,10 +50,16 @@ struct SiemensState {
     std::optional<Frame> modal_call;            // MCALL of a program
     ProgramFrame frame;                         // TRANS, ROT, SCALE, MIRROR
     int edge = 1;                               // D; 0: none
+    bool edge_is_assumed = false;               // selected by a tool change without D
+    bool length_follows_plane = false;          // SD42940 is 0
+    bool length_axis_is_settled = false;        // by SD42940, or by the program
     bool changes_with_t = false;                // the machine has no M6
     bool changes_with_m6 = false;
     bool feeds_in_inches = false; // G700
-    bool follows_tool = false;    // TRAORI
+    int path_code = 0;            // G60, G64, G641 to G645; 0: that of the machine
+    double feed_rounding = 0.0, rapid_rounding = 0.0; // ADIS and ADISPOS, mm
+    double contour_tolerance = 0.0;                   // CTOL and CYCLE832, mm; 0: of the machine
+    bool compresses = false; // COMPON, COMPCURV, COMPCAD: joins short moves
     std::vector<std::string> tool_names;
 
     bool operator==(const SiemensState&) const = default;

@@ -28,10 +28,13 @@ struct Mark {
     FlowKind kind;
 };
 
-constexpr Mark marks[] = {{"ELSE", otherwise},         {"ENDIF", end_if},
-                          {"ENDFOR", end_for},         {"ENDWHILE", end_while},
-                          {"LOOP", endless_loop},      {"ENDLOOP", end_endless},
-                          {"RET", FlowKind::give_back}};
+constexpr Mark marks[] = {{"ELSE", otherwise},
+                          {"ENDIF", end_if},
+                          {"ENDFOR", end_for},
+                          {"ENDWHILE", end_while},
+                          {"LOOP", endless_loop},
+                          {"ENDLOOP", end_endless},
+                          {"RET", FlowKind::return_statement}};
 
 struct TypeName {
     std::string_view name;
@@ -118,7 +121,7 @@ private:
     }
 
     core::Result<void> jump(const Jump& way, SiemensArgument condition) {
-        SiemensJump entry{.condition = condition, .way = way.way};
+        SiemensJump entry{.condition = condition, .direction = way.way};
         if (way.way != JumpDirection::to_start) {
             FEELER_TRY(entry.target, target(way.name));
         }

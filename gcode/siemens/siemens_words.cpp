@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/following.h"
 #include "gcode/siemens/siemens.h"
 
 namespace gcode {
@@ -127,9 +128,17 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                             "this cycle is not supported yet: use TRANS and ROT",
                             i + 1, *values[i]),
                 use.span);
+    if (is_work_turned(execution.modal()))
+        return core::fail(ErrorCode::unsupported,
+                          "CYCLE800 while a rotary axis is away from 0 is not supported yet: turn "
+                          "it to 0 first",
+                          use.span);
     if (!values.empty() && values[0].value_or(0.0) != 0.0)
-        execution.warn(use.span, "CYCLE800: the retract position before the swivel is unknown; "
-                                 "that move is not checked");
+        lose_positions(execution, use.span,
+                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
+                       "move is not checked, nor are later ones until X, Y and Z have been "
+                       "programmed again",
+                       "Retract before the cycle, and call it with 0 as its first parameter.");
     return {};
 }
 
@@ -167,7 +176,7 @@ core::Result<void> select_siemens_offset(Execution& execution) {
                 : fmt::format("G{}: this offset is unknown and assumed to be zero", code),
             code - 505 + 4 < static_cast<int>(plain_offset_count) ? Severity::note
                                                                   : Severity::warning);
-    change_offsets(execution, offsets);
+    change_siemens_offsets(execution, offsets, execution.modal().offset_travel);
     execution.emit(SetOffset{offsets});
     return {};
 }
@@ -189,6 +198,15 @@ core::Result<void> go_to_fixed_position(Execution& execution) {
                                    written(*entry.word),
                                    reference ? "reference point" : "fixed point"));
     }
+    if (const SiemensKeywordUse* point = use_of(execution, SiemensAction::fixed_point)) {
+        FEELER_TRY(const double number, value_of_argument(flow_step_of(execution), point->value));
+        if (number != 1.0)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("FP={:.12g}: only the first fixed point is known to the "
+                                          "set-up",
+                                          number),
+                              point->span);
+    }
     Position machine = machine_from_program(modal.offsets, modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (execution.statement.word(axis_letters[axis]))
@@ -201,11 +219,14 @@ core::Result<void> go_to_fixed_position(Execution& execution) {
             target[axis] = end[axis];
     execution.column = entry.word->span.column;
     execution.traverse(target);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (execution.statement.word(axis_letters[axis])) forget_travel(execution, axis);
     return {};
 }
 
 core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordUse& use) {
     if (use.keyword->action == SiemensAction::swivel) return swivel(execution, use);
+    if (use.keyword->action == SiemensAction::smoothing) return {}; // see set_siemens_path
     return run_hole_cycle(execution, use);
 }
 

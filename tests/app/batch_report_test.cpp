@@ -36,16 +36,26 @@ StoredFinding near_miss(const std::string& text, uint32_t line) {
             text};
 }
 
+/// A set-up that describes everything.
+constexpr auto described = Known::described;
+const Coverage everything{.stock = described,
+                          .fixtures = described,
+                          .offsets = described,
+                          .limits = described,
+                          .moves = true};
+
 /// One program of each kind.
 BatchResult batch_of_all_kinds() {
     const ProgramResult good{.program = "parts/good.nc",
                              .verdict = core::Verdict::clear,
+                             .coverage = everything,
                              .findings = {{{.rule = "air-cut", .severity = Severity::note}}},
                              .blocks = 9,
                              .seconds = 0.5};
     ProgramResult bad{.program = "parts/Gehäuse 50%.nc",
                       .setup = "vise.toml",
                       .verdict = core::Verdict::violation,
+                      .coverage = everything,
                       .findings = {near_miss("N20 G0 X5.", 7),
                                    near_miss("N30 G0 X5.", 9),
                                    {{.rule = "program", .message = "bell \x07 and line\nend"}}},
@@ -59,6 +69,7 @@ BatchResult batch_of_all_kinds() {
                       .seconds = 1.5};
     bad.findings[1].file = "/abs/sub 1.nc";
     const ProgramResult broken{.program = "broken.nc",
+                               .coverage = everything,
                                .error = StoredError{"broken.nc", 3, 5, "G999: no such <code>"},
                                .blocks = 2,
                                .seconds = 0.25};
@@ -305,7 +316,7 @@ TEST(BatchReport, HasARowForEachProgram) {
         }
         cells.push_back(count);
     }
-    EXPECT_EQ(cells, (std::vector<size_t>{20, 20, 20, 20, 20}));
+    EXPECT_EQ(cells, (std::vector<size_t>{22, 22, 22, 22, 22}));
 }
 
 TEST(BatchReport, HasNoCellThatASpreadsheetCarriesOut) {
@@ -321,7 +332,7 @@ TEST(BatchReport, HasNoCellThatASpreadsheetCarriesOut) {
     const std::string rows = batch_csv_report(batch);
     EXPECT_THAT(rows, HasSubstr("\r\n'=1+1.nc,'+vise.toml,"));
     EXPECT_THAT(rows, HasSubstr(",7,-2e-06,0,0,'-holder,'=clamp,"));
-    EXPECT_THAT(rows, HasSubstr(",'@a.nc:3: is wrong\r\n"));
+    EXPECT_THAT(rows, HasSubstr(",'@a.nc:3: is wrong,"));
     EXPECT_THAT(rows, HasSubstr("\r\n'-late.nc,"));
 }
 

@@ -101,8 +101,8 @@ test_support::Ran feeler(std::vector<std::string> words, const std::string& befo
 
 Checked check_files(const std::string& program, const std::string& setup,
                     const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"check",    program, "--setup", setup,
-                                      "--format", "json",  "--pairs"};
+    std::vector<std::string> words = {"check", program, "--format", "json", "--pairs"};
+    if (!setup.empty()) words.insert(words.end(), {"--setup", setup});
     words.insert(words.end(), more.begin(), more.end());
     const test_support::Ran ran = feeler(words);
     Checked checked;

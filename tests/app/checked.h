@@ -57,6 +57,7 @@ struct Checked {
 /// Runs the program under test with these arguments.
 test_support::Ran feeler(std::vector<std::string> words, const std::string& before = "");
 
+/// `setup` may be empty: the set-up is then inferred.
 Checked check_files(const std::string& program, const std::string& setup,
                     const std::vector<std::string>& more = {});
 

@@ -10,6 +10,8 @@ using test_support::SetupWriter;
 
 const std::vector<std::string> coprocessor = {"--engine", "coprocessor"};
 
+SetupWriter mill() { return SetupWriter().also("[control]\n\"5006#6\" = 1\n"); }
+
 /// A slot along X at a depth, and a rapid back at a height.
 std::string slot(const std::string& depth, const std::string& height) {
     return "G21 G90 G54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-20 Y50 Z30\nZ" + depth
@@ -17,8 +19,8 @@ std::string slot(const std::string& depth, const std::string& height) {
 }
 
 TEST(Engine, TheCoprocessorGivesLowerBoundsOfItsOwn) {
-    const Checked exact = check(SetupWriter(), slot("-5", "10"));
-    const Checked device = check(SetupWriter(), slot("-5", "10"), coprocessor);
+    const Checked exact = check(mill(), slot("-5", "10"));
+    const Checked device = check(mill(), slot("-5", "10"), coprocessor);
     EXPECT_EQ(device.status, 0) << device.err;
     ASSERT_EQ(device.blocks.size(), exact.blocks.size());
     for (size_t i = 0; i < exact.blocks.size(); ++i) {
@@ -36,16 +38,16 @@ TEST(Engine, TheCoprocessorGivesLowerBoundsOfItsOwn) {
 }
 
 TEST(Engine, TheCoprocessorRefusesARapidThroughTheStockOnceAndTheShankInASlot) {
-    const Checked back = check(SetupWriter(), slot("-5", "-2"), coprocessor);
+    const Checked back = check(mill(), slot("-5", "-2"), coprocessor);
     EXPECT_EQ(back.status, 0) << "through its own slot: " << back.errors();
-    const Checked across = check(SetupWriter(),
+    const Checked across = check(mill(),
                                  "G21 G90 G54\nT1 M6\nG43 H1\nS8000 M3\nG0 X-20 Y50 Z30\nZ-5\n"
                                  "X120\nX-20\nZ60\nM30\n",
                                  coprocessor);
     EXPECT_EQ(across.errors(), "refused 7") << "the material that it hit is removed";
     EXPECT_EQ(across.at_line(7).verdict, "collision");
     EXPECT_GT(across.at_line(7).removed, 4000.0);
-    const Checked deep = check(SetupWriter(), slot("-25", "10"), coprocessor);
+    const Checked deep = check(mill(), slot("-25", "10"), coprocessor);
     EXPECT_EQ(deep.status, 1);
     EXPECT_EQ(deep.at_line(7).pair("shank stock").verdict, "collision");
     EXPECT_NE(deep.finding("refused").message.find("its models of the shank and of the stock"),
@@ -54,7 +56,7 @@ TEST(Engine, TheCoprocessorRefusesARapidThroughTheStockOnceAndTheShankInASlot) {
 }
 
 TEST(Engine, WhatTheCoprocessorCannotCheckIsNotCalledClear) {
-    const Checked far = check(SetupWriter(),
+    const Checked far = check(mill(),
                               "G21 G90 G54\nT1 M6\nG43 H1\nG0 X-20 Y50 Z30\nZ60\n"
                               "G0 X3000\nM30\n",
                               coprocessor);

@@ -23,8 +23,20 @@ using testing::Not;
 
 TEST(Outcome, GoesByWhatEndedTheProgramBeforeItsVerdict) {
     ProgramResult program{.verdict = core::Verdict::clear, .blocks = 3};
+    EXPECT_EQ(outcome_of(program), Outcome::no_error) << "nothing is known of its coverage";
+    program.coverage = Coverage{.stock = Known::described,
+                                .fixtures = Known::described,
+                                .offsets = Known::described,
+                                .limits = Known::described,
+                                .moves = true};
     EXPECT_EQ(outcome_of(program), Outcome::clear);
+    program.coverage->fixtures = Known::missing;
+    EXPECT_EQ(outcome_of(program), Outcome::no_error);
+    program.coverage->moves = false;
+    EXPECT_EQ(outcome_of(program), Outcome::no_motion);
     program.findings = {{{.rule = "no-feed", .severity = Severity::error}}};
+    EXPECT_EQ(outcome_of(program), Outcome::no_motion) << "before errors";
+    program.coverage->moves = true;
     EXPECT_EQ(outcome_of(program), Outcome::errors);
     program.verdict = core::Verdict::collision;
     EXPECT_EQ(outcome_of(program), Outcome::collision);

@@ -57,6 +57,31 @@ TEST(HtmlText, LeavesNothingThatABrowserReadsAsMoreThanText) {
     EXPECT_EQ(safe.find('\0'), safe.npos);
 }
 
+TEST(HtmlText, KeepsNumbersThatAPageHoldsExactly) {
+    constexpr int64_t most = (int64_t{1} << 53) - 1;
+    EXPECT_EQ(steps_of(2.5, 1e-4), 25'000);
+    EXPECT_EQ(steps_of(1e40, 1e-4), most);
+    EXPECT_EQ(steps_of(core::infinity, 0.01), most);
+    EXPECT_EQ(steps_of(std::nan(""), 1.0), 0);
+    EXPECT_EQ(um_above(1e300), most);
+    EXPECT_EQ(um_below(-1e40), -most);
+    EXPECT_EQ(clearance_um(-1e40), 0);
+}
+
+TEST(HtmlReport, LetsNoTimeAndNoVolumeOverflow) {
+    CheckRun run = clamped_plate();
+    double time = 1.0;
+    for (CheckedBlock& block : run.blocks) {
+        block.result.time = time *= 1e4;
+        block.result.removed = time;
+    }
+    run.cycle_time = time;
+    const json data = json::parse(blocks_json(run));
+    for (const char* column : {"time", "removed"})
+        for (const int64_t step : data[column]) EXPECT_GE(step, 0) << column;
+    EXPECT_GE(data["end"].get<int64_t>(), summed(data["time"].get<std::vector<int64_t>>()).back());
+}
+
 TEST(ScriptString, ComesBackAsTheSameTextAndEndsNoScript) {
     const std::string text = "</script><!-- \"\\ \x01 \xC3\xA4 ]]> & \t";
     const std::string written = script_string(text);

@@ -190,6 +190,23 @@ TEST(TurningProgram, IsNotJudgedAndSaysSo) {
     EXPECT_THAT(run.run.findings.back().message, HasSubstr("line 1 has G8"));
 }
 
+TEST(TurningProgram, ThatIsNotReadToItsEndIsNotJudgedEither) {
+    const std::string begin = "O0001\nG21 G40\nG50 S2000\nT0101\nG96 S200 M3\nG0 X52. Z2.\n";
+    for (const std::string cycle : {"G71 U2. R1.\n", "G76 P010060 Q100 R50\n", "G32 Z-20. F1.\n"}) {
+        const Inferred run = infer(begin + cycle + "M30\n");
+        EXPECT_FALSE(run.run.stopped) << cycle;
+        EXPECT_EQ(run.run.verdict, core::Verdict::undecided);
+        EXPECT_EQ(run.count("undecided"), 2u);
+        EXPECT_THAT(run.run.findings.front().message, HasSubstr("which is written for a lathe"));
+    }
+    // LinuxCNC has turning cycles, so their errors are those of the program.
+    const ScopedFolder folder;
+    const auto run = app::run_check(
+        {.program = folder.write("p.ngc", "G8 G18 G21\nT1 M6\nG0 X5 Z2\nG71 Q9\nM2\n")});
+    ASSERT_TRUE(run);
+    EXPECT_TRUE(run->stopped);
+}
+
 std::optional<std::string> reason(const std::string& text) {
     const ScopedFolder folder;
     const auto program = gcode::read_program(folder.write("p.nc", text));

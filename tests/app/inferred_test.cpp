@@ -163,7 +163,10 @@ TEST(StockEnvelope, CountsInASetUpAsWell) {
     EXPECT_EQ(status(SetupWriter().stock("margin = 3\n" + box), program), 2);
     EXPECT_EQ(status(SetupWriter().stock("margin = -1\n"), program), 2);
     EXPECT_EQ(status(SetupWriter().stock("at = [1, 2, 3]\n"), program), 2);
-    EXPECT_EQ(status(SetupWriter().without_stock(), "G21\nG0 X1\nM30\n"), 2);
+    const std::string uncut = "G21\nG0 X1\nM30\n";
+    EXPECT_EQ(status(SetupWriter().without_stock(), uncut),
+              feeler({"check", folder.write("bare.nc", uncut)}).status)
+        << "as without a set-up";
 }
 
 TEST(ToolLibraryKey, OffersWhatTheSetUpLacks) {

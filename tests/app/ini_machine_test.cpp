@@ -14,9 +14,9 @@ namespace {
 core::Machine machine_of(const std::string& ini, const std::string& axes = "") {
     const test_support::ScopedFolder folder;
     std::ofstream(folder / "mill.ini") << ini;
-    std::ofstream(folder / "setup.toml")
-        << "[program]\ndialect = \"linuxcnc\"\n[stock]\nbox = [[0,0,0],[1,1,1]]\n"
-        << axes;
+    std::ofstream(folder / "setup.toml") << "[program]\ndialect = \"linuxcnc\"\n[stock]\nbox = "
+                                            "[[0,0,0],[1,1,1]]\n[offsets]\nG54 = { X = 1 }\n"
+                                         << axes;
     ProgramSettings settings;
     settings.ini = folder / "mill.ini";
     const auto file = read_setup(folder / "setup.toml", settings);
@@ -75,6 +75,32 @@ TEST(IniMachine, TakesNoLimitsForAnInferredSetup) {
     EXPECT_FALSE(complete_machine(machine, environment, false).empty());
     EXPECT_EQ(machine.axes[0].max, std::nullopt);
     EXPECT_EQ(machine.axes[0].rapid, 600.0);
+}
+
+TEST(IniFile, HasTheToolChangePositionInUnitsOfTheMachine) {
+    const test_support::ScopedFolder folder;
+    const auto motion_of = [&](const std::string& keys) {
+        std::ofstream(folder / "mill.ini") << "[EMCIO]\n" << keys;
+        const auto ini = read_ini(folder / "mill.ini");
+        EXPECT_TRUE(ini);
+        return tool_change_motion(*ini, gcode::LengthUnit::inch);
+    };
+    const auto none = motion_of("");
+    EXPECT_EQ(none.position, gcode::Position{});
+    EXPECT_FALSE(none.quill_up || none.goes_to_second_home || none.keeps_spindle_running);
+    const auto three = motion_of("TOOL_CHANGE_POSITION = 1 -2 0.5\nTOOL_CHANGE_QUILL_UP = 1\n");
+    EXPECT_EQ(three.position[0], 25.4);
+    EXPECT_EQ(three.position[1], -50.8);
+    EXPECT_EQ(three.position[2], 12.7);
+    EXPECT_EQ(three.position[3], std::nullopt);
+    EXPECT_TRUE(three.quill_up);
+    const auto nine = motion_of("TOOL_CHANGE_POSITION = 1 2 3 90 0 0 4 0 0\n"
+                                "TOOL_CHANGE_AT_G30 = YES\nTOOL_CHANGE_WITH_SPINDLE_ON = 1\n");
+    EXPECT_EQ(nine.position[3], 90.0) << "degrees";
+    EXPECT_EQ(nine.position[6], 101.6);
+    EXPECT_TRUE(nine.goes_to_second_home && nine.keeps_spindle_running);
+    std::ofstream(folder / "mill.ini") << "[EMCIO]\nTOOL_CHANGE_POSITION = 1 2\n";
+    EXPECT_FALSE(read_ini(folder / "mill.ini"));
 }
 
 } // namespace

@@ -46,9 +46,14 @@ TEST(Rapid, IsUndecidedWhereTheSpeedsOfADogLegAreNotKnown) {
     EXPECT_EQ(checked.errors(), "dog-leg-rapid 7, dog-leg-rapid 7");
 }
 
+/// The stock is out of the way, on purpose.
+SetupWriter without_cuts() {
+    return SetupWriter().stock(far_stock).also("[rules]\nnothing-cut = \"off\"\n");
+}
+
 TEST(OverTravel, IsFoundInsideAnArcWhoseEndsAreWithinTheLimits) {
     // The half circle extends by its radius of 50: to Y220 of the work, 20 beyond machine zero.
-    const SetupWriter setup = SetupWriter().stock(far_stock);
+    const SetupWriter setup = without_cuts();
     const Checked beyond = check(
         setup, program({"G0 X100. Y170.", "G0 Z20.", "G2 X200. Y170. I50. J0 F1000.", "G0 Z60."}));
     EXPECT_EQ(beyond.status, 1);
@@ -62,13 +67,13 @@ TEST(OverTravel, IsFoundInsideAnArcWhoseEndsAreWithinTheLimits) {
 
 TEST(OverTravel, IsNotFoundInTheHalfOfTheCircleThatIsNotDriven) {
     const Checked checked =
-        check(SetupWriter().stock(far_stock),
+        check(without_cuts(),
               program({"G0 X100. Y170.", "G0 Z50.", "G3 X200. Y170. I50. J0 F1000.", "G0 Z60."}));
     EXPECT_EQ(checked.errors(), "");
 }
 
 TEST(OverTravel, IsFoundAHairBeyondTheLimitAndNotAtIt) {
-    const SetupWriter setup = SetupWriter().stock(far_stock);
+    const SetupWriter setup = without_cuts();
     EXPECT_EQ(check(setup, program({"G0 Y200."})).errors(), "");
     EXPECT_EQ(check(setup, program({"G0 Y200.001"})).errors(), "over-travel 6");
 }

@@ -22,7 +22,8 @@ void expect_misuse(const std::vector<std::string>& words, const std::string& sho
 
 TEST(CommandLine, NeedsASubcommand) {
     expect_misuse({}, "subcommand");
-    expect_misuse({"frobnicate"}, "subcommand");
+    expect_misuse({"frobnicate"}, "there is no command frobnicate\n");
+    expect_misuse({"chek"}, "there is no command chek; did you mean check?");
 }
 
 TEST(CommandLine, NeedsAProgram) {

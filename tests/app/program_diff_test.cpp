@@ -16,7 +16,9 @@ using test_support::SetupWriter;
 /// A post next to the stock, 20 mm high from Z0, 10 from the edge at X 100.
 SetupWriter beside_post(double x = 110.0) {
     const std::string low = std::to_string(x), high = std::to_string(x + 20.0);
-    return SetupWriter().fixture("post", "box = [[" + low + ", 0, -30], [" + high + ", 100, 20]]");
+    return SetupWriter()
+        .also("[control]\n\"5006#6\" = 1\n")
+        .fixture("post", "box = [[" + low + ", 0, -30], [" + high + ", 100, 20]]");
 }
 
 CheckRun checked(const ScopedFolder& folder, const std::string& program, const SetupWriter& setup) {

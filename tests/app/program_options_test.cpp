@@ -121,7 +121,7 @@ TEST(IniFile, NamesUnitVariablesToolsAndSearchPathFromItsOwnFolder) {
     traced.run("g21\ng43 h1\no<far> call\nm2\n", {"--ini", ini});
     EXPECT_TRUE(traced.says("length=101.6")) << traced.ran.out << traced.ran.err;
     EXPECT_TRUE(traced.says("straight_traverse x=-50.8")) << traced.ran.out;
-    EXPECT_TRUE(traced.warns("RS274NGC_STARTUP_CODE is not run"));
+    EXPECT_TRUE(traced.warns("RS274NGC_STARTUP_CODE is executed before the program: G17"));
     traced.run("g21\ng43 h1\nm2\n", {"--ini", ini, "--machine-unit", "mm"});
     EXPECT_TRUE(traced.says("length=4\n")) << traced.ran.out;
 }
@@ -141,7 +141,6 @@ TEST(IniFile, ShowsItsNumbersToPrograms) {
     // An axis A at 1 would be in the trace.
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=1\n")) << traced.ran.out;
     EXPECT_TRUE(traced.says("x=3.337 y=-4 z=0\n")) << traced.ran.out;
-    EXPECT_TRUE(traced.warns("WRAPPED_ROTARY of A is ignored")) << traced.ran.err;
     traced.run(program, {});
     EXPECT_EQ(traced.ran.status, 2);
 }
@@ -184,6 +183,43 @@ TEST(NoDecimalPoint, MakesALengthUnitsOrSmallestSteps) {
     EXPECT_TRUE(traced.says("x=1000 y=2")) << traced.ran.out;
 }
 
+TEST(Units, HoldUntilTheProgramStatesItsOwn) {
+    const std::string program = "G0 X1. Y2.\nG21\nX3.\nM30\n";
+    for (const char* dialect : {"linuxcnc", "fanuc", "haas", "grbl"}) {
+        Traced traced;
+        traced.dialect = dialect;
+        traced.run(program, {"--units", "inch"});
+        EXPECT_TRUE(traced.says("x=25.4 y=50.8") && traced.says("x=3 ")) << traced.ran.out;
+        EXPECT_FALSE(traced.warns("no units")) << traced.ran.err;
+        const std::string setup = traced.folder.write(
+            "s.toml", SetupWriter().program("units_at_start = \"inch\"\n").text());
+        traced.run(program, {"--setup", setup});
+        EXPECT_TRUE(traced.says("x=25.4 y=50.8")) << traced.ran.out << traced.ran.err;
+        traced.run(program, {"--setup", setup, "--units", "mm"});
+        EXPECT_TRUE(traced.says("x=1 y=2")) << traced.ran.out;
+    }
+    Traced traced;
+    traced.dialect = "siemens";
+    traced.run("G0 X1 Y2\nG710\nX3\nM30\n", {"--units", "inch"});
+    EXPECT_TRUE(traced.says("x=25.4 y=50.8") && traced.says("x=3 ")) << traced.ran.out;
+    traced.run("G0 X1\nM30\n", {"--units", "yard"});
+    EXPECT_EQ(traced.ran.status, 2);
+}
+
+TEST(Units, OfABareProgramAreThoseThatWereStated) {
+    const test_support::ScopedFolder folder;
+    const std::string program =
+        folder.write("p.nc", "(1/2 inch end mill, all dimensions in inches)\nG90 G54\nS4000 M3\n"
+                             "G0 Z1.\nX-1. Y0.5\nG1 Z-0.2 F20.\nX5.\nG0 Z1.\nM30\n");
+    const Ran silent = feeler({"check", program, "--dialect", "fanuc"});
+    EXPECT_EQ(silent.status, 1);
+    EXPECT_TRUE(silent.out.find("units-doubtful") != std::string::npos) << silent.out;
+    EXPECT_TRUE(silent.out.find("--units") != std::string::npos) << silent.out;
+    const Ran stated = feeler({"check", program, "--dialect", "fanuc", "--units", "inch"});
+    EXPECT_EQ(stated.status, 0) << stated.out << stated.err;
+    EXPECT_TRUE(stated.out.find("units-doubtful") == std::string::npos) << stated.out;
+}
+
 TEST(ProgramTable, SaysTheSameInASetup) {
     Traced traced;
     std::filesystem::create_directories(traced.folder / "subs");
@@ -213,8 +249,14 @@ TEST(ProgramOptions, OfCheckMoveBodiesInAWorkOffset) {
     const std::string nc =
         folder.write("p.nc", test_support::program({"G0 X-20. Y50.", "Z-5.", "X120.", "Z60."}));
     const std::string toml = folder.write("s.toml", SetupWriter().offsets("").text());
-    EXPECT_NE(check_files(nc, toml).errors(),
-              check_files(nc, toml, {"--parameters", variables}).errors());
+    const auto infers = [](const Checked& checked) {
+        return std::any_of(checked.assumptions.begin(), checked.assumptions.end(),
+                           [](const std::string& each) {
+                               return each.starts_with("the set-up states no work offset");
+                           });
+    };
+    EXPECT_TRUE(infers(check_files(nc, toml)));
+    EXPECT_FALSE(infers(check_files(nc, toml, {"--parameters", variables})));
     const std::string stated = folder.write("stated.toml", SetupWriter().text());
     EXPECT_EQ(check_files(nc, toml, {"--parameters", variables}).errors(),
               check_files(nc, stated).errors());
@@ -275,6 +317,61 @@ TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
     refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
     refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
     refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not supported");
+}
+
+/// The set-up of a plate with a clamp behind it, for LinuxCNC.
+SetupWriter plate_with_clamp() {
+    return SetupWriter()
+        .program("dialect = \"linuxcnc\"\nstart = { X = -350, Y = -200, Z = 0 }\n")
+        .fixture("clamp", "box = [[40, 100, -30], [60, 130, 20]]\n")
+        .also_tool("number = 2\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
+                   "shank = [[10, 10, 25]]\nholder = [[40, 40, 50]]\n")
+        .lengths("[[length_offset]]\nnumber = 1\nlength = 95.0\n"
+                 "[[length_offset]]\nnumber = 2\nlength = 95.0\n");
+}
+
+constexpr const char* changes_over_the_clamp = "G21 G90 G17 G40 G49 G80\nG54\nT1 M6\n"
+                                               "G43 H1 G0 Z100\nS1000 M3\nG0 X50 Y-40\n"
+                                               "G0 Z50\nT2 M6\nG43 H2\nS1000 M3\nG0 Z10\nM2\n";
+
+TEST(ToolChangePosition, OfTheIniFileIsWhereTheNextMoveStarts) {
+    const ScopedFolder folder;
+    const auto checked = [&](const std::string& position) {
+        const auto ini = folder.write("m.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[EMCIO]\n" + position);
+        return check(plate_with_clamp(), changes_over_the_clamp, {"--ini", ini});
+    };
+    EXPECT_EQ(checked("").errors(), "") << "Y-40 is beside the clamp";
+    EXPECT_EQ(checked("TOOL_CHANGE_POSITION = -300 -240 -100\n").errors(), "");
+    const Checked over = checked("TOOL_CHANGE_POSITION = -300 -85 -100\n");
+    EXPECT_EQ(over.status, 1);
+    EXPECT_NE(over.errors().find(" 11"), std::string::npos) << over.errors();
+    EXPECT_EQ(over.of_severity("warning").find("length"), std::string::npos)
+        << "the motion of the tool change needs no length offset";
+}
+
+TEST(ToolChangePosition, IsApproachedOnACheckedRapid) {
+    const ScopedFolder folder;
+    const auto checked = [&](const std::string& keys) {
+        const auto ini = folder.write("m.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[EMCIO]\n" + keys);
+        return check(plate_with_clamp(),
+                     "G21 G90 G54\nT1 M6\nG43 H1 G0 Z100\nX50 Y-40\nZ5\nT2 M6\nM2\n",
+                     {"--ini", ini});
+    };
+    const Checked across = checked("TOOL_CHANGE_POSITION = -300 0 -320\n");
+    EXPECT_NE(across.errors().find(" 6"), std::string::npos) << across.errors();
+    EXPECT_EQ(checked("TOOL_CHANGE_POSITION = -300 0 0\nTOOL_CHANGE_QUILL_UP = 1\n").errors(), "");
+}
+
+TEST(Kinematics, ThatMoveLinearAxesWithRotaryOnesAreRefused) {
+    const ScopedFolder folder;
+    const auto ran = [&](const std::string& name) {
+        return feeler({"check", folder.write("p.ngc", "G21 G0 X1\nM2\n"), "--setup",
+                       folder.write("s.toml", plate_with_clamp().text()), "--ini",
+                       folder.write("m.ini", "[KINS]\nKINEMATICS = " + name + "\n")});
+    };
+    EXPECT_EQ(ran("xyzac-trt-kins").status, 2);
+    EXPECT_NE(ran("xyzac-trt-kins").err.find("xyzac-trt-kins is not supported"), std::string::npos);
+    EXPECT_NE(ran("trivkins coordinates=XYZ").status, 2);
 }
 
 } // namespace

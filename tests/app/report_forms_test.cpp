@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/base/finding_text.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
@@ -181,14 +181,30 @@ TEST(Duration, RoundsBeforeItDividesIntoUnits) {
     EXPECT_EQ(duration_text(3599.7), "1 h 00 min");
     EXPECT_EQ(duration_text(7500.0), "2 h 05 min");
     EXPECT_EQ(duration_text(core::infinity), "unknown");
+    EXPECT_EQ(duration_text(std::nan("")), "unknown");
+    EXPECT_EQ(duration_text(3.6e9 - 60.0), "999999 h 59 min");
+    for (const double seconds : {3.6e9, 1e16, 2.2e40, 1e300})
+        EXPECT_EQ(duration_text(seconds), "more than 1,000,000 h");
 }
 
 TEST(Progress, FitsALineOfATerminal) {
-    EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .fraction = 0.0, .findings = 1}, 0.2),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 1, .fraction = 0.0, .findings = 1}, {}),
               "[....................]   0 %  1 blocks, 1 finding");
-    EXPECT_EQ(progress_text(CheckProgress{.blocks = 4500, .fraction = 0.25, .findings = 0}, 30.0),
+    EXPECT_EQ(progress_text(CheckProgress{.blocks = 4500, .fraction = 0.25, .findings = 0}, 84.0),
               "[#####...............]  25 %  4500 blocks, 0 findings, 1 min 30 s left");
     EXPECT_LE(progress_text(CheckProgress{1'000'000'000, 0.03, 1'000'000}, 1e6).size(), 79U);
+}
+
+TEST(TimeLeft, FollowsTheSpeedOfTheLastSeconds) {
+    TimeLeft left;
+    EXPECT_FALSE(left.after(0.0, 0.0));
+    EXPECT_FALSE(left.after(1.0, 0.01)) << "too early";
+    // One per cent a second up to 50 %, then half as fast.
+    for (double t = 2.0; t <= 50.0; t += 0.5)
+        EXPECT_NEAR(*left.after(t, t / 100.0), 100.0 - t, 1e-9);
+    for (double t = 50.5; t < 61.0; t += 0.5) left.after(t, 0.5 + (t - 50.0) / 200.0);
+    EXPECT_NEAR(left.after(61.0, 0.555).value_or(0.0), 89.0, 1e-6);
+    EXPECT_FALSE(left.after(61.5, 0.2)) << "a loop has begun again";
 }
 
 TEST(Stopping, KeepsWhatWasCheckedAndSaysSo) {

@@ -48,7 +48,7 @@ TEST(Rotary, ATiltedPlaneIsDrilledAlongItsOwnAxis) {
     // The plane is in the middle of the face towards -Y and faces that way.
     const Checked checked =
         check(cube(), text("G43 H1 Z120.\nG68.2 X0 Y-20. Z-20. I0 J90. K0\nG53.1\nG0 X3. Y4. Z5.\n"
-                           "G1 Z-6. F100.\nG0 Z5.\nG69\nG49\nG53 G0 Z0"));
+                           "G1 Z-6. F100.\nG0 Z5.\nG69\nG53 G0 Z0\nG49"));
     EXPECT_EQ(checked.errors(), "");
     const double hole = pi * 25.0 * 6.0;
     EXPECT_NEAR(checked.at_line(9).removed, hole, 0.03 * hole);

@@ -132,7 +132,7 @@ start_cluster() {
 # The number of programs that a shard has reported so far.
 ended_of() {
     [[ -e shard-$1.log ]] || return 0
-    grep -cE '^(clear|collision|violation|undecided|errors|stopped|not run) ' "shard-$1.log" || true
+    grep -cE '^(clear|no error|no motion|collision|violation|undecided|errors|stopped|not run) ' "shard-$1.log" || true
 }
 
 # The task running on a node, once it has reported this many programs.

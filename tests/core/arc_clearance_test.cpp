@@ -172,5 +172,22 @@ TEST(ArcPath, StaysWithinItsErrorOfEveryChordThoughTheRadiusChanges) {
     }
 }
 
+TEST(ArcPath, HasABoundedNumberOfChordsWhoseErrorIsStated) {
+    for (const double radius : {1e6, 1e9, 1e20, 1e40}) {
+        Motion motion{.kind = MotionKind::arc,
+                      .from = {radius, 0.0, 0.0},
+                      .to = {radius, 0.0, 0.0},
+                      .feed = 100.0};
+        motion.arc = ArcPath{2, Vec3(0.0), 6.283185307179586};
+        const Path path = path_of(motion, Machine(), 0.0025);
+        ASSERT_LE(path.legs.size(), 100'000U);
+        const Leg& leg = path.legs.front();
+        const double chord = std::hypot(leg.positions[1][0] - leg.positions[0][0],
+                                        leg.positions[1][1] - leg.positions[0][1]);
+        EXPECT_GE(leg.path_error, chord * chord / (8.0 * radius)) << radius;
+        EXPECT_EQ(leg.path_error > 0.0025, radius > 1e7);
+    }
+}
+
 } // namespace
 } // namespace core

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/text.h"
+#include "core/sim/run/cure_trial.h"
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
@@ -97,7 +98,7 @@ Finding near_miss(double lower, double upper, double keep) {
     pair.lower = lower;
     pair.upper = upper;
     pair.verdict = judge_distance(pair.allowance, lower, upper);
-    return finding_of({}, pair, {.motion = BlockMotion::feed}, {});
+    return finding_of({}, pair, {.motion = BlockMotion::feed}, {}, {});
 }
 
 TEST(FindingText, ShowsTheClearanceBelowTheMinimum) {

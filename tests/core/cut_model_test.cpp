@@ -197,6 +197,34 @@ TEST(CutModel, DoesNotDependOnTheOrderOfCuts) {
     }
 }
 
+/// Divides a square and its quarters, and compares each with what the whole log leaves there.
+void expect_same_quarters(const CutModel& model, int i, int j, SquareCuts cuts, int depth) {
+    const Square& s = cuts.square();
+    EXPECT_EQ(cuts.line_at_centre(),
+              fresh_line(model, i, j, 0.5 * (s.x0 + s.x1), 0.5 * (s.y0 + s.y1)));
+    for (int quarter = 0; quarter < 4; ++quarter) {
+        const Square part = cuts.quarter(quarter);
+        EXPECT_EQ(cuts.column(quarter), fresh_column(model, i, j, part));
+        if (depth > 0)
+            expect_same_quarters(model, i, j, cuts.within(quarter, {-infinity, infinity}),
+                                 depth - 1);
+    }
+}
+
+TEST(CutModel, QuartersOfASquareAreWhatTheWholeLogLeavesThere) {
+    std::mt19937 rng(68);
+    for (int k = 0; k < 12; ++k) {
+        const CutModel model = random_cut_box(rng, 8, k % 2 ? 0.1 : 0.0).model(spacing);
+        for (int j = k % 3; j < model.columns.v_count(); j += 3)
+            for (int i = k % 2; i < model.columns.u_count(); i += 2) {
+                const std::vector<LoggedSweep> sweeps = sweeps_near_cell(model, i, j);
+                expect_same_quarters(
+                    model, i, j,
+                    SquareCuts(model, sweeps, cell_square(model, i, j), {-infinity, infinity}), 1);
+            }
+    }
+}
+
 void expect_same(const CutModel& one, const CutModel& other) {
     EXPECT_TRUE(one.columns == other.columns);
     EXPECT_EQ(one.log.size(), other.log.size());

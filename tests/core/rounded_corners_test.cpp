@@ -98,7 +98,7 @@ TEST(RoundedCorners, LeaveNoDoubtWhereTheClearanceSufficesAnyway) {
     }
 }
 
-TEST(RoundedCorners, AreAbsentAtExactStopsAndOnRapids) {
+TEST(RoundedCorners, AreAbsentAtExactStops) {
     for (const Blending blending : {Blending::exact_stop, Blending::exact_path}) {
         Corner corner(around_a_corner(2.1, true));
         corner.give({within(0.3)});
@@ -107,10 +107,87 @@ TEST(RoundedCorners, AreAbsentAtExactStopsAndOnRapids) {
         EXPECT_NEAR(corner.seen.lower, 2.1, 1e-6);
         EXPECT_NEAR(corner.seen.upper, 2.1, 1e-6);
     }
+}
+
+/// LinuxCNC's G64 P.
+constexpr PathModeChange blends_all_within(double tolerance) {
+    PathModeChange change = within(tolerance);
+    change.rapid_tolerance = tolerance;
+    return change;
+}
+
+TEST(RoundedCorners, OfRapidsAreNearTheCorner) {
+    // The clamp is 10 mm from the corner along either move.
     Corner corner(around_a_corner(2.1, true));
-    corner.give({within(0.3)});
+    corner.give({blends_all_within(0.3)});
     corner.pass(MotionKind::rapid);
+    EXPECT_EQ(corner.seen.verdict, Verdict::clear);
     EXPECT_NEAR(corner.seen.lower, 2.1, 1e-6);
+    EXPECT_NEAR(corner.seen.upper, 2.4, 1e-6) << "the nearest point may be missed";
+}
+
+TEST(RoundedCorners, OfRapidsReachAsFarAsTheToleranceAllows) {
+    // Half way of a parabola, the tool is 5 mm from the corner, towards the clamp.
+    const double gap = 2.1, to_centre = std::sqrt(2.0) * (8.0 + gap) - 5.0;
+    Corner corner(around_a_corner(gap, true));
+    corner.give({blends_all_within(5.0)});
+    corner.pass(MotionKind::rapid);
+    EXPECT_LE(corner.seen.lower, to_centre - 8.0);
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided);
+    EXPECT_EQ(corner.verdicts.front(), Verdict::clear) << "the corner belongs to the second move";
+}
+
+TEST(RoundedCorners, AreAbsentBetweenRapidsThatStopOrAreFollowedByFeeds) {
+    const double z = 40.0;
+    const Motion first{.kind = MotionKind::rapid, .from = {-50, 0, z}, .to = {0, 0, z}};
+    Motion second{.kind = MotionKind::rapid, .from = {0, 0, z}, .to = {0, 50, z}};
+    const auto verdict = [&](const PathModeChange& mode, const std::vector<Event>& between) {
+        Corner corner(around_a_corner(2.1, true));
+        corner.give({mode});
+        corner.give({first});
+        corner.give(between);
+        corner.give({second});
+        return corner.seen.verdict;
+    };
+    const PathModeChange exact{Blending::exact_path, {}};
+    EXPECT_EQ(verdict(blends_all_within(5.0), {}), Verdict::undecided);
+    EXPECT_EQ(verdict(blends_all_within(5.0), {Dwell{}}), Verdict::clear);
+    EXPECT_EQ(verdict(blends_all_within(5.0), {exact}), Verdict::undecided)
+        << "the mode of the first move counts";
+    EXPECT_EQ(verdict(exact, {blends_all_within(5.0)}), Verdict::clear);
+    EXPECT_EQ(verdict(within(5.0), {}), Verdict::clear) << "only feeds are rounded";
+    PathModeChange mixed = blends_all_within(5.0);
+    mixed.tolerance.reset();
+    second.kind = MotionKind::feed;
+    second.feed = 500.0;
+    EXPECT_EQ(verdict(mixed, {}), Verdict::clear) << "LinuxCNC stops between a rapid and a feed";
+    mixed.tolerance = 0.1;
+    mixed.between_kinds = true;
+    EXPECT_EQ(verdict(mixed, {}), Verdict::clear) << "the smaller tolerance applies";
+    mixed.tolerance = 5.0;
+    EXPECT_EQ(verdict(mixed, {}), Verdict::undecided);
+}
+
+TEST(RoundedCorners, BeginAtADistanceAtTheEarliest) {
+    for (const double distance : {2.0, 40.0}) {
+        Corner corner(around_a_corner(2.1, true));
+        PathModeChange change = within(0.0);
+        change.tolerance.reset();
+        change.rapid_distance = distance;
+        corner.give({change});
+        corner.pass(MotionKind::rapid);
+        EXPECT_EQ(corner.seen.verdict, distance > 20.0 ? Verdict::undecided : Verdict::clear);
+    }
+}
+
+TEST(RoundedCorners, AddTheToleranceOfJoiningToThatOfCorners) {
+    Corner corner(around_a_corner(2.3, true));
+    PathModeChange change = within(0.2);
+    change.joining = 0.15;
+    corner.give({change});
+    corner.pass();
+    EXPECT_NEAR(corner.seen.lower, 2.3 - 0.35, 1e-6);
+    EXPECT_EQ(corner.seen.verdict, Verdict::undecided);
 }
 
 TEST(RoundedCorners, TakeTheMachinesToleranceWhereTheProgramStatesNone) {
@@ -142,6 +219,20 @@ TEST(RoundedCorners, LeaveDoubtWhereACornerMayBeLeftUncut) {
         EXPECT_EQ(corner.go(MotionKind::rapid, {60, 20, -4.9}),
                   tolerance > 1.0 ? Verdict::undecided : Verdict::clear);
     }
+}
+
+TEST(RoundedCorners, LeaveNoDoubtAtTheFaceOfTheRawStock) {
+    core::Setup setup = around_a_corner(20.0, true);
+    setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
+    Corner corner(std::move(setup));
+    corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}, within(2.0)});
+    corner.go(MotionKind::feed, {20, 20, -5});
+    corner.go(MotionKind::feed, {60, 20, -5});
+    corner.give({PathModeChange{Blending::exact_stop, {}}});
+    corner.go(MotionKind::rapid, {60, 20, 10});
+    corner.go(MotionKind::rapid, {60, 28, 10});
+    EXPECT_EQ(corner.go(MotionKind::rapid, {60, 28, 0}), Verdict::clear) << "beside the slot";
+    EXPECT_EQ(corner.go(MotionKind::rapid, {60, 28, -1}), Verdict::collision);
 }
 
 TEST(RoundedCorners, LeaveACrashACrash) {

@@ -17,8 +17,8 @@ TEST(Text, LosesBlanksAtItsEndsOnly) {
 }
 
 TEST(Text, CountsTheLettersThatDiffer) {
-    EXPECT_EQ(letters_apart("diameter", "diametre"), 2U);
-    EXPECT_EQ(letters_apart("", "flute"), 5U);
+    EXPECT_EQ(edit_distance("diameter", "diametre"), 2U);
+    EXPECT_EQ(edit_distance("", "flute"), 5U);
     EXPECT_EQ(nearest_name("shnak", {"flutes", "shank", "holder"}), "shank");
     EXPECT_EQ(nearest_name("shnak", {}), "");
 }

@@ -82,10 +82,10 @@ TEST(Calls, M99OfTheMainProgramJumpsOrIsOnePass) {
 TEST(Calls, AnInputIsOffUnlessTheProgramWaitsForIt) {
     const std::string jump = "M96 P10 Q5\nG0 X1\nN10 G0 X2\nM30\n";
     EXPECT_EQ(rapids(jump, DialectId::haas), "2 ");
-    EXPECT_THAT(warnings_of(jump, DialectId::haas), HasSubstr("Q5 is assumed to be off"));
+    EXPECT_THAT(warnings_of(jump, DialectId::haas), HasSubstr("input 5 is assumed to be off"));
     const std::string wait = "N5 M96 P5 Q8\nG0 X1\nM30\n";
     EXPECT_EQ(rapids(wait, DialectId::haas), "1 ");
-    EXPECT_THAT(warnings_of(wait, DialectId::haas), HasSubstr("waits for Q8"));
+    EXPECT_THAT(warnings_of(wait, DialectId::haas), HasSubstr("waits for input 8"));
 }
 
 TEST(Calls, FindFilesOfManyNames) {

@@ -7,6 +7,7 @@ namespace gcode {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// The position of the machine at the end of a program.
 Position machine_after(std::string_view text, DialectId dialect = DialectId::fanuc) {
@@ -41,6 +42,21 @@ TEST(ExternalOffset, IsAddedToEveryWorkOffset) {
     EXPECT_EQ(machine_after("G10 L2 P0 Z5\nG0 Z1")[2], 6.0);
     EXPECT_EQ(machine_after("G10 L2 P0 Z5\nG10 L2 P2 Z10\nG55 G0 Z1")[2], 16.0);
     EXPECT_EQ(machine_after("G10 L2 P0 Z5\nG91 G10 L2 P0 Z2\nG90 G54.1 P1 G0 Z1")[2], 8.0);
+}
+
+TEST(LengthOffset, EndsWithG28OnHaasOnly) {
+    const char* program = "G10 L10 P5 R100\nG90 G43 H5 G0 Z9\nG91 G28 Z0\nG90 G0 Z1";
+    EXPECT_EQ(machine_after(program, DialectId::haas)[2], 1.0);
+    EXPECT_EQ(machine_after(program)[2], 101.0);
+    EXPECT_THAT(warnings_of(std::string(program) + "\nM5", DialectId::haas), Not(HasSubstr("G49")));
+}
+
+TEST(CoordinatePreset, OfG921MovesNothingAndClearsTheNamedAxes) {
+    const char* shift = "G90 G0 X10 Y20\nG92 X0 Y0\nG0 X1 Y2\n";
+    EXPECT_EQ(machine_after(std::string(shift) + "G92.1 X0\nG0 X1 Y2")[0], 1.0);
+    EXPECT_EQ(machine_after(std::string(shift) + "G92.1 X0\nG0 X1 Y2")[1], 22.0);
+    EXPECT_EQ(machine_after(std::string(shift) + "G92.1 X0 Y0 Z0")[0], 11.0);
+    EXPECT_EQ(machine_after(std::string(shift) + "G92.1\nG0 X1 Y2")[1], 2.0);
 }
 
 TEST(ToolEntries, L10AndL11AreLengthAndWear) {

@@ -9,6 +9,7 @@
 namespace gcode {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 /// The X of each rapid of a program, in order.
@@ -101,9 +102,47 @@ TEST(Flow, EndlessProgramsAreFound) {
     EXPECT_THAT(rapids("o1 sub\no1 call\no1 endsub\no1 call\nM2"), HasSubstr("deeper than"));
     Environment environment = known_environment(DialectId::linuxcnc);
     environment.limits.blocks = 1000;
-    const Ran ran = run_text("o1 while [1]\nG91 X1 G0\no1 endwhile\nM2", environment);
+    const Ran ran =
+        run_text("#1=0\no1 while [#1 LT 9000]\n#1=[#1+1]\nG91 X1 G0\no1 endwhile\nM2", environment);
     ASSERT_TRUE(ran.run.error);
     EXPECT_THAT(ran.run.error->message, HasSubstr("stopped after 1000 blocks"));
+}
+
+// The expectations of the next three tests are those of rs274 2.9.
+
+TEST(Flow, CommentsMayStandBetweenArguments) {
+    const std::string sub = "o<a> sub\nG0 X[10*#1+#2]\no<a> endsub\n";
+    EXPECT_EQ(rapids(sub + "o<a> call [1] (comment) [2] ; more\nM2"), "12 ");
+    EXPECT_EQ(rapids(sub + "o<a> call (c)[1] (comment)(d) [2] (e)\nM2"), "12 ");
+    EXPECT_THAT(rapids(sub + "o<a> call [1] (comment [2]\nM2"), HasSubstr("is not closed"));
+}
+
+TEST(Flow, NumberedParametersExist) {
+    EXPECT_EQ(rapids("#1=5\nG0 X EXISTS[#1] Y-ABS[-3] Z SIN[30]\nX[5+EXISTS[#[1+1]]]\n"
+                     "X EXISTS[#0]\nX EXISTS[#<x>]\nX[3*EXISTS[#5220]]\nM2"),
+              "1 6 0 0 3 ");
+    EXPECT_THAT(rapids("G0 X[EXISTS[5]]\nM2"), HasSubstr("EXISTS needs a parameter"));
+    EXPECT_THAT(rapids("G0 X[EXISTS[#1.5]]\nM2"), HasSubstr("not whole"));
+}
+
+TEST(Flow, ATextEndsAtItsSecondTapeMark) {
+    const auto error = [](std::string_view text) { return error_of(text, DialectId::linuxcnc); };
+    EXPECT_THAT(error("%\nG21\no<a> call [1]\nM2\n%\no<a> sub\nG0 X#1\no<a> endsub\n"),
+                HasSubstr("3:1: there is no subprogram a"));
+    EXPECT_THAT(error("%\nG21\nM98 P2\nM2\n%\nO2\nG0 X4\nM99\n"),
+                HasSubstr("there is no program O2"));
+    // Without one at the start, a mark ends nothing.
+    EXPECT_EQ(error("G21\no<a> call [1]\nM2\n%\no<a> sub\nG0 X#1\no<a> endsub\n"), "");
+}
+
+TEST(Flow, AProgramMayPassASubOnlyOnceAndUncalled) {
+    EXPECT_EQ(rapids("G0 X1\nO2 sub\nG0 X2\nO2 endsub\nG0 X3\nM2"), "1 3 ");
+    EXPECT_EQ(rapids("O2 sub\nG0 X2\nO2 endsub\nO2 call\nO2 call\nM2"), "2 2 ");
+    EXPECT_THAT(rapids("o2 call\nG0 X3\nO2 sub\nG0 X4\nO2 endsub\nG0 X5\nM2"),
+                AllOf(HasSubstr("4 3 error"), HasSubstr("runs into subprogram 2")));
+    EXPECT_THAT(rapids("o1 repeat [2]\nO2 sub\nG0 X1\nO2 endsub\no1 endrepeat\nM2"),
+                HasSubstr("runs into subprogram 2"));
+    EXPECT_EQ(rapids("o2 call\nM2\nO2 sub\nG0 X4\nO2 endsub\n"), "4 ");
 }
 
 TEST(Flow, FanucJumpsAndLoops) {

@@ -182,7 +182,8 @@ TEST(KlartextFrame, DwellsAndNotes) {
                        "5\nCYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nBLK FORM 0.1 Z X+0 Y+0 "
                        "Z-5\nPLANE RESET STAY\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+0 "
                        "C+0\nSTOP M6\nL M128\n"),
-              "dwell seconds=1.5\ndwell seconds=5\nprogram_stop\n");
+              "dwell seconds=1.5\ndwell seconds=5\nset_path_mode mode=continuous tolerance=0.05 "
+              "naive_tolerance=0\nprogram_stop\n");
     EXPECT_THAT(klartext_error("CYCL DEF 19.0\nCYCL DEF 19.1 A+0 B+30 C+0\n"),
                 HasSubstr("3:19: B30: tilted planes"));
 }

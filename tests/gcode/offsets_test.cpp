@@ -64,7 +64,7 @@ TEST(Offsets, G10WritesThem) {
     EXPECT_EQ(in_shop("G91 G10 L2 P1 X5"), "set_offset offset=G54 x=-345 y=-200 z=-420\n");
     EXPECT_EQ(in_shop("G21 G91 G10 L2 P0 X5", DialectId::linuxcnc),
               "set_offset offset=G54 x=5 y=-200 z=-420\n");
-    EXPECT_EQ(error_of("G10 P1 X1"), "1:1: G10 needs L2 or L20");
+    EXPECT_EQ(error_of("G10 P1 X1", DialectId::haas), "1:1: G10 needs L2 or L20");
     EXPECT_EQ(error_of("G10 L2 X1"), "1:1: G10 needs a P word, the number of the work offset");
     EXPECT_THAT(error_of("G10 L2 P10 X1"), HasSubstr("1:8: P10"));
     EXPECT_THAT(error_of("G10 L12 P1 R5", DialectId::linuxcnc), HasSubstr("1:5: L12"));
@@ -198,11 +198,10 @@ TEST(Homing, GoesThroughTheIntermediatePoint) {
                                    "straight_traverse x=350 y=200 z=370\n");
 }
 
-TEST(Homing, KnowsTheSecondReferencePointOnly) {
+TEST(Homing, KnowsTheThirdReferencePointOnlyIfItIsStated) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
         for (const std::string_view text : {"G91 G30 P3 Z0", "G91 G30 P4 Z0"})
-            EXPECT_THAT(error_of(text, dialect),
-                        HasSubstr("G30 supports the second reference position only"));
+            EXPECT_THAT(error_of(text, dialect), HasSubstr("this reference position is not known"));
         EXPECT_EQ(in_shop("G30 P2 Z450", dialect), in_shop("G30 Z450", dialect));
         EXPECT_EQ(warnings_of("G21 G91 G30 P2 Z0\nM30", dialect), "");
     }

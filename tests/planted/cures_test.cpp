@@ -80,6 +80,59 @@ TEST(Cure, OfALowRetractClearsTheObstacle) {
     EXPECT_NE(two_pockets(4.0 + higher - 0.2).errors(), "");
 }
 
+/// A rapid along X at a height of 2.5 mm, past or through a clamp 30 mm high; it starts and ends
+/// away from the clamp.
+Checked rapid_at(double y, double z = 2.5) {
+    const SetupWriter setup =
+        SetupWriter().fixture("clamp-1", "box = [[40, 104, -30], [60, 130, 30]]");
+    return check(setup, program({fmt::format("G0 X-20. Y{:.3f}", y), fmt::format("Z{:.3f}", z),
+                                 "X120.", "Z60."}));
+}
+
+TEST(Cure, OfARapidNearAClampWasTried) {
+    const FindingLine finding = rapid_at(98.0).finding("rapid-near-clamp");
+    EXPECT_EQ(finding.line, 8);
+    EXPECT_NEAR(number_after(finding.cure, "at least "), 1.0, 0.002); // Y97: 2 mm from Y104
+    EXPECT_NE(finding.cure.find("towards Y- (tried: this block then keeps 2.0"), std::string::npos)
+        << finding.cure;
+    EXPECT_EQ(rapid_at(98.0 - number_after(finding.cure, "at least ")).errors(), "");
+    EXPECT_NE(rapid_at(98.0 - number_after(finding.cure, "at least ") + 0.01).errors(), "");
+}
+
+TEST(Cure, OfARapidThroughAClampIsTheSmallestShiftThatClearsTheBlock) {
+    const FindingLine finding = rapid_at(110.0).finding("collision");
+    EXPECT_EQ(finding.line, 8);
+    // The tool must get 2 mm away from the clamp: to Y97 or to Z32.
+    EXPECT_NEAR(number_after(finding.cure, "at least "), 13.0, 0.02);
+    EXPECT_NE(finding.cure.find("towards Y-"), std::string::npos) << finding.cure;
+    EXPECT_EQ(rapid_at(110.0 - number_after(finding.cure, "at least ")).errors(), "");
+    // The overlap itself: 11 mm sideways.
+    EXPECT_NE(finding.message.find("The overlap is 11.0"), std::string::npos) << finding.message;
+    EXPECT_NE(finding.message.find("towards Y-."), std::string::npos) << finding.message;
+}
+
+TEST(Cure, OfARapidThroughTheStockIsAHeightThatWasTried) {
+    const auto across = [](double z) {
+        return check(SetupWriter(),
+                     program({"G0 X-20. Y50.", fmt::format("Z{:.3f}", z), "X120.", "Z60."}));
+    };
+    const FindingLine finding = across(-3.0).finding("rapid-in-stock");
+    const double higher = number_after(finding.cure, "Rapid at least ");
+    EXPECT_NEAR(higher, 3.5, 0.02);
+    EXPECT_EQ(across(-3.0 + higher).errors(), "");
+}
+
+/// A deep pocket, then a rapid out of it and sideways. The holder is in the wall at its end.
+TEST(Cure, OfARapidThatBeginsInTheWallNamesTheBlockBefore) {
+    const Checked checked =
+        check(SetupWriter(),
+              program({"G0 X50. Y50.", "Z2.", "G1 Z-50. F200.", "G0 Z4.", "X90.", "Z60."}));
+    const FindingLine finding = checked.finding("rapid-in-stock");
+    EXPECT_EQ(finding.line, 9);
+    EXPECT_EQ(finding.cure, "Correct the block before it: the holder is in the stock already where "
+                            "this rapid begins.");
+}
+
 TEST(LowRetract, IsOneThatPassesOverTheStockByLessThanHalfAMillimetre) {
     const auto across_the_face = [](const std::string& z) {
         return check(SetupWriter(), program({"G0 X-20. Y50.", "Z-3.", "G1 X10. F800.", "X-20.",

@@ -123,7 +123,7 @@ TEST(Witness, IsAtTheSameMomentAtAnyLevelOfDetail) {
         std::vector<std::string> words = {"check", file, "--setup", written, "--format", "text"};
         if (!option.empty()) words.push_back(option);
         const std::string text = feeler(words).out;
-        return text.substr(0, text.find(" line move")).substr(0, text.find(file));
+        return text.substr(0, text.find(" line move")).substr(0, text.find(file + ": "));
     };
     EXPECT_THAT(messages(""), HasSubstr("% of the block"));
     EXPECT_EQ(messages(""), messages("--pairs"));

@@ -77,7 +77,7 @@ TEST_F(Walking, FindsTheFirstOffenceFromBothSides) {
 /// The start position of the machine is unknown: a warning, but the block is not proven clear.
 TEST(WalkingToAnOffence, StopsAtWhatIsNotDecidedAsWell) {
     const ProgramFiles files("lost.ngc",
-                             "G21 G90 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X10 Y10\nG0 Z5\n"
+                             "G21 G90 G54\nT1 M6\nG43 H1\nS2000 M3\nG0 X10\nG0 Z5\n"
                              "G1 Z-1 F200\nG1 X30\nG0 Z20\nM2\n",
                              walked_setup().program("dialect = \"linuxcnc\""));
     const auto opened = app::DebugSession::open(files.job());

@@ -64,10 +64,13 @@ private:
             cloud_[dice_.index(most)] = p;
     }
 
+    /// Whether the flutes ran into the stock, so that it is gone on their way. If an earlier motion
+    /// may have removed it before, the verdict is only undecided, but it is gone in any case.
     static bool has_crashed(const core::BlockResult& result) {
         for (const core::PairClearance& pair : result.pairs)
             if (pair.pair == core::Pair{core::PartKind::flutes}
-                && pair.verdict == core::Verdict::collision)
+                && (pair.verdict == core::Verdict::collision
+                    || (pair.unless_removed && result.removed > 0.0)))
                 return true;
         return false;
     }

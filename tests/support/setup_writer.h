@@ -64,7 +64,8 @@ private:
     }
 
     std::string root_ = "mesh_size = 0.5\n";
-    std::string program_ = "dialect = \"fanuc\"\nstart = { X = -350, Y = -200, Z = 0 }\n";
+    std::string program_ = "dialect = \"fanuc\"\nstart = { X = -350, Y = -200, Z = 0 }\n"
+                           "no_decimal_point = \"units\"\n";
     std::string machine_ = mill();
     std::string stock_ = "box = [[0, 0, -30], [100, 100, 0]]\n";
     std::string offsets_ = "G54 = { X = -350, Y = -200, Z = -420 }\n";

@@ -32,9 +32,9 @@ still 01-without
 press d
 expect 'D runs the program with the device' 'block 45 of 45\), coprocessor: no motion - '
 press l
-expect 'L wraps around to the first refused block' 'block 38 of 45, problem\), coprocessor: refused'
+expect 'L wraps around to the first refused block' 'block 38 of 45, collision\), coprocessor: refused'
 press shift+l
-expect 'Shift+L goes back' 'block 42 of 45, problem\), coprocessor: refused'
+expect 'Shift+L goes back' 'block 42 of 45, collision\), coprocessor: refused'
 press ctrl+Left
 expect 'the answer follows the cursor' 'block [0-9]+ of 45\), coprocessor: (permitted|no motion)'
 press End
@@ -47,7 +47,7 @@ shows 02-panel 'the timeline shows refused blocks' has_slack 02-panel
 still 02-panel
 ! has_slack 01-without || die 'without the coprocessor the timeline shows no refused blocks'
 click 1140 392
-expect 'a click goes to the block before which the machine is stopped' 'block 38 of 45, problem'
+expect 'a click goes to the block before which the machine is stopped' 'block 38 of 45, collision'
 drag 982 950 # edge of the panel
 drag 369 340 # edge of the list
 press End

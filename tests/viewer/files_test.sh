@@ -42,7 +42,7 @@ still 01-before
 
 # The last line but one changes: current line, camera and breakpoint stay.
 sed -i 's/^M30$/G4 P0.2\nM30/' "$program"
-expect 'a saved program is reloaded at the same line' 'line 44 \(block 38 of 46, problem\)'
+expect 'a saved program is reloaded at the same line' 'line 44 \(block 38 of 46, collision\)'
 convert "$pictures/01-before.png" -crop 760x600+380+110 "$work/before.png"
 # True once the check has reached the block and the message is gone.
 is_as_before() {
@@ -59,7 +59,7 @@ expect 'the breakpoint stays' 'line 30 \(block 25'
 cp "$program.good" "$program"
 expect 'the original is reloaded' 'block [0-9]+ of 45'
 
-printf 'G21\nG0 X1\nG1 [[[\n' >"$program"
+printf 'G21 G90\nG0 X1.\nG1 [[[\n' >"$program"
 expect 'the title says that the program stops early' 'of 1\), stopped at line 3'
 shows 03-stopped 'a large warning shows where the program stops' has_color 03-stopped '#FF5A36' 5000
 printf 'GARBAGE[[[' >"$program"

@@ -128,7 +128,16 @@ of_color() {
 differ() { (($(differing "$1" "$2") > ${3:-0})); }
 has_color() { (($(of_color "$1" "$2") > $3)); }
 has_no_color() { [[ $(of_color "$1" "$2") == 0 ]]; }
-press() { xdotool key --window 0 --clearmodifiers "$@"; }
+# press KEY...: GLFW takes a key that is pressed again within 20 ms for one that is held down, so each
+# waits until the one before it has been processed.
+press() {
+    xdotool key --window 0 --clearmodifiers "$1"
+    local key
+    for key in "${@:2}"; do
+        frames
+        xdotool key --window 0 --clearmodifiers "$key"
+    done
+}
 # click X Y: clicks, and waits until the release has been processed.
 click() {
     xdotool mousemove "$1" "$2"

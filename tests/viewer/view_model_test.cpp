@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "app/setup/coverage.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/view_model.h"
 #include "tests/viewer/rows.h"
@@ -96,6 +97,63 @@ TEST(LengthText, RoundsLowerBoundsDownAndMinimumClearancesUp) {
     model.settings.inch = true;
     EXPECT_EQ(length_at_least(model, 25.3999), "0.9999");
     EXPECT_EQ(length_at_most(model, 25.4), "1.0000");
+}
+
+TEST(Unit, IsThatOfTheProgramUntilTheUserChooses) {
+    const auto open = [](ViewModel& model, bool is_inch) {
+        OpenedProgram opened;
+        opened.is_inch = is_inch;
+        SessionUpdate news;
+        news.opening = model.opening + 1;
+        news.has_news = true;
+        news.opened = std::make_shared<const OpenedProgram>(std::move(opened));
+        take_in(model, std::move(news), 0.0);
+    };
+    ViewModel model;
+    open(model, true);
+    EXPECT_TRUE(model.settings.inch);
+    open(model, false);
+    EXPECT_FALSE(model.settings.inch);
+    model.settings.has_own_unit = true;
+    open(model, true);
+    EXPECT_FALSE(model.settings.inch);
+}
+
+TEST(CoverageWords, SayWhatWasNotCheckedOfTheToolsThatFeed) {
+    using app::Coverage, app::Known;
+    Coverage coverage{.stock = Known::described,
+                      .fixtures = Known::missing,
+                      .offsets = Known::described,
+                      .limits = Known::described};
+    OpenedProgram opened;
+    opened.tools_with_holder = {core::ToolNumber{1}};
+    opened.coverage = std::make_shared<const Coverage>(coverage);
+    ViewModel model;
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    model.is_recorded = true;
+    EXPECT_EQ(coverage_words(model), "NOTHING CHECKED, the program moves nothing\n"
+                                     "Not checked: fixtures: not described");
+    model.rows.resize(2);
+    model.rows[0].motion = core::BlockMotion::rapid;
+    model.rows[0].tool = core::ToolNumber{3};
+    model.rows[1].motion = core::BlockMotion::feed;
+    model.rows[1].tool = core::ToolNumber{1};
+    EXPECT_EQ(coverage_words(model),
+              "NO ERROR IN THE PROGRAM ITSELF\nNot checked: fixtures: not described");
+    model.rows[1].tool = core::ToolNumber{2};
+    EXPECT_EQ(coverage_words(model), "NO ERROR IN THE PROGRAM ITSELF\n"
+                                     "Not checked: holder of T2, fixtures: not described");
+    model.offending = {1};
+    EXPECT_EQ(coverage_words(model), "Not checked: holder of T2, fixtures: not described");
+    coverage.fixtures = Known::described;
+    opened.coverage = std::make_shared<const Coverage>(coverage);
+    opened.tools_with_holder.insert(core::ToolNumber{2});
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    EXPECT_EQ(coverage_words(model), "");
+    model.offending.clear();
+    EXPECT_EQ(coverage_words(model), "") << "clear";
+    model.rows.clear();
+    EXPECT_EQ(coverage_words(model), "NOTHING CHECKED, the program moves nothing");
 }
 
 } // namespace

@@ -28,7 +28,7 @@ press Home
 expect 'Home goes to the beginning' 'block 0 of'
 
 press n
-expect 'N goes to the first problem' 'line 44 \(block 38 of 45, problem\)'
+expect 'N goes to the first problem' 'line 44 \(block 38 of 45, collision\)'
 still 03-violation
 press f
 shows 04-closest-pair 'F shows the closest pair' differ 03-violation 04-closest-pair
@@ -57,15 +57,17 @@ press ctrl+f
 frames
 xdotool type 'violation'
 picture 06-filter
-press BackSpace BackSpace BackSpace BackSpace BackSpace BackSpace BackSpace BackSpace BackSpace
+press ctrl+a BackSpace
 press Escape
 picture 06-filter-cleared
 
 xdotool mousemove 1198 810 click 1
-expect 'a click on the timeline goes to its block' 'block 38 of 45, problem'
+expect 'a click on the timeline goes to its block' 'block 38 of 45, collision'
 xdotool mousemove 640 810 mousedown 1 mousemove 500 810 mousemove 400 810 mouseup 1
 expect 'dragging scrubs back' 'block 1[23] of 45'
 frames # process the release before the mouse moves on
+press Home
+expect 'Home shows the beginning of the list' 'block 0 of'
 click 200 340
 expect 'a click in the list goes to its line' 'line 16 '
 
@@ -78,6 +80,9 @@ press Escape
 press w
 picture 09-what-if
 press Escape
+press u
+picture 09-tolerances
+press Escape
 # Whether the last but one row of pixels is drawn in a window of 900x600.
 is_filled() { [[ $(convert "$pictures/$1.png" -crop 900x1+0+598 -format '%[fx:mean>0.5]' info:) == 1 ]]; }
 xdotool windowsize "$window" 900 600
@@ -85,7 +90,7 @@ shows 10-small 'a smaller window is filled to its edge' is_filled 10-small
 xdotool windowsize "$window" 1440 900
 shows 10-large 'a larger window is drawn' differ 10-small 10-large 100000
 click 1198 810
-expect 'clicks hit the right block after a change of size' 'block 38 of 45, problem'
+expect 'clicks hit the right block after a change of size' 'block 38 of 45, collision'
 press 1
 picture 11-top
 press F12

@@ -90,7 +90,7 @@ core::Result<const PromptCommand*> command_named(std::string_view name) {
     if (beginning.size() == 1) return beginning[0];
     if (beginning.empty()) {
         const std::string nearest = core::nearest_name(name, names);
-        const bool is_near = 2 * core::letters_apart(name, nearest) <= name.size();
+        const bool is_near = 2 * core::edit_distance(name, nearest) <= name.size();
         return core::fail(
             ErrorCode::syntax,
             fmt::format("there is no command '{}'; {}'help' lists all commands", name,

@@ -10,6 +10,7 @@
 #include "app/debug/prompt/command_table.h"
 #include "app/debug/prompt/location.h"
 #include "app/debug/prompt/state_text.h"
+#include "app/setup/coverage.h"
 #include "core/base/text.h"
 #include "core/sim/verdict.h"
 #include "gcode/exec/interpreter.h"
@@ -119,7 +120,11 @@ CommandResult show_program(PromptState& state, const std::string&) {
     text += fmt::format(
         "{} checked ({:.0f} % of the program), {}\n", counted(record.blocks.size(), "block"),
         100.0 * state.session.recorded_fraction(), counted(record.findings.size(), "finding"));
-    text += fmt::format("so far: {}\n", verdict_text(record.verdict));
+    const bool is_clear = record.verdict == core::Verdict::clear;
+    text += fmt::format("so far: {}\n",
+                        is_clear ? "no collision, no near miss" : verdict_text(record.verdict));
+    if (const std::string uncovered = uncovered_text(record.full_coverage()); !uncovered.empty())
+        text += wrapped("not checked: " + uncovered, 0, 2);
     if (state.session.is_recorded())
         text += fmt::format("cycle time {}\n", duration_text(record.cycle_time));
     for (const std::string& assumed : record.all_assumptions())

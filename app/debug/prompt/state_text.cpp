@@ -5,9 +5,10 @@
 #include <fmt/format.h>
 
 #include "app/base/clearance_text.h"
-#include "app/base/finding_text.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/check/check_run.h"
+#include "app/setup/coverage.h"
 #include "core/base/text.h"
 #include "core/sim/verdict.h"
 
@@ -73,7 +74,7 @@ std::string end_text(const PromptState& state) {
     const size_t blocks = state.session.at();
     if (!record.stopped)
         return fmt::format("the program has ended, after {}: {}\n", counted(blocks, "block"),
-                           verdict_text(record.verdict));
+                           record.headline());
     const core::Error& error = *record.stopped;
     return wrapped(fmt::format("the control stops here with an alarm, after {}. Line {}: {}",
                                counted(blocks, "block"), error.where.line, error.message),
@@ -105,8 +106,13 @@ std::string finding_text(const core::Finding& finding, size_t indent) {
 
 core::Result<InspectedValue> value_here(PromptState& state, const std::string& expression) {
     auto value = value_of(expression, state.session.control(), state.session.environment());
-    if (value || !has_block(state)) return value;
-    return evaluate(expression, subject_of(state));
+    if (value) return value;
+    Condition::Subject subject = subject_of(state);
+    if (!has_block(state)) { // at the end: of the last block
+        if (subject.block == 0) return value;
+        --subject.block;
+    }
+    return evaluate(expression, subject);
 }
 
 std::string displays_text(PromptState& state) {

@@ -76,7 +76,14 @@ core::Result<WhatIf> allowance_change(const std::vector<std::string>& words) {
     return WhatIf(AllowanceChange{distance});
 }
 
-/// Parses `fixture clamp-1 by 0,10,0`; the name may contain blanks.
+/// The name without the quotes around it, if there are any.
+std::string unquoted(const std::string& name) {
+    const bool is_quoted =
+        name.size() >= 2 && (name[0] == '"' || name[0] == '\'') && name.back() == name.front();
+    return is_quoted ? name.substr(1, name.size() - 2) : name;
+}
+
+/// Parses `fixture clamp-1 by 0,10,0`; the name may contain blanks and be in quotes.
 core::Result<WhatIf> fixture_change(const std::string& arguments) {
     const std::string text = split_word(arguments).second;
     const size_t by = text.rfind(" by ");
@@ -95,6 +102,7 @@ core::Result<WhatIf> fixture_change(const std::string& arguments) {
                          ? split_word(text.substr(0, by)).first
                          : text.substr(0, by);
     }
+    moved.name = unquoted(moved.name);
     if (axis != 3)
         return core::fail(ErrorCode::syntax,
                           "write set fixture NAME by X,Y,Z, as in set fixture clamp-1 by 0,10,0");

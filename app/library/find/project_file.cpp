@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "app/base/file_stamp.h"
+#include "app/setup/coverage.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
@@ -30,6 +34,15 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
     if (terms.mesh_size && !(*terms.mesh_size > 0.0)) table.refuse("mesh_size", "must be above 0");
     if (auto rules = table.table("rules", table.name() + " rules"))
         terms.rules = read_severities(*rules);
+    for (const std::string& word :
+         table.strings("require", 0).value_or(std::vector<std::string>{})) {
+        const auto& words = required_words;
+        if (std::find(words.begin(), words.end(), word) == words.end())
+            table.refuse("require",
+                         fmt::format("\"{}\" is not one of: {}", word, fmt::join(words, ", ")));
+        else
+            terms.rules[required_rule(word)] = core::Severity::error;
+    }
     return terms;
 }
 

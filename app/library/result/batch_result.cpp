@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/base/finding_group.h"
+#include "app/base/findings.h"
 
 namespace app {
 
@@ -18,8 +18,9 @@ size_t count_of(const ProgramResult& result, core::Severity severity) {
 }
 
 const char* name_of(Outcome outcome) {
-    constexpr const char* names[] = {"clear",     "undecided", "errors",  "violation",
-                                     "collision", "stopped",   "not run", "not checked"};
+    constexpr const char* names[] = {"clear",   "no error",   "no motion", "undecided",
+                                     "errors",  "violation",  "collision", "stopped",
+                                     "not run", "not checked"};
     return names[static_cast<size_t>(outcome)];
 }
 
@@ -35,7 +36,10 @@ Outcome outcome_of(const ProgramResult& result) {
     case core::Verdict::clear:
         break;
     }
-    return status_of(result) == 0 ? Outcome::clear : Outcome::errors;
+    if (result.coverage && !result.coverage->moves) return Outcome::no_motion;
+    if (std::any_of(result.findings.begin(), result.findings.end(), is_error_of_program))
+        return Outcome::errors;
+    return result.coverage && result.coverage->is_complete() ? Outcome::clear : Outcome::no_error;
 }
 
 } // namespace app

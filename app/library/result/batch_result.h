@@ -27,6 +27,8 @@ size_t count_of(const ProgramResult& result, core::Severity severity);
 /// The outcome of a program in a batch, from best to worst.
 enum class Outcome : uint8_t {
     clear,
+    no_error,  // clear as far as it was checked, but the set-up does not describe everything
+    no_motion, // nothing moves, so nothing was checked
     undecided,
     errors, // clearances are sufficient, but there is another error
     violation,
@@ -36,9 +38,10 @@ enum class Outcome : uint8_t {
     unchecked
 };
 
-constexpr std::array<Outcome, 8> all_outcomes = {
-    Outcome::clear,     Outcome::undecided, Outcome::errors,  Outcome::violation,
-    Outcome::collision, Outcome::stopped,   Outcome::not_run, Outcome::unchecked};
+inline constexpr std::array all_outcomes = {
+    Outcome::clear,   Outcome::no_error,  Outcome::no_motion, Outcome::undecided,
+    Outcome::errors,  Outcome::violation, Outcome::collision, Outcome::stopped,
+    Outcome::not_run, Outcome::unchecked};
 
 /// The name of an outcome in lower case, such as "not run".
 const char* name_of(Outcome outcome);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "app/base/findings.h"
 #include "app/base/sha256.h"
 #include "app/base/text.h"
 #include "app/check/check_job.h"
@@ -61,17 +62,41 @@ std::optional<Tightest> tightest_of(const CheckRun& run) {
     return tightest;
 }
 
+/// Adds the depth of a finding's overlap, if it was measured.
+void add_overlap(Json& json, const StoredFinding& finding) {
+    if (!finding.overlap) return;
+    const core::Overlap& overlap = *finding.overlap;
+    json["depth"] = {{"least", overlap.least},
+                     {"most", overlap.most ? Json(*overlap.most) : Json(nullptr)}};
+    const core::Vec3& way = overlap.way_out;
+    json["way_out"] = overlap.most ? Json::array({way.x, way.y, way.z}) : Json(nullptr);
+}
+
+std::optional<core::Overlap> overlap_from(const Json& json) {
+    if (!json.contains("depth")) return {};
+    core::Overlap overlap{.least = number_from(json.at("depth").at("least"))};
+    if (const Json& most = json.at("depth").at("most"); !most.is_null()) {
+        overlap.most = number_from(most);
+        for (int axis = 0; axis < 3; ++axis)
+            overlap.way_out[axis] =
+                number_from(json.at("way_out").at(static_cast<size_t>(axis)), -1.0);
+    }
+    return overlap;
+}
+
 Json json_of(const StoredFinding& finding) {
-    return {{"rule", finding.rule},
-            {"severity", core::name_of(finding.severity)},
-            {"block", finding.block ? Json(core::value_of(*finding.block)) : Json(nullptr)},
-            {"line", finding.line},
-            {"file", finding.file},
-            {"text", finding.text},
-            {"message", finding.message},
-            {"cure", finding.cure},
-            {"pair", finding.pair},
-            {"shortfall", finding.shortfall}};
+    Json json = {{"rule", finding.rule},
+                 {"severity", core::name_of(finding.severity)},
+                 {"block", finding.block ? Json(core::value_of(*finding.block)) : Json(nullptr)},
+                 {"line", finding.line},
+                 {"file", finding.file},
+                 {"text", finding.text},
+                 {"message", finding.message},
+                 {"cure", finding.cure},
+                 {"pair", finding.pair},
+                 {"shortfall", finding.shortfall}};
+    add_overlap(json, finding);
+    return json;
 }
 
 Json json_of(const Tightest& tightest) {
@@ -115,6 +140,7 @@ StoredFinding finding_from(const Json& json) {
                           json.at("text")};
     if (const Json& block = json.at("block"); !block.is_null())
         finding.block = core::BlockIndex{whole_from<uint32_t>(block)};
+    finding.overlap = overlap_from(json);
     return finding;
 }
 
@@ -140,6 +166,8 @@ ProgramResult result_from(const Json& json) {
                          .cycle_time = number_from(json.at("cycle_time"), 0.0),
                          .removed = number_from(json.at("removed")),
                          .seconds = number_from(json.at("seconds"), 0.0)};
+    if (json.contains("coverage") && !json.at("coverage").is_null())
+        result.coverage = coverage_from(json.at("coverage"));
     if (const Json& error = json.at("error"); !error.is_null()) result.error = error_from(error);
     if (const Json& tightest = json.at("tightest"); !tightest.is_null())
         result.tightest = tightest_from(tightest);
@@ -159,6 +187,7 @@ ProgramResult result_of(const CheckRun& run, const std::string& setup) {
                          .dialect = std::string(gcode::dialect(run.dialect).name),
                          .engine = name_of(run.engine),
                          .verdict = run.verdict,
+                         .coverage = run.full_coverage(),
                          .blocks = run.blocks.size(),
                          .cycle_time = run.cycle_time,
                          .removed = run.removed,
@@ -192,6 +221,22 @@ int status_of(const ProgramResult& result) {
     return has_errors ? 1 : 0;
 }
 
+std::string headline_of(const ProgramResult& result) {
+    const bool in_program =
+        std::any_of(result.findings.begin(), result.findings.end(), is_error_of_program);
+    Coverage unknown;
+    unknown.moves = result.blocks > 0;
+    return headline_of({.verdict = result.verdict,
+                        .is_stopped = result.error.has_value(),
+                        .has_errors = in_program},
+                       result.coverage.value_or(unknown));
+}
+
+std::string uncovered_text(const ProgramResult& result) {
+    if (result.coverage) return uncovered_text(*result.coverage);
+    return result.blocks == 0 ? "" : "unknown: checked by an older version of Feeler";
+}
+
 std::string json_of(const ProgramResult& result) {
     Json json = {{"program", result.program},
                  {"setup", result.setup},
@@ -199,6 +244,8 @@ std::string json_of(const ProgramResult& result) {
                  {"dialect", result.dialect},
                  {"engine", result.engine},
                  {"verdict", core::name_of(result.verdict)},
+                 {"headline", headline_of(result)},
+                 {"coverage", result.coverage ? json_of(*result.coverage) : Json(nullptr)},
                  {"error", result.error ? json_of(*result.error) : Json(nullptr)},
                  {"blocks", result.blocks},
                  {"cycle_time", result.cycle_time},

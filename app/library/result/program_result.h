@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/coverage.h"
 #include "core/base/result.h"
 #include "core/sim/finding.h"
 #include "core/sim/verdict.h"
@@ -63,6 +64,7 @@ struct ProgramResult {
     std::string dialect; // empty if unknown
     std::string engine;  // "exact" or "coprocessor"
     core::Verdict verdict = core::Verdict::undecided;
+    std::optional<Coverage> coverage; // empty: not checked, or by an older version
     std::optional<StoredError> error;
     std::vector<StoredFinding> findings;
     std::vector<std::string> assumptions;
@@ -84,6 +86,13 @@ ProgramResult failed_result(const CheckJob& job, const core::Error& error);
 
 /// The exit status of `feeler check`: 0 no error, 1 at least one error, 2 not run to its end.
 int status_of(const ProgramResult& result);
+
+/// The verdict in words that say no more than was checked; see headline_of in coverage.h.
+std::string headline_of(const ProgramResult& result);
+
+/// What was not checked of a program, as uncovered_text; empty if the set-up describes everything
+/// or the program was not run.
+std::string uncovered_text(const ProgramResult& result);
 
 /// Converts a result to a JSON object on one line, and back. Numbers are preserved to the last bit.
 ///

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/base/text.h"
+
 namespace app {
 namespace {
 
@@ -52,6 +54,36 @@ const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count)
 std::array<std::string, 2> pair_from(const StoredJson& json) {
     list_from(json, 2);
     return {json[0].get<std::string>(), json[1].get<std::string>()};
+}
+
+StoredJson json_of(const Coverage& coverage) {
+    StoredJson json = StoredJson::object();
+    for (const CoverageItem& item : items_of(coverage)) json[item.key] = name_of(item.known);
+    json["tools_without_holder"] = StoredJson::array();
+    for (const core::ToolNumber tool : coverage.tools_without_holder)
+        json["tools_without_holder"].push_back(core::value_of(tool));
+    json["moves"] = coverage.moves;
+    json["complete"] = coverage.is_complete();
+    return json;
+}
+
+Coverage coverage_from(const StoredJson& json) {
+    const auto known = [&](const char* key) {
+        const auto found = core::find_named(all_known, json.at(key).get<std::string>());
+        if (!found) throw std::invalid_argument("unknown value");
+        return *found;
+    };
+    Coverage coverage{.stock = known("stock"),
+                      .holders = known("holders"),
+                      .fixtures = known("fixtures"),
+                      .offsets = known("offsets"),
+                      .limits = known("limits"),
+                      .start = known("start")};
+    for (const StoredJson& tool : list_from(json.at("tools_without_holder")))
+        coverage.tools_without_holder.push_back(core::ToolNumber{whole_from<int>(tool)});
+    if (!json.at("moves").is_boolean()) throw std::invalid_argument("neither true nor false");
+    coverage.moves = json.at("moves").get<bool>();
+    return coverage;
 }
 
 StoredJson json_of(const FileBytes& bytes) {

@@ -46,6 +46,12 @@ const StoredJson& list_from(const StoredJson& json, std::optional<size_t> count 
 /// The two texts of a list.
 std::array<std::string, 2> pair_from(const StoredJson& json);
 
+/// An object with what is known of each item, and the tools without a holder.
+StoredJson json_of(const Coverage& coverage);
+
+/// Reads such an object back; throws if it is invalid.
+Coverage coverage_from(const StoredJson& json);
+
 /// An object with a list of bytes for each text.
 StoredJson json_of(const FileBytes& bytes);
 

@@ -41,9 +41,11 @@ KeyJson path_json(const std::string& path) {
 
 KeyJson settings_json(const ProgramSettings& settings) {
     // This does not compile after a member was added: add it to the key below.
-    const auto& [dialect, block_delete, start, machine_unit, max_blocks, counts_smallest_steps, ini,
-                 parameters, tool_table, search_path, machine_codes, tool_at_start,
-                 spindle_at_start, speed_by_hand] = settings;
+    const auto& [dialect, block_delete, start, machine_unit, units_at_start, max_blocks,
+                 counts_smallest_steps, ini, parameters, tool_table, search_path, machine_codes,
+                 tool_at_start, spindle_at_start, values, speed_by_hand] = settings;
+    KeyJson variables = KeyJson::array();
+    for (const auto& [number, value] : values) variables.push_back({number, value});
     KeyJson positions = KeyJson::array(), folders = KeyJson::array();
     for (const auto& position : start) positions.push_back(optional_json(position));
     for (const std::string& folder : search_path) folders.push_back(path_json(folder));
@@ -51,6 +53,7 @@ KeyJson settings_json(const ProgramSettings& settings) {
             {"block_delete", optional_json(block_delete)},
             {"start", positions},
             {"machine_unit", enum_json(machine_unit)},
+            {"units_at_start", enum_json(units_at_start)},
             {"max_blocks", optional_json(max_blocks)},
             {"counts_smallest_steps", optional_json(counts_smallest_steps)},
             {"ini", path_json(ini)},
@@ -60,6 +63,7 @@ KeyJson settings_json(const ProgramSettings& settings) {
             {"machine_codes", machine_codes},
             {"tool_at_start", enum_json(tool_at_start)},
             {"spindle_at_start", enum_json(spindle_at_start)},
+            {"values", variables},
             {"speed_by_hand", optional_json(speed_by_hand)}};
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "app/base/finding_text.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/report/exchange/exchange_reports.h"
 
@@ -67,6 +67,13 @@ std::string finding_texts(const ProgramResult& program, bool errors) {
     return text;
 }
 
+/// The headline and what was not checked.
+std::string coverage_text(const ProgramResult& program) {
+    const std::string uncovered = uncovered_text(program);
+    if (uncovered.empty()) return {};
+    return headline_of(program) + "\n    unchecked: " + uncovered + "\n";
+}
+
 /// Folder and file name of a program, as attributes of its test case.
 std::string name_attributes(const std::string& program) {
     const std::filesystem::path path(program);
@@ -78,7 +85,8 @@ std::string name_attributes(const std::string& program) {
 std::string case_of(const ProgramResult& program) {
     std::string text = fmt::format("    <testcase {} time=\"{:.3f}\">\n",
                                    name_attributes(program.program), program.seconds);
-    const std::string errors = finding_texts(program, true), others = finding_texts(program, false);
+    const std::string errors = finding_texts(program, true);
+    const std::string others = coverage_text(program) + finding_texts(program, false);
     if (program.error) {
         const StoredError& error = *program.error;
         const std::string location = error.line == 0 ? "" : fmt::format("line {}: ", error.line);

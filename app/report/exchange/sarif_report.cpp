@@ -8,6 +8,7 @@
 #include "app/base/sha256.h"
 #include "app/base/version.h"
 #include "app/library/result/program_diff.h"
+#include "app/library/result/stored_json.h"
 #include "app/report/exchange/exchange_reports.h"
 #include "app/report/text/batch_text.h"
 #include "core/sim/finding.h"
@@ -31,9 +32,10 @@ const char* level_of(core::Severity severity) {
     return severity == core::Severity::off ? "none" : core::name_of(severity);
 }
 
-Json rule_json(std::string_view name, std::string_view meaning, std::string_view cure,
-               core::Severity severity) {
+Json rule_json(std::string_view name, std::string_view title, std::string_view meaning,
+               std::string_view cure, core::Severity severity) {
     return {{"id", name},
+            {"name", title},
             {"shortDescription", {{"text", meaning}}},
             {"fullDescription", {{"text", meaning}}},
             {"help", {{"text", cure}}},
@@ -43,12 +45,14 @@ Json rule_json(std::string_view name, std::string_view meaning, std::string_view
 Json rules_json() {
     Json rules = Json::array();
     for (const core::RuleEntry& rule : core::rule_table())
-        rules.push_back(rule_json(rule.name, rule.meaning, rule.cure, rule.severity));
+        rules.push_back(rule_json(rule.name, rule.title, rule.meaning, rule.cure, rule.severity));
     rules.push_back(
-        rule_json(not_run, "The program, or its set-up, could not be read or run to its end.",
+        rule_json(not_run, "Not run to its end",
+                  "The program, or its set-up, could not be read or run to its end.",
                   "Correct the error in the message; everything after it was not checked.",
                   core::Severity::error));
-    rules.push_back(rule_json(not_checked, "The run ended before this program was checked.",
+    rules.push_back(rule_json(not_checked, "Not checked",
+                              "The run ended before this program was checked.",
                               "Check the program again.", core::Severity::error));
     return rules;
 }
@@ -197,6 +201,20 @@ void add_skipped(Json& notes, const BatchResult& batch) {
     }
 }
 
+/// A note for each set of things that were not checked, at the first program that it is true of.
+void add_uncovered(Json& notes, const BatchResult& batch) {
+    std::map<std::string, std::vector<const ProgramResult*>> programs; // by text
+    for (const ProgramResult& program : batch.programs)
+        if (const std::string uncovered = uncovered_text(program); !uncovered.empty())
+            programs[headline_of(program) + ". Not checked: " + uncovered].push_back(&program);
+    for (const auto& [text, some] : programs) {
+        const std::string others =
+            some.size() == 1 ? "" : fmt::format(" (this program and {} more)", some.size() - 1);
+        notes.push_back(notification_json(
+            "note", text + others, location_json(some[0]->program, some[0]->file_bytes, 1, 1)));
+    }
+}
+
 Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_chosen) {
     Json notes = Json::array();
     if (const auto left_out = std::count(is_chosen.begin(), is_chosen.end(), false); left_out > 0)
@@ -213,6 +231,7 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_chose
                                   location_json(error.file.empty() ? program.program : error.file,
                                                 program.file_bytes, error.line, error.column)));
         }
+    add_uncovered(notes, batch);
     for (const std::string& program : batch.unchecked)
         notes.push_back(notification_json("error", "was not checked",
                                           location_json(program, batch.file_bytes, 1, 1)));
@@ -256,6 +275,11 @@ std::string sarif_report(const BatchResult& batch, const std::string& folder) {
         {"originalUriBaseIds", {{"%SRCROOT%", {{"uri", root.ends_with('/') ? root : root + "/"}}}}},
         {"columnKind", "unicodeCodePoints"},
         {"results", results_json(batch, is_chosen)}};
+    if (batch.programs.size() == 1) {
+        const ProgramResult& only = batch.programs[0];
+        run["properties"] = {{"headline", headline_of(only)}};
+        if (only.coverage) run["properties"]["coverage"] = json_of(*only.coverage);
+    }
     if (!batch.shard.empty()) run["automationDetails"] = {{"description", {{"text", batch.shard}}}};
     const Json log = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
                       {"version", "2.1.0"},

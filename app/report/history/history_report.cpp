@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/clearance_text.h"
-#include "app/base/finding_group.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/library/result/batch_result.h"
@@ -68,9 +68,10 @@ std::string version_text(const StoredVersion& stored, const StoredVersion* earli
     const ProgramResult& result = stored.result;
     const std::string checked = minute_text(stored.checked_at);
     const std::string seen = minute_text(stored.seen_at / microseconds);
-    std::string text =
-        fmt::format("{} UTC  {}\n", checked,
-                    result.error ? "NOT RUN TO ITS END" : verdict_text(result.verdict));
+    std::string text = fmt::format("{} UTC  {}\n", checked,
+                                   result.error ? "NOT RUN TO ITS END" : headline_of(result));
+    if (const std::string uncovered = uncovered_text(result); !uncovered.empty())
+        text += wrapped("unchecked: " + uncovered, 4, 2);
     if (seen != checked) text += fmt::format("    last seen {} UTC\n", seen);
     text += fmt::format("    {}\n    {}, {}\n", nearest_text(result),
                         duration_text(result.cycle_time), counts_text(result.findings));

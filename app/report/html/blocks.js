@@ -69,9 +69,16 @@ function isWorse(blocks, a, b) {
   return more !== 0 ? more > 0 : marginOf(blocks, a) < marginOf(blocks, b);
 }
 
+/** Whether the bodies of a block touch as intended: it is clear, without a gap and without a minimum. */
+function isContact(blocks, i) {
+  return stateOf(blocks, i) === "clear" && blocks.lower[i] === 0 && blocks.width[i] === 0
+    && blocks.pair[i] >= 0 && keepOf(blocks, i) === 0;
+}
+
 function clearanceText(blocks, i) {
   if (blocks.motion[i] === 0) return "";
   if (blocks.lower[i] < 0) return "unknown";
+  if (isContact(blocks, i)) return blocks.removed[i] > 0 ? "cutting" : "contact";
   if (blocks.width[i] < 0) return "\u2265 " + millimetres(blocks.lower[i]);
   if (blocks.width[i] <= 1) return millimetres(blocks.lower[i]); // rounded down, as a lower bound is
   return millimetres(blocks.lower[i]) + "\u2013" + millimetres(blocks.lower[i] + blocks.width[i]);

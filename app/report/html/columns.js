@@ -24,6 +24,7 @@ function millimetres(um) {
 
 function secondsText(seconds) {
   if (seconds < 60) return seconds.toFixed(2) + " s";
+  if (seconds >= 3.6e9) return "more than 1,000,000 h";
   const whole = Math.round(seconds), minutes = Math.floor(whole / 60);
   if (minutes < 60) return minutes + " min " + String(whole % 60).padStart(2, "0") + " s";
   return Math.floor(minutes / 60) + " h " + String(minutes % 60).padStart(2, "0") + " min";

@@ -97,7 +97,10 @@ void ProgramColumns::add(const ProgramResult& program, Outcome outcome) {
     seconds_.push_back(steps_of(program.seconds, 1e-3));
     add_tightest(program.tightest);
     if (program.error) add_error(*program.error);
-    assumptions_.add(static_cast<int64_t>(program.assumptions.size()));
+    const std::string uncovered = uncovered_text(program);
+    assumptions_.add(
+        static_cast<int64_t>(program.assumptions.size() + (uncovered.empty() ? 0 : 1)));
+    if (!uncovered.empty()) assumed_.push_back(shown_text(texts_, "not checked: " + uncovered));
     for (const std::string& assumption : program.assumptions)
         assumed_.push_back(shown_text(texts_, assumption));
     findings_.add(program);
@@ -268,7 +271,7 @@ std::string batch_outcome_text(const BatchResult& batch) {
     if (bad > 0) return count_text(batch, bad) + (bad == 1 ? " has errors" : " have errors");
     const size_t clear = programs_with(batch, Outcome::clear);
     if (clear == all_programs(batch)) return counted(clear, "program") + ": all clear";
-    return count_text(batch, clear) + " clear, no errors";
+    return count_text(batch, clear) + " clear, no errors in the others";
 }
 
 const char* batch_outcome_class(const BatchResult& batch) {
@@ -319,7 +322,9 @@ std::string html_outcomes(const BatchResult& batch) {
 std::string html_batch_summary(const BatchResult& batch) {
     size_t blocks = 0;
     for (const ProgramResult& program : batch.programs) blocks += program.blocks;
-    return fact_row("status", status_text(batch)) + fact_row("findings", finding_counts(batch))
+    const std::string uncovered = uncovered_summary(batch);
+    return (uncovered.empty() ? "" : fact_row("not checked", html_text(uncovered)))
+           + fact_row("status", status_text(batch)) + fact_row("findings", finding_counts(batch))
            + fact_row("least margin", tightest_html(batch))
            + fact_row("blocks", fmt::format("{}", blocks))
            + fact_row("cycle time of all", duration_text(sum_of(batch, &ProgramResult::cycle_time)))
@@ -336,9 +341,10 @@ std::string html_rules(const BatchResult& batch) {
         rows += fmt::format(
             "<tr><td><span class=\"badge {0}\">{0}</span></td><td><button type=\"button\" "
             "class=\"link\" data-rule=\"{1}\">{1}</button></td><td class=\"number\">{2}</td>"
-            "<td class=\"number\">{3}</td><td>{4}</td></tr>\n",
+            "<td class=\"number\">{3}</td><td><b>{5}.</b> {4}</td></tr>\n",
             core::name_of(tally.severity), html_text(tally.rule), tally.findings, tally.programs,
-            html_text(std::string(rule ? rule->meaning : "")));
+            html_text(std::string(rule ? rule->meaning : "")),
+            html_text(core::title_of_rule(tally.rule)));
     }
     return rows;
 }

@@ -8,6 +8,7 @@
 #include "app/report/html/html_report.h"
 #include "app/report/html/html_text.h"
 #include "app/view/model/finding_group.h"
+#include "core/base/rule.h"
 #include "core/sim/verdict.h"
 
 namespace app {
@@ -45,6 +46,8 @@ std::string picture_of(const CheckRun& run, const std::string& rule, size_t bloc
 }
 
 std::string clearance_of(const FindingStretch& stretch) {
+    if (const auto depth = viewer::depth_of(stretch))
+        return " \xC2\xB7 " + core::at_most(*depth, 2) + " mm deep";
     return stretch.clearance ? " \xC2\xB7 " + core::clearance_at_least(*stretch.clearance) + " mm"
                              : std::string();
 }
@@ -70,8 +73,9 @@ std::string location_list(const CheckRun& run, const FindingGroup& group) {
 
 std::string heading_of(const FindingGroup& group) {
     const char* severity = core::name_of(group.severity);
-    std::string heading = fmt::format(R"(<header><span class="badge {0}">{0}</span><h3>{1}</h3>)",
-                                      severity, html_text(group.rule));
+    std::string heading =
+        fmt::format(R"(<header><span class="badge {0}">{0}</span><h3>{1}</h3><code>{2}</code>)",
+                    severity, html_text(core::title_of_rule(group.rule)), html_text(group.rule));
     if (!group.pair[0].empty())
         heading += fmt::format(R"(<span class="pair">{} / {}</span>)", html_text(group.pair[0]),
                                html_text(group.pair[1]));

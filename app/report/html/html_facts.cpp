@@ -12,6 +12,7 @@
 #include "app/check/conclusion.h"
 #include "app/report/html/html_text.h"
 #include "app/report/text/text_report.h"
+#include "app/tolerance/tolerances.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/part_comparison.h"
@@ -93,9 +94,9 @@ std::string html_bound_terms(const CheckRun& run) {
                          run.statistics.refined));
     rows += term("chord", core::at_most(core::chord_error(h), 4) + " mm",
                  "Arcs are cut and checked as chords within this of them.");
-    rows += term("path tolerance", fmt::format("{} mm", core::default_blend_tolerance),
-                 "A control may round corners by this unless the program states a path mode. "
-                 "Clearances are those of sharp corners.");
+    rows +=
+        term("path tolerance", fmt::format("{} mm", core::default_blend_tolerance),
+             "For times only: corners are rounded by this unless the program states a path mode.");
     rows += term("stock tolerance", fmt::format("{} mm", run.setup.stock.tolerance),
                  "The raw stock may be larger by this on every side, as the set-up states.");
     rows += term("resolution", fmt::format("{:g} mm", core::resolution),
@@ -108,6 +109,28 @@ std::string html_bound_terms(const CheckRun& run) {
                  "Largest difference between the lower and upper bound of a deciding pair in any "
                  "block.");
     return rows;
+}
+
+std::string html_tolerances(const CheckRun& run) {
+    if (!run.tolerances) return {};
+    const Tolerances& tolerances = *run.tolerances;
+    std::string section = "<section id=\"tolerances\" aria-labelledby=\"tolerances-title\">\n"
+                          "<h2 id=\"tolerances-title\">Tolerances of the set-up</h2>\n";
+    if (!tolerances.refusal.empty())
+        return section + "<p>There are none: " + html_text(tolerances.refusal)
+               + ".</p>\n</section>\n";
+    section +=
+        "<p>How far each value of the set-up may deviate, one at a time: the check is proven "
+        "to stay clear.</p>\n<div class=\"wide\"><table class=\"terms\"><thead><tr>"
+        "<th scope=\"col\">Value</th><th scope=\"col\">Tolerance</th><th scope=\"col\">"
+        "Limited downwards by</th><th scope=\"col\">Limited upwards by</th></tr></thead>"
+        "<tbody>\n";
+    for (const Tolerance& tolerance : tolerances.list)
+        section += fmt::format(
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            html_text(title_of(tolerance.deviation)), html_text(range_text(tolerance)),
+            html_text(limit_text(tolerance.less)), html_text(limit_text(tolerance.more)));
+    return section + "</tbody></table></div>\n</section>\n";
 }
 
 } // namespace app

@@ -15,4 +15,7 @@ std::string html_summary(const CheckRun& run);
 /// The causes of the difference between lower and upper bound, as rows of an HTML table.
 std::string html_bound_terms(const CheckRun& run);
 
+/// The section with the tolerances of the set-up; empty if they were not requested.
+std::string html_tolerances(const CheckRun& run);
+
 } // namespace app

@@ -103,12 +103,22 @@ int64_t TextTable::index_of(const std::string& text) {
     return at->second;
 }
 
-int64_t um_below(double mm) { return static_cast<int64_t>(core::units_below(mm, 3)); }
+namespace {
+
+/// The nearest whole number that a page holds exactly; 0 for what is not a number.
+int64_t whole(double value) {
+    constexpr double most = 9007199254740991.0; // 2^53 - 1
+    return std::isnan(value) ? 0 : static_cast<int64_t>(std::clamp(value, -most, most));
+}
+
+} // namespace
+
+int64_t um_below(double mm) { return whole(core::units_below(mm, 3)); }
 
 int64_t clearance_um(double lower) { return std::max<int64_t>(um_below(lower), 0); }
 
-int64_t um_above(double mm) { return static_cast<int64_t>(core::units_above(mm, 3)); }
+int64_t um_above(double mm) { return whole(core::units_above(mm, 3)); }
 
-int64_t steps_of(double value, double step) { return std::llround(value / step); }
+int64_t steps_of(double value, double step) { return whole(std::round(value / step)); }
 
 } // namespace app

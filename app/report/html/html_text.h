@@ -64,6 +64,8 @@ private:
     std::vector<std::string> texts_;
 };
 
+// The following numbers end at 2^53, beyond which a page would change them.
+
 /// A length in whole um, rounded down as by core::units_below.
 int64_t um_below(double mm);
 

@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* batch_column_names =
     "program,setup,sha256,dialect,verdict,status,errors,warnings,notes,blocks,cycle_time,removed,"
-    "tightest_line,lower,upper,allowance,part,body,seconds,error\r\n";
+    "tightest_line,lower,upper,allowance,part,body,seconds,error,headline,"
+    "uncovered\r\n";
 
 /// The cells from `tightest_line` to `body`.
 std::string tightest_cells(const std::optional<Tightest>& tightest) {
@@ -35,13 +36,13 @@ std::string error_cell(const ProgramResult& program) {
 
 std::string row_of(const ProgramResult& program) {
     using core::Severity;
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{:.6f},{:.6f},{},{:.6f},{}\r\n",
-                       csv_cell(program.program), csv_cell(program.setup), program.sha256,
-                       program.dialect, core::name_of(program.verdict), status_of(program),
-                       count_of(program, Severity::error), count_of(program, Severity::warning),
-                       count_of(program, Severity::note), program.blocks, program.cycle_time,
-                       program.removed, tightest_cells(program.tightest), program.seconds,
-                       error_cell(program));
+    return fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{:.6f},{:.6f},{},{:.6f},{},{},{}\r\n",
+        csv_cell(program.program), csv_cell(program.setup), program.sha256, program.dialect,
+        core::name_of(program.verdict), status_of(program), count_of(program, Severity::error),
+        count_of(program, Severity::warning), count_of(program, Severity::note), program.blocks,
+        program.cycle_time, program.removed, tightest_cells(program.tightest), program.seconds,
+        error_cell(program), csv_cell(headline_of(program)), csv_cell(uncovered_text(program)));
 }
 
 } // namespace
@@ -78,7 +79,7 @@ std::string batch_csv_report(const BatchResult& batch) {
     std::string text = batch_column_names;
     for (const ProgramResult& program : batch.programs) text += row_of(program);
     for (const std::string& program : batch.unchecked)
-        text += csv_cell(program) + ",,,,not checked,2,,,,,,,,,,,,,,\r\n";
+        text += csv_cell(program) + ",,,,not checked,2,,,,,,,,,,,,,,,,\r\n";
     return text;
 }
 

@@ -9,6 +9,8 @@
 #include "app/check/check_run.h"
 #include "app/check/stock_file.h"
 #include "app/library/result/stored_json.h"
+#include "app/tolerance/tolerances.h"
+#include "core/base/rule.h"
 #include "core/sim/part_comparison.h"
 #include "gcode/language/dialect.h"
 
@@ -84,6 +86,7 @@ Json block_json(const CheckRun& run, const CheckedBlock& block,
 Json finding_json(const CheckRun& run, const core::Finding& finding) {
     Json json;
     json["rule"] = finding.rule;
+    json["title"] = core::title_of_rule(finding.rule);
     json["severity"] = core::name_of(finding.severity);
     json["block"] = nullptr;
     json["line"] = nullptr;
@@ -94,6 +97,11 @@ Json finding_json(const CheckRun& run, const core::Finding& finding) {
     if (!finding.pair[0].empty()) json["pair"] = finding.pair;
     json["message"] = finding.message;
     json["cure"] = finding.cure;
+    if (const auto& overlap = finding.overlap) {
+        json["depth"] = {{"least", overlap->least},
+                         {"most", overlap->most ? Json(*overlap->most) : Json(nullptr)}};
+        json["way_out"] = overlap->most ? array_of(overlap->way_out) : Json(nullptr);
+    }
     return json;
 }
 
@@ -104,6 +112,32 @@ Json error_json(const core::Error& error) {
     json["column"] = error.where.column;
     json["message"] = error.message;
     return json;
+}
+
+/// What other readings of the premises that the set-up leaves open give.
+Json readings_json(const CheckRun& run) {
+    Json all = Json::array();
+    for (const ReadingResult& reading : run.readings) {
+        Json json;
+        json["block"] = reading.block;
+        json["line"] = reading.line;
+        if (!reading.file.empty()) json["file"] = reading.file;
+        json["assumed"] = reading.assumed;
+        json["if"] = reading.when;
+        json["effect"] = reading.effect;
+        json["verdict"] = core::name_of(reading.verdict);
+        json["error_count"] = reading.error_count;
+        json["errors"] = Json::array();
+        for (const ReadingError& error : reading.errors)
+            json["errors"].push_back({{"line", error.line},
+                                      {"file", error.file},
+                                      {"rule", error.finding.rule},
+                                      {"message", error.finding.message}});
+        if (reading.stopped) json["stopped"] = error_json(*reading.stopped);
+        json["cure"] = reading.cure;
+        all.push_back(std::move(json));
+    }
+    return all;
 }
 
 Json statistics_json(const CheckRun& run) {
@@ -168,15 +202,59 @@ Json heading_json(const CheckRun& run) {
     json["mesh_size"] = run.setup.mesh_size;
     json["assumptions"] = run.all_assumptions();
     json["verdict"] = core::name_of(run.verdict);
+    json["headline"] = run.headline();
+    json["coverage"] = json_of(run.full_coverage());
     json["cycle_time"] = run.cycle_time;
     if (run.stopped) json["error"] = error_json(*run.stopped);
     return json;
 }
 
-/// Part, saved stock and statistics, written after blocks and findings.
+Json limit_json(const ToleranceLimit& limit) {
+    Json json;
+    json["by"] = limit.by;
+    json["or_more"] = limit.is_open;
+    json["not_shown"] = limit.not_shown ? Json(*limit.not_shown) : Json(nullptr);
+    json["line"] = limit.line > 0 ? Json(limit.line) : Json(nullptr);
+    if (!limit.file.empty()) json["file"] = limit.file;
+    json["tool"] = limit.tool ? Json(core::value_of(*limit.tool)) : Json(nullptr);
+    json["pair"] = limit.pair[0].empty() ? Json(nullptr) : Json(limit.pair);
+    return json;
+}
+
+Json tolerance_json(const Tolerance& tolerance) {
+    const Deviation& deviation = tolerance.deviation;
+    Json json;
+    json["quantity"] = name_of(deviation.quantity);
+    json["of"] = deviation.subject();
+    json["axis"] =
+        deviation.is_place() ? Json(std::string(1, "XYZ"[deviation.axis])) : Json(nullptr);
+    json["text"] = range_text(tolerance);
+    if (!tolerance.unknown.empty()) {
+        json["unknown"] = tolerance.unknown;
+        return json;
+    }
+    json["less"] = limit_json(tolerance.less);
+    json["more"] = limit_json(tolerance.more);
+    return json;
+}
+
+Json tolerances_json(const Tolerances& tolerances) {
+    Json json;
+    json["refusal"] = tolerances.refusal.empty() ? Json(nullptr) : Json(tolerances.refusal);
+    json["list"] = Json::array();
+    for (const Tolerance& tolerance : tolerances.list)
+        json["list"].push_back(tolerance_json(tolerance));
+    json["runs"] = tolerances.runs;
+    json["seconds"] = tolerances.seconds;
+    return json;
+}
+
+/// Part, saved stock, tolerances and statistics, written after blocks and findings.
 void add_ending(Json& json, const CheckRun& run) {
+    if (!run.readings.empty()) json["readings"] = readings_json(run);
     if (run.comparison) json["part"] = part_json(run);
     if (run.saved_stock) json["saved_stock"] = saved_json(*run.saved_stock);
+    if (run.tolerances) json["tolerances"] = tolerances_json(*run.tolerances);
     json["statistics"] = statistics_json(run);
 }
 

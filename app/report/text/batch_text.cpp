@@ -6,8 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "app/base/finding_group.h"
-#include "app/base/finding_text.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/library/result/batch_result.h"
 
@@ -20,6 +19,7 @@ constexpr int red = 31, green = 32, yellow = 33; // ANSI colour codes
 
 int colour_of(Outcome outcome) {
     if (outcome == Outcome::clear) return green;
+    if (outcome == Outcome::no_error || outcome == Outcome::no_motion) return yellow;
     return outcome == Outcome::undecided || outcome == Outcome::violation ? yellow : red;
 }
 
@@ -96,8 +96,9 @@ std::string verdicts_text(const BatchResult& batch) {
     counts[static_cast<size_t>(Outcome::unchecked)] = batch.unchecked.size();
     std::string text;
     for (const Outcome outcome :
-         {Outcome::clear, Outcome::collision, Outcome::violation, Outcome::undecided,
-          Outcome::errors, Outcome::stopped, Outcome::not_run, Outcome::unchecked})
+         {Outcome::clear, Outcome::no_error, Outcome::no_motion, Outcome::collision,
+          Outcome::violation, Outcome::undecided, Outcome::errors, Outcome::stopped,
+          Outcome::not_run, Outcome::unchecked})
         if (const size_t count = counts[static_cast<size_t>(outcome)])
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name_of(outcome));
     return text;
@@ -166,6 +167,27 @@ std::string missing_text(const BatchResult& batch, const BatchStyle& style) {
 
 } // namespace
 
+std::string uncovered_summary(const BatchResult& batch) {
+    std::string text;
+    for (const Known known : {Known::missing, Known::inferred}) {
+        std::string items;
+        for (size_t item = 0; item < items_of(Coverage()).size(); ++item) {
+            const auto lacks = [&](const ProgramResult& program) {
+                return program.coverage && items_of(*program.coverage)[item].known == known;
+            };
+            const auto count = static_cast<size_t>(
+                std::count_if(batch.programs.begin(), batch.programs.end(), lacks));
+            if (count == 0) continue;
+            items += fmt::format("{}{} in {}", items.empty() ? "" : ", ",
+                                 items_of(Coverage())[item].name, count);
+        }
+        if (items.empty()) continue;
+        text += (text.empty() ? "" : "; ") + items
+                + (known == Known::missing ? ": not described" : ": assumed");
+    }
+    return text;
+}
+
 std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     if (style.quiet && status_of(result) == 0) return {};
     const Outcome outcome = outcome_of(result);
@@ -175,6 +197,8 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style) {
     if (!counts.empty()) text += ": " + counts;
     text += "\n";
     if (result.error) text += wrapped(own_error_line(result), 11, 2);
+    const std::string uncovered = uncovered_text(result);
+    if (style.verbose && !uncovered.empty()) text += wrapped("unchecked: " + uncovered, 11, 2);
     text += rule_lines(result, style);
     for (size_t i = 0; style.verbose && i < result.assumptions.size(); ++i)
         text += wrapped("assumed: " + result.assumptions[i], 11, 2);
@@ -187,7 +211,10 @@ std::string batch_summary(const BatchResult& batch, double seconds, const BatchS
     if (seconds >= 60.0) text += " in " + duration_text(seconds);
     if (seconds >= 0.0 && seconds < 60.0) text += fmt::format(" in {:.1f} s", seconds);
     const std::string verdicts = verdicts_text(batch);
-    text += (verdicts.empty() ? verdicts : ": " + verdicts) + "\n" + rules_text(batch);
+    text += (verdicts.empty() ? verdicts : ": " + verdicts) + "\n";
+    if (const std::string uncovered = uncovered_summary(batch); !uncovered.empty())
+        text += wrapped("unchecked: " + uncovered, 2, 2);
+    text += rules_text(batch);
     if (seconds >= 0.0) text += slowest_text(batch);
     return printable(text + missing_text(batch, style));
 }

@@ -22,6 +22,10 @@ std::string program_text(const ProgramResult& result, const BatchStyle& style);
 /// is the total time; a negative value omits all times.
 std::string batch_summary(const BatchResult& batch, double seconds, const BatchStyle& style);
 
+/// In how many programs each thing was not described or only assumed: "fixtures in 24, axis limits
+/// in 30: not described; stock in 30: assumed". Empty if everything was described.
+std::string uncovered_summary(const BatchResult& batch);
+
 /// All programs in order, and the summary without times.
 std::string batch_text(const BatchResult& batch, const BatchStyle& style);
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/clearance_text.h"
-#include "app/base/finding_text.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "core/sim/verdict.h"
@@ -131,8 +131,9 @@ std::string diff_text(const ProgramDiff& diff, bool all) {
                         diff.added.size(), diff.removed.size());
     text += fmt::format("Cycle time {} -> {}\n", duration_text(diff.before.cycle_time),
                         duration_text(diff.after.cycle_time));
-    text += fmt::format("{} -> {}\n", verdict_text(diff.before.verdict),
-                        verdict_text(diff.after.verdict));
+    text += fmt::format("{} -> {}\n", headline_of(diff.before), headline_of(diff.after));
+    if (const std::string uncovered = uncovered_text(diff.after); !uncovered.empty())
+        text += wrapped("Unchecked: " + uncovered, 0, 2);
     return printable(text);
 }
 

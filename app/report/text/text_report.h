@@ -15,15 +15,15 @@ struct CheckRun;
 struct TextOptions {
     bool blocks = false;                             // the table of all blocks that move
     std::vector<std::string> shown_assumptions = {}; // assumptions already shown on the terminal
+    size_t width = 80;                               // columns of a line
+    bool colour = false;                             // of severities and the headline
 };
 
-/// The report of a check for an 80-column terminal: findings first.
+/// The report of a check as text: findings first, then the headline with what was not checked.
 std::string text_report(const CheckRun& run, const TextOptions& options);
 
-/// The verdict of a run, or why there is none.
-std::string outcome_text(const CheckRun& run);
-
-/// "1 error, 2 warnings, 0 notes".
+/// "1 error, 2 warnings, 0 notes". Findings without a pair of bodies that say the same have one
+/// cause and count once. A program that stopped has at least one error.
 std::string counts_text(const CheckRun& run);
 
 /// An error as `file:line:column: message`.

@@ -109,6 +109,9 @@ struct Keys {
         json.add("mode", std::string_view(names[static_cast<size_t>(c.mode)]));
         json.add("tolerance", c.tolerance);
         json.add("naive_tolerance", c.naive_tolerance);
+        if (c.corners.distance) json.add("distance", *c.corners.distance);
+        if (c.corners.rapid_tolerance) json.add("rapid_tolerance", *c.corners.rapid_tolerance);
+        if (c.corners.rapid_distance) json.add("rapid_distance", *c.corners.rapid_distance);
     }
     void operator()(const gcode::EnableOverride& c) const {
         constexpr const char* names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/coverage.h"
 #include "app/setup/inference/inferred_stock.h"
 #include "app/setup/inference/program_survey.h"
 #include "app/setup/ini_file.h"
@@ -23,8 +24,6 @@ namespace {
 
 using core::ToolNumber;
 using core::Vec3;
-
-constexpr double zero_above_program = 500.0; // mm; height of machine zero
 
 constexpr double between = 500.0; // mm in X between workpieces, leaves room for holders and rapids
 
@@ -89,7 +88,7 @@ FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
 core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode::Program& program,
                                                    const ProgramSurvey& seen) {
     FEELER_TRY(const SuggestedTools offered, suggested_tools(file, program));
-    const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
+    const gcode::LengthUnit unit = unit_of_program(program, unit_at_start(file.environment));
     const auto mills = [&](ToolNumber number) {
         const auto found = seen.mills.find(number);
         return found == seen.mills.end() || found->second;
@@ -97,14 +96,20 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     std::vector<FoundTool> missing;
     std::vector<ToolNumber> wanted = seen.tools;
     const bool only_empties = seen.tools.empty() && seen.empties_spindle;
-    if (file.is_inferred && only_empties) wanted.push_back(ToolNumber{0}); // it cuts after T0 M6
+    if (file.infers_tools && only_empties) wanted.push_back(ToolNumber{0}); // it cuts after T0 M6
     for (const ToolNumber number : wanted) {
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
-        if (found != offered.tools.end())
-            missing.push_back(file.is_inferred ? as_used(found->second, seen) : found->second);
-        else if (file.is_inferred)
+        // The only tool of a program whose calls have variables, as in T#1 M6.
+        const bool is_only =
+            file.infers_tools && offered.in_spindle && offered.tools.empty() && wanted.size() == 1;
+        if (found != offered.tools.end() || is_only) {
+            FoundTool tool = is_only ? *offered.in_spindle : found->second;
+            tool.tool.number = number;
+            missing.push_back(file.infers_tools ? as_used(std::move(tool), seen) : tool);
+        } else if (file.infers_tools) {
             missing.push_back(unknown_tool(number, mills(number), unit));
+        }
     }
     const bool one_is_held = seen.feeds_before_call || !seen.calls_tools;
     if (!one_is_held || !file.setup.tools.empty() || file.setup.tool_at_start) return missing;
@@ -112,10 +117,10 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         missing.push_back(*offered.in_spindle);
         if (core::value_of(missing.back().tool.number) == 0)
             missing.back().tool.number = ToolNumber{1};
-    } else if (file.is_inferred) {
+    } else if (file.infers_tools) {
         missing.push_back(unknown_tool(free_number(seen), mills(ToolNumber{0}), unit));
     }
-    if (file.is_inferred && seen.calls_tools) {
+    if (file.infers_tools && seen.calls_tools) {
         file.setup.tool_at_start = missing.back().tool.number;
         file.assumptions.push_back(
             fmt::format("the program cuts before its first tool call: tool {} is in the spindle",
@@ -161,25 +166,23 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
                                                       const gcode::Program& program,
                                                       const ProgramSurvey& seen,
                                                       const SurveyTools& tools) {
-    if (!seen.feeds && !file.is_inferred)
-        return core::fail(
-            core::ErrorCode::invalid_value,
-            "[stock] is missing, and the program has no cutting move to infer it from");
     const Vec3 frame = file.setup.stock_mount.link_from_body.translation;
     const double margin = file.stock_margin.value_or(0.0);
-    const gcode::LengthUnit unit = unit_of_program(program, file.environment.machine_unit);
+    const gcode::LengthUnit unit = unit_of_program(program, unit_at_start(file.environment));
     std::optional<core::Aabb> reach;
     if (seen.feeds) reach = core::Aabb{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
-    const auto stated = file.is_inferred ? declared_stock(program, unit, reach) : std::nullopt;
+    const auto stated = file.stock_margin ? std::nullopt : declared_stock(program, unit, reach);
     InferredStock stock;
     if (stated) {
         const Vec3 shift = seen.zero - frame;
         stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
                  fmt::format("the stock is the box given by {}: {}", stated->source,
                              box_text({stated->box.min + shift, stated->box.max + shift}))};
+        file.stock_known = Known::described;
     } else {
+        file.stock_known = Known::inferred;
         stock = guessed_stock(seen, frame, margin);
-        if (seen.feeds && file.is_inferred)
+        if (seen.feeds && !file.stock_margin)
             stock = guessed_stock(seen, frame, margin,
                                   uncut_plunges(program, file.environment, tools, stock.box));
     }
@@ -192,9 +195,8 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
 ///
 /// Result: the reason; empty for all other programs.
 std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
-    if (!file.is_inferred) return std::nullopt;
     std::string why;
-    if (const auto turning = turning_reason(program)) {
+    if (const auto turning = turning_reason(program); turning && file.is_inferred) {
         why = fmt::format("this is a lathe program, because {}. Turning is not checked: there is "
                           "no stock, and only the codes are checked",
                           *turning);
@@ -229,38 +231,87 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         "the program uses no tool length offset: Z is touched off with each tool");
 }
 
+/// Whether the set-up or the program states every work offset under which the program feeds.
+Known known_offsets(const SetupFile& file, const ProgramSurvey& seen) {
+    if (seen.work_areas.empty() && file.offsets_set.empty()) return Known::inferred;
+    const bool has_table = !file.infers_frame && !file.environment.parameters.empty();
+    for (const auto& [offset, area] : seen.work_areas) {
+        const bool is_stated = file.offsets_set.contains(static_cast<int>(offset));
+        const bool is_in_table = has_table && offset < file.environment.work_offsets.size()
+                                 && file.environment.work_offsets[offset] != gcode::AxisValues{};
+        if (!is_stated && !is_in_table && !area.is_set) return Known::inferred;
+    }
+    return Known::described;
+}
+
 /// A coarser mesh for large stocks, to limit memory, and a finer one for small stocks.
 void choose_mesh_size(SetupFile& file) {
     constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
-    if (!file.is_inferred) return;
+    constexpr double thin_cells = 4.0; // across the shortest side, whatever that takes
+    if (file.mesh_is_stated || !file.infers_tools || !file.infers_frame) return;
     const Vec3 size = core::bounds(file.setup.stock).size();
     const double longest = std::max({size.x, size.y, size.z});
-    const double fine = std::ceil(longest / least_cells / finest) * finest; // of a small stock
-    file.setup.mesh_size =
-        std::max(std::min(usual, fine), std::ceil(10.0 * longest / cells) / 10.0);
+    const double shortest = std::min({size.x, size.y, size.z});
+    const double steps = std::ceil(longest / least_cells / finest); // of a small stock
+    const double fine = std::min(usual, std::round(100.0 * steps * finest) / 100.0);
+    const double coarse = std::ceil(10.0 * longest / cells) / 10.0;
+    file.setup.mesh_size = std::max(fine, std::min(coarse, shortest / thin_cells));
+}
+
+/// Whether a program that starts anywhere feeds to a position that it does not state itself, or
+/// ends at one: with G91 from the start, or with an axis that it never positions.
+bool relies_on_start(const gcode::Program& program, const gcode::Environment& environment) {
+    bool relies = false, is_known = true;
+    visit_events(program, environment, [&](const ProgramEvent& event) {
+        const auto* motion = std::get_if<core::Motion>(&event.event);
+        if (!motion) return;
+        is_known = motion->to[0] && motion->to[1] && motion->to[2];
+        relies = relies || (!is_known && motion->kind != core::MotionKind::rapid);
+    });
+    return relies || !is_known;
+}
+
+/// Withdraws an assumed start position on which more than the first motions would rest.
+void withdraw_start(SetupFile& file, const gcode::Program& program) {
+    std::array<bool, 3>& is_assumed = file.setup.start_is_assumed;
+    if (std::none_of(is_assumed.begin(), is_assumed.end(), [](bool is) { return is; })) return;
+    gcode::Environment anywhere = file.environment;
+    for (size_t i = 0; i < is_assumed.size(); ++i)
+        if (is_assumed[i]) anywhere.start[i].reset();
+    if (!relies_on_start(program, anywhere)) return;
+    file.environment.start = anywhere.start;
+    is_assumed = {};
+    std::erase(file.assumptions, file.start_assumption);
+}
+
+/// What is assumed of axes that the program moves and no machine describes.
+void assume_axes(SetupFile& file, const ProgramSurvey& seen) {
+    if (file.has_axes) return;
+    for (const size_t axis : seen.other_axes)
+        file.assumptions.push_back(fmt::format(
+            "axis {} {}, so blocks are checked only while it is at 0, and the stock is inferred "
+            "from cuts there",
+            core::axis_letters[axis],
+            core::is_rotary(axis) ? "turns the table with the stock and all fixtures; where its "
+                                    "centre is, is not known"
+                                  : "moves the tool or the work, it is not known which"));
 }
 
 } // namespace
 
 core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     SetupFile file;
-    file.is_inferred = file.needs_stock = true;
+    file.is_inferred = file.infers_tools = file.infers_frame = file.needs_stock = true;
     FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
-    for (gcode::AxisValues& offset : file.environment.work_offsets)
-        offset = {0.0, 0.0, -zero_above_program};
-    file.setup.stock_mount.link_from_body = core::translation({0.0, 0.0, -zero_above_program});
-    for (size_t axis = 0; axis < 3; ++axis)
-        if (!file.environment.start[axis]) file.environment.start[axis] = 0.0;
-    if (!file.environment.home) file.environment.home = gcode::AxisValues{};
+    const std::string position = assume_machine_zero(file);
+    const gcode::AxisValues& zero = file.environment.work_offsets[0];
+    file.setup.stock_mount.link_from_body = core::translation({zero[0], zero[1], zero[2]});
     file.assumptions = notes;
     const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
     if (!speeds.empty()) file.assumptions.push_back(speeds);
-    file.assumptions.push_back(
-        fmt::format("no set-up: no fixtures, no axis limits; all work offsets are equal; machine "
-                    "zero, which is also the start and home position, is {:g} mm above them",
-                    zero_above_program));
+    file.assumptions.push_back("no set-up: no fixtures, no axis limits; " + position);
     file.assumptions.push_back("every tool was touched off: the control knows its true length");
     return file;
 }
@@ -268,25 +319,29 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
 core::Result<SetupFile> infer_setup(const gcode::Program& program,
                                     const ProgramSettings& settings) {
     FEELER_TRY(SetupFile file, bare_setup(settings));
-    if (!file.dialect) file.dialect = gcode::recognise(program).dialect;
+    if (!file.dialect) {
+        FEELER_TRY(file.dialect, gcode::supported(gcode::recognise(program)));
+    }
     FEELER_TRY(file.environment.dialect, gcode::supported(*file.dialect));
     if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
     return file;
 }
 
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
+    withdraw_start(file, program);
     const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
     put_tools(file, tools, first, 0.0);
+    assume_axes(file, first);
+    file.stock_known = file.needs_stock ? Known::missing : Known::described;
+    file.offsets_known = known_offsets(file, first);
+    if (file.infers_tools) assume_handwork(file, first);
     std::vector<std::string> about_stock;
-    if (file.is_inferred) {
-        assume_handwork(file, first);
-        about_stock = move_apart(file.environment, first);
-    }
+    if (file.infers_frame) about_stock = move_apart(file.environment, first);
     if (!file.needs_stock) choose_mesh_size(file);
     if (!file.needs_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
-    const auto offset = file.is_inferred ? main_offset(first) : std::nullopt;
+    const auto offset = file.infers_frame ? main_offset(first) : std::nullopt;
     const ProgramSurvey seen = survey(program, file.environment, known, offset);
     if (const auto why = leave_out_stock(file, program)) {
         about_stock = {*why};
@@ -307,6 +362,23 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     notes.insert(notes.end(), about_stock.begin(), about_stock.end());
     file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
+}
+
+bool stands_for_no_stock(const core::Solid& stock) {
+    constexpr double rounding = 1e-3;
+    const core::Aabb box = core::bounds(stock), none = unreachable_box();
+    return glm::distance(box.min, none.min) < rounding
+           && glm::distance(box.max, none.max) < rounding;
+}
+
+std::shared_ptr<const Coverage> coverage_of(const SetupFile& file) {
+    const bool has_stock = !stands_for_no_stock(file.setup.stock);
+    return std::make_shared<const Coverage>(
+        Coverage{.stock = has_stock ? file.stock_known : Known::missing,
+                 .fixtures = file.fixtures_known,
+                 .offsets = file.offsets_known,
+                 .limits = file.limits_known,
+                 .start = file.infers_start ? Known::inferred : Known::described});
 }
 
 namespace {
@@ -332,7 +404,7 @@ core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode:
     SuggestedTools offered;
     offered.tools = file.library;
     ProgramTools named =
-        tools_of_program(program, unit_of_program(program, file.environment.machine_unit));
+        tools_of_program(program, unit_of_program(program, unit_at_start(file.environment)));
     offered.tools.merge(named.tools);
     offered.in_spindle = std::move(named.in_spindle);
     if (!file.tool_table.empty()) {
@@ -357,13 +429,14 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                      double control_length) {
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
-    if (file.is_inferred) tool.touched_off = control_length;
+    if (file.infers_tools) tool.touched_off = control_length;
     // The control's tool table may give the tool length.
     const auto entry =
         file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
     const bool longer = entry != file.environment.length_offsets.end()
                         && entry->second.length > tool.stick_out.value_or(0.0);
-    if (!file.is_inferred && longer && !tool.gauge_length) tool.gauge_length = entry->second.length;
+    if (!file.infers_tools && longer && !tool.gauge_length)
+        tool.gauge_length = entry->second.length;
     auto assembled = core::assemble(tool);
     if (!assembled) {
         whole.assumed = fmt::format("{}; treated as a flat end mill of {:g} mm",

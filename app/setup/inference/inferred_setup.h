@@ -1,11 +1,15 @@
 #pragma once
 
 #include <map>
+#include <memory>
 
 #include "app/setup/tools/found_tool.h"
 #include "core/base/ids.h"
 #include "core/base/result.h"
 
+namespace core {
+struct Solid;
+}
 namespace gcode {
 enum class LengthUnit : uint8_t;
 struct Program;
@@ -13,6 +17,7 @@ struct Program;
 
 namespace app {
 
+struct Coverage;
 struct ProgramSettings;
 struct SetupFile;
 
@@ -29,12 +34,18 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings);
 core::Result<SetupFile> infer_setup(const gcode::Program& program, const ProgramSettings& settings);
 
 /// Adds what a set-up does not state and the program implies: tools from its comments and from the
-/// set-up's library, the stock from the cutting moves; for a bare set-up also unknown tools, and a
-/// spindle switched on by hand. Stated values stay. Every guess becomes an assumption.
+/// set-up's library, the stock from the program or its cutting moves; if the set-up states no tools
+/// at all, also unknown tools, and a spindle switched on by hand. Stated values stay. Every guess
+/// becomes an assumption. So a set-up that states little is completed as one that states nothing.
 ///
-/// Errors: invalid_value if there is no stock and the program has no cut to infer it from; a tool
-///         table that cannot be read.
+/// Errors: a tool table that cannot be read.
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program);
+
+/// Whether a stock is the one that `feeler setup` writes for programs that are not known to cut.
+bool stands_for_no_stock(const core::Solid& stock);
+
+/// What is known of a complete set-up, without holders and motion, which only a run shows.
+std::shared_ptr<const Coverage> coverage_of(const SetupFile& file);
 
 /// Tools that the set-up lacks, from its library, the program's comments and the control's tool
 /// table, in this order of precedence.

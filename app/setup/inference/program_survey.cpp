@@ -1,6 +1,7 @@
 #include "app/setup/inference/program_survey.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string>
 
@@ -8,6 +9,7 @@
 
 #include "app/setup/tools/program_tools.h"
 #include "core/sim/tool_assembly.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
@@ -109,9 +111,21 @@ void add_work_area(const ProgramEvent& event, const TipTrack& path,
     if (is_new) area->second.zero = zero_of(event.offsets);
     for (const Vec3& p : path.positions) area->second.reach.extend(p);
     area->second.way += path.length();
-    if (active < environment.work_offsets.size())
-        result.sets_offsets =
-            result.sets_offsets || event.offsets.work.origin != environment.work_offsets[active];
+    if (active >= environment.work_offsets.size()) return;
+    const bool is_set = event.offsets.work.origin != environment.work_offsets[active];
+    area->second.is_set = area->second.is_set || is_set;
+    result.sets_offsets = result.sets_offsets || is_set;
+}
+
+/// The axes besides X, Y and Z that no machine describes and that move or are away from 0: X, Y and
+/// Z then say nothing about the work.
+std::set<size_t> displaced_axes(const Motion& motion, const gcode::Offsets& offsets) {
+    std::set<size_t> axes;
+    for (size_t axis = 3; !offsets.machine && axis < core::axis_count; ++axis)
+        if (motion.from[axis] != motion.to[axis]
+            || gcode::is_away_from_zero(axis, motion.to[axis].value_or(0.0)))
+            axes.insert(axis);
+    return axes;
 }
 
 /// The zero of work offset `offset`, else of the first one with feeds.
@@ -142,8 +156,10 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
         const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
+        const std::set<size_t> displaced = displaced_axes(*motion, event.offsets);
+        result.other_axes.insert(displaced.begin(), displaced.end());
         if (!path) return;
-        travel.note(motion->kind == MotionKind::rapid, *path);
+        if (displaced.empty()) travel.note(motion->kind == MotionKind::rapid, *path);
         if (motion->kind == MotionKind::rapid) return;
         const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
         bool& mills = result.mills[tool];
@@ -159,6 +175,7 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
             const auto* motion = std::get_if<Motion>(&event.event);
             if (!motion || motion->kind == MotionKind::rapid) return;
             if (offset && event.offsets.active != *offset) return;
+            if (!displaced_axes(*motion, event.offsets).empty()) return;
             const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
             if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
             note_cut(*path, size_of(tools.radii, event.tool), result);

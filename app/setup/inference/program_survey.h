@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct WorkArea {
     core::Vec3 zero = core::Vec3(0.0); // program zero at the first feed, machine frame
     core::Aabb reach;                  // of the tip
     double way = 0.0;                  // travel of the tip, mm
+    bool is_set = false;               // the program sets the work offset itself
 };
 
 /// Facts about a whole program from which its set-up is inferred.
@@ -39,6 +41,7 @@ struct ProgramSurvey {
 
     std::map<size_t, WorkArea> work_areas; // by work offset with feeds, 0 is G54
     bool sets_offsets = false;             // sets a work offset that it then uses
+    std::set<size_t> other_axes;           // beyond Z, away from 0, that no machine describes
 
     core::Vec3 zero = core::Vec3(0.0); // of the surveyed work offset, machine frame
     bool feeds = false;                // in that work offset

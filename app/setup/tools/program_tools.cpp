@@ -12,6 +12,7 @@
 #include "app/setup/tools/tool_text.h"
 #include "core/base/text.h"
 #include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
 #include "gcode/language/lexer.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/text/source.h"
@@ -230,6 +231,10 @@ std::optional<gcode::LengthUnit> unit_in(const std::string& code) {
 }
 
 } // namespace
+
+gcode::LengthUnit unit_at_start(const gcode::Environment& environment) {
+    return environment.units_at_start.value_or(environment.machine_unit);
+}
 
 gcode::LengthUnit unit_of_program(const gcode::Program& program, gcode::LengthUnit otherwise) {
     for (size_t line = 1; line <= program.line_count(); ++line)

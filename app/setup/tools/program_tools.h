@@ -11,10 +11,14 @@
 
 namespace gcode {
 enum class LengthUnit : uint8_t;
+struct Environment;
 struct Program;
 } // namespace gcode
 
 namespace app {
+
+/// The unit of a program that states none, as far as its tools are concerned.
+gcode::LengthUnit unit_at_start(const gcode::Environment& environment);
 
 /// The length unit of a program: the first that it states, else `otherwise`.
 gcode::LengthUnit unit_of_program(const gcode::Program& program, gcode::LengthUnit otherwise);

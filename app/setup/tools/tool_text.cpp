@@ -230,10 +230,11 @@ bool says_something_else(const TextNumber& number) {
     const bool unit =
         has_length_unit(number) || is_one_of(number.suffix, {"X", "DIA", "D", "RAD", "R"});
     if (number.glued && !unit) return true;
-    return is_one_of(number.suffix, {"FL", "FLUTE", "FLUTES", "FLT", "Z", "RPM"})
+    return is_one_of(number.suffix, {"FL", "FLUTE", "FLUTES", "FLT", "Z", "RPM", "DEEP", "DEPTH",
+                                     "THICK", "HOLES"})
            || is_one_of(number.prefix, {"T", "H", "TOOL", "OFF",    "LEN",   "ZMIN",   "ZMAX", "Z",
                                         "S", "F", "N",    "M",      "STOCK", "NUMBER", "WEAR", "OP",
-                                        "O", "L", "C",    "LENGTH", "P",     "FEED"});
+                                        "O", "L", "C",    "LENGTH", "P",     "FEED",   "DEPTH"});
 }
 
 void take_size(const TextNumber& number, double size, ToolText& text,

@@ -48,6 +48,9 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
     row.on_tool = pair->on_tool;
     row.on_body = pair->on_body;
     row.witness_time = pair->time;
+    for (const core::Finding& finding : result.findings)
+        if (finding.overlap && finding.pair[0] == row.part && finding.pair[1] == row.body)
+            row.overlap = finding.overlap->most.value_or(finding.overlap->least);
     return row;
 }
 

@@ -40,7 +40,8 @@ struct BlockRow {
     std::string part, body;               // of the deciding pair
     core::Vec3 on_tool = core::Vec3(0.0); // witness, frame of the stock
     core::Vec3 on_body = core::Vec3(0.0);
-    double witness_time = 0.0;                  // seconds after the block's start
+    double witness_time = 0.0; // seconds after the block's start
+    double overlap = 0.0; // of the deciding pair, mm, if it collides and the depth was measured
     core::Severity worst = core::Severity::off; // of the findings about the block
 
     bool has_pair() const { return upper.has_value(); }
@@ -57,9 +58,20 @@ BlockFacts facts_of(const BlockRow& row, size_t block);
 /// Whether the block moves anything.
 inline bool moves(const BlockRow& row) { return row.motion != core::BlockMotion::none; }
 
+/// Whether the block moves otherwise than by rapids alone.
+inline bool feeds(const BlockRow& row) {
+    return moves(row) && row.motion != core::BlockMotion::rapid;
+}
+
 /// Whether the key N stops at the block: it has an error, or is not proven clear.
 inline bool is_offending(const BlockRow& row) {
     return row.worst == core::Severity::error || row.verdict != core::Verdict::clear;
+}
+
+/// Whether the bodies touch as intended: cutting, or contact of a pair that may touch.
+inline bool is_contact(const BlockRow& row) {
+    return row.is_known && row.verdict == core::Verdict::clear && row.upper && *row.upper <= 0.0
+           && row.allowance && *row.allowance <= core::resolution;
 }
 
 /// Whether the clearance is between the allowance and twice the allowance.

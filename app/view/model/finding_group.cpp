@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/base/finding_group.h"
+#include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
@@ -26,9 +26,13 @@ bool is_of(const BlockRow& row, const core::Finding& finding) {
 
 void take_worst(FindingStretch& stretch, size_t block, const BlockRow& row,
                 const core::Finding& finding) {
-    if (stretch.count > 0 && finding.shortfall <= stretch.shortfall) return;
+    core::Finding known;
+    known.shortfall = stretch.shortfall;
+    known.overlap = stretch.overlap;
+    if (stretch.count > 0 && !core::is_worse(finding, known)) return;
     stretch.worst = block;
     stretch.shortfall = finding.shortfall;
+    stretch.overlap = finding.overlap;
     stretch.clearance = is_of(row, finding) ? row.lower : std::nullopt;
     stretch.message = finding.message;
     stretch.cure = finding.cure;
@@ -58,6 +62,11 @@ void add(FindingGroup& group, const std::vector<BlockRow>& rows, const core::Fin
     ++group.count;
 }
 
+/// What makes one stretch worse than another: the shortfall, then the depth of the overlap.
+std::pair<double, double> badness(const FindingStretch& stretch) {
+    return {stretch.shortfall, depth_of(stretch).value_or(0.0)};
+}
+
 FindingGroup group_of(const std::vector<BlockRow>& rows, const GroupOf<core::Finding>& alike) {
     FindingGroup group;
     group.rule = alike.worst->rule;
@@ -68,7 +77,7 @@ FindingGroup group_of(const std::vector<BlockRow>& rows, const GroupOf<core::Fin
     for (const core::Finding* finding : findings) add(group, rows, *finding);
     const auto worst =
         std::max_element(group.stretches.begin(), group.stretches.end(),
-                         [](const auto& a, const auto& b) { return a.shortfall < b.shortfall; });
+                         [](const auto& a, const auto& b) { return badness(a) < badness(b); });
     group.worst = static_cast<size_t>(worst - group.stretches.begin());
     return group;
 }
@@ -104,6 +113,11 @@ std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,
         return std::tie(a.rule, a.pair) < std::tie(b.rule, b.pair);
     });
     return groups;
+}
+
+std::optional<double> depth_of(const FindingStretch& stretch) {
+    if (!stretch.overlap) return {};
+    return stretch.overlap->most.value_or(stretch.overlap->least);
 }
 
 std::optional<StretchIndex> stretch_at(const std::vector<FindingGroup>& groups, size_t block) {

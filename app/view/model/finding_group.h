@@ -11,12 +11,13 @@ namespace app::viewer {
 /// Findings of one rule about one pair in successive blocks; blocks without motion in between do
 /// not end the stretch.
 struct FindingStretch {
-    size_t first = 0, last = 0;      // blocks
-    size_t count = 0;                // blocks that have the finding
-    size_t worst = 0;                // the block with the largest shortfall
-    std::optional<double> clearance; // in the worst block, mm; empty: not about a clearance
-    double shortfall = 0.0;          // in the worst block, mm
-    std::string message, cure;       // of the finding in the worst block
+    size_t first = 0, last = 0;           // blocks
+    size_t count = 0;                     // blocks that have the finding
+    size_t worst = 0;                     // the block with the largest shortfall
+    std::optional<double> clearance;      // in the worst block, mm; empty: not about a clearance
+    double shortfall = 0.0;               // in the worst block, mm
+    std::optional<core::Overlap> overlap; // in the worst block, if its depth was measured
+    std::string message, cure;            // of the finding in the worst block
 };
 
 /// All findings of one rule about one pair of bodies or, if they are about none, with one message.
@@ -29,6 +30,10 @@ struct FindingGroup {
     size_t count = 0;                      // blocks
     std::string message, cure;             // if about the whole program
 };
+
+/// Depth of the overlap in the worst block, mm: an upper bound, or the lower bound if there is
+/// none; empty if it was not measured.
+std::optional<double> depth_of(const FindingStretch& stretch);
 
 /// The findings of a program in groups, sorted by severity, then by shortfall, then by block.
 std::vector<FindingGroup> grouped(const std::vector<BlockRow>& rows,

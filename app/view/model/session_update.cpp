@@ -28,6 +28,10 @@ OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
     opened.counts_blocks = dialect.language == gcode::Language::klartext;
     opened.assumptions = check.run.assumptions;
     opened.is_inferred = job.setup.empty();
+    opened.is_inch = check.is_in_inches();
+    opened.coverage = check.run.coverage;
+    for (const auto& [number, tool] : check.run.setup.tools)
+        if (!tool.description.holder.empty()) opened.tools_with_holder.insert(number);
     opened.scene = make_scene_setup(check.run.setup);
     opened.proposed_path = proposed_setup_path(job);
     opened.sheet =

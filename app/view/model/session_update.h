@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct Machine;
 
 namespace app {
 struct CheckJob;
+struct Coverage;
 class DebugSession;
 struct PreparedCheck;
 struct SetupSheet;
@@ -73,6 +75,9 @@ struct OpenedProgram {
     std::string dialect;
     std::vector<std::string> assumptions;
     bool is_inferred = false;
+    bool is_inch = false;                     // the first unit of the program
+    std::shared_ptr<const Coverage> coverage; // without holders and motion, which the rows show
+    std::set<core::ToolNumber> tools_with_holder;
     bool counts_blocks = false; // its lines begin with block numbers without N
     std::shared_ptr<const SceneSetup> scene;
     std::shared_ptr<const SetupSheet> sheet; // the editable part of the set-up

@@ -43,6 +43,8 @@ Settings settings_in(const std::string& text) {
     take(table, "projection", word);
     if (word == "parallel") settings.projection = render::Projection::orthographic;
     take(table, "inch", settings.inch);
+    settings.has_own_unit = settings.inch;
+    take(table, "own_unit", settings.has_own_unit);
     take_within(table, "scale", settings.scale, least_scale, largest_scale);
     int mouse = 0;
     take_within(table, "mouse", mouse, 0, 2);
@@ -70,7 +72,8 @@ std::string text_of(const Settings& s) {
     const VisibleParts& shown = s.shown;
     return fmt::format(
         "# Settings of feeler view, saved when the window was last closed.\n"
-        "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nscale = {:.2f}\nmouse = {}\n"
+        "theme = \"{}\"\nprojection = \"{}\"\ninch = {}\nown_unit = {}\nscale = {:.2f}\nmouse = "
+        "{}\n"
         "width = {}\nheight = {}\nx = {}\ny = {}\nmaximised = {}\n"
         "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
         "{:.1f}\n"
@@ -78,9 +81,10 @@ std::string text_of(const Settings& s) {
         "show_path = {}\nshow_witness = {}\nholder_xray = {}\n",
         s.theme == render::ColorScheme::light ? "light" : "dark",
         s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
-        s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y, s.maximised, s.list_width,
-        s.inspector_width, s.device_width, s.timeline_height, shown.stock, shown.fixtures,
-        shown.tool, shown.machine, shown.path, shown.witness, shown.holder_xray);
+        s.has_own_unit, s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y,
+        s.maximised, s.list_width, s.inspector_width, s.device_width, s.timeline_height,
+        shown.stock, shown.fixtures, shown.tool, shown.machine, shown.path, shown.witness,
+        shown.holder_xray);
 }
 
 Settings read_settings(const std::filesystem::path& file) {

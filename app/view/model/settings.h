@@ -31,7 +31,8 @@ struct VisibleParts {
 struct Settings {
     render::ColorScheme theme = render::ColorScheme::dark;
     bool inch = false;
-    double scale = 1.0; // multiplied with the scale of the screen
+    bool has_own_unit = false; // chosen by the user; otherwise that of the opened program
+    double scale = 1.0;        // multiplied with the scale of the screen
     MousePreset mouse = MousePreset::middle_orbits;
     render::Projection projection = render::Projection::perspective;
     VisibleParts shown;

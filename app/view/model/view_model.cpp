@@ -1,12 +1,15 @@
 #include "app/view/model/view_model.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "app/base/clearance_text.h"
+#include "app/base/findings.h"
 #include "app/check/check_job.h"
+#include "app/setup/coverage.h"
 #include "app/view/model/device_worker.h"
 #include "app/view/model/navigation.h"
 #include "core/base/units.h"
@@ -49,6 +52,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.groups.clear();
     model.selected.reset();
     model.offending.clear();
+    model.coverage.clear();
     model.filtered.clear();
     model.path = nullptr;
     model.block_state = nullptr;
@@ -161,6 +165,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (!news.has_news) return;
     if (news.opening != model.opening) start_anew(model, news.opening);
     if (news.opened) model.program = news.opened;
+    if (news.opened && !model.settings.has_own_unit) model.settings.inch = news.opened->is_inch;
     const bool has_rows = !news.rows.empty();
     const bool is_first = !model.has_rows() && has_rows;
     take_rows(model, news.rows);
@@ -186,6 +191,8 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     model.is_busy = news.is_busy;
     if (news.saved) model.saved = news.saved;
     if (news.refusal) say(model, *news.refusal, now);
+    if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped)
+        model.coverage = coverage_words(model);
     if (is_first) resume(model);
     if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.fraction);
     if (news.walk) end_walk(model, *news.walk, now);
@@ -224,6 +231,29 @@ std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optio
     return found;
 }
 
+std::string coverage_words(const ViewModel& model) {
+    if (!model.program || !model.program->coverage) return {};
+    Coverage coverage = *model.program->coverage;
+    std::set<core::ToolNumber> bare;
+    std::optional<core::ToolNumber> last; // most rows have the tool of the row before
+    for (const BlockRow& row : model.rows) {
+        coverage.moves = coverage.moves || moves(row);
+        if (!feeds(row) || !row.tool || row.tool == last) continue;
+        last = row.tool;
+        if (!model.program->tools_with_holder.contains(*row.tool)) bare.insert(*row.tool);
+    }
+    coverage.tools_without_holder.assign(bare.begin(), bare.end());
+    coverage.holders = bare.empty() ? Known::described : Known::missing;
+    if (doubts_start(model.findings)) coverage.start = Known::inferred;
+    const std::string uncovered = uncovered_text(coverage);
+    const std::string words = uncovered.empty() ? "" : "Not checked: " + uncovered;
+    const bool is_clear =
+        model.is_recorded && !model.stopped && model.offending.empty()
+        && (!coverage.moves || count_of(model.findings, core::Severity::error) == 0);
+    if (!is_clear || (words.empty() && coverage.moves)) return words;
+    return headline_of({}, coverage) + (words.empty() ? "" : "\n" + words);
+}
+
 std::string length_text(const ViewModel& model, double mm, int decimals) {
     const ShownLength shown(model, mm, decimals);
     return fmt::format("{:.{}f}", shown.value == 0.0 ? 0.0 : shown.value, shown.decimals);
@@ -237,6 +267,13 @@ std::string length_at_least(const ViewModel& model, double mm, int decimals) {
 std::string clearance_at_least(const ViewModel& model, const BlockRow& row) {
     const bool has_upper = row.upper.has_value();
     return lower_bound_text(length_at_least(model, *row.lower, has_upper ? 2 : 0), has_upper);
+}
+
+std::string clearance_words(const ViewModel& model, const BlockRow& row) {
+    if (is_contact(row)) return row.removed > 0.0 ? "cutting" : "contact";
+    if (row.verdict == core::Verdict::collision && row.overlap > 0.0)
+        return "-" + length_at_most(model, row.overlap);
+    return clearance_at_least(model, row);
 }
 
 std::string length_at_most(const ViewModel& model, double mm, int decimals) {

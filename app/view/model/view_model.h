@@ -18,6 +18,7 @@
 namespace app {
 struct CheckJob;
 struct SetupEdits;
+struct Tolerances;
 } // namespace app
 
 namespace app::viewer {
@@ -38,6 +39,16 @@ struct DeviceModel {
     double fraction = 0.0;
     size_t blocks = 0; // answered so far
     std::shared_ptr<const DeviceStudy> study;
+    std::optional<core::Error> failure;
+};
+
+/// The tolerances of the set-up in the window; see tolerance_sheet.h.
+struct ToleranceModel {
+    uint64_t opening = 0; // number of the program for which they were requested; 0: none
+    uint64_t run = 0;     // number of the search
+    bool is_running = false;
+    double fraction = 0.0;
+    std::shared_ptr<const Tolerances> found;
     std::optional<core::Error> failure;
 };
 
@@ -86,7 +97,8 @@ enum class Popup : uint8_t {
     what_if,
     breakpoint,
     settings,
-    setup
+    setup,
+    tolerances
 };
 
 /// A request to check with edits of the set-up, or to save them.
@@ -114,6 +126,7 @@ struct ViewModel {
     std::vector<core::Finding> findings;
     std::vector<FindingGroup> groups; // of `findings`
     std::vector<size_t> offending;    // blocks, in program order
+    std::string coverage;             // coverage_words of the program so far
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const BlockState> block_state;
     std::vector<std::string> changes;
@@ -124,6 +137,7 @@ struct ViewModel {
     double fraction = 0.0;
     bool is_recorded = false, is_busy = false;
     DeviceModel device;
+    ToleranceModel tolerances;
 
     // input of the user
     Cursor cursor;
@@ -176,6 +190,10 @@ struct ViewModel {
     const BlockRow& row() const { return rows[cursor.block]; }
 };
 
+/// What the check of the program does not cover, with the headline if it found nothing; empty if
+/// the set-up describes everything and the program moves.
+std::string coverage_words(const ViewModel& model);
+
 /// Cancels the current walk and the search for a violation.
 void stay(ViewModel& model);
 
@@ -202,6 +220,10 @@ std::string length_at_least(const ViewModel& model, double mm, int decimals = 2)
 
 /// The lower bound of the clearance of a block that has one; ">= 50" without an upper bound.
 std::string clearance_at_least(const ViewModel& model, const BlockRow& row);
+
+/// The clearance of a block as lists show it: "1.90"; "-3.20" for an overlap of that depth, which
+/// is at most so deep; "cutting" or "contact" for bodies that touch as intended.
+std::string clearance_words(const ViewModel& model, const BlockRow& row);
 
 /// As length_text, for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);

@@ -85,6 +85,7 @@ constexpr KeyBinding bindings[] = {
     {C::edit_setup, G::window, key::of('E'), 0, "E",
      "Edit the set-up: stock, tools, minimum clearance"},
     {C::save_setup, G::window, key::of('S'), control, "Ctrl+S", "Save the set-up to a file"},
+    {C::tolerances, G::window, key::of('U'), 0, "U", "How wrong the set-up may be: tolerances"},
     {C::theme, G::window, key::of('T'), 0, "T", "Dark or light theme"},
     {C::units, G::window, key::of('I'), 0, "I", "mm or inch"},
     {C::larger, G::window, key::equal, control, "Ctrl++", "Larger text and controls"},

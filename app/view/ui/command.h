@@ -78,6 +78,7 @@ enum class Command : uint8_t {
     what_if,
     edit_setup,
     save_setup,
+    tolerances,
     shortcuts,
     close_popup,
     quit

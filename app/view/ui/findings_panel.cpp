@@ -7,6 +7,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/rule.h"
 
 namespace app::viewer {
 namespace {
@@ -38,8 +39,9 @@ std::string location_text(const ViewModel& model, const FindingStretch& stretch)
     return text;
 }
 
-/// The clearance in the worst block, or the shortfall if there is no clearance.
+/// The depth of the overlap or the clearance in the worst block; without both, the shortfall.
 std::string worst_text(const ViewModel& model, const FindingStretch& stretch) {
+    if (const auto depth = depth_of(stretch)) return length_at_most(model, *depth) + " deep";
     if (stretch.clearance) return length_at_least(model, *stretch.clearance);
     if (stretch.shortfall > 0.0) return "short " + length_at_most(model, stretch.shortfall);
     return {};
@@ -51,7 +53,8 @@ void draw_group_head(Frame& frame, const FindingGroup& group) {
     text(frame.fonts.text, frame.palette.color(role_of(group.severity)),
          frame.fonts.icon(icon_of(group.severity)));
     ImGui::SameLine(0, frame.px(7));
-    text(frame.fonts.strong, frame.palette.color(Role::text), group.rule);
+    text(frame.fonts.strong, frame.palette.color(Role::text), core::title_of_rule(group.rule));
+    tip(frame, group.rule);
     const std::string count = group.stretches.empty() ? "program" : blocks_text(group.count);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left + width - ImGui::CalcTextSize(count.c_str()).x - frame.px(8));

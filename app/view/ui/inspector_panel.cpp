@@ -7,6 +7,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/rule.h"
 #include "core/sim/run/finding_text.h"
 
 namespace app::viewer {
@@ -19,10 +20,11 @@ void draw_number(Frame& frame) {
     const BlockRow& row = model.row();
     text(frame.fonts.small, frame.palette.color(Role::dim), "CLEARANCE");
     std::string number = "\xE2\x80\x94";
-    if (row.is_known && row.lower) number = clearance_at_least(model, row);
+    const bool is_touching = is_contact(row);
+    if (row.is_known && row.lower) number = clearance_words(model, row);
     const ImVec2 at = ImGui::GetCursorPos();
     text(frame.fonts.big, frame.palette.of(row, Role::text), number);
-    if (!row.lower || !row.is_known) return;
+    if (!row.lower || !row.is_known || is_touching) return;
     const float width =
         frame.fonts.big->CalcTextSizeA(frame.fonts.big->FontSize, 1e9F, 0.0F, number.c_str()).x;
     ImGui::SameLine(at.x + width + frame.px(9));
@@ -44,7 +46,12 @@ std::string sentence_of(const ViewModel& model, const BlockRow& row) {
     const std::string unit = length_unit(model);
     const std::string allowance =
         "minimum clearance " + length_at_most(model, *row.allowance) + " " + unit;
-    if (row.verdict == core::Verdict::collision) return allowance + " \xC2\xB7 collision";
+    if (row.verdict == core::Verdict::collision)
+        return allowance + " \xC2\xB7 collision"
+               + (row.overlap > 0.0
+                      ? ", up to " + length_at_most(model, row.overlap) + " " + unit + " deep"
+                      : "");
+    if (is_contact(row)) return "the bodies touch as intended: no minimum clearance";
     const double margin = *row.lower - *row.allowance;
     if (margin >= -core::resolution)
         return allowance + " \xC2\xB7 " + length_at_least(model, margin) + " " + unit + " to spare";
@@ -107,7 +114,8 @@ void draw_finding(Frame& frame, const core::Finding& finding) {
                           : (finding.severity == core::Severity::warning ? Icon::near : Icon::note);
     text(frame.fonts.text, frame.palette.color(role), frame.fonts.icon(icon));
     ImGui::SameLine(0, frame.px(7));
-    text(frame.fonts.strong, frame.palette.color(Role::text), finding.rule);
+    text(frame.fonts.strong, frame.palette.color(Role::text), core::title_of_rule(finding.rule));
+    tip(frame, finding.rule);
     wrapped_text(frame.fonts.text, frame.palette.color(Role::text), finding.message);
     if (finding.cure.empty()) return;
     text(frame.fonts.text, frame.palette.color(Role::accent), frame.fonts.icon(Icon::bulb));
@@ -217,6 +225,11 @@ void draw_assumptions(Frame& frame) {
     }
 }
 
+void draw_coverage(Frame& frame) {
+    const std::string& words = frame.model.coverage;
+    if (!words.empty()) wrapped_text(frame.fonts.small, frame.palette.color(Role::near), words);
+}
+
 void draw_whole(Frame& frame) {
     const ViewModel& model = frame.model;
     const auto whole = findings_of(model, std::nullopt);
@@ -233,6 +246,7 @@ void draw_whole(Frame& frame) {
 } // namespace
 
 void InspectorPanel::draw(Frame& frame, const Area&) {
+    draw_coverage(frame);
     if (!frame.model.has_rows()) return draw_assumptions(frame);
     draw_number(frame);
     draw_scale(frame);

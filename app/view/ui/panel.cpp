@@ -321,6 +321,8 @@ void wrapped_text(ImFont* font, ImU32 color, const std::string& words) {
 }
 
 std::string clock_text(double seconds) {
+    constexpr double longest = 3.6e9; // a million hours
+    if (!(seconds < longest)) return "> 1,000,000 h";
     const auto whole = static_cast<long long>(std::max(std::floor(seconds), 0.0));
     return fmt::format("{:02}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }

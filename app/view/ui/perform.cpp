@@ -254,6 +254,7 @@ bool show(ViewModel& model, Command command) {
         return true;
     case Command::units:
         toggle(settings.inch);
+        settings.has_own_unit = true;
         return true;
     case Command::theme:
         settings.theme = settings.theme == render::ColorScheme::dark ? render::ColorScheme::light
@@ -293,6 +294,9 @@ void perform(ViewModel& model, Command command, double now) {
         break;
     case Command::go_to_line:
         open_popup(model, Popup::go_to_line);
+        break;
+    case Command::tolerances:
+        if (model.program) open_popup(model, Popup::tolerances);
         break;
     case Command::open:
         open_popup(model, Popup::open_file);

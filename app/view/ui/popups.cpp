@@ -8,6 +8,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/settings.h"
+#include "app/view/model/tolerance_sheet.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 
@@ -56,6 +57,7 @@ void draw_settings(Frame& frame) {
     ImGui::RadioButton("mm", &unit, 0);
     ImGui::SameLine();
     ImGui::RadioButton("inch", &unit, 1);
+    settings.has_own_unit = settings.has_own_unit || settings.inch != (unit == 1);
     settings.inch = unit == 1;
     int mouse = static_cast<int>(settings.mouse);
     ImGui::SetNextItemWidth(frame.px(280));
@@ -69,6 +71,52 @@ void draw_settings(Frame& frame) {
     bool perspective = settings.projection == render::Projection::perspective;
     if (ImGui::Checkbox("Perspective", &perspective)) frame.perform(Command::projection);
     ImGui::Checkbox("Slow motion through a minimum", &frame.model.playback.slow_near);
+}
+
+void draw_cause(Frame& frame, const ToleranceCause& cause) {
+    ImGui::TableNextColumn();
+    const auto role = cause.block ? Role::accent : Role::dim;
+    wrapped_text(frame.fonts.small, frame.palette.color(role), cause.words);
+    if (!cause.block) return;
+    tip(frame, "Click to go there");
+    if (ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (!ImGui::IsItemClicked()) return;
+    go_to(frame.model, *cause.block);
+    frame.model.popup = Popup::none;
+}
+
+void draw_tolerances(Frame& frame) {
+    const ToleranceSheet sheet = tolerance_sheet(frame.model);
+    if (!sheet.status.empty()) {
+        wrapped_text(frame.fonts.text,
+                     frame.palette.color(sheet.has_failed ? Role::violation : Role::text),
+                     sheet.status);
+        if (frame.model.tolerances.is_running)
+            ImGui::ProgressBar(static_cast<float>(frame.model.tolerances.fraction),
+                               ImVec2(-1.0F, frame.px(4)), "");
+        return;
+    }
+    wrapped_text(
+        frame.fonts.text, frame.palette.color(Role::dim),
+        "How far each value may deviate, one at a time: the check is proven to stay clear.");
+    if (!ImGui::BeginTable("tolerances", 4, ImGuiTableFlags_RowBg)) return;
+    ImGui::TableSetupColumn("Value", ImGuiTableColumnFlags_WidthFixed, frame.px(170));
+    ImGui::TableSetupColumn("Tolerance", ImGuiTableColumnFlags_WidthFixed, frame.px(230));
+    ImGui::TableSetupColumn("Limited downwards by", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableSetupColumn("Limited upwards by", ImGuiTableColumnFlags_WidthStretch);
+    ImGui::TableHeadersRow();
+    int row = 0;
+    for (const ToleranceLine& line : sheet.lines) {
+        ImGui::PushID(row++);
+        ImGui::TableNextColumn();
+        text(frame.fonts.text, frame.palette.color(Role::text), line.name);
+        ImGui::TableNextColumn();
+        wrapped_text(frame.fonts.text, frame.palette.color(line.is_known ? Role::text : Role::dim),
+                     line.range);
+        for (const ToleranceCause& cause : line.causes) draw_cause(frame, cause);
+        ImGui::PopID();
+    }
+    ImGui::EndTable();
 }
 
 const char* title_of(Popup popup) {
@@ -87,6 +135,8 @@ const char* title_of(Popup popup) {
         return "Settings";
     case Popup::setup:
         return "Set-up";
+    case Popup::tolerances:
+        return "How wrong may the set-up be?";
     case Popup::none:
         break;
     }
@@ -244,6 +294,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     if (model.popup == Popup::none) return;
     const bool is_wide = model.popup == Popup::shortcuts;
     const bool is_form = model.popup == Popup::setup;
+    const bool is_table = model.popup == Popup::tolerances;
     ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
                             ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     // A dialog taller than the window scrolls.
@@ -251,6 +302,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
                                         ImVec2(area.width - 20, 0.88F * area.height));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
     if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
+    if (is_table) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(980), area.width - 20), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.palette.color(Role::panel, 0.98));
@@ -281,6 +333,9 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
         break;
     case Popup::setup:
         setup_.draw(frame);
+        break;
+    case Popup::tolerances:
+        draw_tolerances(frame);
         break;
     case Popup::none:
         break;

@@ -8,7 +8,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/base/clearance_text.h"
-#include "app/base/finding_group.h"
+#include "app/base/findings.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/row_filter.h"
 #include "app/view/model/view_model.h"
@@ -62,7 +62,7 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
 std::string clearance_text(const ViewModel& model, const BlockRow& row) {
     if (row.is_known && !row.is_judged && moves(row)) return unknown_clearance;
     if (!row.is_known || !row.lower) return {};
-    return clearance_at_least(model, row);
+    return clearance_words(model, row);
 }
 
 void draw_background(Frame& frame, ImDrawList& list, const Area& row, const BlockRow& block,
@@ -129,10 +129,11 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-/// Draws the numbers of blocks with a problem, of warnings and of all blocks, next to the tabs.
+/// Draws the numbers of errors, of warnings and of all blocks, next to the tabs.
 void draw_counts(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
-    const size_t problems = model.offending.size();
+    const size_t problems = std::max(count_of(model.findings, core::Severity::error),
+                                     model.offending.empty() ? size_t(0) : size_t(1));
     const size_t warnings = count_of(model.findings, core::Severity::warning);
     const std::string bad = fmt::format("{} {}", frame.fonts.icon(Icon::warning), problems);
     const std::string doubtful = fmt::format("{} {}", frame.fonts.icon(Icon::near), warnings);
@@ -150,7 +151,8 @@ void draw_counts(Frame& frame, const Area& area) {
     const bool warnings_fit = fits(doubtful), blocks_fit = warnings_fit && fits(blocks);
     ImGui::SameLine(area.width - width - frame.px(14));
     text(frame.fonts.text, frame.palette.color(problems == 0 ? Role::dim : Role::violation), bad);
-    tip(frame, "Blocks with an error, or not proven clear");
+    tip(frame, fmt::format("Errors, as in the report; {} not proven clear or with an error",
+                           counted(model.offending.size(), "block")));
     if (!warnings_fit) return;
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.palette.color(warnings == 0 ? Role::dim : Role::near), doubtful);

@@ -240,6 +240,9 @@ void SetupPopup::State::draw_buttons(Frame& frame) {
         model.popup = Popup::none;
     }
     ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button("Tolerances")) frame.perform(Command::tolerances);
+    tip(frame, tip_of(Command::tolerances));
     if (!refused_.empty()) {
         ImGui::SameLine();
         text(frame.fonts.text, frame.palette.color(Role::violation),

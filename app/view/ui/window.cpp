@@ -21,6 +21,8 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/settings.h"
+#include "app/view/model/tolerance_sheet.h"
+#include "app/view/model/tolerance_worker.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
@@ -127,7 +129,8 @@ public:
           layout_(std::move(renderer)),
           log_(job.frame_log),
           worker_([] { glfwPostEmptyEvent(); }),
-          device_([] { glfwPostEmptyEvent(); }) {}
+          device_([] { glfwPostEmptyEvent(); }),
+          tolerances_([] { glfwPostEmptyEvent(); }) {}
 
     ViewModel model;
 
@@ -164,7 +167,8 @@ private:
     bool asked_ = false; // a request has just been sent to the worker
     int frames_ = 3;     // still to draw: ImGui needs several to settle the layout
     SessionWorker worker_;
-    DeviceWorker device_; // last, so that the threads end before the other members
+    DeviceWorker device_;
+    ToleranceWorker tolerances_; // last, so that the threads end before the other members
 };
 
 double Window::wanted_scale() const {
@@ -277,6 +281,9 @@ void Window::update() {
     DeviceUpdate answers = device_.take();
     if (answers.has_news) damage();
     take_in(model, std::move(answers));
+    ToleranceUpdate found = tolerances_.take();
+    if (found.has_news) damage();
+    take_in(model, std::move(found));
     if (play(model, std::min(now - last_frame_, 0.2))) damage();
     last_frame_ = now;
     if (!model.wanted_path.empty()) drop({std::exchange(model.wanted_path, {})});
@@ -296,6 +303,7 @@ void Window::update() {
     if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
     if (model.saved && !model.saved->refusal) work_with_saved();
     if (send_device_orders(model, device_, check_)) damage();
+    if (send_tolerance_orders(model, tolerances_, check_)) damage();
     if (send_requests(model, worker_)) {
         asked_ = true;
         damage();
@@ -477,9 +485,14 @@ std::string window_title(const ViewModel& model) {
         return "Program could not be opened - feeler";
     if (!model.program) return "feeler";
     std::string title = std::filesystem::path(model.program->program).filename().string();
+    const auto state_words = [](const BlockRow& row) -> std::string {
+        if (!is_offending(row)) return {};
+        return std::string(", ")
+               + (row.verdict != core::Verdict::clear ? core::name_of(row.verdict) : "error");
+    };
     if (model.has_rows())
         title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
-                             model.rows.size() - 1, is_offending(model.row()) ? ", problem" : "");
+                             model.rows.size() - 1, state_words(model.row()));
     title += device_words(model);
     if (!model.missing.empty()) title += ", file missing or empty";
     if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);

@@ -20,8 +20,8 @@ struct PairBound {
     double drift = 0.0; // travel since the pair was measured, mm
 };
 
-/// State of a check that is carried from leg to leg. All but `cuts` only saves time; no verdict
-/// depends on it.
+/// State of a check that is carried from leg to leg. All but `cuts` and `passages` only saves time;
+/// no verdict depends on it.
 struct CheckMemory {
     /// Cutting brings nothing nearer, and a motion brings a pair nearer by at most its length, so
     /// bounds hold from block to block until a tool or a fixture is changed.
@@ -39,6 +39,9 @@ struct CheckMemory {
     /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's
     /// frame. Without them a rapid within such a cut would be a false alarm.
     std::map<size_t, SweepLog> cuts;
+    /// Straight motions of flutes that did not cut and of which it is undecided whether they met
+    /// the stock. The same way back is not reported again.
+    SweepLog passages;
 };
 
 } // namespace core

@@ -80,10 +80,8 @@ void FixtureCheck::check_passage(const Leg& leg, double start, size_t fixture,
 }
 
 void FixtureCheck::resolve(const Doubt& doubt, PairClearance& known) {
-    const Mount& mount = context_.setup.fixtures[doubt.fixture].mount;
     const auto clearance_of = [&](const Leg& leg) {
-        const RelativeLeg relative =
-            relative_leg(context_.setup.machine, mount, doubt.body->mover, leg);
+        const RelativeLeg relative = context_.against_fixture(*doubt.body, doubt.fixture, leg);
         return measure(leg, doubt.start, relative, *doubt.body, known);
     };
     constexpr double finest = 1e-5; // mm, of a chord's error
@@ -111,23 +109,23 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     const Pair pair = pair_of(body, fixture);
     TrackedPair& known = bounds_.tracked_pair(pairs, pair);
     if (bounds_.can_skip(known, pairs)) return;
-    const RelativeLeg relative = relative_leg(
-        context_.setup.machine, context_.setup.fixtures[fixture].mount, body.mover, leg);
+    const RelativeLeg relative = context_.against_fixture(body, fixture, leg);
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: halve the leg until the body is far away or its error is small enough.
     const double apart =
         distance(bounds(body, relative), bounds(context_.setup.fixtures[fixture].body));
     if (is_far(known, apart, context_.setup.search_limit)) return;
+    if (context_.setup.needs_only_verdict && known.verdict != Verdict::clear) return;
     if (!context_.is_too_vague(relative)) {
         PairClearance now = measure(leg, start, relative, body, known);
         if (now.lower >= std::min(known.upper, context_.setup.search_limit)
-            || context_.is_sharp(body, relative, now.lower))
+            || context_.is_sharp(body, relative, now.lower)
+            || (context_.setup.needs_only_verdict && now.verdict == Verdict::clear))
             return merge(known, now);
         if (now.lower <= 0.0) {
             const Leg still = still_half_way(leg);
-            const RelativeLeg here = relative_leg(
-                context_.setup.machine, context_.setup.fixtures[fixture].mount, body.mover, still);
+            const RelativeLeg here = context_.against_fixture(body, fixture, still);
             now = measure(still, start, here, body, known);
             if (now.verdict == Verdict::collision) return merge(known, now);
         }

@@ -22,13 +22,35 @@ std::optional<Aabb> box_in_stock(const Setup& setup, size_t fixture) {
     const Fixture& body = setup.fixtures[fixture];
     if (body.mount.link != setup.stock_mount.link) return std::nullopt;
     const Transform stock_from = stock_from_fixture(setup, fixture, {});
-    const Aabb own = bounds(body.body);
+    const Play play = rotated(glm::transpose(body.mount.link_from_body.rotation), body.play);
+    const Aabb own = displaced(bounds(body.body), play);
     Aabb box;
     for (int corner = 0; corner < 8; ++corner)
         box.extend(stock_from
                    * Vec3(corner & 1 ? own.max.x : own.min.x, corner & 2 ? own.max.y : own.min.y,
                           corner & 4 ? own.max.z : own.min.z));
     return box;
+}
+
+/// One move of an upright cylinder, as seen from the tool, that sweeps over everything that flutes
+/// may reach within the hull of a leg.
+CutterSweep around(const RevolvedProfile& flutes, const RelativeLeg& hull) {
+    const Mat3 tool_from_stock = glm::transpose(hull.orientation);
+    Aabb tips;
+    for (const Vec3& position : hull.positions) tips.extend(tool_from_stock * position);
+    const Aabb body = bounds(flutes);
+    const Vec3 size = tips.size();
+    const int along = size.x >= size.y ? 0 : 1, across = 1 - along;
+    const double radius = body.max.x + 0.5 * size[across];
+    const RevolvedProfile cylinder{{{body.min.z, radius, body.max.z + size.z, radius, 0.0}}};
+    Vec3 from = tips.min;
+    from[across] += 0.5 * size[across];
+    Vec3 to = from;
+    to[along] = tips.max[along];
+    return {.cutter = std::make_shared<const Cutter>(make_cutter(cylinder, hull.error)),
+            .from = hull.orientation * from,
+            .to = hull.orientation * to,
+            .orientation = hull.orientation};
 }
 
 } // namespace
@@ -41,11 +63,13 @@ Transform stock_from_fixture(const Setup& setup, size_t fixture, const AxisValue
 }
 
 std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg) {
-    const double error = leg.turns ? rounded_up(leg.error) : leg.error;
+    const double error = (leg.turns ? rounded_up(leg.error) : leg.error) + context_.setup.cut_error;
     auto& cutter = context_.memory.cutters[{context_.tool.description.number, error}];
-    if (!cutter)
-        cutter = std::make_shared<const Cutter>(make_cutter(context_.tool.parts[0].profile, error));
-    return cutter;
+    if (cutter) return cutter;
+    const RevolvedProfile& flutes = context_.tool.parts[0].profile;
+    Cutter made = make_cutter(context_.tool.certain_flutes.value_or(flutes), error);
+    made.flutes = flutes;
+    return cutter = std::make_shared<const Cutter>(std::move(made));
 }
 
 double FluteCut::along(const Leg& leg, CutModel& stock) {
@@ -53,11 +77,15 @@ double FluteCut::along(const Leg& leg, CutModel& stock) {
     if (context_.tool.parts.empty()) return 0.0;
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     ++context_.statistics.sweeps;
-    return cut(stock, {.cutter = cutter_for(way),
-                       .from = way.positions.front(),
-                       .to = way.positions.back(),
-                       .orientation = way.orientation,
-                       .block = value_of(context_.block)});
+    return cut(stock, sweep_on(way));
+}
+
+CutterSweep FluteCut::sweep_on(const RelativeLeg& way) {
+    return {.cutter = cutter_for(way),
+            .from = way.positions.front(),
+            .to = way.positions.back(),
+            .orientation = way.orientation,
+            .block = value_of(context_.block)};
 }
 
 double FluteCut::along_turning(const Leg& leg, CutModel& stock) {
@@ -76,11 +104,18 @@ void FluteCut::note_cut(const Leg& leg, size_t fixture) {
     const auto box = box_in_stock(context_.setup, fixture);
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     if (!box || way.turns || !overlaps(bounds(context_.bodies[0], way), *box)) return;
-    context_.memory.cuts[fixture].push_back({.cutter = cutter_for(way),
-                                             .from = way.positions.front(),
-                                             .to = way.positions.back(),
-                                             .orientation = way.orientation,
-                                             .block = value_of(context_.block)});
+    context_.memory.cuts[fixture].push_back(sweep_on(way));
+}
+
+void FluteCut::may_cut(const Leg& leg, CutModel& certain) {
+    if (context_.tool.parts.empty()) return;
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    if (!leg.straight) {
+        cut(certain, around(context_.tool.parts[0].profile, way));
+        return;
+    }
+    along_turning(leg, certain);
+    if (!way.turns) context_.memory.passages.push_back(sweep_on(way));
 }
 
 bool FluteCut::is_in_own_cut(const Leg& leg, size_t fixture) const {

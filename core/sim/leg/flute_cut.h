@@ -21,6 +21,10 @@ public:
     /// Cuts the stock along any leg; halves the leg while the tool turns too far.
     double along_turning(const Leg& leg, CutModel& stock);
 
+    /// Removes everything from `certain` that the flutes may have removed on a leg whose contact
+    /// with the stock is undecided, and records a straight one as a passage.
+    void may_cut(const Leg& leg, CutModel& certain);
+
     /// Records that the flutes cut an expendable fixture on a leg.
     void note_cut(const Leg& leg, size_t fixture);
 
@@ -29,6 +33,8 @@ public:
 
 private:
     std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg);
+    /// The move that the flutes make on a straight leg.
+    CutterSweep sweep_on(const RelativeLeg& way);
 
     const LegContext& context_;
 };

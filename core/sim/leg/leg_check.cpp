@@ -64,6 +64,17 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     }
 }
 
+double LegCheck::reach_into_raw_stock(const Pair& pair, const Leg& leg,
+                                      const CutModel& stock) const {
+    const MovingBody& body = context_.body_of(pair);
+    const RelativeLeg way = context_.against_stock(body, leg);
+    const Aabb own = bounds(body, way), &raw = stock.outer_box;
+    double least = infinity;
+    for (int axis = 0; axis < 3; ++axis)
+        least = std::min({least, own.max[axis] - raw.min[axis], raw.max[axis] - own.min[axis]});
+    return least + way.error;
+}
+
 void LegCheck::rest(const AxisValues& position, double time, const CutModel& stock,
                     std::vector<TrackedPair>& pairs) {
     const Leg leg{.positions = {position}};

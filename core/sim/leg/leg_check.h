@@ -83,6 +83,7 @@ private:
         const MovingBody& body;
         StockObservation before;
         bool clear;
+        bool open;      // the order of events on the leg may change its verdict
         double nearest; // least clearance of the pair so far in this block
     };
 
@@ -150,6 +151,19 @@ public:
 
     /// Cuts the stock along a leg without a check; the volume removed, mm3.
     double only_cut(const Leg& leg, CutModel& stock) { return flutes_.along_turning(leg, stock); }
+
+    /// FluteCut::may_cut.
+    void may_cut(const Leg& leg, CutModel& certain) { flutes_.may_cut(leg, certain); }
+
+    /// StockProbe::certain_clearance.
+    PairClearance certain_clearance(const Pair& pair, const Leg& leg, double start,
+                                    const CutModel& certain) {
+        return probe_.certain_clearance(context_.body_of(pair), leg, start, certain);
+    }
+
+    /// How far a body reaches at most into the box of the raw stock on a leg, in the direction in
+    /// which that is least, mm; negative: it stays outside.
+    double reach_into_raw_stock(const Pair& pair, const Leg& leg, const CutModel& stock) const;
 
     /// StockProbe::room_of_flutes.
     double room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {

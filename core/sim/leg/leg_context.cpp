@@ -28,6 +28,18 @@ std::vector<const MovingBody*> LegContext::likely_first(std::optional<size_t> fi
     return order;
 }
 
+RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
+                                        const Leg& leg) const {
+    const Fixture& target = setup.fixtures[fixture];
+    RelativeLeg relative = relative_leg(setup.machine, target.mount, body.mover, leg);
+    if (target.play.none()) return relative;
+    // As seen from the fixture, the body is displaced the other way.
+    const Play play = rotated(-glm::transpose(target.mount.link_from_body.rotation), target.play);
+    const bool is_mesh = body.body && !std::holds_alternative<ConvexShape>(*body.body);
+    (is_mesh ? add_play_as_error : add_play)(relative, play);
+    return relative;
+}
+
 RelativeLeg LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
     return relative_leg(setup.machine, setup.stock_mount, body.mover, leg);
 }

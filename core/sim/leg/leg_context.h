@@ -42,6 +42,9 @@ struct LegContext {
     /// decided the last block comes first.
     std::vector<const MovingBody*> likely_first(std::optional<size_t> fixture) const;
 
+    /// The leg of a body in the frame of a fixture, with the fixture's play.
+    RelativeLeg against_fixture(const MovingBody& body, size_t fixture, const Leg& leg) const;
+
     /// The leg of a body in the stock's frame.
     RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
 

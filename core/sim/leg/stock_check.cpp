@@ -22,6 +22,21 @@ bool has_crashed(const std::vector<TrackedPair>& pairs) {
     });
 }
 
+/// Whether it is already known that the leg is not clear, and nothing else is needed.
+bool is_enough(const Setup& setup, const std::vector<TrackedPair>& pairs) {
+    return setup.needs_only_verdict
+           && std::any_of(pairs.begin(), pairs.end(),
+                          [](const TrackedPair& pair) { return pair.verdict != Verdict::clear; });
+}
+
+/// Whether the order of events on a leg cannot change the verdict on a pair, though it is `now`
+/// with the stock before the cut: a collision is known; or the pair is already undecided, and
+/// without material in its way before the cut there is none later.
+bool is_settled(const TrackedPair& known, Verdict now) {
+    return known.verdict == Verdict::collision
+           || (known.verdict == Verdict::undecided && now == Verdict::undecided);
+}
+
 } // namespace
 
 double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
@@ -40,10 +55,10 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         }
         if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
         const StockObservation before = probe_.observe_lower(*body, leg, stock, known.upper);
-        const bool clear =
-            probe_.clearance(*body, leg, start, before, before).verdict == Verdict::clear;
-        settled = settled && clear;
-        checks.push_back({*body, before, clear, known.upper});
+        const Verdict verdict = probe_.clearance(*body, leg, start, before, before).verdict;
+        const bool open = verdict != Verdict::clear && !is_settled(known, verdict);
+        settled = settled && !open;
+        checks.push_back({*body, before, verdict == Verdict::clear, open, known.upper});
     }
     if (!settled && length(leg) > context_.setup.mesh_size && depends_on_time(checks, leg, stock)) {
         bounds_.begin_leg(0.5 * bounds_.travel());
@@ -104,7 +119,7 @@ bool StockCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg
     CutModel cut_already = stock;
     flutes_.along(leg, cut_already);
     for (const BodyCheck& check : checks) {
-        if (check.clear) continue;
+        if (!check.open) continue;
         const StockObservation after = observe_after(check, leg, cut_already);
         if (probe_.clearance(check.body, leg, 0.0, after, after).verdict == Verdict::clear)
             return true;
@@ -185,7 +200,8 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
         if (chips) continue;
         const PairClearance now = probe_.clearance(body, leg, start, observation, observation);
         if (now.verdict != Verdict::clear) return false;
-        if (lower < std::min(nearest, context_.setup.search_limit)
+        if (!context_.setup.needs_only_verdict
+            && lower < std::min(nearest, context_.setup.search_limit)
             && !context_.is_sharp(body, relative, lower))
             return false;
         seen.push_back(now);
@@ -196,6 +212,7 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
 
 void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, double start,
                                     const CutModel& stock, std::vector<TrackedPair>& pairs) {
+    if (is_enough(context_.setup, pairs)) return;
     TrackedPair& known = entry(pairs, pair_of(body), context_.setup);
     const RelativeLeg relative = context_.against_stock(body, leg);
     if (stays_away(known, leg, relative)) return;
@@ -212,7 +229,9 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
         const StockObservation seen = probe_.observe(body, leg, stock, known.upper);
         const PairClearance now = probe_.clearance(body, leg, start, seen, seen);
         const bool far = now.lower >= std::min(known.upper, context_.setup.search_limit);
-        const bool is_sharp = context_.is_sharp(body, relative, now.lower);
+        const bool is_sharp =
+            context_.is_sharp(body, relative, now.lower)
+            || (context_.setup.needs_only_verdict && now.verdict == Verdict::clear);
         if (!relative.turns || far || is_sharp || now.verdict == Verdict::collision)
             return merge(known, now);
     }
@@ -232,6 +251,7 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
         }
         return 0.0;
     }
+    if (is_enough(context_.setup, pairs)) return 0.0;
     if (!context_.turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
     if (is_clear_by_bound(leg, start, stock, pairs)) return 0.0;
     const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);

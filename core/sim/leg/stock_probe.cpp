@@ -28,7 +28,10 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
     goal.threshold = std::min(goal.threshold, goal.limit);
+    size_t& futile_left = futile_left_[static_cast<size_t>(body.kind)];
+    goal.futile_limit = std::min<size_t>(futile_left, 500);
     const StockSeparation found = separation(shapes, stock, goal);
+    futile_left -= std::min(futile_left, found.futile);
     if (found.line) hint = found.line;
     context_.statistics.box_tests += found.box_tests;
     context_.statistics.shape_tests += found.shape_tests;
@@ -85,11 +88,40 @@ bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const 
     // A shank does not cut, so it may have been inside the stock on the same path.
     if (context_.tool.parts.empty() || body.kind != PartKind::flutes) return false;
     if (leg.turns || leg.positions.size() > 2) return false;
-    return runs_in_own_cut(stock, {.flutes = context_.tool.parts[0].profile,
-                                   .from = leg.positions.front(),
-                                   .to = leg.positions.back(),
-                                   .sideways = 0.5 * contact_depth(allowance) - leg.error,
-                                   .orientation = leg.orientation});
+    PathQuery path{.flutes = context_.tool.parts[0].profile,
+                   .from = leg.positions.front(),
+                   .to = leg.positions.back(),
+                   .sideways = 0.5 * contact_depth(allowance) - leg.error,
+                   .orientation = leg.orientation};
+    if (runs_in_own_cut(stock, path)) return true;
+    // Contact was allowed on a passage, so only the same way counts.
+    const SweepLog& passages = context_.memory.passages;
+    path.sideways = resolution - leg.error;
+    return passages.size() > 0 && runs_in_own_cut(passages, stock.outer_box, path);
+}
+
+PairClearance StockProbe::certain_clearance(const MovingBody& body, const Leg& leg, double start,
+                                            const CutModel& certain) {
+    PairClearance worst{.pair = pair_of(body)};
+    worst.allowance = allowance_of(context_.setup, worst.pair);
+    const auto add = [&](const Leg& part) {
+        const StockObservation seen = observe(body, part, certain, context_.setup.search_limit);
+        merge(worst, clearance(body, part, start, seen, seen));
+    };
+    if (!leg.straight) {
+        for (const AxisValues& position : leg.certain) add(Leg{.positions = {position}});
+    } else if (!context_.against_stock(body, leg).turns) {
+        add(leg);
+    } else {
+        constexpr int places = 16; // the body is certainly at each of them
+        for (int i = 0; i <= places; ++i) {
+            const double fraction = double(i) / places;
+            Leg still = stretch(leg, fraction, fraction);
+            still.positions.resize(1);
+            add(still);
+        }
+    }
+    return worst;
 }
 
 void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "core/distance/stock_distance.h"
@@ -22,7 +23,9 @@ struct StockObservation {
 class StockProbe {
 public:
     StockProbe(const LegContext& context, const PairBounds& bounds)
-        : context_(context), bounds_(bounds) {}
+        : context_(context), bounds_(bounds) {
+        futile_left_.fill(2'000);
+    }
 
     /// Measures both bounds, up to a distance of `nearest`.
     StockObservation observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
@@ -50,6 +53,11 @@ public:
     PairClearance clearance(const MovingBody& body, const Leg& leg, double start,
                             const StockObservation& before, const StockObservation& after) const;
 
+    /// Clearance of a body from the stock that certainly exists, over a leg on which nothing is
+    /// cut; only its upper bound and a verdict of violation or collision count.
+    PairClearance certain_clearance(const MovingBody& body, const Leg& leg, double start,
+                                    const CutModel& certain);
+
     /// Fraction of the leg at which the pair first comes within `distance`. `seen` is a fraction at
     /// which it does, if one is known.
     double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
@@ -74,6 +82,9 @@ private:
 
     const LegContext& context_;
     const PairBounds& bounds_;
+    // Squares that may still be recomputed in this motion for material near a body of each kind
+    // that cannot be proven clear any more.
+    std::array<size_t, 5> futile_left_;
 };
 
 } // namespace core

@@ -47,9 +47,10 @@ bool has_cleared_its_level(const CentreTracker& tracker, double centre_radius) {
     return circle_round(here).radius > centre_radius;
 }
 
-/// Whether the region that has been under the centre during the whole trail contains material.
-bool meets_matter(const CentreTracker& tracker, const ToolDescription& tool,
-                  const CutModel& stock) {
+/// Whether the region that has been under the centre during the whole trail contains material; or,
+/// if not `certain`, may contain some.
+bool meets_matter(const CentreTracker& tracker, const ToolDescription& tool, const CutModel& stock,
+                  bool certain) {
     const double recess = centre_recess(tool), low = tracker.trail.back().z + recess + touch;
     if (low >= tracker.top) return false;
     const Circle circle = circle_round(tracker.trail);
@@ -58,7 +59,10 @@ bool meets_matter(const CentreTracker& tracker, const ToolDescription& tool,
     const RevolvedProfile face{{{0.0, radius, tracker.top - low, radius, 0.0}}};
     const Vec3 position = tracker.orientation * Vec3(circle.centre.x, circle.centre.y, low);
     const RelativeLeg rest{.orientation = tracker.orientation, .positions = {position}};
-    return separation(shapes_of(face, rest), stock, {.limit = level}).separation.upper <= 0.0;
+    if (certain)
+        return separation(shapes_of(face, rest), stock, {.limit = level}).separation.upper <= 0.0;
+    const StockGoal goal{.limit = 2.0 * level, .bound = StockBound::lower, .threshold = level};
+    return separation(shapes_of(face, rest), stock, goal).separation.lower <= 0.0;
 }
 
 /// Continues the trail at `from`, or begins a new one if the tool was elsewhere or moves up.
@@ -86,7 +90,7 @@ double centre_recess(const ToolDescription& tool) {
 }
 
 std::optional<CentreContact> follow(CentreTracker& tracker, const ToolDescription& tool,
-                                    const RelativeLeg& leg, const CutModel& stock) {
+                                    const RelativeLeg& leg, const CutModel& stock, bool certain) {
     if (leg.turns || leg.positions.size() > 2) tracker = {};
     if (leg.turns || leg.positions.size() != 2) return std::nullopt;
     const Mat3 tool_from_stock = glm::transpose(leg.orientation);
@@ -112,7 +116,7 @@ std::optional<CentreContact> follow(CentreTracker& tracker, const ToolDescriptio
                && trail[above + 1].z >= trail.back().z + centre_recess(tool))
             ++above;
         trail.erase(trail.begin(), trail.begin() + static_cast<std::ptrdiff_t>(above));
-        if (!tracker.before || !meets_matter(tracker, tool, *tracker.before)) continue;
+        if (!tracker.before || !meets_matter(tracker, tool, *tracker.before, certain)) continue;
         const CentreContact contact{
             fraction, leg.positions[0] + fraction * (leg.positions[1] - leg.positions[0])};
         tracker = {};

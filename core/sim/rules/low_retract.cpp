@@ -112,6 +112,20 @@ std::optional<double> lift(LinkCheck& probe) {
     return high;
 }
 
+/// The cure: the rapid at a height, rounded up, at which it was tried and is clear.
+std::string cure_by(LinkCheck& probe, const Pair& pair, double higher, const std::string& body) {
+    const double tried = std::ceil(10.0 * higher - 1e-9) / 10.0;
+    const std::vector<TrackedPair> above = probe.along(tried);
+    if (!are_clear(above) || flutes_to_stock(above) < room)
+        return "Retract higher before moving across.";
+    double keeps = probe.setup.search_limit;
+    for (const TrackedPair& each : above)
+        if (each.pair == pair) keeps = each.lower;
+    return fmt::format("Retract {:.1f} mm higher before moving across (tried: this rapid then "
+                       "keeps {} mm from {}).",
+                       tried, clearance_at_least(keeps), pair.fixture ? body : "the stock");
+}
+
 } // namespace
 
 bool goes_across(const Leg& leg) {
@@ -149,8 +163,7 @@ std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<Tr
                           bounds_text(near->lower, near->upper, " to ", 2))
             : fmt::format("The retract before this rapid is too low: {} is in the way of the {}.",
                           finding.pair[1], finding.pair[0]);
-    finding.cure = fmt::format("Retract {:.1f} mm higher before moving across.",
-                               std::ceil(10.0 * *higher - 1e-9) / 10.0);
+    finding.cure = cure_by(probe, near->pair, *higher, finding.pair[1]);
     return finding;
 }
 

@@ -140,10 +140,14 @@ double centre_recess(const ToolDescription& tool);
 /// Follows a feed along one leg; `stock` is the stock before the leg. Call it for every leg of such
 /// a tool, in order.
 ///
+/// `certain`: only material that is certainly there counts. Otherwise all that may be there does,
+/// for simulations that must hold for a range of set-ups.
+///
 /// Proof: a tool that goes down meets a point at the height of its face for the first time when its
 /// tip passes there. If the point has been under the centre ever since, no edge has passed it.
 std::optional<CentreContact> follow(CentreTracker& tracker, const ToolDescription& tool,
-                                    const RelativeLeg& leg, const CutModel& stock);
+                                    const RelativeLeg& leg, const CutModel& stock,
+                                    bool certain = true);
 
 /// The finding `singular-orientation` about a feed in which rotary axes turn: either an
 /// axis turns far while the tool hardly tilts and its tip hardly moves; or, without tool centre

@@ -83,11 +83,20 @@ double stick_out_of(const ToolAssembly& tool) {
 /// A length, rounded up to a tenth.
 double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0; }
 
+/// By how much a part is raised so that its new height above the tip is a whole tenth, at least
+/// `more`, if the leg was tried with it and is clear; else `longest_stick_out`.
+double tried_raise(const ExecutedLeg& cut, PartKind from, double now, double more) {
+    if (more >= longest_stick_out) return more;
+    const double raise = tenths_up(now + more) - now;
+    return raise <= more || keeps_clear(cut, from, raise) ? raise : longest_stick_out;
+}
+
+/// In which blocks a length was tried.
 std::string in_blocks(const ToolReach& reach) {
     if (reach.computations > enough)
         return " in the first of these blocks (the others were not tried)";
-    if (reach.blocks == 2) return " in both blocks";
-    return reach.blocks > 1 ? fmt::format(" in all {} blocks", reach.blocks) : std::string();
+    if (reach.blocks == 2) return " in both blocks (tried)";
+    return reach.blocks > 1 ? fmt::format(" in all {} blocks (tried)", reach.blocks) : " (tried)";
 }
 
 Finding about(const char* rule, std::optional<BlockIndex> block) {
@@ -109,8 +118,8 @@ Finding short_stick_out(const ToolAssembly& tool, const ToolReach& reach) {
     finding.cure =
         reach.more_stick_out >= longest_stick_out
             ? "No stick-out is long enough: use less depth or a slimmer holder."
-            : fmt::format("A stick-out of {:.1f} mm gives enough clearance{}; or use a slimmer "
-                          "holder.",
+            : fmt::format("A stick-out of {:.1f} mm gives enough clearance from the stock{}; or "
+                          "use a slimmer holder.",
                           tenths_up(now + reach.more_stick_out), in_blocks(reach));
     return finding;
 }
@@ -142,8 +151,8 @@ void add_short_flutes(const ToolAssembly& tool, const ToolReach& reach,
     reach_short.cure =
         hopeless ? "Use a tool with a slimmer shank or a neck, or less depth."
                  : fmt::format(
-                     "Use a tool that is relieved up to {:.1f} mm above its tip, or less depth.",
-                     tenths_up(now + reach.more_flute));
+                     "Use a tool that is relieved up to {:.1f} mm above its tip{}, or less depth.",
+                     tenths_up(now + reach.more_flute), in_blocks(reach));
     findings.push_back(std::move(deep));
     findings.push_back(std::move(reach_short));
 }
@@ -186,7 +195,9 @@ void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
         auto& first = is_shank ? reach.shank_block : reach.holder_block;
         if (!first) first = cut.block;
         double& more = is_shank ? reach.more_flute : reach.more_stick_out;
-        if (reach.computations++ < enough) more = needed(cut, pair.pair.part, more);
+        if (reach.computations++ >= enough) continue;
+        const double now = is_shank ? top_of_flutes(cut.tool) : stick_out_of(cut.tool);
+        more = tried_raise(cut, pair.pair.part, now, needed(cut, pair.pair.part, more));
     }
 }
 

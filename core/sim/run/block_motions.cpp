@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "core/sim/run/block_run.h"
 #include "core/sim/verdict.h"
 
@@ -44,17 +45,6 @@ void BlockRun::check_limits(const Motion& motion) {
     }
 }
 
-void BlockRun::round_corners(const Motion& motion) {
-    RoundedCorners& corners = state.corners;
-    if (corners.by == 0.0) return;
-    off_path = std::max(off_path, corners.by);
-    if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool);
-    state.assumptions.insert(fmt::format(
-        "feeds may deviate by up to {:g} mm from the programmed path while the control rounds "
-        "corners (G64); clearances include this",
-        corners.by));
-}
-
 void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // The start position is unknown: report, once, a motion that is not clear from every possible
     // start.
@@ -82,6 +72,75 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
          "the machine's home position.");
 }
 
+namespace {
+
+/// Removes everything from a stock.
+void remove_all(CutModel& stock) {
+    const Vec3 size = stock.outer_box.size();
+    const double radius = std::hypot(size.x, size.y);
+    const RevolvedProfile all{{{0.0, radius, size.z + 2.0, radius, 0.0}}};
+    const Vec3 at = stock.outer_box.min + Vec3(0.5 * size.x, 0.5 * size.y, -1.0);
+    cut(stock,
+        {.cutter = std::make_shared<const Cutter>(make_cutter(all, 0.0)), .from = at, .to = at});
+}
+
+} // namespace
+
+void BlockRun::move_unmeasured(const Motion& motion, const Path& path) {
+    if (block.path == PathCertainty::pose_unknown) check_limits(motion);
+    if (!tool()) move_without_tool(motion);
+    if (tool() && use(motion) == FluteUse::cutting) {
+        // It may have cut anything.
+        if (!state.certain_stock) state.certain_stock = state.stock;
+        remove_all(*state.certain_stock);
+    }
+    forget_bounds();
+    state.position = motion.to;
+    state.centre = {};
+    state.rules.air = {};
+    state.rules.has_fed = state.rules.has_fed || motion.kind != MotionKind::rapid;
+    result.checked = false;
+    result.duration += path.duration;
+}
+
+bool BlockRun::is_clear_from_anywhere(const Motion& motion) {
+    const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
+    if (block.judgement || path.legs.empty()) return false;
+    CutModel stock = state.stock;
+    const CheckMemory memory = state.memory;
+    std::vector<TrackedPair> here;
+    for (const Leg& leg : path.legs) leg_check(use(motion)).run(leg, result.duration, stock, here);
+    state.memory = memory;
+    const TrackedPair* worst = deciding_pair(here);
+    return !worst || worst->verdict == Verdict::clear;
+}
+
+void BlockRun::doubt_assumed_start(const Motion& motion) {
+    Motion from_anywhere = motion;
+    bool is_doubtful = false;
+    for (size_t i = 0; i < state.is_assumed.size(); ++i) {
+        if (!state.is_assumed[i]) continue;
+        is_doubtful = true;
+        from_anywhere.from[i].reset();
+        state.is_assumed[i] = motion.from[i] == motion.to[i];
+        if (state.is_assumed[i]) from_anywhere.to[i].reset(); // it stays where it is
+    }
+    const bool is_tool_there = tool() || !setup.machine.bodies.empty();
+    if (!is_doubtful || !is_tool_there || state.reported_unknown_start) return;
+    if (is_clear_from_anywhere(from_anywhere)) return;
+    state.reported_unknown_start = true;
+    const auto text = [&](size_t axis) {
+        return fmt::format(" {}{}", axis_letters[axis],
+                           number_text(motion.from[axis].value_or(0.0), 3));
+    };
+    find(rule_id("first-move"),
+         fmt::format("Nothing states where the machine starts. This motion was checked only from "
+                     "the assumed position{}{}{} (machine coordinates).",
+                     text(0), text(1), text(2)),
+         "State the axis positions at the first block: `start` under [program] in the set-up, or "
+         "the machine's home position.");
+}
+
 void BlockRun::execute_motion(const Motion& motion) {
     result.motion = result.motion == BlockMotion::none ? label(motion) : BlockMotion::cycle;
     drills_sideways = drills_sideways
@@ -91,11 +150,16 @@ void BlockRun::execute_motion(const Motion& motion) {
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
+    if (block.path >= PathCertainty::pose_unknown) return move_unmeasured(motion, path);
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion);
-    if (motion.from != state.position) forget_bounds();
-    if (motion.kind != MotionKind::rapid && tool()) round_corners(motion);
+    if (motion.from != state.position) {
+        forget_bounds();
+        state.corners.last = {};
+    }
+    round_corners(motion);
     state.memory.off_path = off_path + state.corners.of_cuts;
+    doubt_assumed_start(motion);
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
     if (!tool() && setup.machine.bodies.empty()) {
@@ -105,8 +169,10 @@ void BlockRun::execute_motion(const Motion& motion) {
     } else if (block.judgement) {
         follow_path(motion, path);
     } else {
+        check_corner(motion, path);
         check_path(motion, path);
     }
+    note_corner(state.corners, motion, path);
     result.duration += path.duration;
 }
 
@@ -118,10 +184,20 @@ void BlockRun::track_centre(const Motion& motion, const Leg& leg) {
     }
     const Mount tip{setup.machine.spindle, translation({0.0, 0.0, -tool()->length})};
     const RelativeLeg way = relative_leg(setup.machine, setup.stock_mount, {.mount = tip}, leg);
-    const auto contact = follow(state.centre, tool()->description, way, state.stock);
+    CentreTracker certain_centre = state.centre;
+    const bool is_exact =
+        setup.stock.play.none() && setup.cut_error == 0.0 && !tool()->certain_flutes.has_value();
+    const auto contact = follow(state.centre, tool()->description, way, state.stock, is_exact);
     if (!contact) return;
     TrackedPair& flutes = entry(pairs, {PartKind::flutes}, setup);
     if (flutes.verdict == Verdict::collision) return;
+    if (state.certain_stock
+        && !follow(certain_centre, tool()->description, way, *state.certain_stock)) {
+        flutes.lower = 0.0;
+        flutes.verdict = std::max(flutes.verdict, Verdict::undecided);
+        flutes.unless_removed = true;
+        return;
+    }
     pushes_centre = true;
     flutes.lower = flutes.upper = 0.0;
     flutes.verdict = Verdict::collision;
@@ -139,29 +215,81 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
     double removed = 0.0;
     for (const Leg& leg : path.legs) {
         track_centre(motion, leg);
-        removed += check.run(leg, result.duration, state.stock, pairs);
-        legs.push_back({leg, result.duration});
+        removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
+        legs.push_back({leg, result.duration, use(motion)});
         if (use(motion) == FluteUse::cutting && !state.rules.length_in_doubt)
             note_reach(state.rules.reaches,
-                       {setup, *tool(), block.block, leg, state.mounted_fixtures, state.stock},
+                       {setup, *tool(), block.block, leg, state.mounted_fixtures,
+                        state.certain_stock ? *state.certain_stock : state.stock},
                        pairs);
     }
     check.finish(pairs);
+    note_doubt(check, motion, path);
     note_worst(motion.kind);
     result.removed += removed;
     if (before) check_rapid(motion, path, *before);
     if (!rapid) check_feed(motion, path, removed);
 }
 
+double BlockRun::check_leg(LegCheck& check, const Leg& leg, bool cuts) {
+    if (!state.certain_stock) return check.run(leg, result.duration, state.stock, pairs);
+    const std::vector<TrackedPair> before = pairs;
+    const size_t cuts_before = state.stock.log.size();
+    const double removed = check.run(leg, result.duration, state.stock, pairs);
+    // What flutes removed in a crash was there; what they cut may have been gone when another body
+    // came.
+    if (cuts) repeat_cuts(cuts_before);
+    doubt_clearances(check, leg, before);
+    if (!cuts) repeat_cuts(cuts_before);
+    return removed;
+}
+
+void BlockRun::doubt_clearances(LegCheck& check, const Leg& leg,
+                                const std::vector<TrackedPair>& before) {
+    for (TrackedPair& pair : pairs) {
+        if (pair.pair.fixture || pair.verdict < Verdict::violation) continue;
+        PairClearance known{.pair = pair.pair, .allowance = pair.allowance};
+        for (const TrackedPair& one : before)
+            if (one.pair == pair.pair) known = one;
+        if (pair.verdict <= known.verdict) continue;
+        PairClearance sure =
+            check.certain_clearance(pair.pair, leg, result.duration, *state.certain_stock);
+        if (sure.verdict >= pair.verdict) continue;
+        sure.verdict = std::max(sure.verdict, Verdict::undecided);
+        merge(known, sure);
+        known.lower = pair.lower;
+        static_cast<PairClearance&>(pair) = known;
+        pair.unless_removed = true;
+    }
+}
+
+void BlockRun::repeat_cuts(size_t first) {
+    if (!state.certain_stock) return;
+    for (size_t i = first; i < state.stock.log.size(); ++i)
+        cut(*state.certain_stock, state.stock.log[i].sweep);
+}
+
+void BlockRun::note_doubt(LegCheck& check, const Motion& motion, const Path& path) {
+    if (use(motion) == FluteUse::cutting) return;
+    const auto flutes = std::find_if(pairs.begin(), pairs.end(), [](const TrackedPair& pair) {
+        return pair.pair == Pair{PartKind::flutes};
+    });
+    if (flutes == pairs.end() || flutes->verdict != Verdict::undecided) return;
+    if (!state.certain_stock) state.certain_stock = state.stock;
+    for (const Leg& leg : path.legs) check.may_cut(leg, *state.certain_stock);
+}
+
 void BlockRun::follow_path(const Motion& motion, const Path& path) {
     const bool cuts = use(motion) == FluteUse::cutting;
     LegCheck check = leg_check(use(motion));
+    const size_t cuts_before = state.stock.log.size();
     for (const Leg& leg : path.legs) {
         track_centre(motion, leg);
         // If rotary axes move, the position at which the tool meets the stock is unknown.
         if (cuts || (block.judgement->runs_into_stock && !turns))
             result.removed += check.only_cut(leg, state.stock);
     }
+    repeat_cuts(cuts_before);
     state.rules.has_fed = state.rules.has_fed || motion.kind != MotionKind::rapid;
 }
 

@@ -38,6 +38,7 @@ void BlockRun::execute_motion(const ToolChange& change) {
     if (const TrackedPair* worst = deciding_pair(pairs))
         settle_time(*this, pairs[static_cast<size_t>(worst - pairs.data())], worst->upper);
     legs.clear();
+    state.corners.last = {};
     if (tool()) tell(end_air(state.rules.air, tool()->description.diameter));
     state.rules.air = {};
     state.rules.has_fed = state.rules.singular_reported = false;
@@ -55,9 +56,7 @@ void BlockRun::execute_motion(const ToolChange& change) {
 }
 
 void BlockRun::execute_motion(const PathModeChange& change) {
-    if (change_mode(state.corners, change, setup.machine))
-        state.assumptions.insert("the control does not round corners where neither G64 nor "
-                                 "`corner_tolerance` of the machine gives a tolerance");
+    change_mode(state.corners, change, setup.machine);
 }
 
 void BlockRun::execute_motion(const FixtureChange& change) {
@@ -67,8 +66,11 @@ void BlockRun::execute_motion(const FixtureChange& change) {
     const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
         return;
-    leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
+    const std::vector<TrackedPair> before = pairs;
+    LegCheck check = leg_check(FluteUse::not_cutting);
+    check.rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
+    if (state.certain_stock)
+        doubt_clearances(check, {.positions = {path.legs[0].positions[0]}}, before);
 }
 
 void BlockRun::check_tool_change() {
@@ -76,9 +78,12 @@ void BlockRun::check_tool_change() {
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
-    std::vector<TrackedPair> there;
-    leg_check(FluteUse::not_cutting)
-        .rest(path.legs[0].positions[0], result.duration, state.stock, there);
+    std::vector<TrackedPair> of_last_tool = std::exchange(pairs, {});
+    LegCheck check = leg_check(FluteUse::not_cutting);
+    check.rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
+    if (state.certain_stock)
+        doubt_clearances(check, {.positions = {path.legs[0].positions[0]}}, {});
+    const std::vector<TrackedPair> there = std::exchange(pairs, std::move(of_last_tool));
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;
@@ -125,8 +130,90 @@ BlockMove BlockRun::move_of(const PairClearance& pair) const {
     return move;
 }
 
-Finding BlockRun::finding_about(const PairClearance& pair) const {
-    Finding finding = finding_of(setup, pair, move_of(pair), state);
+std::vector<ShiftStart> BlockRun::shifts_to_try(const PairClearance& pair, const PairStudy& study,
+                                                bool rapid_in_stock) const {
+    std::vector<ShiftStart> starts;
+    const Vec3 away =
+        study.overlap && study.overlap->most ? study.overlap->way_out : pair.on_tool - pair.on_body;
+    const double length = glm::length(away);
+    const double missing =
+        pair.allowance.distance + (study.overlap ? study.overlap->most.value_or(0.0) : -pair.upper);
+    const auto add = [&](size_t axis, double sign, double first) {
+        for (const ShiftStart& start : starts)
+            if (start.axis == axis && start.sign == sign) return;
+        if (setup.machine.axes[axis].present) starts.push_back({axis, sign, first});
+    };
+    if (rapid_in_stock) {
+        add(2, 1.0, std::max(missing, resolution) + air_gap);
+        return starts;
+    }
+    if (length > 0.0) {
+        int axis = 0;
+        for (int i = 1; i < 3; ++i)
+            if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
+        add(static_cast<size_t>(axis), away[axis] > 0.0 ? 1.0 : -1.0,
+            std::max(missing, resolution) * length / std::abs(away[axis]));
+    }
+    add(2, 1.0, missing);
+    for (const size_t axis : {0, 1})
+        for (const double sign : {1.0, -1.0}) add(axis, sign, missing);
+    return starts;
+}
+
+bool BlockRun::overlaps_at_start(const Pair& pair, const CutModel& before) {
+    if (legs[0].leg.positions.empty()) return false;
+    std::vector<TrackedPair> there;
+    CheckMemory nothing_known;
+    leg_check(FluteUse::not_cutting, nothing_known)
+        .rest(legs[0].leg.positions[0], 0.0, before, there);
+    return std::any_of(there.begin(), there.end(), [&](const TrackedPair& one) {
+        return one.pair == pair && one.verdict == Verdict::collision;
+    });
+}
+
+bool BlockRun::may_study(const PairClearance& pair) {
+    constexpr size_t most_findings = 40, most_of_a_pair = 8; // of a run
+    constexpr size_t most_work = 40'000'000;
+    if (block.judgement || block.is_trial || !tool() || legs.empty()) return false;
+    if (block.path != PathCertainty::known) return false;
+    if (pair.verdict != Verdict::collision && pair.verdict != Verdict::violation) return false;
+    TrialMemory& memory = state.trials;
+    const auto alike = std::count(memory.studied.begin(), memory.studied.end(), pair.pair);
+    if (memory.studied.size() >= most_findings || static_cast<size_t>(alike) >= most_of_a_pair
+        || memory.work >= most_work)
+        return false;
+    memory.studied.push_back(pair.pair);
+    return true;
+}
+
+PairStudy BlockRun::study(const PairClearance& pair) {
+    constexpr size_t most_legs = 100;
+    PairStudy study;
+    if (!may_study(pair)) return study;
+    const auto before = stock_after(setup, state, moves_before);
+    if (pair.verdict == Verdict::collision)
+        study.overlap = overlap_of({setup, *tool(), block.block, legs, before.get()}, pair.pair);
+    if (!before || !can_shift(block) || turns || legs.size() > most_legs) return study;
+    const bool rapid = move_of(pair).motion == BlockMotion::rapid;
+    const bool rapid_in_stock = rapid && !pair.pair.fixture;
+    study.starts_inside = rapid && overlaps_at_start(pair.pair, *before);
+    const bool is_cured_by_shift =
+        pair.pair.fixture || pair.verdict == Verdict::violation || rapid_in_stock;
+    if (!is_cured_by_shift || only_dog_leg || (rapid_in_stock && study.starts_inside)) return study;
+    const BlockTrial trial{setup, block, state, *before, corners_before};
+    study.shift = find_shift(trial, pair.pair, shifts_to_try(pair, study, rapid_in_stock),
+                             rapid_in_stock ? air_gap : 0.0, state.trials.work);
+    study.tried = true;
+    return study;
+}
+
+Finding BlockRun::finding_about(const PairClearance& pair, const PairStudy& study) const {
+    Finding finding = finding_of(setup, pair, move_of(pair), state, study);
+    if (pair.unless_removed && pair.verdict == Verdict::undecided) {
+        finding.message += " It is certain unless an earlier motion, itself undecided, has removed "
+                           "the stock there.";
+        finding.cure = "Make the earlier undecided motion safe first.";
+    }
     if (pair.pair != Pair{PartKind::flutes} || pair.verdict != Verdict::collision) return finding;
     if (drills_sideways) {
         finding.rule = rule_id("collision");
@@ -140,12 +227,20 @@ Finding BlockRun::finding_about(const PairClearance& pair) const {
         "Tool {} does not cut within {:g} mm of its axis, and its centre is pushed into the stock.",
         value_of(described.number), described.centre_radius);
     finding.cure = fmt::format(
-        "Ramp or helix in at {:.1f} degrees or less, with a radius of more than {:g} mm; "
+        "Ramp or helix in at {:.1f} degrees or less, with a radius larger than that of the centre; "
         "pre-drill; or use a centre-cutting tool.",
         std::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
-            / std::numbers::pi,
-        described.centre_radius);
+            / std::numbers::pi);
     return finding;
+}
+
+bool BlockRun::only_touches_raw_stock(const PairClearance& pair) {
+    if (pair.pair.fixture || !tool()) return false;
+    const double room = contact_depth(pair.allowance) - std::max(off_path, off_path_rapids);
+    LegCheck check = leg_check(FluteUse::not_cutting);
+    return std::all_of(legs.begin(), legs.end(), [&](const TimedLeg& timed) {
+        return check.reach_into_raw_stock(pair.pair, timed.leg, state.stock) <= room;
+    });
 }
 
 void BlockRun::conclude() {
@@ -160,7 +255,9 @@ void BlockRun::conclude() {
     std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
-        widen(pair, off_path, state.corners, follows);
+        const bool is_doubtful = pair.verdict == Verdict::clear && state.corners.of_cuts > 0.0;
+        widen(pair, off_path, off_path_rapids, state.corners,
+              follows || (is_doubtful && only_touches_raw_stock(pair)));
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {
         result.deciding = static_cast<size_t>(worst - pairs.data());
@@ -190,7 +287,7 @@ void BlockRun::conclude() {
         }
     }
     for (const PairClearance& pair : pairs)
-        if (pair.verdict != Verdict::clear) add(finding_about(pair));
+        if (pair.verdict != Verdict::clear) add(finding_about(pair, study(pair)));
     if (result.checked) return;
     result.verdict = std::max(result.verdict, Verdict::undecided);
     result.deciding.reset();

@@ -1,17 +1,13 @@
 #pragma once
 
 #include "core/sim/leg/leg_check.h"
+#include "core/sim/run/cure_trial.h"
 #include "core/sim/run/finding_text.h"
+#include "core/sim/run/overlap.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 
 namespace core {
-
-/// A leg of the block, with the start of its motion.
-struct TimedLeg {
-    Leg leg;
-    double start; // seconds from the block's start
-};
 
 /// A pair below its allowance, and the kind of motion in which it is worst.
 struct WorstMotion {
@@ -34,8 +30,11 @@ struct BlockRun {
     bool turns = false;                 // whether rotary axes move
     bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
-    double off_path = 0.0;     // deviation of its feeds by rounded corners, mm
-    bool only_dog_leg = false; // a rapid of this block would be clear if it were straight
+    double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
+    double off_path_rapids = 0.0; // likewise of its rapids
+    bool only_dog_leg = false;    // a rapid of this block would be clear if it were straight
+    size_t moves_before = state.stock.log.size(); // that cut the stock before the block
+    RoundedCorners corners_before = state.corners;
 
     const ToolAssembly* tool() const {
         if (!state.tool) return nullptr;
@@ -83,27 +82,58 @@ struct BlockRun {
     void execute_motion(const Motion& motion);
     void execute_motion(const ToolChange& change);
     void execute_motion(const SpindleChange& change) { state.spindle = change; }
-    void execute_motion(const Dwell& dwell) { result.duration += dwell.seconds; }
+    void execute_motion(const Dwell& dwell) {
+        result.duration += dwell.seconds;
+        state.corners.last = {};
+    }
     void execute_motion(const LengthOffsetChange& change) { state.length_offset = change; }
     void execute_motion(const PathModeChange& change);
     void execute_motion(const FixtureChange& change);
 
     void check_path(const Motion& motion, const Path& path);
+    /// Whether a pair at most touches the raw stock on all legs of the block, so that it does not
+    /// matter what is left of it.
+    bool only_touches_raw_stock(const PairClearance& pair);
     /// Cuts the stock along a path without measuring, for a block with a `Judgement`.
     void follow_path(const Motion& motion, const Path& path);
+    /// Runs the check of a leg. A pair that becomes worse on it only because of stock that an
+    /// undecided block may have removed is undecided.
+    double check_leg(LegCheck& check, const Leg& leg, bool cuts);
+    void doubt_clearances(LegCheck& check, const Leg& leg, const std::vector<TrackedPair>& before);
+    /// Makes the cuts of the stock from this number of its log on in the certain stock, too.
+    void repeat_cuts(size_t first);
+    /// If it is undecided whether the flutes met the stock in a motion: the stock on their way is
+    /// no longer certain.
+    void note_doubt(LegCheck& check, const Motion& motion, const Path& path);
     void check_rapid(const Motion& motion, const Path& path, const CutModel& before);
     void check_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
+    /// A motion of which it is unknown where it brings the bodies: nothing is measured or cut.
+    void move_unmeasured(const Motion& motion, const Path& path);
     void track_centre(const Motion& motion, const Leg& leg);
     void note_worst(MotionKind kind);
     /// The motion to name in a finding about the pair.
     BlockMove move_of(const PairClearance& pair) const;
-    Finding finding_about(const PairClearance& pair) const;
+    Finding finding_about(const PairClearance& pair, const PairStudy& study = {}) const;
+    /// Measures the overlap of a pair that is not clear, and tries shifts of the block, unless the
+    /// run has already done so too often.
+    PairStudy study(const PairClearance& pair);
+    /// Whether a pair is to be studied; counts it.
+    bool may_study(const PairClearance& pair);
+    /// Whether the pair overlaps where the block begins; `before` is the stock before the block.
+    bool overlaps_at_start(const Pair& pair, const CutModel& before);
+    std::vector<ShiftStart> shifts_to_try(const PairClearance& pair, const PairStudy& study,
+                                          bool rapid_in_stock) const;
     void check_tool_change();
     void forget_bounds();
     void check_limits(const Motion& motion);
     void round_corners(const Motion& motion);
+    void check_corner(const Motion& motion, const Path& path);
     void check_from_unknown(const Motion& motion, const Path& path);
+    /// Whether a motion with an unknown start is proven clear from every possible start.
+    bool is_clear_from_anywhere(const Motion& motion);
+    /// Reports, once, a motion that is checked only from the assumed start position.
+    void doubt_assumed_start(const Motion& motion);
     void conclude();
     void conclude(const Judgement& judgement);
 };

@@ -4,6 +4,7 @@
 
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
+#include "core/sim/run/cure_trial.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "core/sim/verdict.h"
@@ -27,26 +28,48 @@ std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spind
                : rule_id("collision");
 }
 
-/// Cure of a near miss: a shift along the axis that leads most directly away from the body.
-std::string way_out(const PairClearance& pair, double missing) {
-    const Vec3 away = pair.on_tool - pair.on_body;
-    const double length = glm::length(away);
-    if (!(length > 0.0)) return "";
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (std::abs(away[i]) > std::abs(away[axis])) axis = i;
-    // Rounded up, so that the printed shift is enough.
-    const std::string along = at_most(missing * length / std::abs(away[axis]));
-    return fmt::format("Move the tool path at least {} mm towards {}{}", along, "XYZ"[axis],
-                       away[axis] > 0.0 ? '+' : '-');
+/// "3.200 mm".
+std::string amount_text(const TriedShift& shift) { return at_most(std::abs(shift.by)) + " mm"; }
+
+/// What the block keeps after a shift that was tried.
+std::string kept_text(const TriedShift& shift, const std::string& body) {
+    return fmt::format("tried: this block then keeps {} mm from {}",
+                       clearance_at_least(shift.keeps), body);
 }
 
-std::string cure_of_rapid(MoveWithin within) {
-    if (within == MoveWithin::way_home)
+/// Cure of a pair that is too near: the shift of the path that was tried; else, for a near miss,
+/// the direction that leads away most directly.
+std::string cure_by_shift(const PairClearance& pair, const PairStudy& study,
+                          const std::string& body) {
+    const std::string move = pair.pair.fixture ? fmt::format(", or move {}", body) : std::string();
+    if (study.shift)
+        return fmt::format("Move the tool path at least {} towards {}{} ({}){}.",
+                           amount_text(*study.shift), "XYZ"[study.shift->axis],
+                           study.shift->by > 0.0 ? '+' : '-', kept_text(*study.shift, body), move);
+    if (study.tried)
+        return fmt::format("Change the path{} (this block cannot be cleared by shifting it along "
+                           "one axis; tried).",
+                           move);
+    const Vec3 away = pair.on_tool - pair.on_body;
+    if (!(glm::length(away) > 0.0)) return "";
+    return fmt::format("Move the tool path towards {}{}.", direction_text(glm::normalize(away)),
+                       move);
+}
+
+std::string cure_of_rapid(const PairStudy& study, const BlockMove& move, const std::string& part,
+                          const std::string& body) {
+    if (move.within == MoveWithin::way_home)
         return "Retract along the tool axis first, for example with G91 G28 Z0 or G53 G0 Z0; then "
                "move the other axes home.";
-    if (within == MoveWithin::cycle)
+    if (study.starts_inside)
+        return fmt::format("Correct the block before it: the {} {} in {} already where this rapid "
+                           "begins.",
+                           part, part == name_of(PartKind::flutes) ? "are" : "is", body);
+    if (move.within == MoveWithin::cycle)
         return "Raise the plane from which the cycle feeds and to which it retracts.";
+    if (study.shift)
+        return fmt::format("Rapid at least {} higher ({}), or feed through the material.",
+                           amount_text(*study.shift), kept_text(*study.shift, body));
     return "Raise the retract height, or feed through the material.";
 }
 
@@ -54,12 +77,13 @@ std::string cure_of_rapid(MoveWithin within) {
 std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const BlockMove& move,
                           const RoundedCorners& corners) {
     const bool rapid = move.motion == BlockMotion::rapid;
-    const double off = path_deviation(pair.pair, rapid ? 0.0 : corners.by, corners);
+    const double off =
+        path_deviation(pair.pair, rapid ? corners.rapids.deviation : corners.by, corners);
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
-    // upper - lower.
-    if (off > 0.0 && 4.0 * off >= pair.upper - pair.lower)
-        return fmt::format("The control may round corners by {:g} mm (G64): use a smaller "
-                           "tolerance or G61; if that does not decide it, increase the clearance.",
+    // upper - lower. A pair that was only found near a corner has no upper bound.
+    if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower))
+        return fmt::format("The control may round corners by {:g} mm: use a smaller tolerance or "
+                           "exact stops; if that does not decide it, increase the clearance.",
                            off);
     if (move.turns)
         return "Turn the rotary axes farther away or in shorter blocks, or increase the clearance.";
@@ -72,10 +96,15 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
                        tolerance, tolerance < setup.mesh_size ? " and the mesh size" : "");
 }
 
-std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& body,
-                    MoveWithin within) {
+/// Whether the cure of a pair is a shift of the path, not a change of the tool.
+bool is_cured_by_shift(const PairClearance& pair) {
+    return pair.pair.fixture || pair.verdict == Verdict::violation;
+}
+
+std::string cure_of(const PairClearance& pair, const std::string& rule, const std::string& part,
+                    const std::string& body, const BlockMove& move, const PairStudy& study) {
     const bool fixture = pair.pair.fixture.has_value();
-    if (rule == rule_id("rapid-in-stock")) return cure_of_rapid(within);
+    if (rule == rule_id("rapid-in-stock")) return cure_of_rapid(study, move, part, body);
     if (rule == rule_id("rotary-with-tool-down"))
         return "Retract the tool before the rotary axes turn.";
     if (rule == rule_id("spindle-off"))
@@ -84,10 +113,8 @@ std::string cure_of(const PairClearance& pair, const std::string& rule, const st
         return fmt::format("A straight line would be clear: move the axes one after another around "
                            "{}, or use a fast feed move instead of the rapid.",
                            body);
-    const double missing = pair.allowance.distance - pair.upper;
-    const std::string room = missing > resolution ? way_out(pair, missing) : std::string();
-    const std::string move = fixture ? fmt::format(", or move {}", body) : std::string();
-    if (!room.empty()) return fmt::format("{}{}.", room, move);
+    if (is_cured_by_shift(pair))
+        if (const std::string cure = cure_by_shift(pair, study, body); !cure.empty()) return cure;
     if (pair.pair.part == PartKind::machine)
         return "Move the work, or use a longer tool: a machine body comes too close.";
     if (pair.pair.part == PartKind::shank && !fixture)
@@ -197,7 +224,7 @@ std::string moment_text(double fraction) {
 }
 
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
-                   const SimulatorState& state) {
+                   const SimulatorState& state, const PairStudy& study) {
     const ToolAssembly* tool = nullptr;
     if (state.tool && setup.tools.count(*state.tool)) tool = &setup.tools.at(*state.tool);
     const bool spindle_runs = tool && turns_to_cut(state.spindle, *tool);
@@ -210,7 +237,9 @@ Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMov
     finding.message = in_the_plural(message_of(pair, finding.rule, move, part, body, at));
     finding.cure = finding.rule == rule_id("undecided")
                        ? cure_of_doubt(setup, pair, move, state.corners)
-                       : cure_of(pair, finding.rule, body, move.within);
+                       : cure_of(pair, finding.rule, part, body, move, study);
+    finding.overlap = study.overlap;
+    if (finding.overlap) finding.message += " " + overlap_text(*finding.overlap);
     finding.pair = {part, body_name(setup, pair.pair)};
     finding.shortfall = shortfall_of(pair);
     if (!finding.cure.empty()) finding.cure[0] = upper(finding.cure[0]);

@@ -4,6 +4,7 @@
 
 namespace core {
 
+struct PairStudy;
 struct Setup;
 struct SimulatorState;
 
@@ -23,9 +24,10 @@ struct BlockMove {
 /// When in a block something happens, after a fraction of its duration.
 std::string moment_text(double fraction);
 
-/// The finding for a pair below its allowance in a block, with its cure.
+/// The finding for a pair below its allowance in a block, with its cure. Millimetres in the cure
+/// were tried.
 Finding finding_of(const Setup& setup, const PairClearance& pair, const BlockMove& move,
-                   const SimulatorState& state);
+                   const SimulatorState& state, const PairStudy& study);
 
 /// The finding for a tool change at a position where a pair of the new tool is below its allowance.
 Finding unsafe_change(const Setup& setup, const PairClearance& pair, ToolNumber tool);

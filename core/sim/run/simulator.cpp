@@ -14,6 +14,7 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
     state.position = position;
+    state.is_assumed = setup.start_is_assumed;
     for (const Fixture& fixture : setup.fixtures)
         state.mounted_fixtures.push_back(fixture.is_there);
     state.pieces = piece_tracker(state.stock);
@@ -30,13 +31,16 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
         std::visit([&](const auto& e) { run.execute_motion(e); }, event);
     if (block.is_cycle && run.result.motion != BlockMotion::none)
         run.result.motion = BlockMotion::cycle;
-    for (Finding& finding :
-         track_pieces(setup, state.mounted_fixtures, state.stock, cuts_before, state.pieces))
-        run.add(std::move(finding));
-    if (block.judgement)
+    if (!block.is_trial)
+        for (Finding& finding :
+             track_pieces(setup, state.mounted_fixtures, state.stock, cuts_before, state.pieces))
+            run.add(std::move(finding));
+    if (block.judgement && block.path < PathCertainty::pose_unknown)
         run.conclude(*block.judgement);
     else
         run.conclude();
+    if (block.path != PathCertainty::known && run.result.motion != BlockMotion::none)
+        run.result.verdict = std::max(run.result.verdict, Verdict::undecided);
     run.result.pairs.assign(run.pairs.begin(), run.pairs.end());
     state.time += run.result.duration;
     return std::move(run.result);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -18,9 +20,19 @@ namespace core {
 
 struct Setup;
 
+/// What the trials of cures have used so far. A plain value.
+struct TrialMemory {
+    std::shared_ptr<const CutModel> stock; // as it was before an earlier block; empty: none yet
+    std::vector<Pair> studied;             // whose overlaps were measured or whose cures were tried
+    size_t work = 0;                       // tests made by trials
+};
+
 /// State of a run between two blocks. A plain value: copy it to step back.
 struct SimulatorState {
-    CutModel stock;
+    CutModel stock; // without what undecided blocks may have removed from it
+    /// The stock that is certainly left: `stock` less what undecided blocks may have removed. Empty
+    /// before the first such block.
+    std::optional<CutModel> certain_stock;
     std::optional<ToolNumber> tool;     // tool in the spindle; empty: none, or unknown
     bool tool_known = false;            // a tool or an empty spindle was called
     AxisPosition position;              // at the end of the last motion
@@ -34,8 +46,10 @@ struct SimulatorState {
     Statistics statistics;
     CheckMemory memory;
     RoundedCorners corners;
+    TrialMemory trials;
     std::set<std::string> assumptions; // assumptions made so far
     bool reported_unknown_start = false;
+    std::array<bool, 3> is_assumed{};     // X, Y, Z: not moved yet from an assumed start position
     bool reported_unchecked_tool = false; // for the tool now in the spindle
 };
 
@@ -52,8 +66,10 @@ struct BlockEvents {
     bool is_cycle = false; // several motions in one block: a canned cycle, G28
     std::span<const Event> events;
     bool goes_home = false; // G28 or G30
+    PathCertainty path = PathCertainty::known;
     // Replaces measuring: the stock is still cut, and rules that need no clearance still apply.
     const Judgement* judgement = nullptr;
+    bool is_trial = false; // of a cure: no depths and cures, and no rules that span blocks
 };
 
 /// The state before the first block, with the machine at `position`.

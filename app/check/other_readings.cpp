@@ -1,0 +1,308 @@
+#include "app/check/other_readings.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/check/block_runner.h"
+#include "app/check/check_run.h"
+#include "app/check/prepared_check.h"
+#include "core/base/rule_table.h"
+#include "core/sim/run/simulator.h"
+#include "gcode/exec/readings.h"
+#include "gcode/text/source.h"
+
+namespace app {
+namespace {
+
+constexpr size_t most_shown_errors = 20;
+
+/// Identifies a finding in the program, independently of the block count.
+using FindingKey = std::tuple<std::string, std::string, uint32_t, std::string, std::string>;
+
+FindingKey key_of(const core::Finding& finding, const std::string& file, uint32_t line) {
+    return {finding.rule, file, line, finding.pair[0], finding.pair[1]};
+}
+
+/// The block of a finding; null if it is about the program as a whole.
+const CheckedBlock* block_of(const core::Finding& finding, const CheckRecord& record) {
+    if (!finding.block || core::value_of(*finding.block) >= record.blocks.size()) return nullptr;
+    return &record.blocks[core::value_of(*finding.block)];
+}
+
+std::set<FindingKey> errors_of(const CheckRecord& record) {
+    std::set<FindingKey> keys;
+    for (const core::Finding& finding : record.findings) {
+        if (finding.severity != core::Severity::error) continue;
+        const CheckedBlock* block = block_of(finding, record);
+        keys.insert(block ? key_of(finding, block->file, block->line) : key_of(finding, {}, 0));
+    }
+    return keys;
+}
+
+/// The first error of the assumed reading, from the block of the premise on, that another reading
+/// with these errors lacks.
+std::optional<ReadingError> avoided_by(const std::set<FindingKey>& errors,
+                                       const ReadingResult& result, const CheckRecord& record) {
+    for (const core::Finding& finding : record.findings) {
+        const CheckedBlock* block = block_of(finding, record);
+        if (finding.severity != core::Severity::error || !block || *finding.block < result.block)
+            continue;
+        if (!errors.contains(key_of(finding, block->file, block->line)))
+            return ReadingError{block->line, block->file, finding};
+    }
+    return std::nullopt;
+}
+
+/// Adds an error of a reading, unless the assumed reading has the same.
+void add_error(ReadingResult& result, const std::set<FindingKey>& known,
+               const core::Finding& finding, const std::string& file, uint32_t line) {
+    if (finding.severity != core::Severity::error) return;
+    if (known.contains(key_of(finding, file, line))) return;
+    ++result.error_count;
+    if (result.errors.size() < most_shown_errors) result.errors.push_back({line, file, finding});
+}
+
+/// Whether this reading has an error that the assumed one has not, or a worse verdict; or, where
+/// only the machine decides which way the program goes, one error less.
+bool decides(const ReadingResult& result, core::Verdict assumed) {
+    return result.error_count > 0 || result.verdict > assumed
+           || (result.is_condition && result.avoided);
+}
+
+std::string place_of(const std::string& file, uint32_t line) {
+    return file.empty() ? fmt::format("line {}", line) : fmt::format("line {} of {}", line, file);
+}
+
+std::string consequence_of(const ReadingResult& result) {
+    if (result.errors.empty() && result.avoided)
+        return fmt::format("the error in {} ({}) does not occur.",
+                           place_of(result.avoided->file, result.avoided->line),
+                           result.avoided->finding.rule);
+    if (result.errors.empty())
+        return fmt::format("the verdict is {}.", core::name_of(result.verdict));
+    const ReadingError& first = result.errors.front();
+    std::string text =
+        fmt::format("{} has an error ({}): {}",
+                    first.line ? place_of(first.file, first.line) : "the program as a whole",
+                    first.finding.rule, first.finding.message);
+    if (result.error_count > 1) text += fmt::format(" {} more follow.", result.error_count - 1);
+    return text;
+}
+
+core::Finding open_premise(const core::Setup& setup, std::string message, std::string cure) {
+    core::Finding finding;
+    finding.rule = core::rule_id("open-premise");
+    core::settle_severity(setup, finding);
+    finding.message = std::move(message);
+    finding.cure = std::move(cure);
+    return finding;
+}
+
+core::Finding finding_of(const core::Setup& setup, const ReadingResult& result) {
+    core::Finding finding =
+        open_premise(setup,
+                     fmt::format("{}. Assumed: {}. If {}{}, {}", result.reason, result.assumed,
+                                 fmt::join(result.when, " and "),
+                                 result.effect.empty() ? "" : fmt::format(" ({})", result.effect),
+                                 consequence_of(result)),
+                     result.cure);
+    finding.block = result.block;
+    return finding;
+}
+
+core::Finding too_many(const core::Setup& setup) {
+    return open_premise(setup,
+                        fmt::format("The program can take more than {} ways, depending on values "
+                                    "that only the machine knows. The others were not checked.",
+                                    most_readings),
+                        "State these values under [program.values] in the set-up.");
+}
+
+} // namespace
+
+bool OtherReadings::is_known(const Crossing& crossing, const RunState& before) {
+    const Outcomes& outcomes = before.control.readings->answers;
+    std::vector<Outcomes>& visits = visited_[crossing];
+    const bool goes_past = running_ && running_->goes_past == crossing;
+    if (visits.empty() || goes_past) {
+        visits.push_back(outcomes);
+        return false;
+    }
+    if (std::find(visits.begin(), visits.end(), outcomes) == visits.end() && running_) {
+        Fork fork{before, running_->result, crossing};
+        fork.result.continues = true;
+        stopped_.push_back({std::move(fork), visits});
+        visits.push_back(outcomes);
+    }
+    return true;
+}
+
+void OtherReadings::add_fork(Fork fork) {
+    has_too_many_ = has_too_many_ || forks_.size() >= most_readings;
+    if (!has_too_many_) forks_.push_back(std::move(fork));
+}
+
+void OtherReadings::assume(const gcode::OpenPremise& premise, size_t blocks) {
+    std::string clause = fmt::format("it is assumed that {}, which the set-up does not state",
+                                     premise.readings.front().when);
+    const auto is_same = [&](const Assumed& other) { return other.clause == clause; };
+    if (std::none_of(assumed_.begin(), assumed_.end(), is_same))
+        assumed_.push_back({blocks, std::move(clause)});
+}
+
+bool OtherReadings::note(const RunState& before, const gcode::InterpreterState& after,
+                         size_t blocks) {
+    const auto& met = after.readings->met;
+    const size_t first = before.control.readings->met.size();
+    for (size_t i = first; i < met.size(); ++i) {
+        const gcode::OpenPremise& premise = met[i];
+        if (premise.readings.size() == 1) assume(premise, blocks);
+        if (premise.is_chosen || has_too_many_) continue;
+        gcode::PremiseId where = premise.id;
+        where.occurrence = 0;
+        if (!premise.id.question && is_known({where, digest_of(before)}, before)) return true;
+        for (size_t other = 0; other < premise.readings.size(); ++other) {
+            if (other == premise.taken) continue;
+            Fork fork{before, {}};
+            gcode::Readings& readings = fork.state.control.readings.write();
+            for (size_t j = first; j < i; ++j) readings.chosen[met[j].id] = met[j].taken;
+            readings.chosen[premise.id] = other;
+            fork.result.reason = premise.reason;
+            fork.result.assumed = premise.readings[premise.taken].when;
+            if (running_) fork.result.when = running_->result.when;
+            fork.result.when.push_back(premise.readings[other].when);
+            fork.result.effect = premise.readings[other].effect;
+            fork.result.cure = premise.cure;
+            fork.result.block = core::BlockIndex{static_cast<uint32_t>(blocks)};
+            fork.result.line = premise.line;
+            fork.result.is_condition = !premise.id.question;
+            const uint32_t source =
+                premise.id.question ? before.control.next.source : premise.id.line.source;
+            if (source != 0) fork.result.file = check_.library->program(source).file;
+            add_fork(std::move(fork));
+        }
+    }
+    return false;
+}
+
+void OtherReadings::resume_runs() {
+    const auto differs = [&](const StoppedRun& run) {
+        const Outcomes& own = run.fork.state.control.readings->answers;
+        const auto in = [&](const Outcomes& outcomes, const std::string& condition) {
+            const auto found = outcomes.find(condition);
+            return found == outcomes.end() ? std::optional<bool>() : found->second;
+        };
+        return std::any_of(repeated_.begin(), repeated_.end(), [&](const std::string& condition) {
+            return std::any_of(run.others.begin(), run.others.end(), [&](const Outcomes& other) {
+                return in(own, condition) != in(other, condition);
+            });
+        });
+    };
+    const auto resumed = std::stable_partition(
+        stopped_.begin(), stopped_.end(), [&](const StoppedRun& run) { return !differs(run); });
+    for (auto run = resumed; run != stopped_.end(); ++run) add_fork(std::move(run->fork));
+    stopped_.erase(resumed, stopped_.end());
+}
+
+void OtherReadings::forget_from(size_t blocks) {
+    std::erase_if(forks_,
+                  [&](const Fork& fork) { return core::value_of(fork.result.block) >= blocks; });
+    std::erase_if(assumed_, [&](const Assumed& premise) { return premise.block >= blocks; });
+    visited_.clear();
+    stopped_.clear();
+    has_too_many_ = false;
+}
+
+ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
+                                 const std::function<bool()>& goes_on) {
+    ReadingResult result = fork.result;
+    RunState& state = fork.state;
+    const std::set<FindingKey> known = errors_of(record);
+    running_ = &fork;
+    BlockRunner runner(check_);
+    std::set<FindingKey> errors;
+    bool joins = false;
+    size_t blocks = core::value_of(result.block);
+    runner.after_reading = [&](const RunState& before, const gcode::InterpreterState& after) {
+        joins = note(before, after, core::value_of(result.block));
+    };
+    while (!joins) {
+        const auto step = runner.step(state);
+        if (joins) break;
+        if (!step) result.stopped = step.error();
+        if (!step || !*step) break;
+        const BlockStep& done = **step;
+        result.verdict = std::max(result.verdict, done.checked.result.verdict);
+        for (const core::Finding& finding : done.findings) {
+            if (finding.severity == core::Severity::error)
+                errors.insert(key_of(finding, done.checked.file, done.checked.line));
+            add_error(result, known, finding, done.checked.file, done.checked.line);
+        }
+        if (++blocks % 256 == 0 && !goes_on()) {
+            result.stopped = core::Error{core::ErrorCode::io, {}, "stopped by the user", {}};
+            result.verdict = std::max(result.verdict, core::Verdict::undecided);
+            break;
+        }
+    }
+    if (!joins)
+        for (const core::Finding& finding : core::end_of_run(check_.run.setup, state.machine))
+            add_error(result, known, finding, {}, 0);
+    if (!joins && !result.stopped && !result.continues)
+        result.avoided = avoided_by(errors, result, record);
+    for (const std::string& condition : state.control.readings->repeated)
+        repeated_.insert(condition);
+    running_ = nullptr;
+    if (result.stopped && result.stopped->code == core::ErrorCode::unsupported)
+        result.verdict = std::max(result.verdict, core::Verdict::undecided);
+    return result;
+}
+
+void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& last,
+                           const std::function<bool()>& goes_on) {
+    const core::Setup& setup = check_.run.setup;
+    const core::Verdict assumed = record.verdict;
+    std::vector<core::Finding> found;
+    std::set<std::string> harmless;
+    repeated_ = last.readings->repeated;
+    for (size_t i = 0; i < forks_.size(); ++i) {
+        ReadingResult result = run(std::move(forks_[i]), record, goes_on);
+        record.verdict = std::max(record.verdict, result.verdict);
+        if (decides(result, assumed)) {
+            core::Finding finding = finding_of(setup, result);
+            const auto is_same = [&](const core::Finding& other) {
+                return other.message == finding.message;
+            };
+            if (std::none_of(found.begin(), found.end(), is_same))
+                found.push_back(std::move(finding));
+            if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
+                record.verdict = std::max(record.verdict, core::Verdict::undecided);
+        } else {
+            harmless.insert(fmt::format(
+                "{}: it is assumed that {}; {} if {}", place_of(result.file, result.line),
+                result.assumed,
+                result.avoided ? fmt::format("the error in {} ({}) does not occur",
+                                             place_of(result.avoided->file, result.avoided->line),
+                                             result.avoided->finding.rule)
+                               : "there are no further errors",
+                fmt::join(result.when, " and ")));
+        }
+        record.readings.push_back(std::move(result));
+        if (i + 1 == forks_.size()) resume_runs();
+    }
+    for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
+    assumed_.clear();
+    for (const std::string& note : harmless) record.later_assumptions.push_back(note);
+    if (has_too_many_) {
+        found.push_back(too_many(setup));
+        record.verdict = std::max(record.verdict, core::Verdict::undecided);
+    }
+    for (core::Finding& finding : found)
+        if (finding.severity != core::Severity::off) record.findings.push_back(std::move(finding));
+    forks_.clear();
+    stopped_.clear();
+}
+
+} // namespace app

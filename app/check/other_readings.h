@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/check/check_run.h"
+#include "app/check/run_state.h"
+#include "core/base/ids.h"
+#include "core/base/result.h"
+#include "core/sim/finding.h"
+#include "core/sim/verdict.h"
+
+namespace app {
+
+struct PreparedCheck;
+
+/// The most readings that a check follows besides the one it assumes.
+inline constexpr size_t most_readings = 64;
+
+/// Follows the other readings of the premises that a program meets. A reading is run from the block
+/// where the premise matters to the end of the program, or to a condition that another reading
+/// reached in the same state.
+class OtherReadings {
+public:
+    explicit OtherReadings(const PreparedCheck& check) : check_(check) {}
+
+    /// Notes the premises of the block that the control has just read. `before` is the state before
+    /// it, and `blocks` the number of blocks run so far. Returns whether another reading has been
+    /// here in the same state.
+    bool note(const RunState& before, const gcode::InterpreterState& after, size_t blocks);
+
+    /// Forgets the premises met from a block on.
+    void forget_from(size_t blocks);
+
+    /// Runs all readings and adds the results to the record, whose verdict becomes the worst of
+    /// all. Premises for which one reading has an error become findings.
+    ///
+    /// `last`: the control after the last block of the assumed reading. `goes_on`: polled from time
+    /// to time; false: stop.
+    void follow(CheckRecord& record, const gcode::InterpreterState& last,
+                const std::function<bool()>& goes_on);
+
+private:
+    using Outcomes = std::map<std::string, bool>;           // of conditions, by their text
+    using Crossing = std::pair<gcode::PremiseId, uint64_t>; // a condition and the state at it
+
+    /// A premise of which only the assumed reading is followed.
+    struct Assumed {
+        size_t block;
+        std::string clause;
+    };
+
+    /// A run that is still to be made.
+    struct Fork {
+        RunState state; // before the block
+        ReadingResult result;
+        std::optional<Crossing> goes_past = {}; // it was stopped there, and goes on
+    };
+
+    /// A run that was stopped where another one had been in the same state, but with other outcomes
+    /// of earlier conditions. It goes on if one of these conditions is met again.
+    struct StoppedRun {
+        Fork fork;
+        std::vector<Outcomes> others;
+    };
+
+    void assume(const gcode::OpenPremise& premise, size_t blocks);
+    ReadingResult run(Fork fork, const CheckRecord& record, const std::function<bool()>& goes_on);
+    bool is_known(const Crossing& crossing, const RunState& before);
+    void add_fork(Fork fork);
+    void resume_runs();
+
+    const PreparedCheck& check_;
+    std::vector<Fork> forks_;
+    const Fork* running_ = nullptr; // null: the reading that the check assumes
+    std::map<Crossing, std::vector<Outcomes>> visited_;
+    std::vector<StoppedRun> stopped_;
+    std::set<std::string> repeated_; // conditions that a run has met again
+    std::vector<Assumed> assumed_;
+    bool has_too_many_ = false;
+};
+
+} // namespace app

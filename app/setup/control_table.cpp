@@ -1,0 +1,197 @@
+#include "app/setup/control_table.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
+#include "app/setup/table_reader.h"
+#include "core/base/text.h"
+#include "core/motion/machine.h"
+#include "gcode/language/control.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
+
+namespace app {
+namespace {
+
+using gcode::ControlParameter;
+using gcode::ControlSetting;
+
+void read_preset(TableReader& table, const char* key, StatedControl& control) {
+    std::vector<std::string_view> names;
+    for (const gcode::ControlPreset& preset : gcode::control_presets())
+        names.push_back(preset.name);
+    if (const auto name = table.word(key, names)) control.preset = gcode::find_preset(*name);
+}
+
+std::vector<std::string> known_keys() {
+    std::vector<std::string> keys;
+    for (const ControlParameter& parameter : gcode::control_parameters())
+        if (!parameter.key.empty()) keys.emplace_back(parameter.key);
+    for (const ControlSetting& setting : gcode::control_settings()) keys.emplace_back(setting.key);
+    return keys;
+}
+
+template <typename Row>
+const Row* row_named(std::span<const Row> rows, std::string_view key) {
+    const auto found =
+        std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.key == key; });
+    return found == rows.end() ? nullptr : &*found;
+}
+
+/// The number of a value that is written as a word, such as "INCH".
+std::optional<double> number_of_word(const ControlParameter& parameter, std::string_view word) {
+    for (const gcode::ParameterValue& value : parameter.values)
+        if (!value.word.empty() && value.word == word) return value.number;
+    return std::nullopt;
+}
+
+void read_parameter(TableReader& table, const char* key, const ControlParameter& parameter,
+                    StatedControl& control) {
+    const auto refuse = [&] {
+        std::string values;
+        for (const gcode::ParameterValue& value : parameter.values)
+            values += fmt::format("; {}: {}",
+                                  value.word.empty() ? fmt::format("{:g}", value.number)
+                                                     : std::string(value.word),
+                                  value.text);
+        table.refuse(key, fmt::format("must be {}{}", parameter.choices(), values));
+    };
+    std::optional<double> number;
+    if (table.is_text(key)) {
+        const auto word = table.string(key);
+        if (word) number = number_of_word(parameter, *word);
+        if (word && !number) return refuse();
+    } else {
+        number = table.number(key);
+    }
+    if (!number) return;
+    if (!parameter.answer_of(*number)) return refuse();
+    control.parameters[key] = *number;
+}
+
+/// A list of coordinates in the order of the axes, or a table such as { X = 0, Y = 0, Z = 0 }.
+std::optional<gcode::Position> read_position(TableReader& table, const char* key) {
+    gcode::Position position;
+    if (table.is_list(key)) {
+        const auto numbers = table.numbers(key, 0);
+        if (!numbers) return std::nullopt;
+        if (numbers->empty() || numbers->size() % 3 != 0 || numbers->size() > gcode::axis_count) {
+            table.refuse(key, "must have 3, 6 or 9 coordinates, in the order X Y Z A B C U V W");
+            return std::nullopt;
+        }
+        for (size_t axis = 0; axis < numbers->size(); ++axis) position[axis] = (*numbers)[axis];
+        return position;
+    }
+    auto axes = table.table(key, fmt::format("[control] {}", key));
+    if (!axes) return std::nullopt;
+    for (size_t axis = 0; axis < gcode::axis_count; ++axis)
+        position[axis] = axes->number(std::string(1, gcode::axis_letters[axis]).c_str());
+    axes->finish();
+    if (!position[0] || !position[1] || !position[2]) {
+        table.refuse(key, "must state X, Y and Z");
+        return std::nullopt;
+    }
+    return position;
+}
+
+void read_setting(TableReader& table, const char* key, const ControlSetting& setting,
+                  StatedControl& control) {
+    const auto keep = [&](auto value) {
+        if (value) control.settings[key] = *std::move(value);
+    };
+    switch (setting.kind) {
+    case gcode::SettingKind::flag:
+        return keep(table.boolean(key));
+    case gcode::SettingKind::number:
+        return keep(table.number(key));
+    case gcode::SettingKind::position:
+        return keep(read_position(table, key));
+    case gcode::SettingKind::text:
+        return keep(table.string(key));
+    }
+}
+
+void read_key(TableReader& table, const char* key, StatedControl& control) {
+    if (const auto* parameter = row_named(gcode::control_parameters(), key))
+        return read_parameter(table, key, *parameter, control);
+    if (const auto* setting = row_named(gcode::control_settings(), key))
+        return read_setting(table, key, *setting, control);
+    table.refuse(key, fmt::format("is not a parameter that Feeler knows; did you mean \"{}\"?",
+                                  core::nearest_name(key, known_keys())));
+}
+
+void answer(const ControlParameter& parameter, double number, gcode::Environment& environment,
+            core::Machine& machine) {
+    const double answer = *parameter.answer_of(number);
+    environment.control.answers[parameter.question] = answer;
+    // G70 of Siemens does not concern feeds.
+    const bool is_unit = parameter.question == gcode::ControlQuestion::starts_in_inches
+                         && environment.dialect != gcode::DialectId::siemens;
+    if (is_unit && !environment.units_at_start)
+        environment.units_at_start =
+            answer != 0.0 ? gcode::LengthUnit::inch : gcode::LengthUnit::mm;
+    if (parameter.question == gcode::ControlQuestion::point_is_implied)
+        environment.counts_smallest_steps = answer == 0.0;
+    if (parameter.question == gcode::ControlQuestion::rapids_are_straight)
+        machine.rapid = answer != 0.0 ? core::RapidStyle::straight : core::RapidStyle::dogleg;
+}
+
+/// Coordinates of the linear axes are in the unit of LinuxCNC's machine; elsewhere in mm.
+gcode::SettingValue in_mm(gcode::SettingValue value, const gcode::Environment& environment) {
+    auto* position = std::get_if<gcode::Position>(&value);
+    if (!position || environment.dialect != gcode::DialectId::linuxcnc) return value;
+    for (size_t axis = 0; axis < gcode::axis_count; ++axis)
+        if ((*position)[axis] && !core::is_rotary(axis))
+            (*position)[axis] = gcode::to_mm(*(*position)[axis], environment.machine_unit);
+    return value;
+}
+
+} // namespace
+
+void read_control(TableReader& root, StatedControl& control) {
+    if (root.is_text("control")) return read_preset(root, "control", control);
+    auto table = root.table("control", "[control]");
+    if (!table) return;
+    read_preset(*table, "preset", control);
+    for (const std::string& key : table->keys())
+        if (key != "preset") read_key(*table, key.c_str(), control);
+    table->finish();
+}
+
+core::Result<std::vector<std::string>>
+apply(const StatedControl& control, gcode::Environment& environment, core::Machine& machine) {
+    std::vector<std::string> notes;
+    const std::string_view dialect = gcode::dialect(environment.dialect).name;
+    const auto has_no_effect = [&](std::string_view key) {
+        notes.push_back(fmt::format("\"{}\" under [control] has no effect for {}", key, dialect));
+    };
+    if (control.preset && control.preset->dialect == environment.dialect)
+        for (const auto& [key, number] : control.preset->values)
+            if (const auto* parameter = gcode::find_parameter(key, environment.dialect))
+                answer(*parameter, number, environment, machine);
+    if (control.preset && control.preset->dialect != environment.dialect)
+        notes.push_back(fmt::format("the control {} has no effect: the program is read as {}",
+                                    control.preset->name, dialect));
+    for (const auto& [key, number] : control.parameters) {
+        if (const auto* parameter = gcode::find_parameter(key, environment.dialect))
+            answer(*parameter, number, environment, machine);
+        else
+            has_no_effect(key);
+    }
+    for (const auto& [key, value] : control.settings) {
+        if (const auto* setting = gcode::find_setting(key, environment.dialect))
+            setting->set(environment, in_mm(value, environment));
+        else
+            has_no_effect(key);
+    }
+    if (control.settings.contains("RS274NGC_STARTUP_CODE"))
+        if (auto run = check_startup_code(environment); !run) return tl::unexpected(run.error());
+    return notes;
+}
+
+} // namespace app

@@ -1,0 +1,71 @@
+#include "app/setup/coverage.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "app/base/text.h"
+
+namespace app {
+namespace {
+
+std::string holders_text(const std::vector<core::ToolNumber>& tools) {
+    constexpr size_t most = 12;
+    std::string text = tools.size() == 1 ? "holder of" : "holders of";
+    for (size_t i = 0; i < std::min(tools.size(), most); ++i)
+        text += fmt::format("{} T{}", i == 0 ? "" : ",", core::value_of(tools[i]));
+    return tools.size() > most ? text + fmt::format(" and {} more", tools.size() - most) : text;
+}
+
+/// The names of the items of which this is known.
+std::string names_text(const Coverage& coverage, Known known) {
+    std::string text;
+    for (const CoverageItem& item : items_of(coverage)) {
+        if (item.known != known) continue;
+        const bool is_tools = item.key == std::string_view("holders");
+        const bool has_tools = is_tools && !coverage.tools_without_holder.empty();
+        text += (text.empty() ? "" : ", ")
+                + (has_tools ? holders_text(coverage.tools_without_holder) : item.name);
+    }
+    return text;
+}
+
+} // namespace
+
+const char* name_of(Known known) {
+    constexpr const char* names[] = {"missing", "inferred", "described"};
+    return names[static_cast<size_t>(known)];
+}
+
+std::array<CoverageItem, 6> items_of(const Coverage& coverage) {
+    return {{{"stock", "stock", coverage.stock},
+             {"holders", "holders", coverage.holders},
+             {"fixtures", "fixtures", coverage.fixtures},
+             {"offsets", "work offsets", coverage.offsets},
+             {"limits", "axis limits", coverage.limits},
+             {"start", "start position", coverage.start}}};
+}
+
+bool Coverage::is_complete() const {
+    const auto items = items_of(*this);
+    return std::all_of(items.begin(), items.end(),
+                       [](const CoverageItem& item) { return item.known == Known::described; });
+}
+
+std::string uncovered_text(const Coverage& coverage) {
+    const std::string missing = names_text(coverage, Known::missing);
+    const std::string inferred = names_text(coverage, Known::inferred);
+    std::string text = missing.empty() ? "" : missing + ": not described";
+    if (!inferred.empty()) text += (text.empty() ? "" : "; ") + inferred + ": assumed";
+    return text;
+}
+
+std::string headline_of(const Judged& judged, const Coverage& coverage) {
+    if (judged.is_stopped) return "STOPPED, not checked to its end";
+    if (judged.verdict != core::Verdict::clear) return verdict_text(judged.verdict);
+    if (!coverage.moves) return "NOTHING CHECKED, the program moves nothing";
+    if (judged.has_errors) return "ERRORS in the program; clearances are sufficient";
+    return coverage.is_complete() ? verdict_text(judged.verdict) : "NO ERROR IN THE PROGRAM ITSELF";
+}
+
+} // namespace app

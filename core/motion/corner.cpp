@@ -1,0 +1,119 @@
+#include "core/motion/corner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace core {
+namespace {
+
+bool has_ends(const Leg& leg) { return leg.straight && leg.positions.size() == 2; }
+
+/// The change of the linear axes over a leg.
+AxisValues travel_of(const Leg& leg) {
+    AxisValues travel{};
+    for (size_t i = 0; i < axis_count; ++i)
+        if (!is_rotary(i)) travel[i] = leg.positions.back()[i] - leg.positions.front()[i];
+    return travel;
+}
+
+double dot(const AxisValues& a, const AxisValues& b) {
+    double sum = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/// The length of a leg in the linear axes; for a box of possible positions, its diagonal.
+double length_of(const Leg& leg) {
+    if (has_ends(leg)) return std::sqrt(dot(travel_of(leg), travel_of(leg)));
+    double longest = 0.0;
+    for (const AxisValues& position : leg.positions) {
+        double squared = 0.0;
+        for (size_t i = 0; i < axis_count; ++i)
+            if (!is_rotary(i))
+                squared +=
+                    (position[i] - leg.positions[0][i]) * (position[i] - leg.positions[0][i]);
+        longest = std::max(longest, std::sqrt(squared));
+    }
+    return longest;
+}
+
+double length_of(std::span<const Leg> legs) {
+    double length = 0.0;
+    for (const Leg& leg : legs) length += length_of(leg);
+    return length;
+}
+
+bool turns(const Leg& leg) {
+    for (const AxisValues& position : leg.positions)
+        for (size_t i = 0; i < axis_count; ++i)
+            if (is_rotary(i) && position[i] != leg.positions[0][i]) return true;
+    return false;
+}
+
+/// The change of direction between two straight legs, radians; empty if a direction is unknown.
+std::optional<double> turn_between(const Leg& before, const Leg& after) {
+    if (!has_ends(before) || !has_ends(after)) return std::nullopt;
+    const AxisValues from = travel_of(before), to = travel_of(after);
+    const double lengths = std::sqrt(dot(from, from) * dot(to, to));
+    if (!(lengths > 0.0)) return std::nullopt;
+    return std::acos(std::clamp(dot(from, to) / lengths, -1.0, 1.0));
+}
+
+/// Appends the legs within `reach` of the start of a path, or of its end; a leg with unknown
+/// directions is taken as a whole.
+void append_within(std::span<const Leg> legs, double reach, bool at_end, std::vector<Leg>& along) {
+    for (size_t n = 0; n < legs.size() && reach > 0.0; ++n) {
+        const Leg& leg = at_end ? legs[legs.size() - 1 - n] : legs[n];
+        const double length = length_of(leg);
+        const double share = length > reach ? reach / length : 1.0;
+        if (!has_ends(leg) || share >= 1.0)
+            along.push_back(leg);
+        else
+            along.push_back(at_end ? stretch(leg, 1.0 - share, 1.0) : stretch(leg, 0.0, share));
+        reach -= length;
+    }
+}
+
+Leg hull_of(const std::vector<Leg>& legs) {
+    Leg hull{.begin = legs.front().begin, .end = legs.front().begin, .straight = false};
+    for (const Leg& leg : legs) {
+        hull.path_error = std::max(hull.path_error, leg.path_error);
+        for (const AxisValues& position : leg.positions)
+            if (std::find(hull.positions.begin(), hull.positions.end(), position)
+                == hull.positions.end())
+                hull.positions.push_back(position);
+    }
+    return hull;
+}
+
+} // namespace
+
+double rounding_reach(double deviation, double turn) {
+    return 4.0 * deviation / std::sin(0.5 * turn);
+}
+
+std::optional<CornerRegion> corner_region(std::span<const Leg> before, std::span<const Leg> after,
+                                          double deviation, double distance) {
+    constexpr double straight_on = 1e-6; // radians: the rounding stays within 1e-6 of the length
+    if (!(deviation > 0.0) || before.empty() || after.empty()) return std::nullopt;
+    const double length_before = length_of(before), length_after = length_of(after);
+    if (!(length_before > 0.0 && length_after > 0.0)) return std::nullopt;
+    const std::optional<double> turn = turn_between(before.back(), after.front());
+    if (turn && *turn < straight_on) return std::nullopt;
+    double reach = distance;
+    double reach_before = length_before, reach_after = length_after;
+    if (reach == infinity) {
+        reach = turn ? rounding_reach(deviation, *turn) : infinity;
+        reach_before *= 0.5;
+        reach_after *= 0.5;
+    }
+    CornerRegion region;
+    append_within(before, std::min(reach, reach_before), true, region.along);
+    std::reverse(region.along.begin(), region.along.end());
+    append_within(after, std::min(reach, reach_after), false, region.along);
+    if (std::none_of(region.along.begin(), region.along.end(), turns))
+        region.hull = hull_of(region.along);
+    return region;
+}
+
+} // namespace core

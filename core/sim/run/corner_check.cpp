@@ -1,0 +1,114 @@
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/motion/corner.h"
+#include "core/sim/run/block_run.h"
+
+namespace core {
+namespace {
+
+/// The check of the region of a corner: its hull, and the programmed path within it.
+struct CornerCheck {
+    std::vector<TrackedPair> anywhere, along;
+    double deviation; // of the rounded path from the programmed one
+    double of_cuts;   // deviation of the cuts in the stock
+
+    const TrackedPair* on_the_path(const Pair& pair) const {
+        const auto found = std::find_if(along.begin(), along.end(),
+                                        [&](const TrackedPair& one) { return one.pair == pair; });
+        return found == along.end() ? nullptr : &*found;
+    }
+
+    /// The clearance of a pair on the rounded path, of which only bounds are known. Empty if the
+    /// pair needs no clearance.
+    std::optional<PairClearance> clearance(const PairClearance& in_hull) const {
+        PairClearance now{.pair = in_hull.pair, .allowance = in_hull.allowance};
+        now.lower = in_hull.lower;
+        if (in_hull.verdict == Verdict::clear) return now;
+        const TrackedPair* on_path = on_the_path(in_hull.pair);
+        if (!on_path) return std::nullopt;
+        now.lower = std::max(now.lower, on_path->lower - deviation);
+        now.verdict = judge_distance(now.allowance, now.lower, infinity);
+        const double off = deviation + (now.pair.fixture ? 0.0 : of_cuts);
+        if (now.allowance.distance <= resolution && off <= contact_depth(now.allowance))
+            now.verdict = on_path->verdict;
+        return now;
+    }
+};
+
+} // namespace
+
+void BlockRun::round_corners(const Motion& motion) {
+    RoundedCorners& corners = state.corners;
+    const bool rapid = motion.kind == MotionKind::rapid;
+    const std::optional<MotionKind>& last = corners.last.kind;
+    const bool is_corner = last && (*last == MotionKind::rapid) == rapid;
+    if (is_corner && (rapid ? corners.unknown_rapids : corners.unknown))
+        state.assumptions.insert("the control does not round corners where neither the program nor "
+                                 "`corner_tolerance` of the machine gives a tolerance");
+    if (rapid) {
+        off_path_rapids = std::max({off_path_rapids, corners.rapids.deviation,
+                                    corners.mixed.deviation, corners.last.rapids.deviation});
+        return;
+    }
+    const double by = corners.of_feed(motion.arc.has_value());
+    if (by == 0.0 || !tool()) return;
+    off_path = std::max(off_path, by);
+    if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool, motion.arc.has_value());
+    state.assumptions.insert(fmt::format(
+        "{} may deviate by up to {:g} mm from the programmed path while the control rounds "
+        "corners; clearances include this",
+        motion.arc && corners.by_arc != corners.by ? "arcs" : "feeds", by));
+}
+
+void BlockRun::check_corner(const Motion& motion, const Path& path) {
+    const CornerStart& last = state.corners.last;
+    if (!last.kind) return;
+    const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
+    if (!rapid && !was) return; // the whole feed counts as rounded
+    const CornerLimit& limit = rapid && was ? last.rapids : last.mixed;
+    auto region = corner_region(last.legs, path.legs, limit.deviation, limit.distance);
+    if (!region) return;
+    state.assumptions.insert(fmt::format(
+        "corners between rapids may be rounded by up to {:g} mm; clearances include this",
+        limit.deviation));
+    if (region->hull.positions.empty()) {
+        state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
+        return;
+    }
+    const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
+    const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
+    const double deviation = bends && limit.distance < infinity ? limit.distance : limit.deviation;
+    CheckMemory memory; // the bounds of the run only hold along its own path
+    memory.hints = state.memory.hints;
+    memory.off_path = deviation + state.corners.of_cuts;
+    CutModel stock = state.stock; // a collision in the region must not cut the run's stock
+    std::swap(memory.cuts, state.memory.cuts);
+    std::swap(memory.passages, state.memory.passages);
+    CornerCheck corner{.deviation = deviation, .of_cuts = state.corners.of_cuts};
+    region->hull.begin = region->hull.end = 0.0;
+    leg_check(FluteUse::not_cutting, memory)
+        .run(region->hull, result.duration, stock, corner.anywhere);
+    const bool is_clear =
+        std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
+                    [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
+    for (const Leg& leg : region->along)
+        if (!is_clear)
+            leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.along);
+    std::swap(memory.cuts, state.memory.cuts);
+    std::swap(memory.passages, state.memory.passages);
+    // At the corner between a rapid and a cut, the flutes may already cut.
+    const bool may_cut = !(rapid && was);
+    for (const TrackedPair& pair : corner.anywhere) {
+        if (may_cut && pair.pair == Pair{PartKind::flutes}) continue;
+        auto now = corner.clearance(pair);
+        if (!now) continue;
+        now->time = result.duration;
+        merge(static_cast<PairClearance&>(
+                  PairBounds(setup, state.memory).tracked_pair(pairs, now->pair)),
+              *now);
+    }
+}
+
+} // namespace core

@@ -1,0 +1,260 @@
+#include "gcode/exec/following.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/base/rule_table.h"
+#include "core/motion/machine.h"
+#include "gcode/exec/execution.h"
+#include "gcode/text/source.h"
+
+namespace gcode {
+namespace {
+
+constexpr uint8_t all_linear = 0b111; // X, Y, Z
+
+bool is_turned(const Offsets& offsets, const Position& program) {
+    const Position machine = machine_from_program(offsets, program);
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (!machine[axis] || is_away_from_zero(axis, *machine[axis])) return true;
+    return false;
+}
+
+/// Tool centre point control or a tilted plane, which need the rotary axes of a machine.
+bool follows_without_machine(const ModalState& modal) {
+    return modal.offsets.follows_tip && !modal.offsets.machine;
+}
+
+bool tilts_without_machine(const ModalState& modal) {
+    return modal.offsets.frame.tilts_tool && !is_fixed_to_work(modal.offsets);
+}
+
+bool may_follow(const ModalState& modal) {
+    return modal.following.may_be_on || follows_without_machine(modal);
+}
+
+bool moves(const Execution& execution) {
+    const auto& commands = execution.result.commands;
+    return std::any_of(commands.begin(), commands.end(), is_motion);
+}
+
+/// Whether a rotary axis is away from 0 before, during or after the block.
+bool is_turned_within(const Execution& execution, const ModalState& before) {
+    const Offsets& offsets = execution.modal().offsets;
+    if (is_turned(before.offsets, before.position)
+        || is_turned(offsets, execution.modal().position))
+        return true;
+    for (size_t axis = 3; axis < 6; ++axis) // a full turn
+        if (execution.modal().position[axis] != before.position[axis]) return true;
+    const auto end_is_turned = [&](const auto& command) {
+        if constexpr (requires { command.end; }) return is_turned(offsets, command.end);
+        return false;
+    };
+    const auto& commands = execution.result.commands;
+    return std::any_of(commands.begin(), commands.end(), [&](const CanonicalCommand& command) {
+        return std::visit(end_is_turned, command);
+    });
+}
+
+/// Whether the block brings an axis to a position that does not depend on where it was.
+bool places(const Execution& execution, size_t axis) {
+    const Word* word = execution.statement.word(axis_letters[axis]);
+    const BlockCommands& result = execution.result;
+    if (!word || (result.is_cycle && !result.goes_home)) return false;
+    if (result.goes_home) return true;
+    const bool has_no_increments =
+        in_machine_coordinates(execution) && execution.dialect.language == Language::words;
+    return has_no_increments || !is_incremental(execution, *word);
+}
+
+uint8_t placed_axes(const Execution& execution) {
+    uint8_t placed = 0;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (places(execution, axis)) placed |= static_cast<uint8_t>(1u << axis);
+    return !mixes_axes(execution.modal().offsets) || placed == all_linear ? placed : uint8_t{0};
+}
+
+bool places_rotary_axes(const Execution& execution) {
+    int placed = 0;
+    for (size_t axis = 3; axis < 6; ++axis) placed += places(execution, axis) ? 1 : 0;
+    return placed >= 2;
+}
+
+/// G53.1.
+bool turns_to_plane(const Execution& execution) {
+    const auto codes = execution.statement.codes();
+    return std::any_of(codes.begin(), codes.end(),
+                       [](const CodeWord& entry) { return entry.code->number == g_code(53, 1); });
+}
+
+core::SourceSpan place_of(const Execution& execution) {
+    for (const Word& word : execution.block.words)
+        if (axis_letters.find(word.letter) != std::string_view::npos) return word.span;
+    return {.line = execution.block.line, .column = 1};
+}
+
+std::string name_of(const Execution& execution, const Following& following) {
+    const std::string file =
+        following.source == 0
+            ? std::string()
+            : fmt::format(" of {}", execution.library.program(following.source).file);
+    return fmt::format("{} in line {}{}", following.code.data(), following.line, file);
+}
+
+void report(Execution& execution) {
+    Following& following = execution.modal().following;
+    if (std::exchange(following.is_said, true)) return;
+    const std::string name = name_of(execution, following);
+    std::string why =
+        fmt::format("{} is not modelled: the linear axes follow the rotary axes", name);
+    std::string cure = "Check this part of the program at the machine, or switch the "
+                       "transformation off before it.";
+    const bool follows_tip = follows_without_machine(execution.modal());
+    if (following.line == 0 || follows_tip || tilts_without_machine(execution.modal())) {
+        why = fmt::format("{} needs the rotary axes of the machine, which are not described",
+                          follows_tip ? "tool centre point control" : "a tilted plane");
+        cure = "Describe the machine in a set-up, with its rotary axes as [[axis]].";
+    } else if (following.is_unknown_code) {
+        why = fmt::format("it is unknown what {} does: the linear axes may follow the rotary axes "
+                          "from there on",
+                          name);
+        cure = fmt::format("If {} does not change how axes move, list it in machine_codes under "
+                           "[program] in the set-up.",
+                           following.code.data());
+    }
+    execution.result.warnings.push_back(
+        {Severity::warning, place_of(execution),
+         fmt::format(
+             "{}. This block and later ones are not checked until the positions are certain "
+             "again",
+             why),
+         core::rule_id("undecided"), std::move(cure)});
+}
+
+/// Unknown M codes may switch a transformation.
+void note_unknown_codes(Execution& execution) {
+    for (const Word* word : execution.statement.unknown_m_codes)
+        switch_following(execution, word->span, written(*word), FollowingSwitch::perhaps);
+}
+
+} // namespace
+
+bool is_away_from_zero(size_t axis, double value) {
+    constexpr double slack = 1e-9;
+    return std::abs(is_rotary(axis) ? std::remainder(value, 360.0) : value) > slack;
+}
+
+void switch_following(Execution& execution, core::SourceSpan where, std::string_view code,
+                      FollowingSwitch to) {
+    ModalState& modal = execution.modal();
+    Following& following = modal.following;
+    const bool was_on = following.may_be_on;
+    const bool keeps_name = was_on && to == FollowingSwitch::perhaps;
+    if (to != FollowingSwitch::off && !keeps_name) {
+        following.code.fill('\0');
+        code.copy(following.code.data(), following.code.size() - 1);
+        following.line = where.line;
+        following.source = execution.state.next.source;
+        following.is_unknown_code = to == FollowingSwitch::perhaps;
+        following.is_said = false;
+    }
+    following.may_be_on = to != FollowingSwitch::off;
+    if (to == FollowingSwitch::on && !was_on)
+        execution.warn(where,
+                       fmt::format("{}: motions are not checked while it is on and a rotary axis "
+                                   "is away from 0",
+                                   code),
+                       Severity::note);
+    // Program and machine coordinates part where the transformation changes with the work turned.
+    if ((was_on || following.may_be_on) && is_turned(modal.offsets, modal.position))
+        following.unknown_axes = all_linear;
+}
+
+void check_turn(Execution& execution, const ModalState& before, size_t axis, Addressing way,
+                std::string_view code) {
+    ModalState& modal = execution.modal();
+    const Offsets& offsets = modal.offsets;
+    if (offsets.machine && offsets.machine->axes[axis].shortest_way && way == Addressing::shortest)
+        return;
+    const double turn = modal.position[axis].value_or(0.0) - before.position[axis].value_or(0.0);
+    constexpr double slack = 1e-9;
+    const bool straight = way == Addressing::positive   ? turn > -slack
+                          : way == Addressing::negative ? turn < slack
+                                                        : std::abs(turn) < 180.0 + slack;
+    if (straight) return;
+    execution.result.path = core::PathCertainty::unknown;
+    if (std::exchange(modal.following.said_turn, true)) return;
+    execution.result.warnings.push_back(
+        {Severity::warning, place_of(execution),
+         fmt::format(
+             "{}: axis {} turns by {:g} degrees the other way round, which is not modelled; "
+             "blocks in which it does so are not checked",
+             code, axis_letters[axis], turn > 0.0 ? 360.0 - turn : 360.0 + turn),
+         core::rule_id("undecided"),
+         "Program a position less than half a turn away, or an incremental angle."});
+}
+
+namespace {
+
+/// DC, ACP and ACN of Siemens.
+void check_turns(Execution& execution, const ModalState& before) {
+    for (size_t axis = 3; axis < 6; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word || word->addressing <= Addressing::incremental) continue;
+        constexpr std::string_view names[] = {"DC", "ACP", "ACN"};
+        check_turn(execution, before, axis, word->addressing,
+                   names[size_t(word->addressing) - size_t(Addressing::shortest)]);
+    }
+}
+
+} // namespace
+
+void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
+                    std::string cure) {
+    Following& following = execution.modal().following;
+    following.unknown_axes = all_linear;
+    following.is_said = true;
+    execution.result.warnings.push_back(
+        {Severity::warning, where, std::move(why), core::rule_id("undecided"), std::move(cure)});
+}
+
+bool is_work_turned(const ModalState& modal) {
+    return modal.following.rotary_unknown || is_turned(modal.offsets, modal.position);
+}
+
+bool is_uncertain(const ModalState& modal) {
+    if (modal.following.rotary_unknown) return true;
+    if (modal.following.unknown_axes != 0 || tilts_without_machine(modal)) return true;
+    return may_follow(modal) && is_turned(modal.offsets, modal.position);
+}
+
+void mark_uncertain_motions(Execution& execution, const ModalState& before) {
+    note_unknown_codes(execution);
+    ModalState& modal = execution.modal();
+    Following& following = modal.following;
+    check_turns(execution, before);
+    if (modal.doubt)
+        execution.result.path = std::max(execution.result.path, core::PathCertainty::doubtful);
+    const bool follows = may_follow(before) || may_follow(modal);
+    const bool tilts = tilts_without_machine(before) || tilts_without_machine(modal);
+    if (!follows && !tilts && following.unknown_axes == 0 && !following.rotary_unknown) return;
+    // G53.1 has turned the work to unknown angles, until a block programs two rotary axes.
+    following.rotary_unknown = (following.rotary_unknown && !places_rotary_axes(execution))
+                               || (tilts && turns_to_plane(execution));
+    const bool turned = is_turned_within(execution, before);
+    const bool switches = follows_without_machine(before) != follows_without_machine(modal);
+    if ((switches && turned) || (tilts && !tilts_without_machine(modal)))
+        following.unknown_axes = all_linear;
+    if (!moves(execution)) return;
+    if ((follows && turned) || tilts || following.unknown_axes != 0 || following.rotary_unknown) {
+        execution.result.path = core::PathCertainty::unknown;
+        report(execution);
+    }
+    const bool stays_uncertain = tilts_without_machine(modal)
+                                 || (may_follow(modal) && is_turned(modal.offsets, modal.position));
+    if (!stays_uncertain) following.unknown_axes &= static_cast<uint8_t>(~placed_axes(execution));
+}
+
+} // namespace gcode

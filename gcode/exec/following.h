@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "gcode/language/block.h"
+
+namespace gcode {
+
+struct Execution;
+struct ModalState;
+
+/// Whether the position of an axis is not 0; a rotary axis at full turns counts as at 0.
+bool is_away_from_zero(size_t axis, double value);
+
+/// What a code does to a transformation in which the linear axes follow the rotary ones.
+enum class FollowingSwitch : uint8_t { on, off, perhaps };
+
+/// Records a code that switches such a transformation of the control, which is not modelled:
+/// TRAORI, M128, FUNCTION TCPM; `perhaps` for an M code that nobody has described.
+void switch_following(Execution& execution, core::SourceSpan where, std::string_view code,
+                      FollowingSwitch to);
+
+/// Records that a code moved X, Y and Z to places that are not known, with the finding `why`.
+void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
+                    std::string cure);
+
+/// Whether a rotary axis is away from 0, or its position is unknown.
+bool is_work_turned(const ModalState& modal);
+
+/// Marks the motions of a block that the machine may make differently: while the linear axes may
+/// follow rotary axes that are away from 0, and afterwards until X, Y and Z are programmed again.
+/// The first such block gets a finding. Call after a block was executed, with the modes before it.
+///
+/// With all rotary axes at 0 the tool is along Z and the work is level, so such a transformation
+/// changes nothing and the motions are certain.
+void mark_uncertain_motions(Execution& execution, const ModalState& before);
+
+/// Marks the motions of a block whose rotary axis turns another way than from its position straight
+/// to the programmed one: the end is the same, the way there is not checked. The first such block
+/// gets a finding, which names `code`.
+void check_turn(Execution& execution, const ModalState& before, size_t axis, Addressing way,
+                std::string_view code);
+
+/// Whether the next motion is uncertain even if it moves no rotary axis.
+bool is_uncertain(const ModalState& modal);
+
+} // namespace gcode

@@ -1,0 +1,264 @@
+#include "gcode/exec/readings.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/base/rule_table.h"
+#include "gcode/exec/fanuc_parameters.h"
+#include "gcode/exec/klartext_parameters.h"
+#include "gcode/exec/program_parameters.h"
+#include "gcode/language/block.h"
+#include "gcode/language/control.h"
+#include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
+
+namespace gcode {
+namespace {
+
+const OpenPremise* find_met(const Readings& readings, const PremiseId& id) {
+    const auto found = std::find_if(readings.met.begin(), readings.met.end(),
+                                    [&](const OpenPremise& premise) { return premise.id == id; });
+    return found == readings.met.end() ? nullptr : &*found;
+}
+
+/// Records a premise, with the reading chosen for this run.
+size_t take_reading(InterpreterState& state, OpenPremise premise) {
+    Readings& readings = state.readings.write();
+    const auto chosen = readings.chosen.find(premise.id);
+    premise.is_chosen = chosen != readings.chosen.end();
+    premise.taken = premise.is_chosen ? chosen->second : 0;
+    readings.met.push_back(std::move(premise));
+    return readings.met.back().taken;
+}
+
+std::string number_text(const ParameterValue& value) {
+    return value.word.empty() ? fmt::format("{:g}", value.number) : std::string(value.word);
+}
+
+Reading reading_of(const ControlParameter& parameter, const ParameterValue& value) {
+    if (parameter.key.empty()) return {std::string(value.text), {}};
+    // A length is its own explanation.
+    if (parameter.values.size() == 1)
+        return {fmt::format("{} is {}", parameter.name, value.text), {}};
+    return {fmt::format("{} is {}", parameter.name, number_text(value)), std::string(value.text)};
+}
+
+std::string cure_of(const ControlParameter& parameter, const Environment& environment) {
+    if (!parameter.statement.empty()) return std::string(parameter.statement);
+    // What stays from an earlier program can only be programmed.
+    if (parameter.question == ControlQuestion::starts_incremental
+        && environment.control.answer(ControlQuestion::modes_are_initial) == false)
+        return "Program G90 before the first move.";
+    return fmt::format("State \"{}\" = {} under [control] in the set-up.", parameter.key,
+                       parameter.choices());
+}
+
+/// What is stated. Where the control keeps the modes of the program before, the initial ones say
+/// nothing; where it restores them and no parameter chooses them, they are the first ones.
+std::optional<double> stated_number(const Environment& environment, ControlQuestion question) {
+    const ControlSettings& control = environment.control;
+    if (question != ControlQuestion::starts_incremental) return control.number(question);
+    const auto restores = control.answer(ControlQuestion::modes_are_initial);
+    if (restores == false) return std::nullopt;
+    const ControlParameter* parameter = find_parameter(question, environment.dialect);
+    if (restores && parameter && parameter->key.empty()) return parameter->values[0].answer;
+    return control.number(question);
+}
+
+/// Whether a parameter that is not stated is a premise of a run.
+bool is_premise(const Environment& environment, const ControlParameter& parameter) {
+    return environment.control.reports_premises && parameter.if_not_stated != IfNotStated::go_on;
+}
+
+std::string_view trimmed(std::string_view text) {
+    const size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+}
+
+} // namespace
+
+bool is_open(const InterpreterState& state, const Environment& environment,
+             ControlQuestion question) {
+    if (!environment.control.reports_premises || stated_number(environment, question)) return false;
+    const ControlParameter* parameter = find_parameter(question, environment.dialect);
+    return parameter && parameter->is_open() && !find_met(*state.readings, {question});
+}
+
+double number_for(InterpreterState& state, const Environment& environment, ControlQuestion question,
+                  uint32_t line) {
+    if (const auto stated = stated_number(environment, question)) return *stated;
+    const ControlParameter* parameter = find_parameter(question, environment.dialect);
+    if (!parameter || parameter->values.empty()) return 0.0;
+    const std::span<const ParameterValue> values = parameter->values;
+    if (!is_premise(environment, *parameter)) return values[0].answer;
+    const PremiseId id{question};
+    const OpenPremise* met = find_met(*state.readings, id);
+    if (met) return values[met->taken].answer;
+    OpenPremise premise;
+    premise.id = id;
+    premise.line = line;
+    premise.reason = fmt::format("The set-up does not state {}", parameter->name);
+    premise.cure = cure_of(*parameter, environment);
+    for (const ParameterValue& value : parameter->is_open() ? values : values.first(1))
+        premise.readings.push_back(reading_of(*parameter, value));
+    return values[take_reading(state, std::move(premise))].answer;
+}
+
+bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,
+               uint32_t line) {
+    return number_for(state, environment, question, line) != 0.0;
+}
+
+namespace {
+
+/// How often one condition is followed; more than the readings that a check follows.
+constexpr uint32_t most_occurrences = 100;
+
+/// A condition that depends on what only the machine knows.
+struct OpenCondition {
+    const Block& block;
+    std::string reason;
+    std::string cure;
+    bool computed; // its outcome with the usual values
+    bool varies;   // two evaluations can differ
+};
+
+/// Whether a condition led back to the state in which it was met: the program waits here for ever.
+bool waits_at(const Readings& readings, const ProgramLine& line, uint64_t digest) {
+    return std::any_of(readings.met.begin(), readings.met.end(), [&](const OpenPremise& earlier) {
+        return !earlier.id.question && earlier.id.line == line && earlier.state_digest == digest;
+    });
+}
+
+bool outcome_of(InterpreterState& state, const OpenCondition& condition) {
+    const Block& block = condition.block;
+    const bool computed = condition.computed;
+    const std::string text(trimmed(block.text));
+    const Readings& readings = *state.readings;
+    if (const auto known = readings.answers.find(text);
+        known != readings.answers.end() && !condition.varies) {
+        const bool outcome = known->second;
+        if (waits_at(readings, {state.next.source, block.line}, digest_of(state))) return !outcome;
+        if (!readings.repeated.contains(text)) state.readings.write().repeated.insert(text);
+        return outcome;
+    }
+    OpenPremise premise;
+    premise.line = block.line;
+    premise.id.line = {state.next.source, block.line};
+    premise.state_digest = digest_of(state);
+    for (const OpenPremise& earlier : readings.met) {
+        if (earlier.id.question || earlier.id.line != premise.id.line) continue;
+        // That outcome leads back to the same state: the program waits here. A loop that changes
+        // the state is left after as many passes as a check can follow.
+        if (earlier.state_digest == premise.state_digest
+            || premise.id.occurrence == most_occurrences)
+            return !earlier.outcome;
+        ++premise.id.occurrence;
+    }
+    for (const bool outcome : {computed, !computed})
+        premise.readings.push_back({fmt::format("the condition in line {} {}", block.line,
+                                                outcome ? "holds" : "does not hold"),
+                                    {}});
+    premise.reason = condition.reason;
+    premise.cure = condition.cure;
+    const size_t taken = take_reading(state, std::move(premise));
+    const bool outcome = taken == 0 ? computed : !computed;
+    Readings& written = state.readings.write();
+    written.met.back().outcome = outcome;
+    if (!condition.varies) written.answers.insert_or_assign(text, outcome);
+    return outcome;
+}
+
+} // namespace
+
+bool outcome_of(const ProgramParameters& parameters, const Block& block, bool computed) {
+    const auto& reads = parameters.unpredictable_reads();
+    if (reads.empty()) return computed;
+    return outcome_of(
+        parameters.state(),
+        {block,
+         fmt::format("The condition depends on {}, which the program does not set",
+                     fmt::join(reads, " and ")),
+         fmt::format("State the value of {} under [program.values] in the set-up.", reads.front()),
+         computed, parameters.reads_vary()});
+}
+
+bool outcome_of_input(InterpreterState& state, const Environment& environment, const Block& block,
+                      const std::string& what, bool computed) {
+    if (!environment.control.reports_premises) return computed;
+    return outcome_of(state, {block, fmt::format("The path depends on {}", what),
+                              "Change the program so that both ways are safe.", computed, true});
+}
+
+std::string cause_of_number(const ProgramParameters& parameters) {
+    const auto& reads = parameters.unpredictable_reads();
+    if (reads.empty()) return {};
+    return fmt::format(
+        ": the number depends on {}, which the program does not set; state its value "
+        "under [program.values] in the set-up",
+        fmt::join(reads, " and "));
+}
+
+void report_unknown(const ProgramParameters& parameters, BlockCommands& result,
+                    core::SourceSpan where, std::string_view what) {
+    for (const std::string& name : parameters.unpredictable_reads()) {
+        if (!parameters.state().readings.write().reported.insert(name).second) continue;
+        result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format(
+                 "{} depends on {}, which only the machine knows here: the program does not "
+                 "set it before",
+                 what, name),
+             core::rule_id("unknown-value"),
+             fmt::format("State the value of {} under [program.values] in the set-up.", name)});
+    }
+}
+
+namespace {
+
+bool is_in(int number, int first, int last) { return number >= first && number <= last; }
+
+Knowledge knowledge_of_macro_variable(const Environment& environment, bool is_haas, int number) {
+    if (is_in(number, 100, 149)) {
+        const auto kept = environment.control.answer(ControlQuestion::variables_are_kept);
+        return kept == false ? Knowledge::known : Knowledge::unknown_until_set;
+    }
+    if (is_in(number, 150, 999)) return Knowledge::unknown_until_set;
+    if (is_in(number, 1000, 1099)) return Knowledge::unknown;
+    if (is_in(number, 1100, 1199) || is_in(number, 3901, 3902)) return Knowledge::unknown_until_set;
+    if (number == 3011 || number == 3012) return Knowledge::unknown;
+    if (is_in(number, 5061, 5069)) return Knowledge::unknown; // where the last G31 stopped
+    if (is_haas && is_in(number, 10000, 10999)) return Knowledge::unknown_until_set;
+    if (number >= 1000 && !is_modelled_variable(environment, number)) return Knowledge::unknown;
+    return Knowledge::known;
+}
+
+Knowledge knowledge_of_linuxcnc_parameter(int number) {
+    if (is_in(number, 31, 5000)) return Knowledge::unknown_until_set;
+    if (is_in(number, 5061, 5070) || number == 5399) return Knowledge::unknown_once_set;
+    return Knowledge::known;
+}
+
+} // namespace
+
+Knowledge knowledge_of(const Environment& environment, int number) {
+    const Dialect& rules = dialect(environment.dialect);
+    if (rules.language == Language::klartext)
+        return is_in(number, 100, 199) ? knowledge_of_preassigned(number)
+                                       : Knowledge::unknown_until_set;
+    switch (rules.system_parameters) {
+    case SystemParameters::fanuc:
+        return knowledge_of_macro_variable(environment, false, number);
+    case SystemParameters::haas:
+        return knowledge_of_macro_variable(environment, true, number);
+    case SystemParameters::siemens:
+        return Knowledge::unknown_until_set;
+    default:
+        return knowledge_of_linuxcnc_parameter(number);
+    }
+}
+
+} // namespace gcode

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "gcode/exec/interpreter.h"
+
+namespace gcode {
+
+struct Block;
+class ProgramParameters;
+
+/// The answer to a question about the control: as stated, else as chosen for this run, else the
+/// usual one. The premise is recorded if nothing is stated and it is met for the first time. 0 if
+/// this control has no such parameter.
+double number_for(InterpreterState& state, const Environment& environment, ControlQuestion question,
+                  uint32_t line);
+
+/// The same for a question that is answered by yes or no.
+bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,
+               uint32_t line);
+
+/// Whether a question is open: neither stated nor met before.
+bool is_open(const InterpreterState& state, const Environment& environment,
+             ControlQuestion question);
+
+/// The outcome of the condition of a block. If it depends on a value that only the machine knows,
+/// the premise is recorded, and the outcome may be another than the computed one. `parameters` have
+/// just evaluated the condition.
+bool outcome_of(const ProgramParameters& parameters, const Block& block, bool computed);
+
+/// The outcome of a condition on something that only the machine knows and no variable holds.
+/// `what` names it: "an input".
+bool outcome_of_input(InterpreterState& state, const Environment& environment, const Block& block,
+                      const std::string& what, bool computed);
+
+/// Warns once of each unpredictable value that a block uses as `what`, such as "X": the path
+/// depends on it.
+void report_unknown(const ProgramParameters& parameters, BlockCommands& result,
+                    core::SourceSpan where, std::string_view what);
+
+/// The end of a message about a number that cannot be used: names the variables that only the
+/// machine knows and the number depends on. `parameters` have just evaluated it.
+std::string cause_of_number(const ProgramParameters& parameters);
+
+/// What a check can know of a variable.
+enum class Knowledge : uint8_t {
+    known,
+    unknown_until_set, // may hold what an earlier program left
+    unknown_once_set,  // set by the machine, by probing or waiting
+    unknown,           // an input or a clock
+};
+
+Knowledge knowledge_of(const Environment& environment, int number);
+
+} // namespace gcode

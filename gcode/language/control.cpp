@@ -1,0 +1,538 @@
+#include "gcode/language/control.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "gcode/language/dialect.h"
+#include "gcode/language/environment.h"
+
+namespace gcode {
+namespace {
+
+using enum ControlQuestion;
+using enum IfNotStated;
+
+constexpr DialectId fanuc[] = {DialectId::fanuc};
+constexpr DialectId haas[] = {DialectId::haas};
+constexpr DialectId linuxcnc[] = {DialectId::linuxcnc};
+constexpr DialectId siemens[] = {DialectId::siemens};
+constexpr DialectId all[] = {DialectId::linuxcnc,   DialectId::fanuc,   DialectId::haas,
+                             DialectId::grbl,       DialectId::siemens, DialectId::heidenhain,
+                             DialectId::siemens_iso};
+
+// The first value of each parameter is the one assumed if nothing is stated.
+
+constexpr ParameterValue length_change[] = {
+    {1, false, "Z stays until it is programmed"},
+    {0, true, "a block with G43, G44, G49 or H and no Z moves Z by the change of the offset"},
+};
+constexpr ParameterValue decimal_point[] = {
+    {1, true, "a number without a decimal point is in mm, inches or degrees"},
+    {0, false, "a number without a decimal point counts least increments: 0.001 mm, 0.0001 inch"},
+};
+constexpr ParameterValue float_default[] = {
+    {1, true, "a number without a decimal point is in mm, inches or degrees", "ON"},
+    {0, false, "a number without a decimal point counts least increments: 0.001 mm, 0.0001 inch",
+     "OFF"},
+};
+constexpr ParameterValue clears_variables[] = {
+    {0, false, "a reset clears #100 to #149"},
+    {1, true, "#100 to #149 keep the values of earlier programs"},
+};
+constexpr ParameterValue rapids[] = {
+    {1, true, "rapids are straight"},
+    {0, false, "each axis of a rapid runs at its own speed"},
+};
+constexpr ParameterValue block_delete[] = {
+    {0, false, "blocks with / are executed"},
+    {1, true, "blocks with / are skipped"},
+};
+constexpr ParameterValue inches[] = {
+    {0, false, "lengths are in mm until G20"},
+    {1, true, "lengths are in inches until G21"},
+};
+constexpr ParameterValue dimensioning[] = {
+    {0, false, "lengths are in mm until G20", "MM"},
+    {1, true, "lengths are in inches until G21", "INCH"},
+};
+constexpr ParameterValue siemens_units[] = {
+    {2, false, "G71 is active at the start"},
+    {1, true, "G70 is active at the start"},
+};
+constexpr ParameterValue distance_modes[] = {
+    {0, false, "G90 is active at the start"},
+    {1, true, "G91 is active at the start"},
+};
+constexpr ParameterValue siemens_distance[] = {
+    {1, false, "G90 is active at the start"},
+    {2, true, "G91 is active at the start"},
+};
+constexpr ParameterValue motion_modes[] = {
+    {0, false, "G0 is active at the start"},
+    {1, true, "G1 is active at the start"},
+};
+constexpr ParameterValue zx_plane[] = {
+    {0, 17, "G17 is active at the start"},
+    {1, 18, "G18 is active at the start"},
+};
+constexpr ParameterValue yz_plane[] = {
+    {0, false, "G17 or G18 is active at the start"},
+    {1, true, "G19 is active at the start"},
+};
+constexpr ParameterValue siemens_plane[] = {
+    {1, 17, "G17 is active at the start"},
+    {2, 18, "G18 is active at the start"},
+    {3, 19, "G19 is active at the start"},
+};
+constexpr ParameterValue siemens_work[] = {
+    {2, false, "G54 is active at the start"},
+    {1, true, "G500 is active at the start"},
+};
+constexpr ParameterValue clear_state[] = {
+    {1, true, "a reset restores the initial G codes"},
+    {0, false, "the G codes of the program before stay active"},
+};
+constexpr ParameterValue restores_codes[] = {
+    {1, true, "M30 and reset restore the initial G codes", "ON"},
+    {0, false, "the G codes of the program before stay active", "OFF"},
+};
+constexpr ParameterValue length_of_plane[] = {
+    {0, false, "length offsets act along Z"},
+    {1, true, "length offsets act along the axis normal to the plane"},
+};
+constexpr ParameterValue length_of_axis[] = {
+    {0, false, "G43 and G44 do not choose the axis by a word in their block"},
+    {1, true, "length offsets act along the axis that the block of G43 or G44 names"},
+};
+constexpr ParameterValue length_reload[] = {
+    {0, false, "a length that G10 writes counts from the next G43, G44 or H"},
+    {1, true, "a length that G10 writes counts from the next block"},
+};
+constexpr ParameterValue entry_types[] = {
+    {0, false, "the tool goes straight to the first offset point and straight off the last one"},
+    {1, true, "outside corners at the first and the last move are extended as on the contour"},
+};
+constexpr ParameterValue upright_entry[] = {
+    {0, false, "G41, G42 or G40 without a move act with the next move"},
+    {1, true, "G41, G42 or G40 without a move shift the tool at right angles to the next move"},
+};
+constexpr ParameterValue drilling_axis[] = {
+    {1, true, "cycles drill along the axis normal to the plane"},
+    {0, false, "cycles drill along Z"},
+};
+constexpr ParameterValue drilling_definition[] = {
+    {1, true, "a block that defines a cycle drills, also without X and Y", "ON"},
+    {0, false, "a block that defines a cycle drills only with X or Y", "OFF"},
+};
+constexpr ParameterValue one_mm[] = {{1, 1, "1 mm"}};
+constexpr ParameterValue no_lift[] = {{0, 0, "none"}};
+constexpr ParameterRange of_lengths{0.0, 1000.0, "mm"};
+constexpr ParameterRange of_inches{0.0, 100.0, "inches"};
+constexpr ParameterValue fanuc_shift[] = {
+    {1, 1, "the tool shifts along +X, the first axis of the plane"},
+    {-1, -1, "the tool shifts along -X"},
+    {2, 2, "the tool shifts along +Y, the second axis of the plane"},
+    {-2, -2, "the tool shifts along -Y"},
+};
+constexpr ParameterValue haas_shift[] = {
+    {1, 1, "the tool shifts along +X, the first axis of the plane", "X+"},
+    {-1, -1, "the tool shifts along -X", "X-"},
+    {2, 2, "the tool shifts along +Y, the second axis of the plane", "Y+"},
+    {-2, -2, "the tool shifts along -Y", "Y-"},
+};
+constexpr ParameterValue rotation_words[] = {
+    {1, true, "under G91, R of G68 is added to the angle before"},
+    {0, false, "R of G68 is absolute, also under G91"},
+};
+constexpr ParameterRange of_angles{-360.0, 360.0, "degrees"};
+constexpr ParameterValue scale_steps[] = {
+    {1, 0.001, "a factor of G51 without a decimal point counts thousandths"},
+    {0, 0.00001, "a factor of G51 without a decimal point counts hundred-thousandths"},
+};
+constexpr ParameterRange of_factors{0.00001, 10000.0, "times"};
+constexpr ParameterValue coordinate_system[] = {
+    {1, false, "G52 shifts all work offsets", "FANUC"},
+    {2, false, "G52 shifts all work offsets", "HAAS"},
+    {3, true, "G52 is a work offset of its own", "YASNAC"},
+};
+constexpr ParameterValue finer[] = {
+    {0, false, "the least increment is 0.001 mm, 0.0001 inch or 0.001 degrees, IS-B"},
+    {1, true, "the least increment is 0.0001 mm, 0.00001 inch or 0.0001 degrees, IS-C"},
+};
+constexpr ParameterValue coarser[] = {
+    {0, false, "the least increment is not 0.01 mm"},
+    {1, true, "the least increment is 0.01 mm, 0.001 inch or 0.01 degrees, IS-A"},
+};
+constexpr ParameterValue one_way[] = {
+    {0, false, "G60 acts in its block only"},
+    {1, true, "G60 stays active until G0, G1, G2 or G3"},
+};
+
+constexpr std::string_view program_g90 = "Program G90 before the first move.";
+// Siemens. Native programs and those in ISO mode run on the same control.
+constexpr ParameterValue siemens_length_change[] = {
+    {0, false, "Z stays until it is programmed"},
+    {1, true, "a block with G43, G44, G49 or H and no Z moves Z by the change of the offset"},
+};
+constexpr ParameterValue machine_coordinates[] = {
+    {0, true, "G53, G153 and SUPA move the tip of the tool to machine coordinates"},
+    {1, false, "G53, G153 and SUPA move the gauge line to machine coordinates"},
+};
+constexpr ParameterValue length_in_planes[] = {
+    {17, true, "the tool length stays along Z in each plane"},
+    {0, false, "the tool length is along the axis normal to the plane"},
+};
+constexpr ParameterValue edge_of_change[] = {
+    {1, true, "a tool change without D activates the length of the first cutting edge"},
+    {0, false, "after a tool change without D no length is active"},
+};
+constexpr ParameterValue offset_in_increments[] = {
+    {1, true, "incremental words also travel a change of the zero offset"},
+    {0, false, "incremental words travel the programmed distance only"},
+};
+constexpr ParameterValue length_in_increments[] = {
+    {1, true, "incremental words also travel a change of the tool length"},
+    {0, false, "incremental words travel the programmed distance only"},
+};
+constexpr DialectId any_siemens[] = {DialectId::siemens, DialectId::siemens_iso};
+
+constexpr ControlParameter parameters[] = {
+    {length_change_moves, fanuc, "5006#6", "parameter 5006#6 (TOS)", length_change, follow_all,
+     "Fanuc B-63943EN-1, 12.5.2, tool length compensation shift types"},
+    {point_is_implied, fanuc, "3401#0", "parameter 3401#0 (DPI)", decimal_point, follow_all,
+     "Fanuc B-63950EN, parameters of programs; B-63944EN, decimal point programming"},
+    {point_is_implied, haas, "setting 162", "setting 162 (Default To Float)", float_default,
+     follow_all, "Haas, Help with the decimal points; mill operator's manual, settings"},
+    {variables_are_kept, fanuc, "6001#6", "parameter 6001#6 (CCV)", clears_variables, follow_all,
+     "Fanuc B-63950EN, parameters of custom macros"},
+    {rapids_are_straight, fanuc, "1401#1", "parameter 1401#1 (LRP)", rapids, go_on,
+     "Fanuc B-63950EN, parameters of feed rates; B-63944EN, positioning (G00)"},
+    {point_is_implied, any_siemens, "MD10884", "MD10884 (EXTERN_FLOATINGPOINT_PROG)", decimal_point,
+     follow_all, "SINUMERIK ISO Milling 04.07, 1.1.6, decimal point programming"},
+    {length_keeps_axis, any_siemens, "SD42940", "SD42940 (TOOL_LENGTH_CONST)", length_in_planes,
+     follow_all,
+     "SINUMERIK ONE, NC programming 12/2019, 2.8.3; 3.13.3.4, tool length and plane change"},
+    {change_selects_edge, any_siemens, "MD20270", "MD20270 (CUTTING_EDGE_DEFAULT)", edge_of_change,
+     follow_all, "SINUMERIK 840D sl, Function Manual W1, 11/2006, selection of the cutting edge"},
+    {machine_moves_tip, any_siemens, "MD10760", "MD10760 (G53_TOOLCORR)", machine_coordinates,
+     follow_all, "SINUMERIK ISO Milling 04.07, 3.1.1, machine coordinates (G53)"},
+    {length_change_moves, any_siemens, "MD20382", "MD20382 (TOOL_CORR_MOVE_MODE)",
+     siemens_length_change, follow_all, "SINUMERIK ISO Milling 04.07, appendix D, machine data"},
+    {increment_has_offset, any_siemens, "SD42440", "SD42440 (FRAME_OFFSET_INCR_PROG)",
+     offset_in_increments, follow_all,
+     "SINUMERIK 840D sl, Programming Manual Fundamentals, incremental dimensions (G91, IC)"},
+    {increment_has_length, any_siemens, "SD42442", "SD42442 (TOOL_OFFSET_INCR_PROG)",
+     length_in_increments, follow_all,
+     "SINUMERIK 840D sl, Programming Manual Fundamentals, incremental dimensions (G91, IC)"},
+    {blocks_are_deleted,
+     all,
+     {},
+     "the switch for block delete",
+     block_delete,
+     follow_all,
+     "ISO 6983-1, block delete",
+     "State block_delete = false or true under [program] in the set-up."},
+
+    {starts_in_inches, fanuc, "0#2", "parameter 0#2 (INI)", inches, go_on,
+     "Fanuc B-63950EN, parameters of setting"},
+    {starts_in_inches, haas, "setting 9", "setting 9 (Dimensioning)", dimensioning, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
+    {starts_in_inches, siemens, "MD20150[12]", "MD20150[12] (GCODE_RESET_VALUES)", siemens_units,
+     go_on, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 13"},
+    {starts_incremental, fanuc, "3402#3", "parameter 3402#3 (G91)", distance_modes, follow_all,
+     "Fanuc B-63950EN, parameters of programs"},
+    {starts_incremental,
+     haas,
+     {},
+     "whether an earlier program left G91",
+     distance_modes,
+     follow_all,
+     "Haas mill operator's manual 96-8000, setting 56",
+     program_g90},
+    {starts_incremental, siemens, "MD20150[13]", "MD20150[13] (GCODE_RESET_VALUES)",
+     siemens_distance, assume, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 14"},
+    {modes_are_initial, fanuc, "3402#6", "parameter 3402#6 (CLR)", clear_state, go_on,
+     "Fanuc B-63950EN, parameters of programs"},
+    {modes_are_initial, haas, "setting 56", "setting 56 (M30 Restore Default G)", restores_codes,
+     go_on, "Haas mill operator's manual 96-8000, settings"},
+    {starts_with_feed, fanuc, "3402#0", "parameter 3402#0 (G01)", motion_modes, follow_all,
+     "Fanuc B-63950EN, parameters of programs"},
+    {starts_in_plane, fanuc, "3402#1", "parameter 3402#1 (G18)", zx_plane, go_on,
+     "Fanuc B-63950EN, parameters of programs"},
+    {starts_in_yz, fanuc, "3402#2", "parameter 3402#2 (G19)", yz_plane, go_on,
+     "Fanuc B-63950EN, parameters of programs"},
+    {starts_in_plane, siemens, "MD20150[5]", "MD20150[5] (GCODE_RESET_VALUES)", siemens_plane,
+     go_on, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
+    {starts_without_work, siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)", siemens_work,
+     follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 8"},
+
+    {length_follows_plane, fanuc, "5001#1", "parameter 5001#1 (TLB)", length_of_plane, follow_all,
+     "Fanuc B-63943EN-1, 12.5.2, tool length compensation A, B and C"},
+    {length_follows_axis, fanuc, "5001#0", "parameter 5001#0 (TLC)", length_of_axis, follow_all,
+     "Fanuc B-63943EN-1, 12.5.2, tool length compensation A, B and C"},
+    {length_is_reloaded, fanuc, "5001#6", "parameter 5001#6 (EVO)", length_reload, follow_all,
+     "Fanuc B-63950EN, parameters of tool compensation"},
+    {entry_has_corner, fanuc, "5003#0", "parameter 5003#0 (SUP)", entry_types, follow_all,
+     "Fanuc B-63944EN-2, 6.6.2, tool movement in start-up, types A and B"},
+    {entry_is_upright, fanuc, "5003#1", "parameter 5003#1 (SUV)", upright_entry, follow_all,
+     "Fanuc B-63950EN, parameters of tool compensation"},
+
+    {drills_normal_to_plane, fanuc, "5101#0", "parameter 5101#0 (FXY)", drilling_axis, follow_all,
+     "Fanuc B-63950EN, parameters of canned cycles for drilling"},
+    {drills_where_defined, haas, "setting 28", "setting 28 (Can Cycle Act w/o X/Y)",
+     drilling_definition, follow_all, "Haas mill operator's manual 96-8000, settings"},
+    {peck_retract,
+     fanuc,
+     "5114",
+     "parameter 5114, the retract of G73,",
+     one_mm,
+     assume,
+     "Fanuc B-63950EN, parameters of canned cycles for drilling",
+     {},
+     of_lengths},
+    {peck_clearance,
+     fanuc,
+     "5115",
+     "parameter 5115, the clearance of G83,",
+     one_mm,
+     assume,
+     "Fanuc B-63950EN, parameters of canned cycles for drilling",
+     {},
+     of_lengths},
+    {peck_retract,
+     haas,
+     "setting 22",
+     "setting 22 (Can Cycle Delta Z)",
+     one_mm,
+     assume,
+     "Haas mill operator's manual 96-8000, settings",
+     {},
+     of_lengths},
+    {peck_lift,
+     haas,
+     "setting 52",
+     "setting 52 (G83 Retract Above R)",
+     no_lift,
+     assume,
+     "Haas mill operator's manual 96-8000, G83 and settings",
+     {},
+     of_lengths},
+    {shift_direction, fanuc, "5148", "parameter 5148", fanuc_shift, follow_all,
+     "Fanuc B-63950EN, parameters of canned cycles for drilling"},
+    {shift_direction, haas, "setting 27", "setting 27 (G76/G77 Shift Dir.)", haas_shift, follow_all,
+     "Haas mill operator's manual 96-8000, settings"},
+
+    {rotation_adds, fanuc, "5400#0", "parameter 5400#0 (RIN)", rotation_words, follow_all,
+     "Fanuc B-63503EN-1, 11, coordinate system rotation"},
+    {rotation_default,
+     fanuc,
+     "5410",
+     "parameter 5410",
+     {},
+     go_on,
+     "Fanuc B-63503EN-1, 11, coordinate system rotation",
+     {},
+     of_angles},
+    {scale_unit, fanuc, "5400#7", "parameter 5400#7 (SCR)", scale_steps, follow_all,
+     "Fanuc B-63950EN, parameters of scaling"},
+    {scale_default,
+     fanuc,
+     "5411",
+     "parameter 5411",
+     {},
+     go_on,
+     "Fanuc B-63950EN, parameters of scaling",
+     {},
+     of_factors},
+    {local_is_work, haas, "setting 33", "setting 33 (Coordinate System)", coordinate_system, assume,
+     "Haas mill operator's manual 96-8000, settings"},
+
+    {increment_is_finer, fanuc, "1013#1", "parameter 1013#1 (ISC)", finer, assume,
+     "Fanuc B-63950EN, parameters of axis control"},
+    {increment_is_coarser, fanuc, "1013#0", "parameter 1013#0 (ISA)", coarser, go_on,
+     "Fanuc B-63950EN, parameters of axis control"},
+    {corner_tolerance,
+     haas,
+     "setting 85",
+     "setting 85 (Maximum Corner Rounding)",
+     {},
+     go_on,
+     "Haas mill operator's manual 96-8000, settings, G187",
+     {},
+     of_lengths},
+    {arc_tolerance,
+     fanuc,
+     "3410",
+     "parameter 3410",
+     {},
+     go_on,
+     "Fanuc B-63950EN, parameters of programs",
+     {},
+     of_lengths},
+    {arc_tolerance,
+     linuxcnc,
+     "CENTER_ARC_RADIUS_TOLERANCE_MM",
+     "CENTER_ARC_RADIUS_TOLERANCE_MM",
+     {},
+     go_on,
+     "LinuxCNC 2.9, INI configuration, [RS274NGC]",
+     {},
+     of_lengths},
+    {arc_tolerance_inch,
+     linuxcnc,
+     "CENTER_ARC_RADIUS_TOLERANCE_INCH",
+     "CENTER_ARC_RADIUS_TOLERANCE_INCH",
+     {},
+     go_on,
+     "LinuxCNC 2.9, INI configuration, [RS274NGC]",
+     {},
+     of_inches},
+    {one_way_is_modal, fanuc, "5431#0", "parameter 5431#0 (MDL)", one_way, assume,
+     "Fanuc B-63950EN, parameters of single direction positioning"},
+};
+
+/// A position of all of X, Y and Z; other axes are at 0 unless stated.
+AxisValues whole(const SettingValue& value) {
+    const Position& position = std::get<Position>(value);
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
+    return values;
+}
+
+constexpr ControlSetting settings[] = {
+    {fanuc, "1240", "first reference point (G28), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.home = whole(value); },
+     "Fanuc B-63950EN, parameters of coordinates"},
+    {fanuc, "1241", "second reference point (G30), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.second_home = whole(value); },
+     "Fanuc B-63950EN, parameters of coordinates"},
+    {fanuc, "1242", "third reference point (G30 P3), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.further_homes[0] = whole(value); },
+     "Fanuc B-63950EN, parameters of coordinates"},
+    {fanuc, "1243", "fourth reference point (G30 P4), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.further_homes[1] = whole(value); },
+     "Fanuc B-63950EN, parameters of coordinates"},
+    {fanuc, "5440", "overrun of G60 for each axis, with the sign of the last approach",
+     SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.one_way_approach = whole(value); },
+     "Fanuc B-63944EN, 4.2, single direction positioning (G60)"},
+    {haas, "setting 35", "G60 offset: the distance past the target before G60 turns back",
+     SettingKind::number,
+     [](Environment& to, const SettingValue& value) {
+         to.one_way_approach.emplace().fill(-std::get<double>(value));
+     },
+     "Haas mill operator's manual 96-8000, settings, G60"},
+    {linuxcnc, "TOOL_CHANGE_POSITION", "where M6 moves to", SettingKind::position,
+     [](Environment& to, const SettingValue& value) {
+         to.tool_change.position = std::get<Position>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [EMCIO]"},
+    {linuxcnc, "TOOL_CHANGE_AT_G30", "whether M6 moves to the reference point of G30",
+     SettingKind::flag,
+     [](Environment& to, const SettingValue& value) {
+         to.tool_change.goes_to_second_home = std::get<bool>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [EMCIO]"},
+    {linuxcnc, "TOOL_CHANGE_QUILL_UP", "whether M6 moves Z to machine zero first",
+     SettingKind::flag,
+     [](Environment& to, const SettingValue& value) {
+         to.tool_change.quill_up = std::get<bool>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [EMCIO]"},
+    {linuxcnc, "TOOL_CHANGE_WITH_SPINDLE_ON", "whether M6 leaves the spindle running",
+     SettingKind::flag,
+     [](Environment& to, const SettingValue& value) {
+         to.tool_change.keeps_spindle_running = std::get<bool>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [EMCIO]"},
+    {linuxcnc, "RS274NGC_STARTUP_CODE", "codes that are executed before the program",
+     SettingKind::text,
+     [](Environment& to, const SettingValue& value) {
+         to.startup_code = std::get<std::string>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [RS274NGC]"},
+    {linuxcnc, "WRAPPED_ROTARY", "letters of the rotary axes with WRAPPED_ROTARY = 1",
+     SettingKind::text,
+     [](Environment& to, const SettingValue& value) {
+         to.wrapped_axes = std::get<std::string>(value);
+     },
+     "LinuxCNC 2.9, INI configuration, [AXIS]"},
+    {linuxcnc, "ORIENT_OFFSET", "angle added to R of M19: moves no axis", SettingKind::number,
+     [](Environment&, const SettingValue&) {}, "LinuxCNC 2.9, INI configuration, [RS274NGC]"},
+};
+
+constexpr ControlPreset::Value fanuc_as_delivered[] = {{"5006#6", 0}, {"6001#6", 0}};
+
+// Values that makers deliver differently, or that builders change as a rule, are not in a preset.
+constexpr ControlPreset presets[] = {
+    {"fanuc-0i-mf", DialectId::fanuc, "Fanuc 0i-MF, parameters as delivered", fanuc_as_delivered},
+    {"fanuc-30i", DialectId::fanuc, "Fanuc 30i, 31i and 32i, parameters as delivered",
+     fanuc_as_delivered},
+    {"haas-ngc", DialectId::haas, "Haas Next Generation Control", {}},
+    {"linuxcnc-2.9", DialectId::linuxcnc, "LinuxCNC 2.9", {}},
+    {"sinumerik-840d-sl", DialectId::siemens, "SINUMERIK 840D sl", {}},
+    {"tnc-640", DialectId::heidenhain, "Heidenhain TNC 640", {}},
+    {"grbl-1.1", DialectId::grbl, "Grbl 1.1", {}},
+};
+
+template <typename Row>
+bool has_dialect(const Row& row, DialectId dialect) {
+    return std::find(row.dialects.begin(), row.dialects.end(), dialect) != row.dialects.end();
+}
+
+template <typename Row>
+const Row* find_row(std::span<const Row> rows, std::string_view key, DialectId dialect) {
+    for (const Row& row : rows)
+        if (!key.empty() && row.key == key && has_dialect(row, dialect)) return &row;
+    return nullptr;
+}
+
+} // namespace
+
+std::optional<double> ControlParameter::answer_of(double number) const {
+    for (const ParameterValue& value : values)
+        if (value.number == number) return value.answer;
+    return range.contains(number) ? std::optional(number) : std::nullopt;
+}
+
+std::string ControlParameter::choices() const {
+    if (range.lowest < range.highest)
+        return fmt::format("a number from {:g} to {:g} ({})", range.lowest, range.highest,
+                           range.unit);
+    std::string text;
+    for (const ParameterValue& value : values) {
+        if (!text.empty()) text += &value == &values.back() ? " or " : ", ";
+        text += value.word.empty() ? fmt::format("{:g}", value.number)
+                                   : fmt::format("\"{}\"", value.word);
+    }
+    return text;
+}
+
+std::span<const ControlParameter> control_parameters() { return parameters; }
+
+const ControlParameter* find_parameter(ControlQuestion question, DialectId dialect) {
+    for (const ControlParameter& parameter : parameters)
+        if (parameter.question == question && has_dialect(parameter, dialect)) return &parameter;
+    return nullptr;
+}
+
+const ControlParameter* find_parameter(std::string_view key, DialectId dialect) {
+    return find_row<ControlParameter>(parameters, key, dialect);
+}
+
+std::span<const ControlSetting> control_settings() { return settings; }
+
+const ControlSetting* find_setting(std::string_view key, DialectId dialect) {
+    return find_row<ControlSetting>(settings, key, dialect);
+}
+
+std::span<const ControlPreset> control_presets() { return presets; }
+
+const ControlPreset* find_preset(std::string_view name) {
+    const auto* found = std::find_if(std::begin(presets), std::end(presets),
+                                     [&](const auto& preset) { return preset.name == name; });
+    return found == std::end(presets) ? nullptr : found;
+}
+
+} // namespace gcode

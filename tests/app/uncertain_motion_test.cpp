@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include "tests/app/checked.h"
+
+namespace app_test {
+namespace {
+
+using test_support::SetupWriter;
+
+/// A cube of 40 with its centre where the axes A and C intersect; G54 is the centre of its top. The
+/// tool is 10 mm wide and 95 mm long.
+SetupWriter cube() {
+    return SetupWriter()
+        .machine(SetupWriter::mill()
+                 + SetupWriter::axis("A", "side = \"table\"\npoint = [-350, -200, -440]\n")
+                 + SetupWriter::axis("C", "side = \"table\"\npoint = [-350, -200, -440]\n"))
+        .stock("box = [[-20, -20, -40], [20, 20, 0]]");
+}
+
+std::string text(const std::string& blocks) {
+    return "G21 G90 G40 G49 G17\nT1 M6\nG54\nS6000 M3\n" + blocks + "\nM2\n";
+}
+
+Checked check_siemens(const SetupWriter& setup, const std::string& blocks) {
+    return check(setup, "G710 G90 G17 G54\nT1\nM6\nD1 S6000 M3\n" + blocks + "\nM30\n",
+                 {"--dialect", "siemens"});
+}
+
+TEST(FollowingAxes, ABlockWithTheWorkTurnedIsUndecidedUnderTraori) {
+    const Checked checked = check_siemens(
+        cube(), "G0 X-40 Y0 Z50\nTRAORI\nZ40\nA30\nX-30\nA0\nX-40\nTRAFOOF\nX-30\nA30\nA0");
+    EXPECT_EQ(checked.errors(), "undecided 8");
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_EQ(checked.verdict, "undecided");
+    EXPECT_NE(checked.finding("undecided").message.find("TRAORI in line 6"), std::string::npos);
+    for (const int line : {8, 9, 10}) EXPECT_EQ(checked.at_line(line).verdict, "undecided") << line;
+    for (const int line : {7, 11, 13, 14, 15})
+        EXPECT_EQ(checked.at_line(line).verdict, "clear") << line;
+}
+
+TEST(FollowingAxes, APositionIsUnknownAfterAChangeWithTheWorkTurned) {
+    const Checked checked = check_siemens(
+        cube(), "G0 X-40 Y0 Z50\nA30\nTRAORI\nTRAFOOF\nA0\nX-30\nG91 Y1 Z1\nG90 Y1\nZ50\n"
+                "X-40");
+    EXPECT_EQ(checked.errors(), "undecided 9");
+    for (const int line : {9, 10, 11, 12, 13})
+        EXPECT_EQ(checked.at_line(line).verdict, "undecided") << line;
+    EXPECT_EQ(checked.at_line(14).verdict, "clear");
+}
+
+TEST(FollowingAxes, NothingIsUndecidedWhileTheRotaryAxesAreAtZero) {
+    const Checked turned = check_siemens(cube(), "TRAORI\nG0 X-40 Y0 Z50\nC360\nZ40");
+    EXPECT_EQ(turned.errors(), "undecided 7"); // C turns once
+    EXPECT_EQ(turned.at_line(8).verdict, "clear");
+    const Checked still = check_siemens(cube(), "TRAORI\nM77\nG0 X-40 Y0 Z50\nZ40");
+    EXPECT_EQ(still.errors(), "");
+    EXPECT_EQ(still.verdict, "clear");
+    const Checked three_axes =
+        check_siemens(SetupWriter().stock("box = [[-20, -20, -40], [20, 20, 0]]"),
+                      "TRAORI\nM77\nG0 X-40 Y0 Z50\nZ40");
+    EXPECT_EQ(three_axes.errors(), "");
+}
+
+TEST(FollowingAxes, AnUnknownMCodeMayDoItTooUnlessTheSetupKnowsIt) {
+    const std::string program = text("G0 G43 H1 Z50.\nM428\nX-40. Y0\nA30.\nX-30.\nA0\nX-20.");
+    const Checked unknown = check(cube(), program, {"--dialect", "linuxcnc"});
+    EXPECT_EQ(unknown.errors(), "undecided 8");
+    EXPECT_NE(unknown.finding("undecided").message.find("M428 in line 6"), std::string::npos);
+    EXPECT_EQ(unknown.at_line(11).verdict, "clear");
+    const Checked known = check(cube().program("machine_codes = [428]\n"
+                                               "start = { X = -350, Y = -200, Z = 0 }\n"),
+                                program, {"--dialect", "linuxcnc"});
+    EXPECT_EQ(known.errors(), "");
+}
+
+TEST(FollowingAxes, WhatAnUndecidedBlockCutsStaysInTheStock) {
+    const Checked checked = check_siemens(
+        cube(), "G0 X-40 Y0 Z50\nTRAORI\nC1\nZ-3\nG1 X40 F600\nG0 Z50\nC0\nTRAFOOF\nG0 X-40\nZ-3\n"
+                "G1 X40 F600");
+    EXPECT_EQ(checked.at_line(9).removed, 0.0);
+    EXPECT_NEAR(checked.at_line(15).removed, 40.0 * 10.0 * 3.0, 30.0);
+}
+
+TEST(FollowingAxes, ATurnTheOtherWayRoundIsUndecided) {
+    const Checked checked = check_siemens(cube(), "G0 X-40 Y0 Z50\nC=DC(350)\nC=DC(10)\nC=DC(170)");
+    EXPECT_EQ(checked.errors(), "undecided 6");
+    EXPECT_EQ(checked.at_line(7).verdict, "undecided");
+    EXPECT_EQ(checked.at_line(8).verdict, "clear");
+}
+
+TEST(UndescribedAxes, AreFollowedAndBlocksAwayFromZeroAreUndecided) {
+    const test_support::ScopedFolder folder;
+    const std::string program = folder.write(
+        "p.nc", "G21 G90 G54\nT1 M6 (T1 D=10 END MILL)\nS6000 M3\nG43 H1 Z50.\nG0 X-40. Y0\nZ-3.\n"
+                "G1 X40. F600.\nG0 Z50.\nA90.\nX-40.\nZ-3.\nG1 X40.\nG0 Z50.\nA360.\nX-40.\nM30\n");
+    const Checked checked = check_files(program, "", {"--dialect", "fanuc"});
+    EXPECT_EQ(checked.status, 1) << checked.err;
+    EXPECT_EQ(checked.errors(), "undecided 9");
+    EXPECT_EQ(checked.verdict, "undecided");
+    EXPECT_EQ(checked.at_line(7).verdict, "clear");
+    EXPECT_EQ(checked.at_line(12).verdict, "undecided");
+    EXPECT_EQ(checked.at_line(12).removed, 0.0);
+    EXPECT_EQ(checked.at_line(15).verdict, "clear");
+    bool assumed = false;
+    for (const std::string& each : checked.assumptions)
+        assumed = assumed || each.find("axis A turns the table") != std::string::npos;
+    EXPECT_TRUE(assumed);
+}
+
+/// Two tools of the same diameter; the holder of the short one meets the clamp at Z-5.
+SetupWriter two_tools(const std::string& first_name, const std::string& second_name) {
+    const std::string shape = "shape = \"flat\"\ndiameter = 10\nflute_length = 20\n";
+    return SetupWriter()
+        .lengths("")
+        .tool("number = 4\nname = \"" + first_name + "\"\n" + shape
+              + "shank = [[10, 10, 60]]\nholder = [[40, 40, 50]]\n")
+        .also_tool("number = 5\nname = \"" + second_name + "\"\n" + shape
+                   + "shank = [[10, 10, 2]]\nholder = [[40, 40, 50]]\n")
+        .fixture("clamp", "box = [[40, 116, -30], [60, 130, 20]]\n");
+}
+
+const std::string past_the_clamp = "D1 S6000 M3\nG0 X-20 Y106 Z50\nZ-5\nX120\nZ50";
+
+std::string called(const std::string& name) {
+    return "G710 G90 G17 G54\nT=\"" + name + "\"\nM6\n" + past_the_clamp + "\nM30\n";
+}
+
+Checked check_called(const SetupWriter& setup, const std::string& name) {
+    return check(setup, called(name), {"--dialect", "siemens"});
+}
+
+TEST(NamedTool, IsThatOfTheSetup) {
+    const SetupWriter setup = two_tools("LONG", "SHORT");
+    EXPECT_EQ(check_called(setup, "LONG").at_line(7).verdict, "clear");
+    EXPECT_EQ(check_called(setup, "SHORT").at_line(7).verdict, "collision");
+    EXPECT_EQ(check_called(setup, "short").at_line(7).tool, 5);
+    EXPECT_EQ(check_called(setup, "5").at_line(7).tool, 5);
+}
+
+TEST(NamedTool, IsUndecidedIfSeveralHaveTheName) {
+    const Checked checked = check_called(two_tools("MILL", "MILL"), "MILL");
+    EXPECT_EQ(checked.errors(), "undecided 2");
+    EXPECT_EQ(checked.at_line(7).tool, 4);
+    EXPECT_EQ(checked.at_line(7).verdict, "undecided");
+    EXPECT_EQ(checked.verdict, "undecided");
+}
+
+TEST(NamedTool, WithAnUnknownNameGetsANumberThatNoToolHas) {
+    const Checked checked =
+        check_called(two_tools("LONG", "SHORT").also_tool(test_support::flat_10), "OTHER");
+    EXPECT_EQ(checked.at_line(7).tool, 2);
+    EXPECT_EQ(checked.status, 1);
+    EXPECT_NE(checked.of_severity("warning").find("tool-not-in-table"), std::string::npos);
+}
+
+TEST(NamedTool, IsCalledByHeidenhainToo) {
+    const auto line_of = [](const std::string& name) {
+        return check(two_tools("LONG", "SHORT"),
+                     "BEGIN PGM T MM\nTOOL CALL \"" + name
+                         + "\" Z S6000\nL X-20 Y+106 Z+50 FMAX M3\nL Z-5 FMAX\nL X+120 FMAX\n"
+                           "L Z+50 FMAX\nM30\nEND PGM T MM\n",
+                     {"--dialect", "heidenhain"})
+            .at_line(5);
+    };
+    EXPECT_EQ(line_of("LONG").tool, 4);
+    EXPECT_EQ(line_of("LONG").verdict, "clear");
+    EXPECT_EQ(line_of("SHORT").verdict, "collision");
+}
+
+TEST(CuttingEdge, OtherThanTheFirstIsUndecided) {
+    const std::string blocks = "G0 X-20 Y50 Z50\nZ20\nD2\nZ10\nD1\nZ20";
+    const Checked checked = check_siemens(SetupWriter(), blocks);
+    EXPECT_EQ(checked.errors(), "undecided 7");
+    EXPECT_EQ(checked.at_line(6).verdict, "clear");
+    EXPECT_EQ(checked.at_line(8).verdict, "undecided");
+    EXPECT_EQ(checked.at_line(10).verdict, "clear");
+}
+
+TEST(CuttingEdge, ZeroCancelsTheLength) {
+    // The gauge line goes to Z20, so the tip, 95 mm below, goes through the stock.
+    const Checked checked = check_siemens(SetupWriter(), "G0 X50 Y50 Z120\nZ100 D0\nZ20");
+    EXPECT_EQ(checked.at_line(7).verdict, "collision");
+}
+
+} // namespace
+} // namespace app_test

@@ -1,0 +1,171 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "core/motion/corner.h"
+#include "tests/support/blended_corner.h"
+
+namespace core {
+namespace {
+
+using test_support::blended;
+using test_support::on_a_circle;
+using test_support::StraightCorner;
+
+struct Limit {
+    double deviation = 0.0, distance = infinity;
+};
+
+AxisValues values_at(const Vec3& p) { return {p.x, p.y, p.z}; }
+
+Leg leg(const Vec3& from, const Vec3& to) {
+    return {.positions = {values_at(from), values_at(to)}};
+}
+
+std::optional<CornerRegion> region_of(const StraightCorner& path, const Limit& limit) {
+    const std::vector<Leg> before = {leg(path.a, path.corner)}, after = {leg(path.corner, path.b)};
+    return corner_region(before, after, limit.deviation, limit.distance);
+}
+
+Vec3 point(const AxisValues& values) { return {values[0], values[1], values[2]}; }
+
+double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+    const double length = glm::dot(b - a, b - a);
+    const double at = length > 0.0 ? std::clamp(glm::dot(p - a, b - a) / length, 0.0, 1.0) : 0.0;
+    return glm::distance(p, a + at * (b - a));
+}
+
+double distance_to_path(const Vec3& p, const CornerRegion& region) {
+    double least = infinity;
+    for (const Leg& one : region.along)
+        least = std::min(least, distance_to_segment(p, point(one.positions.front()),
+                                                    point(one.positions.back())));
+    return least;
+}
+
+/// How far a point is outside of a triangle in whose plane it is, or of the line that it is flat
+/// to.
+double outside(const Vec3& p, const CornerRegion& region) {
+    const std::vector<AxisValues>& at = region.hull.positions;
+    const Vec3 a = point(at.at(0)), b = point(at.at(1)), c = point(at.at(2));
+    const Vec3 normal = glm::cross(b - a, c - a);
+    const auto is_inside = [&](const Vec3& from, const Vec3& to) {
+        return glm::dot(glm::cross(to - from, p - from), normal) >= 0.0;
+    };
+    if (is_inside(a, b) && is_inside(b, c) && is_inside(c, a)) return 0.0;
+    return std::min(
+        {distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+struct RandomCorners {
+    std::mt19937 rng{4711};
+    double between(double low, double high) {
+        return std::uniform_real_distribution(low, high)(rng);
+    }
+    Vec3 vector(double size) {
+        return {between(-size, size), between(-size, size), between(-size, size)};
+    }
+    StraightCorner next() {
+        const Vec3 corner = vector(100.0);
+        return {corner + vector(80.0), corner, corner + vector(80.0)};
+    }
+};
+
+TEST(CornerRegion, ContainsMachinesThatBlendWithinATolerance) {
+    RandomCorners random;
+    int near_half = 0, by_tolerance = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const StraightCorner path = random.next();
+        const double tolerance = std::exp(random.between(-5.0, 2.5));
+        const auto region = region_of(path, {tolerance});
+        ASSERT_TRUE(region);
+        const auto positions =
+            blended(path, random.between(500.0, 5000.0), random.between(10.0, 700.0), tolerance);
+        double farthest = 0.0;
+        for (const Vec3& p : positions) {
+            EXPECT_LE(outside(p, *region), 1e-6);
+            farthest = std::max(farthest, distance_to_path(p, *region));
+        }
+        EXPECT_LE(farthest, tolerance + 1e-6);
+        const double reach = glm::distance(positions.front(), path.corner);
+        const double half =
+            0.5 * std::min(glm::distance(path.a, path.corner), glm::distance(path.b, path.corner));
+        near_half += reach > 0.95 * half;
+        by_tolerance +=
+            glm::distance(positions[positions.size() / 2], path.corner) > 0.95 * tolerance;
+    }
+    EXPECT_GT(near_half, 50) << "the length of the moves limits some";
+    EXPECT_GT(by_tolerance, 500) << "the tolerance limits most";
+}
+
+TEST(CornerRegion, ContainsCirclesAndParabolasWithinADistance) {
+    RandomCorners random;
+    for (int i = 0; i < 2000; ++i) {
+        const StraightCorner path = random.next();
+        const double distance = std::exp(random.between(-3.0, 3.5));
+        const auto region = region_of(path, {0.5 * distance, distance});
+        ASSERT_TRUE(region);
+        const double before = std::min(distance, glm::distance(path.a, path.corner));
+        const double after = std::min(distance, glm::distance(path.b, path.corner));
+        const Vec3 in = glm::normalize(path.corner - path.a);
+        const Vec3 out = glm::normalize(path.b - path.corner);
+        auto positions = on_a_circle(path, random.between(0.0, std::min(before, after)));
+        for (int k = 0; k <= 100; ++k) {
+            const double t = 0.01 * k;
+            positions.push_back(path.corner - before * (1.0 - t) * (1.0 - t) * in
+                                + after * t * t * out);
+        }
+        for (const Vec3& p : positions) {
+            EXPECT_LE(outside(p, *region), 1e-6);
+            EXPECT_LE(distance_to_path(p, *region), 0.5 * distance + 1e-9);
+        }
+    }
+}
+
+TEST(CornerRegion, ContainsCirclesWithinATolerance) {
+    RandomCorners random;
+    for (int i = 0; i < 2000; ++i) {
+        const StraightCorner path = random.next();
+        const double half =
+            0.5 * std::min(glm::distance(path.a, path.corner), glm::distance(path.b, path.corner));
+        const auto positions = on_a_circle(path, random.between(0.0, half));
+        double tolerance = infinity;
+        for (const Vec3& p : positions)
+            tolerance = std::min(tolerance, glm::distance(p, path.corner));
+        const auto region = region_of(path, {tolerance});
+        ASSERT_TRUE(region);
+        for (const Vec3& p : positions) EXPECT_LE(outside(p, *region), 1e-6);
+    }
+}
+
+TEST(CornerRegion, EndsAtTheLimits) {
+    const StraightCorner path{{0, -100, 0}, {0, 0, 0}, {40, 0, 0}};
+    const auto reach = [&](const Limit& limit) {
+        const std::vector<AxisValues> at = region_of(path, limit)->hull.positions;
+        return std::pair(-at.front()[1], at.back()[0]);
+    };
+    EXPECT_EQ(reach({1e3}), std::pair(50.0, 20.0)) << "half of either move";
+    EXPECT_EQ(reach({5.0, 10.0}), std::pair(10.0, 10.0));
+    EXPECT_EQ(reach({50.0, 100.0}), std::pair(100.0, 40.0)) << "the whole moves";
+    EXPECT_NEAR(reach({0.1}).first, 0.4 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(CornerRegion, IsEmptyWhereNothingIsRounded) {
+    const Limit limit{1.0};
+    EXPECT_FALSE(region_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}}, limit)) << "straight on";
+    EXPECT_FALSE(region_of({{0, 0, 0}, {10, 0, 0}, {10, 0, 0}}, limit)) << "no second move";
+    EXPECT_FALSE(region_of({{0, 0, 0}, {10, 0, 0}, {10, 9, 0}}, {}));
+    EXPECT_TRUE(region_of({{0, 0, 0}, {10, 0, 0}, {0, 0, 0}}, limit)) << "a reversal";
+}
+
+TEST(CornerRegion, HasNoHullWhereRotaryAxesTurn) {
+    Leg turning = leg({10, 0, 0}, {10, 10, 0});
+    turning.positions[1][3] = 90.0;
+    const std::vector<Leg> before = {leg({0, 0, 0}, {10, 0, 0})}, after = {turning};
+    const auto region = corner_region(before, after, 1.0);
+    ASSERT_TRUE(region);
+    EXPECT_TRUE(region->hull.positions.empty());
+}
+
+} // namespace
+} // namespace core

@@ -1,0 +1,15 @@
+O1 (G187 E: corners may be rounded by 5 mm, over a clamp)
+G21 G90 G17 G40 G49 G80 G94
+G54
+T1 M6
+G43 H1 G0 Z100.
+S1000 M3
+G0 X50. Y20. Z60.
+G0 Z2.
+G1 Z-1. F500.
+G1 Y25.
+G0 Z22.5
+G187 P1 E5.
+G1 Y138. F20000
+G1 Z-25.
+M30

@@ -1,0 +1,15 @@
+0 BEGIN PGM T MM
+1 ; cycle 32 lets the control leave the path by 5 mm, over a clamp
+2 TOOL CALL 1 Z S1000
+3 L X+50 Y+20 Z+60 R0 FMAX M3
+4 L Z+2 FMAX
+5 L Z-1 F500
+6 L Y+25
+7 L Z+22.5 FMAX
+8 CYCL DEF 32.0 TOLERANZ
+9 CYCL DEF 32.1 T5
+10 L Y+138 F5000
+11 L Z-25
+12 L Z+100 FMAX
+13 M30
+14 END PGM T MM
