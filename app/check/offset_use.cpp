@@ -11,7 +11,7 @@
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
-#include "gcode/language/modal_state.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 namespace {
@@ -24,10 +24,7 @@ constexpr double path_error = 0.5;  // mm, of chords
 
 /// "G54", "G59.1", "G54.1 P7"; without a work offset, a name for that.
 std::string name_of_offset(size_t index) {
-    if (index < 6) return fmt::format("G{}", 54 + index);
-    if (index < gcode::plain_offset_count) return fmt::format("G59.{}", index - 5);
-    if (index >= gcode::no_work_offset) return "machine coordinates";
-    return fmt::format("G54.1 P{}", index - gcode::plain_offset_count + 1);
+    return index >= gcode::no_work_offset ? "machine coordinates" : gcode::name_of_offset(index);
 }
 
 /// The path of the tool over a motion, in the frame of the stock.

@@ -16,6 +16,7 @@
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "core/sim/clearance.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 
@@ -44,7 +45,8 @@ core::Transform read_pose(TableReader& table) {
 }
 
 core::Transform read_frame(TableReader& table, const BodyContext& context) {
-    const std::string frame = table.string("frame").value_or("G54");
+    std::string frame = table.string("frame").value_or("G54");
+    if (const auto offset = gcode::offset_of_name(frame)) frame = gcode::name_of_offset(*offset);
     if (const auto found = context.frames.find(frame)) return *found;
     std::vector<std::string> known;
     for (const auto& [name, transform] : context.frames.machine_from) known.push_back(name);

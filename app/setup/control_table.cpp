@@ -25,15 +25,40 @@ void read_preset(TableReader& table, const char* key, StatedControl& control) {
     std::vector<std::string_view> names;
     for (const gcode::ControlPreset& preset : gcode::control_presets())
         names.push_back(preset.name);
-    if (const auto name = table.word(key, names)) control.preset = gcode::find_preset(*name);
+    if (!table.has(key)) return;
+    if (!table.is_text(key))
+        return table.refuse(
+            key, fmt::format("must be the name of a control in quotes: {}", fmt::join(names, " ")));
+    const std::string name = core::lower_case(table.string(key).value_or(""));
+    control.preset = gcode::find_preset(name);
+    if (!control.preset) table.word(key, names); // refuses it
 }
 
 std::vector<std::string> known_keys() {
-    std::vector<std::string> keys;
+    std::vector<std::string> keys = {"preset"};
     for (const ControlParameter& parameter : gcode::control_parameters())
         if (!parameter.key.empty()) keys.emplace_back(parameter.key);
     for (const ControlSetting& setting : gcode::control_settings()) keys.emplace_back(setting.key);
     return keys;
+}
+
+/// The key that was probably meant: that of a parameter with this name, such as "5006#6" for TOS,
+/// else the most similar one.
+std::string suggestion(const std::string& key) {
+    std::string plain; // "SETTING_9" is "setting 9"
+    for (const char c : key) {
+        const bool is_digit = c >= '0' && c <= '9';
+        if (is_digit && !plain.empty() && plain.back() >= 'a' && plain.back() <= 'z') plain += ' ';
+        plain += c == '_' || c == '-' ? ' ' : core::lower(c);
+    }
+    for (const ControlParameter& parameter : gcode::control_parameters()) {
+        const std::string name = core::lower_case(parameter.name);
+        if (!parameter.key.empty() && name.ends_with(fmt::format("({})", core::lower_case(key))))
+            return std::string(parameter.key);
+    }
+    const std::vector<std::string> keys = known_keys();
+    if (std::find(keys.begin(), keys.end(), plain) != keys.end()) return plain;
+    return core::nearest_name(key, keys);
 }
 
 template <typename Row>
@@ -122,7 +147,7 @@ void read_key(TableReader& table, const char* key, StatedControl& control) {
     if (const auto* setting = row_named(gcode::control_settings(), key))
         return read_setting(table, key, *setting, control);
     table.refuse(key, fmt::format("is not a parameter that Feeler knows; did you mean \"{}\"?",
-                                  core::nearest_name(key, known_keys())));
+                                  suggestion(key)));
 }
 
 void answer(const ControlParameter& parameter, double number, gcode::Environment& environment,
@@ -154,7 +179,8 @@ gcode::SettingValue in_mm(gcode::SettingValue value, const gcode::Environment& e
 } // namespace
 
 void read_control(TableReader& root, StatedControl& control) {
-    if (root.is_text("control")) return read_preset(root, "control", control);
+    if (root.has("control") && !root.is_table("control"))
+        return read_preset(root, "control", control);
     auto table = root.table("control", "[control]");
     if (!table) return;
     read_preset(*table, "preset", control);

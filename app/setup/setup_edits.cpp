@@ -112,6 +112,7 @@ core::Result<void> apply(const SetupEdits& edits, SetupFile& file) {
             "tool {} is as stated: {}{}", core::value_of(number), fmt::join(stated.stated, ", "),
             stated.stated.empty() ? "all of it" : "; the rest is unchanged"));
         file.environment.tool_lengths[number] = tool.length;
+        if (!tool.description.length_is_guess) file.environment.guessed_lengths.erase(number);
         file.environment.tool_diameters[number] = tool.description.diameter;
         file.setup.tools.insert_or_assign(number, std::move(tool));
     }

@@ -21,6 +21,7 @@
 #include "core/base/text.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
+#include "gcode/language/canonical.h"
 #include "gcode/language/control.h"
 
 namespace app {
@@ -212,9 +213,6 @@ bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& 
 namespace {
 
 constexpr const char* axis_keys[] = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
-constexpr const char* offset_names[] = {"G54", "G55",   "G56",   "G57",  "G58",
-                                        "G59", "G59.1", "G59.2", "G59.3"};
-
 core::Result<toml::table> parse(const std::string& path) {
     auto parsed = read_toml(path);
     if (!parsed && parsed.error().message.find("'allowance'") != std::string::npos)
@@ -244,20 +242,26 @@ void apply_settings(const ProgramSettings& settings, SetupFile& file,
 }
 
 void read_offsets(TableReader& table, SetupFile& file) {
-    for (size_t i = 0; i < std::size(offset_names); ++i) {
-        auto offset = table.table(offset_names[i], fmt::format("[offsets] {}", offset_names[i]));
-        if (!offset) continue;
-        gcode::AxisValues& origin = file.environment.work_offsets[i];
+    for (const std::string& name : table.keys()) {
+        const auto index = gcode::offset_of_name(name);
+        if (!index) continue; // refused below
+        auto offset = table.table(name.c_str(), "[offsets] " + name);
+        if (!offset) return;
+        gcode::AxisValues& origin = file.environment.writable_work_offset(*index);
         const gcode::AxisValues of_variables = std::exchange(origin, {});
         for (size_t axis = 0; axis < core::axis_count; ++axis)
             origin[axis] = offset->number_or(axis_keys[axis], 0.0);
         if (of_variables != gcode::AxisValues{} && of_variables != origin)
-            file.assumptions.push_back(
-                fmt::format("{} is taken from [offsets]; the variables file has another value",
-                            offset_names[i]));
+            file.assumptions.push_back(fmt::format(
+                "{} is taken from [offsets]; the variables file has another value", name));
         offset->finish();
-        file.offsets_set.insert(static_cast<int>(i));
+        if (!file.offsets_set.insert(static_cast<int>(*index)).second)
+            table.refuse(name.c_str(),
+                         fmt::format("is the same work offset as {}, which is stated, "
+                                     "too",
+                                     gcode::name_of_offset(*index)));
     }
+    for (size_t i = 0; i < gcode::plain_offset_count; ++i) table.allow(gcode::name_of_offset(i));
     table.finish();
 }
 
@@ -334,7 +338,9 @@ void read_machine_table(TableReader& table, BodyContext& context,
     core::Machine& machine = context.file.setup.machine;
     if (const auto name = table.string("file"))
         read_machine_file((context.folder / *name).string(), context.file, error);
+    const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
     if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
+    if (leaves_axes_out) context.file.has_axes = false;
     const core::AxisPosition home = machine.home();
     if (home[0] && home[1] && home[2] && !context.file.environment.home) {
         gcode::AxisValues& values = context.file.environment.home.emplace();
@@ -345,17 +351,20 @@ void read_machine_table(TableReader& table, BodyContext& context,
 
 void place_offsets(BodyContext& context) {
     const core::Machine& machine = context.file.setup.machine;
+    const gcode::Environment& environment = context.file.environment;
     context.frames.machine_from["machine"] = {};
-    for (size_t i = 0; i < std::size(offset_names); ++i) {
-        const gcode::AxisValues& set = context.file.environment.work_offsets[i];
+    const auto place = [&](size_t index) {
+        const gcode::AxisValues set = environment.work_offset(index);
         // The frame of a work offset is aligned with the machine axes when the rotary axes are at
         // their offsets.
         gcode::AxisValues rotary{};
         for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = set[axis];
-        context.frames.machine_from[offset_names[i]] =
+        context.frames.machine_from[gcode::name_of_offset(index)] =
             core::machine_from_link(machine, machine.table, rotary).inverse()
             * core::translation(machine.linear_position(set));
-    }
+    };
+    for (size_t i = 0; i < gcode::plain_offset_count; ++i) place(i);
+    for (const auto& [index, origin] : environment.extended_offsets) place(index);
 }
 
 /// Whether a body of the set-up is placed in machine coordinates.

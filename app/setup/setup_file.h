@@ -55,12 +55,13 @@ struct SetupFile {
     std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, a sentence
     std::string inferred_stock;                             // reason; empty: stated
     bool speed_by_hand = false;                             // M3 starts the spindle without S
-    bool allow_comments = false; // (feeler: allow RULE) in the program has effect
-    bool is_inferred = false;    // no file was read
-    bool has_axes = false;       // it states the machine's axes
-    bool infers_tools = false;   // no tool is stated: those of the program are inferred
-    bool infers_frame = false;   // no work offset is stated
-    bool mesh_is_stated = false; // the mesh size
+    bool allow_comments = false;  // (feeler: allow RULE) in the program has effect
+    bool is_inferred = false;     // no file was read
+    bool has_axes = false;        // it states all of the machine's axes
+    bool uses_other_axes = false; // the program moves axes that no machine describes
+    bool infers_tools = false;    // no tool is stated: those of the program are inferred
+    bool infers_frame = false;    // no work offset is stated
+    bool mesh_is_stated = false;  // the mesh size
     Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
     bool infers_start = false;            // the start position, with the work offsets
     std::string start_assumption;         // of a start position that nothing states; or empty

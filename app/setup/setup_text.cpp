@@ -7,6 +7,7 @@
 
 #include "app/base/text.h"
 #include "app/setup/setup_file.h"
+#include "gcode/language/canonical.h"
 #include "gcode/language/control.h"
 #include "gcode/language/dialect.h"
 
@@ -47,7 +48,10 @@ std::string sizes(const core::ToolDescription& tool) {
         text += before(size.key, tool);
         if (const auto value = size.of(tool)) text += key(size.key, *value);
     }
-    if (tool.touched_off)
+    if (tool.length_is_guess)
+        text += "touched_off = \"unknown\"     # length that the control uses: 0 where it matters; "
+                "state it, or remove this to use the true length\n";
+    else if (tool.touched_off)
         text += fmt::format("touched_off = {}     # length that the control uses, matching the "
                             "work offset; remove it to use the true length\n",
                             toml_number(*tool.touched_off));
@@ -109,9 +113,6 @@ std::string stock_table(const core::Solid& stock, std::string_view frame) {
 
 namespace {
 
-constexpr const char* offset_keys[] = {"G54", "G55",       "G56",       "G57",      "G58",
-                                       "G59", "\"G59.1\"", "\"G59.2\"", "\"G59.3\""};
-
 /// A text as comment lines; a line end in it does not end the comment.
 std::string comment(const std::string& text) {
     std::string lines;
@@ -172,6 +173,9 @@ std::string machine_text(const SetupFile& setup) {
     if (!setup.environment.home) return {};
     constexpr const char* directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
     std::string text;
+    if (setup.uses_other_axes)
+        text +=
+            "\n[machine]\nother_axes = \"not described\"     # remove it when all axes are below\n";
     for (size_t axis = 0; axis < 3; ++axis)
         text += fmt::format("\n[[machine.axis]]{}\nname = \"{}\"\ndirection = {}\nhome = {}\n",
                             axis == 0 ? "     # add min, max and rapid (mm/min)" : "",
@@ -182,12 +186,30 @@ std::string machine_text(const SetupFile& setup) {
 
 std::string offsets_text(const SetupFile& setup) {
     std::string text = "\n[offsets]     # machine coordinates of each origin\n";
-    for (size_t i = 0; i < std::size(offset_keys); ++i) {
-        const gcode::AxisValues& origin = setup.environment.work_offsets[i];
-        text += fmt::format("{} = {{ X = {}, Y = {}, Z = {} }}\n", offset_keys[i],
-                            toml_number(origin[0]), toml_number(origin[1]), toml_number(origin[2]));
-    }
+    const auto add = [&](size_t index, const gcode::AxisValues& origin) {
+        const std::string name = gcode::name_of_offset(index);
+        const bool is_bare_key = name.find_first_of(". ") == std::string::npos;
+        text +=
+            fmt::format("{} = {{ X = {}, Y = {}, Z = {} }}\n", is_bare_key ? name : toml_text(name),
+                        toml_number(origin[0]), toml_number(origin[1]), toml_number(origin[2]));
+    };
+    for (size_t i = 0; i < gcode::plain_offset_count; ++i)
+        add(i, setup.environment.work_offsets[i]);
+    for (const auto& [index, origin] : setup.environment.extended_offsets) add(index, origin);
     return text;
+}
+
+/// The work offset at whose origin the stock is mounted.
+std::string stock_frame(const SetupFile& setup) {
+    const core::Vec3& mount = setup.setup.stock_mount.link_from_body.translation;
+    const auto is_mount = [&](const gcode::AxisValues& origin) {
+        return core::Vec3(origin[0], origin[1], origin[2]) == mount;
+    };
+    for (size_t i = 0; i < gcode::plain_offset_count; ++i)
+        if (is_mount(setup.environment.work_offsets[i])) return gcode::name_of_offset(i);
+    for (const auto& [index, origin] : setup.environment.extended_offsets)
+        if (is_mount(origin)) return gcode::name_of_offset(index);
+    return "G54";
 }
 
 std::string rules_text(const SetupFile& setup) {
@@ -210,7 +232,7 @@ std::string setup_text(const SetupFile& setup, const std::string& program) {
     if (setup.setup.allowance)
         text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
     text += program_text(setup) + control_text(setup) + machine_text(setup) + offsets_text(setup)
-            + stock_table(setup.setup.stock, "G54");
+            + stock_table(setup.setup.stock, stock_frame(setup));
     for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_table(tool.description);
     return text + rules_text(setup);
 }

@@ -28,6 +28,7 @@ public:
 
     bool has(const char* key) const { return table_.contains(key); }
     bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
+    bool is_table(const char* key) const { return table_.get(key) && table_.get(key)->is_table(); }
     bool is_text(const char* key) const { return table_.get(key) && table_.get(key)->is_string(); }
 
     /// The length of the first row of a list of rows; 0 if there is none.
@@ -64,6 +65,9 @@ public:
 
     /// The names of all keys. Does not mark them as read.
     std::vector<std::string> keys() const;
+
+    /// Marks a key as one that could have been given, for suggestions.
+    void allow(const std::string& key) { known_.insert(key); }
 
     /// Records an error in the value of a key, unless there was one before.
     void refuse(const char* key, const std::string& why);

@@ -38,6 +38,17 @@ void read_centre(TableReader& table, core::ToolDescription& tool) {
         tool.centre_radius = 0.5 * diameter.value_or(usual_centre * tool.diameter);
 }
 
+/// The length in the control: a number, or "unknown", which is checked as 0.
+void read_touched_off(TableReader& table, core::ToolDescription& tool) {
+    constexpr const char* key = "touched_off";
+    if (!table.is_text(key)) {
+        tool.touched_off = table.number(key);
+    } else if (table.word(key, {"unknown"})) {
+        tool.touched_off = 0.0;
+        tool.length_is_guess = true;
+    }
+}
+
 } // namespace
 
 std::vector<std::string> notes_on(const core::ToolDescription& tool) {
@@ -66,7 +77,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     tool.name = table.string("name").value_or("");
     read_shape(table, tool);
     tool.shank = read_steps(table, "shank");
-    tool.touched_off = table.number("touched_off");
+    read_touched_off(table, tool);
     read_holder(table, context, tool);
     const auto spindle = table.word("spindle", {"clockwise", "counterclockwise"});
     tool.cuts = spindle == "counterclockwise" ? core::SpindleDirection::counterclockwise
@@ -80,6 +91,7 @@ void read_tool(TableReader& table, BodyContext& context) {
         table.refuse("number", fmt::format("= {} is defined twice", *number));
     file.environment.tool_names.emplace(tool.name, tool.number);
     file.environment.tool_lengths[tool.number] = assembled->length;
+    if (tool.length_is_guess) file.environment.guessed_lengths.insert(tool.number);
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
     for (std::string& note : notes_on(tool)) file.assumptions.push_back(std::move(note));
 }

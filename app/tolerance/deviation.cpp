@@ -115,7 +115,8 @@ core::Result<void> deviate(const StatedWorld& world, const Deviation& deviation,
     core::Setup& setup = world.setup;
     switch (deviation.quantity) {
     case Quantity::work_offset:
-        world.environment.work_offsets[deviation.offset][static_cast<size_t>(deviation.axis)] += by;
+        world.environment.writable_work_offset(
+            deviation.offset)[static_cast<size_t>(deviation.axis)] += by;
         break;
     case Quantity::stock:
         setup.stock_mount.link_from_body.translation += along(deviation.axis, by);

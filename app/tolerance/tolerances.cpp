@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <numeric>
 #include <thread>
 
 #include <fmt/format.h>
@@ -159,7 +160,11 @@ void ToleranceStudy::add(std::vector<Task>& tasks, const Deviation& deviation) {
 }
 
 void ToleranceStudy::add_places(std::vector<Task>& tasks) {
-    for (size_t offset = 0; offset < check_.file.environment.work_offsets.size(); ++offset)
+    std::vector<size_t> offsets(gcode::plain_offset_count);
+    std::iota(offsets.begin(), offsets.end(), size_t{0});
+    for (const auto& [offset, origin] : check_.file.environment.extended_offsets)
+        offsets.push_back(offset);
+    for (const size_t offset : offsets)
         for (int axis = 0; axis < 3; ++axis)
             add(tasks, {.quantity = Quantity::work_offset, .axis = axis, .offset = offset});
     for (int axis = 0; axis < 3; ++axis) add(tasks, {.quantity = Quantity::stock, .axis = axis});

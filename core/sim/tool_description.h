@@ -88,6 +88,7 @@ struct ToolDescription {
     std::optional<double> stick_out;      // tip to the holder's lower face
     std::optional<double> gauge_length;   // tip to the gauge line
     std::optional<double> touched_off; // length in the control; correct, the tool was touched off
+    bool length_is_guess = false;      // nobody stated the length in the control
     SpindleDirection cuts = SpindleDirection::clockwise;
     bool cuts_at_centre = true;
     double centre_radius = 0.0; // it does not cut within this radius when it plunges

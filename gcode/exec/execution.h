@@ -153,11 +153,9 @@ core::Result<void> call_subprogram(Execution& execution);   // M96 to M99, M198
 core::Result<void> call_macro(Execution& execution);        // G65 to G67, and the calls of G66
 
 /// The number of a tool that the program calls by name: that of the set-up's tool of this name; the
-/// name itself if it is a number; else the lowest number that no tool of the set-up has and that
-/// none of `others` got, the names called before that the set-up does not have. Adds such a name
-/// to `others`, with a remark.
-core::ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where,
-                              std::vector<std::string>& others);
+/// name itself if it is a number; else the number under which `named_tools` of the state has it. A
+/// new name gets the lowest free number, with a remark.
+core::ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where);
 
 /// The diameter in the control's table for the D word of a block, mm; 0 with a warning if it is
 /// unknown.

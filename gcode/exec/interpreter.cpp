@@ -430,6 +430,8 @@ InterpreterState initial_state(const Environment& environment) {
     Tables& tables = state.tables.write();
     for (size_t i = 0; i < plain_offset_count; ++i)
         tables.work[i].origin = environment.work_offsets[i];
+    for (const auto& [index, origin] : environment.extended_offsets)
+        writable_work_offset(tables, index).origin = origin;
     tables.lengths = environment.length_offsets;
     tables.tool_lengths = environment.tool_lengths;
     tables.tool_diameters = environment.tool_diameters;

@@ -132,6 +132,12 @@ struct DecimalPoints {
     bool operator==(const DecimalPoints&) const = default;
 };
 
+/// A tool that the program calls by a name.
+struct NamedTool {
+    std::string name;
+    core::ToolNumber number;
+};
+
 /// The state between two blocks. A plain value: copy it to step back. Copies share large members
 /// until one of them changes.
 struct InterpreterState {
@@ -156,6 +162,7 @@ struct InterpreterState {
     SharedLanguageState language;
     bool is_iso_mode = false; // Siemens: ISO mode since G291
     Shared<LoopDetector> loops;
+    std::vector<NamedTool> named_tools; // called by names that the set-up lacks
     RuleState rules;
     Shared<Readings> readings; // not restored when a block fails
 };

@@ -219,6 +219,7 @@ uint64_t digest_of(const InterpreterState& state) {
     add(digest, *state.tables);
     add(digest, *state.spline);
     if (const LanguageState* own = state.language.get()) own->add_to(digest);
+    for (const NamedTool& tool : state.named_tools) digest.add(tool.name);
     digest.add(uint64_t{state.points.counts_steps});
     for (const OpenPremise& premise : state.readings->met) {
         if (!premise.id.question) continue;

@@ -17,21 +17,42 @@ using core::ErrorCode;
 using core::OffsetNumber;
 using core::ToolNumber;
 
+/// Whether nobody stated the length under an offset number.
+bool is_guess(const Execution& execution, std::optional<OffsetNumber> number) {
+    if (!number || value_of(*number) == 0) return false;
+    if (execution.state.tables->lengths.contains(*number)) return false;
+    const ToolNumber tool{value_of(*number)};
+    return !execution.environment.tool_lengths.contains(tool)
+           || execution.environment.guessed_lengths.contains(tool);
+}
+
 /// Whether a change of the length offset moves an axis in this block although the block does not
 /// say where to.
 ///
 /// Source: Fanuc B-63943EN-1, 12.5.2: with TOS = 1 a block without a move command does not move.
-bool moves_by_change(Execution& execution, const AxisValues& offset) {
+bool moves_by_change(Execution& execution, const AxisValues& offset, bool is_by_guess) {
     const ModalState& modal = execution.modal();
     const bool are_positions =
         modal.distance == DistanceMode::absolute || in_machine_coordinates(execution);
     const auto is_left_out = [&](size_t axis) {
         const bool is_said = execution.statement.word(axis_letters[axis]) && are_positions;
-        return offset[axis] != modal.offsets.tool[axis] && !is_said && modal.position[axis];
+        const bool changes = offset[axis] != modal.offsets.tool[axis] || (axis == 2 && is_by_guess);
+        return changes && !is_said && modal.position[axis];
     };
     if (!is_left_out(0) && !is_left_out(1) && !is_left_out(2)) return false;
     return answer_to(execution.state, execution.environment, ControlQuestion::length_change_moves,
                      execution.block.line);
+}
+
+/// A move in Z by a length that nobody stated: it can end anywhere.
+void lose_height(Execution& execution) {
+    execution.modal().position[2].reset();
+    execution.result.warnings.push_back(
+        {Severity::warning,
+         {execution.block.line, execution.column, 0},
+         "Z moves by the tool length, which is not stated: where it goes is not known",
+         core::rule_id("undecided"),
+         "State touched_off, or the holder and the stick-out, of each tool in the set-up."});
 }
 
 void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
@@ -40,7 +61,10 @@ void use_offset(Execution& execution, std::optional<OffsetNumber> number, const 
     Offsets offsets = modal.offsets;
     offsets.tool = offset;
     offsets.follows_tip = follows_tip;
-    const bool moves = moves_by_change(execution, offset);
+    const bool is_by_guess =
+        number != modal.length_number
+        && (is_guess(execution, number) || is_guess(execution, modal.length_number));
+    const bool moves = moves_by_change(execution, offset, is_by_guess);
     const Position position = modal.position;
     const AxisValues old = modal.offsets.tool;
     change_offsets(execution, offsets);
@@ -50,6 +74,7 @@ void use_offset(Execution& execution, std::optional<OffsetNumber> number, const 
     // The programmed position stays, so the machine moves: with the axes of this block, or alone.
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (offset[axis] != old[axis]) modal.position[axis] = position[axis];
+    if (is_by_guess) return lose_height(execution);
     if (execution.statement.has_axis_word()) return;
     if (modal.motion == MotionCode::straight && modal.feed)
         execution.feed(modal.position, *modal.feed);
@@ -224,12 +249,13 @@ std::vector<ToolNumber> tools_named(const Environment& environment, std::string_
     return exact.empty() ? similar : exact;
 }
 
-/// The number of the tool whose name is the one at `place` among those that the set-up lacks.
-ToolNumber free_tool_number(const Environment& environment, size_t place) {
+/// A number that no tool of the set-up has, and none whose name it lacks.
+ToolNumber free_tool_number(const Environment& environment, const std::vector<NamedTool>& named) {
     std::set<ToolNumber> taken;
     for (const auto& [name, number] : environment.tool_names) taken.insert(number);
+    for (const NamedTool& tool : named) taken.insert(tool.number);
     int number = 1;
-    while (taken.contains(ToolNumber(number)) || place-- > 0) ++number;
+    while (taken.contains(ToolNumber(number))) ++number;
     return ToolNumber(number);
 }
 
@@ -242,8 +268,7 @@ std::string list_of(const std::vector<ToolNumber>& numbers) {
 
 } // namespace
 
-ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where,
-                        std::vector<std::string>& others) {
+ToolNumber tool_of_name(Execution& execution, std::string_view name, core::SourceSpan where) {
     const Environment& environment = execution.environment;
     const std::vector<ToolNumber> found = tools_named(environment, name);
     if (found.size() > 1) {
@@ -261,11 +286,12 @@ ToolNumber tool_of_name(Execution& execution, std::string_view name, core::Sourc
     const char* end = name.data() + name.size();
     const auto read = std::from_chars(name.data(), end, number);
     if (read.ec == std::errc() && read.ptr == end && number >= 0) return ToolNumber(number);
-    const auto known = std::find(others.begin(), others.end(), name);
-    const auto place = static_cast<size_t>(known - others.begin());
-    const ToolNumber chosen = free_tool_number(environment, place);
-    if (known != others.end()) return chosen;
-    others.emplace_back(name);
+    std::vector<NamedTool>& named = execution.state.named_tools;
+    const auto known = std::find_if(named.begin(), named.end(),
+                                    [&](const NamedTool& tool) { return tool.name == name; });
+    if (known != named.end()) return known->number;
+    const ToolNumber chosen = free_tool_number(environment, named);
+    named.push_back({std::string(name), chosen});
     const bool has_tools = !environment.tool_names.empty();
     execution.warn(where,
                    fmt::format("\"{}\" is tool {} here: {}", name, value_of(chosen),

@@ -277,13 +277,7 @@ namespace {
 /// The number or name after TOOL CALL and TOOL DEF; empty if there is neither.
 core::Result<std::optional<ToolNumber>> tool_of_block(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
-    if (!command.tool_name.empty()) {
-        std::vector<std::string> names = klartext_of(execution.state).tool_names;
-        const ToolNumber number = tool_of_name(execution, command.tool_name, command.span, names);
-        if (names.size() > klartext_of(execution.state).tool_names.size())
-            writable_klartext(execution.state).tool_names = std::move(names);
-        return number;
-    }
+    if (!command.tool_name.empty()) return tool_of_name(execution, command.tool_name, command.span);
     const Word* tool = execution.statement.word('T');
     if (!tool) return std::nullopt;
     FEELER_TRY(const int number, whole_number(*tool, 0, 32767));
@@ -397,7 +391,6 @@ void add(Digest& digest, const KlartextState& klartext) {
                          + 4 * int(klartext.turns_short_way)));
     digest.add(klartext.call_feed);
     digest.add(klartext.datum);
-    for (const std::string& name : klartext.tool_names) digest.add(name);
     add(digest, klartext.transforms);
 }
 

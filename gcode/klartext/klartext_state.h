@@ -77,7 +77,6 @@ struct KlartextState {
     bool calls_after_motions = false; // M89
     std::optional<double> call_feed;  // F of TOOL CALL, mm/min
     Transforms transforms;
-    std::vector<std::string> tool_names; // called, but not in the set-up
     bool turns_short_way = false;        // M126
     bool looks_ahead = false; // searching the motion after a corner; corners are ignored meanwhile
 

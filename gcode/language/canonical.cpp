@@ -1,6 +1,7 @@
 #include "gcode/language/canonical.h"
 
 #include <array>
+#include <charconv>
 
 #include <fmt/format.h>
 
@@ -37,7 +38,25 @@ std::string name_of_offset(size_t index) {
     if (index == no_work_offset) return "G500";
     if (index < 6) return fmt::format("G{}", 54 + index);
     if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
-    return fmt::format("P{}", index - plain_offset_count + 1);
+    return fmt::format("G54.1 P{}", index - plain_offset_count + 1);
+}
+
+std::optional<size_t> offset_of_name(std::string_view name) {
+    for (size_t index = 0; index < plain_offset_count; ++index)
+        if (name == name_of_offset(index)) return index;
+    const auto number_after = [&](std::string_view code, size_t least, size_t most) {
+        size_t number = 0;
+        if (!name.starts_with(code)) return number;
+        const char* end = name.data() + name.size();
+        const auto read = std::from_chars(name.data() + code.size(), end, number);
+        const bool is_valid = read.ec == std::errc() && read.ptr == end;
+        return is_valid && number >= least && number <= most ? number : size_t{0};
+    };
+    for (const char* code : {"G54.1 P", "G154 P"})
+        if (const size_t number = number_after(code, 1, extended_offset_count))
+            return plain_offset_count + number - 1;
+    const size_t siemens = number_after("G", 505, 599);
+    return siemens > 0 ? std::optional(siemens - 505 + 4) : std::nullopt;
 }
 
 } // namespace gcode

@@ -173,8 +173,12 @@ bool is_motion(const CanonicalCommand& command);
 /// The name of a command in traces: straight_traverse, arc_feed, change_tool ...
 std::string_view command_name(const CanonicalCommand& command);
 
-/// G54 to G59.3, then P1 and up; G500 for no offset.
+/// G54 to G59.3, then "G54.1 P1" and up; G500 for no offset.
 std::string name_of_offset(size_t index);
+
+/// The index of a work offset by its name on any control: also "G154 P7", and Siemens' G505 to
+/// G599.
+std::optional<size_t> offset_of_name(std::string_view name);
 
 /// XY, ZX, YZ, UV, WU or VW.
 std::string_view name_of(Plane plane);

@@ -113,8 +113,10 @@ struct Environment {
     LengthUnit machine_unit = LengthUnit::mm;   // unit of LinuxCNC's offsets and start positions
     std::optional<LengthUnit> units_at_start{}; // of the program; empty: not stated
     std::array<AxisValues, plain_offset_count> work_offsets{};
+    std::map<size_t, AxisValues> extended_offsets{}; // by index, from plain_offset_count on
     std::map<core::OffsetNumber, LengthOffset> length_offsets{};
     std::map<core::ToolNumber, double> tool_lengths{};   // for H numbers not in the table
+    std::set<core::ToolNumber> guessed_lengths{};        // of tool_lengths: nobody stated them
     std::map<core::ToolNumber, double> tool_diameters{}; // for D numbers not in the table
     // The tools that the set-up describes, by name; under "" those without a name.
     std::multimap<std::string, core::ToolNumber> tool_names{};
@@ -139,6 +141,16 @@ struct Environment {
     // modes. Empty values are passed as 0.
     std::function<void(double)> on_system_read = {};
     std::shared_ptr<const core::Machine> machine{}; // only if the machine has rotary axes
+
+    /// The origin of a work offset; zero if it is not stated.
+    AxisValues work_offset(size_t index) const {
+        if (index < plain_offset_count) return work_offsets[index];
+        const auto found = extended_offsets.find(index);
+        return found == extended_offsets.end() ? AxisValues{} : found->second;
+    }
+    AxisValues& writable_work_offset(size_t index) {
+        return index < plain_offset_count ? work_offsets[index] : extended_offsets[index];
+    }
 };
 
 } // namespace gcode

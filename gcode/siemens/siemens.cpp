@@ -532,10 +532,7 @@ core::Result<void> use_siemens_tool(Execution& execution) {
         FEELER_TRY(const int number, whole_number(*word, 0, 99999999));
         if (auto done = select(execution, number, word->span); !done) return done;
     } else if (name.kind == SiemensArgument::Kind::text) {
-        std::vector<std::string> names = siemens_of(execution.state).tool_names;
-        const ToolNumber number = tool_of_name(execution, name.text, name.span, names);
-        if (names.size() > siemens_of(execution.state).tool_names.size())
-            writable_siemens(execution.state).tool_names = std::move(names);
+        const ToolNumber number = tool_of_name(execution, name.text, name.span);
         if (auto done = select(execution, value_of(number), name.span); !done) return done;
     }
     const CodeWord* entry = execution.statement.of(ModalGroup::tool_change);
@@ -650,7 +647,6 @@ void add(Digest& digest, const SiemensState& siemens) {
     for (const double value :
          {siemens.feed_rounding, siemens.rapid_rounding, siemens.contour_tolerance})
         digest.add(value);
-    for (const std::string& name : siemens.tool_names) digest.add(name);
 }
 
 namespace {

@@ -60,7 +60,6 @@ struct SiemensState {
     double feed_rounding = 0.0, rapid_rounding = 0.0; // ADIS and ADISPOS, mm
     double contour_tolerance = 0.0;                   // CTOL and CYCLE832, mm; 0: of the machine
     bool compresses = false; // COMPON, COMPCURV, COMPCAD: joins short moves
-    std::vector<std::string> tool_names;
 
     bool operator==(const SiemensState&) const = default;
 };

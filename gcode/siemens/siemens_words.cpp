@@ -167,15 +167,15 @@ core::Result<void> select_siemens_offset(Execution& execution) {
                        ? WorkOffset{}
                        : work_offset(*execution.state.tables, offsets.active);
     execution.column = entry->word->span.column;
-    if (code >= 505)
-        execution.warn(
-            entry->word->span,
-            code - 505 + 4 < static_cast<int>(plain_offset_count)
-                ? fmt::format("G{} is the offset called {} in the set-up", code,
-                              name_of_offset(offsets.active))
-                : fmt::format("G{}: this offset is unknown and assumed to be zero", code),
-            code - 505 + 4 < static_cast<int>(plain_offset_count) ? Severity::note
-                                                                  : Severity::warning);
+    const bool is_plain = offsets.active < plain_offset_count;
+    if (code >= 505 && is_plain)
+        execution.warn(entry->word->span,
+                       fmt::format("G{} is the offset called {} in the set-up", code,
+                                   name_of_offset(offsets.active)),
+                       Severity::note);
+    else if (code >= 505 && !execution.environment.extended_offsets.contains(offsets.active))
+        execution.warn(entry->word->span,
+                       fmt::format("G{}: this offset is unknown and assumed to be zero", code));
     change_siemens_offsets(execution, offsets, execution.modal().offset_travel);
     execution.emit(SetOffset{offsets});
     return {};

@@ -208,6 +208,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadControl{"[control]\nTOOL_CHANGE_AT_G30 = 1\n", "true or false"},
                     BadControl{"[control]\nTOOL_CHANGE_POS = [0, 0, 0]\n",
                                "did you mean \"TOOL_CHANGE_POSITION\""},
+                    BadControl{"[control]\npresett = \"fanuc-0i-mf\"\n", "did you mean \"preset\""},
+                    BadControl{"[control]\nTOS = 1\n", "did you mean \"5006#6\""},
+                    BadControl{"[control]\nSETTING9 = \"MM\"\n", "did you mean \"setting 9\""},
+                    BadControl{"control = 5\n", "the name of a control in quotes: fanuc-0i-mf"},
                     BadControl{"[program.values]\nX = 1\n", "is not the name of a variable"}));
 
 } // namespace

@@ -106,7 +106,7 @@ TEST(Offsets, G52IsItsOwnInFanucAndG92InLinuxcnc) {
 
 TEST(Offsets, APMakesG54AnotherOffset) {
     for (const DialectId dialect : {DialectId::fanuc, DialectId::haas}) {
-        EXPECT_EQ(trace("G54 P1", dialect), "set_offset offset=P1 x=0 y=0 z=0\n");
+        EXPECT_EQ(trace("G54 P1", dialect), "set_offset offset=G54.1 P1 x=0 y=0 z=0\n");
         EXPECT_EQ(error_of("G54 G4 P500", dialect), "");
     }
 }

@@ -17,6 +17,7 @@
 #include "core/base/rule_table.h"
 #include "core/dbm/solid.h"
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/canonical.h"
 #include "gcode/language/dialect.h"
 
 namespace app {
@@ -27,18 +28,27 @@ using core::Vec3;
 
 constexpr double between = 500.0; // mm in X between workpieces, leaves room for holders and rapids
 
-std::string name_of_work_area(size_t offset) {
-    if (offset < 6) return fmt::format("G{}", 54 + offset);
-    if (offset < gcode::plain_offset_count) return fmt::format("G59.{}", offset - 5);
-    return fmt::format("G54.1 P{}", offset - gcode::plain_offset_count + 1);
-}
-
 /// The work offset with most of the feed travel; empty if nothing is cut.
 std::optional<size_t> main_offset(const ProgramSurvey& seen) {
     std::optional<size_t> main;
     for (const auto& [offset, area] : seen.work_areas)
         if (!main || area.way > seen.work_areas.at(*main).way) main = offset;
     return main;
+}
+
+/// Puts the numbered work offsets that a program uses where the plain ones are, unless it sets them
+/// itself.
+///
+/// Result: whether there is one.
+bool assume_extended_offsets(gcode::Environment& environment, const ProgramSurvey& seen) {
+    bool has_any = false;
+    for (const auto& [offset, area] : seen.work_areas) {
+        if (offset < gcode::plain_offset_count || offset >= gcode::no_work_offset || area.is_set)
+            continue;
+        has_any = environment.extended_offsets.emplace(offset, environment.work_offsets[0]).second
+                  || has_any;
+    }
+    return has_any;
 }
 
 /// Moves the work offsets of a bare set-up apart, as for workpieces clamped side by side, unless
@@ -52,18 +62,17 @@ std::vector<std::string> move_apart(gcode::Environment& environment, const Progr
     double edge = seen.work_areas.at(*main).reach.max.x;
     for (const auto& [offset, area] : seen.work_areas) {
         if (offset == *main) continue;
-        others.push_back(name_of_work_area(offset));
-        if (offset >= environment.work_offsets.size()) continue; // at machine zero, high above
+        others.push_back(gcode::name_of_offset(offset));
         const double shift = edge + between - area.reach.min.x;
-        environment.work_offsets[offset][0] += shift;
+        environment.writable_work_offset(offset)[0] += shift;
         edge = area.reach.max.x + shift;
     }
     return {fmt::format("the program cuts in {} and {}, assumed to be separate workpieces. The "
                         "stock is at {}, where most is cut; there is none at {}, so cuts there "
                         "are not checked: to check them, state the offsets and a stock in a "
                         "set-up",
-                        name_of_work_area(*main), fmt::join(others, ", "), name_of_work_area(*main),
-                        fmt::join(others, ", "))};
+                        gcode::name_of_offset(*main), fmt::join(others, ", "),
+                        gcode::name_of_offset(*main), fmt::join(others, ", "))};
 }
 
 /// A tool number that is not in use.
@@ -110,6 +119,10 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         } else if (file.infers_tools) {
             missing.push_back(unknown_tool(number, mills(number), unit));
         }
+    }
+    for (FoundTool& found : missing) {
+        const auto name = seen.tool_names.find(found.tool.number);
+        if (name != seen.tool_names.end()) found.tool.name = name->second;
     }
     const bool one_is_held = seen.feeds_before_call || !seen.calls_tools;
     if (!one_is_held || !file.setup.tools.empty() || file.setup.tool_at_start) return missing;
@@ -196,7 +209,8 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
 /// Result: the reason; empty for all other programs.
 std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
     std::string why;
-    if (const auto turning = turning_reason(program); turning && file.is_inferred) {
+    if (const auto turning = turning_reason(program);
+        turning && (file.is_inferred || stands_for_no_stock(file.setup.stock))) {
         why = fmt::format("this is a lathe program, because {}. Turning is not checked: there is "
                           "no stock, and only the codes are checked",
                           *turning);
@@ -237,8 +251,8 @@ Known known_offsets(const SetupFile& file, const ProgramSurvey& seen) {
     const bool has_table = !file.infers_frame && !file.environment.parameters.empty();
     for (const auto& [offset, area] : seen.work_areas) {
         const bool is_stated = file.offsets_set.contains(static_cast<int>(offset));
-        const bool is_in_table = has_table && offset < file.environment.work_offsets.size()
-                                 && file.environment.work_offsets[offset] != gcode::AxisValues{};
+        const bool is_in_table =
+            has_table && file.environment.work_offset(offset) != gcode::AxisValues{};
         if (!is_stated && !is_in_table && !area.is_set) return Known::inferred;
     }
     return Known::described;
@@ -287,6 +301,7 @@ void withdraw_start(SetupFile& file, const gcode::Program& program) {
 /// What is assumed of axes that the program moves and no machine describes.
 void assume_axes(SetupFile& file, const ProgramSurvey& seen) {
     if (file.has_axes) return;
+    file.uses_other_axes = !seen.other_axes.empty();
     for (const size_t axis : seen.other_axes)
         file.assumptions.push_back(fmt::format(
             "axis {} {}, so blocks are checked only while it is at 0, and the stock is inferred "
@@ -329,7 +344,9 @@ core::Result<SetupFile> infer_setup(const gcode::Program& program,
 
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
     withdraw_start(file, program);
-    const ProgramSurvey first = survey(program, file.environment, sizes(file, true));
+    ProgramSurvey first = survey(program, file.environment, sizes(file, true));
+    if (file.infers_frame && assume_extended_offsets(file.environment, first))
+        first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
     put_tools(file, tools, first, 0.0);
     assume_axes(file, first);
@@ -339,7 +356,8 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     std::vector<std::string> about_stock;
     if (file.infers_frame) about_stock = move_apart(file.environment, first);
     if (!file.needs_stock) choose_mesh_size(file);
-    if (!file.needs_stock && tools.empty() && !file.is_inferred) return {};
+    const bool has_stock = !file.needs_stock && !stands_for_no_stock(file.setup.stock);
+    if (has_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
     const auto offset = file.infers_frame ? main_offset(first) : std::nullopt;
     const ProgramSurvey seen = survey(program, file.environment, known, offset);
@@ -394,6 +412,7 @@ core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
     plain.tool.number = tool.number;
     plain.tool.diameter = tool.diameter;
     plain.tool.touched_off = tool.touched_off;
+    plain.tool.length_is_guess = tool.length_is_guess;
     const auto assembled = core::assemble(complete(plain).tool);
     return assembled ? *assembled : core::ToolAssembly{.description = plain.tool, .parts = {}};
 }
@@ -429,7 +448,10 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                      double control_length) {
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
-    if (file.infers_tools) tool.touched_off = control_length;
+    if (file.infers_tools) {
+        tool.touched_off = control_length;
+        tool.length_is_guess = control_length == 0.0;
+    }
     // The control's tool table may give the tool length.
     const auto entry =
         file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
@@ -444,6 +466,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
         assembled = plain_tool(tool);
     }
     file.environment.tool_lengths[tool.number] = assembled->length;
+    if (tool.length_is_guess) file.environment.guessed_lengths.insert(tool.number);
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;
     file.setup.tools.insert_or_assign(tool.number, *std::move(assembled));
     return whole.assumed;

@@ -111,8 +111,8 @@ void add_work_area(const ProgramEvent& event, const TipTrack& path,
     if (is_new) area->second.zero = zero_of(event.offsets);
     for (const Vec3& p : path.positions) area->second.reach.extend(p);
     area->second.way += path.length();
-    if (active >= environment.work_offsets.size()) return;
-    const bool is_set = event.offsets.work.origin != environment.work_offsets[active];
+    if (active >= gcode::no_work_offset) return;
+    const bool is_set = event.offsets.work.origin != environment.work_offset(active);
     area->second.is_set = area->second.is_set || is_set;
     result.sets_offsets = result.sets_offsets || is_set;
 }
@@ -151,7 +151,7 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
     ProgramSurvey result;
     Notes notes{result};
     Travel travel;
-    visit_events(program, environment, [&](const ProgramEvent& event) {
+    result.tool_names = visit_events(program, environment, [&](const ProgramEvent& event) {
         std::visit(notes, event.event);
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
@@ -189,8 +189,9 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
     return result;
 }
 
-void visit_events(const gcode::Program& program, const gcode::Environment& environment,
-                  const std::function<void(const ProgramEvent&)>& visit) {
+std::map<core::ToolNumber, std::string>
+visit_events(const gcode::Program& program, const gcode::Environment& environment,
+             const std::function<void(const ProgramEvent&)>& visit) {
     gcode::ProgramLibrary library(program, gcode::dialect(environment.dialect),
                                   environment.search_path);
     gcode::Interpreter interpreter(library, environment);
@@ -199,12 +200,15 @@ void visit_events(const gcode::Program& program, const gcode::Environment& envir
     std::optional<core::ToolNumber> tool;
     while (true) {
         const auto block = interpreter.next(state);
-        if (!block || !*block) return;
+        if (!block || !*block) break;
         for (const core::Event& event : gcode::lower(**block, lowering)) {
             if (const auto* change = std::get_if<core::ToolChange>(&event)) tool = change->tool;
             visit({event, tool, lowering.offsets, (*block)->line, (*block)->is_cycle});
         }
     }
+    std::map<core::ToolNumber, std::string> names;
+    for (const gcode::NamedTool& named : state.named_tools) names.emplace(named.number, named.name);
+    return names;
 }
 
 namespace {

@@ -37,6 +37,7 @@ struct ProgramSurvey {
     bool offsets_lengths = false; // uses G43 or an equivalent
     bool feeds_before_call = false;
     std::map<core::ToolNumber, double> control_lengths; // in effect at the first feed of each tool
+    std::map<core::ToolNumber, std::string> tool_names; // by which the program calls them
     std::map<core::ToolNumber, bool> mills;             // of each tool that feeds: whether sideways
 
     std::map<size_t, WorkArea> work_areas; // by work offset with feeds, 0 is G54
@@ -77,8 +78,11 @@ struct ProgramEvent {
 };
 
 /// Runs a program to its end or its first error and reports every event. Checks nothing.
-void visit_events(const gcode::Program& program, const gcode::Environment& environment,
-                  const std::function<void(const ProgramEvent&)>& visit);
+///
+/// Result: the tools that the program calls by names which the environment lacks.
+std::map<core::ToolNumber, std::string>
+visit_events(const gcode::Program& program, const gcode::Environment& environment,
+             const std::function<void(const ProgramEvent&)>& visit);
 
 /// The path of a tool tip over one motion, machine frame; arcs as points on them.
 struct TipTrack {
