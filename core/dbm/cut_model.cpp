@@ -128,9 +128,30 @@ bool overlaps(const Aabb& box, const Square& square) {
            && box.max.y >= square.y0;
 }
 
-bool overlaps(const Aabb& box, const Square& square, const Interval& heights) {
-    return overlaps(box, square) && box.min.z <= heights.upper && box.max.z >= heights.lower;
+/// Whether the box around the cutter comes to a square, between two heights, at some moment of the
+/// move. Much sharper than the box of the whole move if that is long and oblique.
+bool comes_to(const LoggedSweep& logged, const Square& square, const Interval& heights) {
+    constexpr double slack = 1e-6; // mm, far above the rounding errors of this test
+    const Vec3 &from = logged.sweep.from, &to = logged.sweep.to;
+    const double least[] = {square.x0, square.y0, heights.lower};
+    const double most[] = {square.x1, square.y1, heights.upper};
+    double first = 0.0, last = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = std::min(from[axis], to[axis]), high = std::max(from[axis], to[axis]);
+        // The position of the tip must be between these.
+        const double lower = least[axis] - (logged.box.max[axis] - high) - slack;
+        const double upper = most[axis] + (low - logged.box.min[axis]) + slack;
+        if (high < lower || low > upper) return false;
+        const double way = to[axis] - from[axis];
+        if (high - low <= slack) continue;
+        const double at_lower = (lower - from[axis]) / way, at_upper = (upper - from[axis]) / way;
+        first = std::max(first, std::min(at_lower, at_upper));
+        last = std::min(last, std::max(at_lower, at_upper));
+    }
+    return first <= last;
 }
+
+constexpr Interval any_height{-infinity, infinity};
 
 /// The part of the intervals between two heights.
 IntervalList clipped(IntervalList all, const Interval& heights) {
@@ -147,7 +168,10 @@ std::vector<LoggedSweep> sweeps_near_cell(const CutModel& model, int i, int j) {
     std::vector<LoggedSweep> sweeps;
     for (size_t k = 0; k < runs.size(); ++k)
         for (uint32_t number = runs[k].first; number <= runs[k].last; ++number)
-            if (overlaps(model.log.box(number), cell)) sweeps.push_back(model.log[number]);
+            if (overlaps(model.log.box(number), cell)) {
+                const LoggedSweep sweep = model.log[number];
+                if (comes_to(sweep, cell, any_height)) sweeps.push_back(sweep);
+            }
     return sweeps;
 }
 
@@ -155,7 +179,7 @@ SquareCuts::SquareCuts(const CutModel& model, const std::vector<LoggedSweep>& sw
                        const Square& square, const Interval& heights)
     : SquareCuts(model, square, heights) {
     for (const LoggedSweep& sweep : sweeps)
-        if (overlaps(sweep.box, square_, heights_))
+        if (comes_to(sweep, square_, heights_))
             for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
                 cuts_.push_back({&sweep, &piece, {}, {}});
 }
@@ -166,7 +190,7 @@ SquareCuts SquareCuts::within(int number, const Interval& heights) const {
         {std::max(heights_.lower, heights.lower), std::min(heights_.upper, heights.upper)});
     const int column = number % 2, row = number / 2;
     for (const PieceCut& cut : cuts_) {
-        if (!overlaps(cut.sweep->box, part.square_, part.heights_)) continue;
+        if (!comes_to(*cut.sweep, part.square_, part.heights_)) continue;
         PieceCut& same = part.cuts_.emplace_back(PieceCut{cut.sweep, cut.piece, {}, {}});
         for (const int i : {0, 1})
             for (const int j : {0, 1}) {
@@ -225,7 +249,7 @@ IntervalList SquareCuts::column(int number) {
     for (PieceCut& cut : cuts_) {
         if (column.empty()) return column;
         const Interval left{column[0].lower, column[column.size() - 1].upper};
-        if (!overlaps(cut.sweep->box, part, left)) continue;
+        if (!comes_to(*cut.sweep, part, left)) continue;
         if (const auto gone = covered(cut, number)) column.subtract(*gone);
     }
     return column;
@@ -236,7 +260,7 @@ IntervalList SquareCuts::line_at_centre() const {
     IntervalList line = clipped(line_of(model_->solid, 2, at_x, at_y), heights_);
     for (const PieceCut& cut : cuts_) {
         if (line.empty()) return line;
-        if (!overlaps(cut.sweep->box, {at_x, at_x, at_y, at_y})) continue;
+        if (!comes_to(*cut.sweep, {at_x, at_x, at_y, at_y}, heights_)) continue;
         if (const auto gone = line_interval(cut.piece->around, cut.sweep->sweep, 2, at_x, at_y))
             line.subtract(*gone);
     }
@@ -246,7 +270,7 @@ IntervalList SquareCuts::line_at_centre() const {
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square) {
     IntervalList column = column_of(model.solid, square);
     for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
-        if (!overlaps(one.box, square)) continue;
+        if (!comes_to(one, square, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (column.empty()) return column;
             if (const auto gone = covered_heights(piece.within, one.sweep, square))
@@ -259,7 +283,7 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
     IntervalList line = line_of(model.solid, 2, x, y);
     for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
-        if (!overlaps(one.box, {x, x, y, y})) continue;
+        if (!comes_to(one, {x, x, y, y}, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (line.empty()) return line;
             if (const auto gone = line_interval(piece.around, one.sweep, 2, x, y))

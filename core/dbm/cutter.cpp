@@ -16,6 +16,51 @@ Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
     return box.grown(e.margin);
 }
 
+/// The least and the greatest distance of a line along Z from the axis of an upright tool on a
+/// move.
+Interval distances_from_axis(const CutterSweep& sweep, double x, double y) {
+    const double to_x = x - sweep.from.x, to_y = y - sweep.from.y;
+    const double way_x = sweep.to.x - sweep.from.x, way_y = sweep.to.y - sweep.from.y;
+    const double way_2 = way_x * way_x + way_y * way_y;
+    const double along = to_x * way_x + to_y * way_y;
+    const double t = way_2 > 0.0 ? std::clamp(along / way_2, 0.0, 1.0) : 0.0;
+    const auto distance_2 = [&](double at) {
+        const double off_x = to_x - at * way_x, off_y = to_y - at * way_y;
+        return off_x * off_x + off_y * off_y;
+    };
+    return {std::sqrt(distance_2(t)), std::sqrt(std::max(distance_2(0.0), distance_2(1.0)))};
+}
+
+/// Calls `act` with the pieces of a convex profile, ordered by height, that may be the lowest or
+/// the highest one on a line at one of these distances from the axis.
+template <typename Act>
+void for_outer_pieces(const RevolvedProfile& convex, const Interval& distances, const Act& act) {
+    constexpr double slack = 1e-9; // mm
+    const std::vector<ProfileElement>& pieces = convex.elements;
+    const size_t count = pieces.size();
+    const auto rim = [&](const ProfileElement& piece) { return std::max(piece.r0, piece.r1); };
+    const auto visit = [&](const auto& nth, const auto& is_beyond) {
+        // Out to this distance there is a piece that ends before the present one begins.
+        double widest = -infinity;
+        size_t passed = 0;
+        for (size_t i = 0; i < count && widest - slack <= distances.upper; ++i) {
+            const ProfileElement& piece = nth(i);
+            for (; passed < i && is_beyond(piece, nth(passed)); ++passed)
+                widest = std::max(widest, rim(nth(passed)));
+            const double reach = rim(piece) + piece.margin;
+            if (reach > widest && reach + slack >= distances.lower) act(piece);
+        }
+    };
+    visit([&](size_t i) -> const ProfileElement& { return pieces[i]; },
+          [](const ProfileElement& piece, const ProfileElement& lower) {
+              return lower.z1 <= piece.z0 - piece.margin;
+          });
+    visit([&](size_t i) -> const ProfileElement& { return pieces[count - 1 - i]; },
+          [](const ProfileElement& piece, const ProfileElement& higher) {
+              return higher.z0 >= piece.z1 + piece.margin;
+          });
+}
+
 } // namespace
 
 Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
@@ -52,14 +97,18 @@ std::optional<Interval> line_interval(const RevolvedProfile& convex, const Cutte
     // The sweep of a convex profile is convex, so the hull of what its pieces cover is covered.
     const bool upright = is_upright(sweep.orientation);
     Interval hull{infinity, -infinity};
-    for (const ProfileElement& element : convex.elements) {
+    const auto add = [&](const ProfileElement& element) {
         const ElementSweep moved{element, sweep.from, sweep.to};
         const auto part = upright ? line_interval(moved, axis, u, v)
                                   : tilted_line_interval(moved, sweep.orientation, axis, u, v);
-        if (!part) continue;
+        if (!part) return;
         hull.lower = std::min(hull.lower, part->lower);
         hull.upper = std::max(hull.upper, part->upper);
-    }
+    };
+    if (upright && axis == 2 && convex.elements.size() > 1)
+        for_outer_pieces(convex, distances_from_axis(sweep, u, v), add);
+    else
+        for (const ProfileElement& element : convex.elements) add(element);
     if (!(hull.lower < hull.upper)) return std::nullopt;
     return hull;
 }

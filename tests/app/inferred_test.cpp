@@ -130,6 +130,59 @@ TEST(InferredSetup, IsWrittenAsAFileThatMeansTheSame) {
     }
 }
 
+/// A program in a file with this name, and the program file whose set-up is written.
+struct WrittenSetUp {
+    std::string file, program;
+    std::string errors;   // expected without a set-up and with the written one
+    std::string expected; // in the written set-up
+};
+
+class SetupKeepsTheVerdict : public testing::TestWithParam<WrittenSetUp> {};
+
+TEST_P(SetupKeepsTheVerdict, OfTheBareProgram) {
+    const ScopedFolder folder;
+    const std::string program = folder.write(GetParam().file, GetParam().program);
+    const test_support::Ran written = feeler({"setup", program});
+    ASSERT_EQ(written.status, 0) << written.err;
+    EXPECT_NE(written.out.find(GetParam().expected), std::string::npos) << written.out;
+    const std::string setup = folder.write("s.toml", written.out);
+    const Checked bare = check_files(program, ""), stated = check_files(program, setup);
+    EXPECT_EQ(bare.errors(), GetParam().errors);
+    EXPECT_EQ(stated.errors(), GetParam().errors) << stated.err;
+    EXPECT_EQ(stated.verdict, bare.verdict);
+    EXPECT_EQ(stated.status, bare.status);
+}
+
+constexpr const char* fanuc_head = "%\nO0001\nG21 G90 G17 G40 G49 G80\nT2 M6\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, SetupKeepsTheVerdict,
+    testing::Values(
+        WrittenSetUp{"lengths.nc",
+                     std::string(fanuc_head)
+                         + "G54 G0 X0. Y0. S1000 M3\nG43 H2 Z50.\nZ5.\nG1 Z-2. F200.\nX50.\n"
+                           "G0 Z50.\nG49\nG65 P9000 A1.\nM30\nO9000\nM99\n%\n",
+                     "open-premise 11", "touched_off = \"unknown\""},
+        WrittenSetUp{"numbered.nc",
+                     std::string(fanuc_head)
+                         + "G54.1 P3 G0 X0. Y0. S1000 M3\nG43 H2 Z50.\nZ5.\nG1 Z-2. F200.\n"
+                           "X50.\nG0 Z50.\nG55 X0. Y0.\nZ5.\nG1 Z-2.\nX60.\nG0 Z50.\nG28 G91 Z0.\n"
+                           "M30\n%\n",
+                     "", "\"G54.1 P3\" = { X = 560"},
+        WrittenSetUp{"names.mpf",
+                     "G54 G90 G71 G17\nT=\"MILL 10\" M6\nS1000 M3\nG0 X0 Y0 Z50 D1\nZ5\n"
+                     "G1 Z-2 F200\nX50\nG0 Z50\nT=\"DRILL\" M6\nS1000 M3\nG0 X10 Y0 Z50 D1\n"
+                     "G1 Z-5 F100\nG0 Z50\nM30\n",
+                     "", "name = \"MILL 10\""},
+        WrittenSetUp{"turned.ngc",
+                     "G21 G90\nT1 M6\nS1000 M3\nG0 Z50\nX0 Y0\nZ5\nG1 Z-2 F200\nX50\nG0 Z50\n"
+                     "A90\nX0\nG1 Z-2\nX50\nG0 Z50\nA0\nM2\n",
+                     "undecided 10", "other_axes = \"not described\""},
+        WrittenSetUp{"turning.ngc",
+                     "G21 G90 G8\nT1 M6\nS1000 M3\nG0 X20 Z5\nG1 Z-30 F100\nX25\nG0 Z5\nM2\n",
+                     "undecided", "box = "}),
+    [](const auto& each) { return each.param.file.substr(0, each.param.file.find('.')); });
+
 TEST(SetupCommand, NeverWritesOverItsProgram) {
     const ScopedFolder folder;
     const std::string file = folder.write("p.nc", pocket);

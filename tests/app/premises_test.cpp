@@ -43,6 +43,18 @@ TEST(Premises, AStatedParameterDecides) {
     EXPECT_EQ(moves.find("open-premise"), std::string::npos) << moves;
 }
 
+TEST(Premises, ALengthThatNobodyStatedIsNotZero) {
+    // The control's length of the tool is not known: with TOS = 0, G49 moves Z by it.
+    const std::string program = "%\nO1\n" + lone_g49() + "%\n";
+    const test_support::ScopedFolder folder;
+    const std::string file = folder.write("p.nc", program);
+    const auto errors = [&](const std::vector<std::string>& more) {
+        return check_files(file, "", more).errors();
+    };
+    EXPECT_EQ(errors({"--dialect", "fanuc"}), "open-premise 10");
+    EXPECT_EQ(errors({"--dialect", "linuxcnc"}), "");
+}
+
 TEST(Premises, AReadingWithoutErrorsIsAnAssumption) {
     const Checked safe =
         check(plate("fanuc"), head + std::string("G0 X50. Y50.\nG0 Z200.\nG49\nM30\n"));
@@ -211,7 +223,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadControl{"[control]\npresett = \"fanuc-0i-mf\"\n", "did you mean \"preset\""},
                     BadControl{"[control]\nTOS = 1\n", "did you mean \"5006#6\""},
                     BadControl{"[control]\nSETTING9 = \"MM\"\n", "did you mean \"setting 9\""},
-                    BadControl{"control = 5\n", "the name of a control in quotes: fanuc-0i-mf"},
+                    BadControl{"[control]\npreset = 5\n",
+                               "the name of a control in quotes: fanuc-0i-mf"},
                     BadControl{"[program.values]\nX = 1\n", "is not the name of a variable"}));
 
 } // namespace

@@ -11,7 +11,6 @@ namespace core {
 namespace {
 
 constexpr double longest_stick_out = 300.0; // mm, maximum increase that is tried
-constexpr double stick_out_step = 0.01;     // mm, precision of the result
 constexpr size_t enough = 500; // maximum number of legs per tool that are checked again
 
 /// The tool with its holder, or its shank and holder, raised by `by`. Raising the holder leaves no
@@ -33,38 +32,60 @@ ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
     return tool;
 }
 
-/// Whether the part `from`, raised by `by`, keeps its allowance to the remaining stock on the leg.
-bool keeps_clear(const ExecutedLeg& cut, PartKind from, double by) {
-    const ToolAssembly longer = raised(cut.tool, from, by);
-    CutModel stock = cut.stock;
-    CheckMemory memory;
-    Statistics statistics;
-    std::vector<TrackedPair> pairs;
-    LegCheck(cut.setup, longer, FluteUse::cutting, cut.block, cut.mounted_fixtures, memory,
-             statistics)
-        .run(cut.leg, 0.0, stock, pairs);
-    return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
-        const bool concerns = from == PartKind::holder ? pair.pair.part == PartKind::holder
-                                                       : pair.pair.part == PartKind::shank;
-        return !concerns || pair.pair.fixture || pair.verdict == Verdict::clear;
-    });
-}
+/// Tries other heights of a shank or holder on a leg, against the remaining stock alone.
+class ReachTrial {
+public:
+    ReachTrial(const ExecutedLeg& cut, PartKind from)
+        : cut_(cut), from_(from), setup_(cut.setup), tool_(cut.tool) {
+        setup_.fixtures.clear();
+        setup_.machine.bodies.clear();
+        setup_.needs_only_verdict = true;
+        std::erase_if(tool_.parts, [&](const ToolPart& part) {
+            return part.kind != PartKind::flutes && part.kind != from;
+        });
+    }
 
-/// Least raise, to within `stick_out_step` and at least `known`, that keeps the leg clear, mm;
-/// `longest_stick_out` if there is none.
-double needed(const ExecutedLeg& cut, PartKind from, double known) {
-    if (keeps_clear(cut, from, known)) return known;
-    double low = known, high = std::max(1.0, 2.0 * known);
-    while (high < longest_stick_out && !keeps_clear(cut, from, high)) {
+    /// Whether the part, raised by `by`, keeps its allowance.
+    bool keeps_clear(double by) const {
+        const ToolAssembly longer = raised(tool_, from_, by);
+        CutModel stock = cut_.stock;
+        CheckMemory memory;
+        Statistics statistics;
+        std::vector<TrackedPair> pairs;
+        LegCheck(setup_, longer, FluteUse::cutting, cut_.block, {}, memory, statistics)
+            .run(cut_.leg, 0.0, stock, pairs);
+        return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
+            return pair.pair.part == PartKind::flutes || pair.verdict == Verdict::clear;
+        });
+    }
+
+private:
+    const ExecutedLeg& cut_;
+    PartKind from_;
+    Setup setup_;
+    ToolAssembly tool_; // its flutes and the part
+};
+
+/// The least raise, at least `known`, that keeps the leg clear and after which the height of the
+/// part, now `now`, is a whole tenth; `longest_stick_out` if there is none.
+double needed(const ReachTrial& trial, double now, double known) {
+    if (known > 0.0 && trial.keeps_clear(known)) return known;
+    constexpr double tenths = 10.0;
+    const auto raise = [&](int height) { return height / tenths - now; };
+    int low = static_cast<int>(std::floor(tenths * (now + known) + 1e-9));
+    const int highest = low + static_cast<int>(tenths * (longest_stick_out - known));
+    int high = low + static_cast<int>(tenths * std::max(1.0, known));
+    while (high < highest && !trial.keeps_clear(raise(high))) {
+        const int step = high - low;
         low = high;
-        high *= 2.0;
+        high += 2 * step;
     }
-    if (high >= longest_stick_out) return longest_stick_out;
-    while (high - low > stick_out_step) {
-        const double middle = 0.5 * (low + high);
-        (keeps_clear(cut, from, middle) ? high : low) = middle;
+    if (high >= highest) return longest_stick_out;
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        (trial.keeps_clear(raise(middle)) ? high : low) = middle;
     }
-    return high;
+    return raise(high);
 }
 
 /// Stated flute length, else the height of the flutes' shape, which may reach a little into the
@@ -82,14 +103,6 @@ double stick_out_of(const ToolAssembly& tool) {
 
 /// A length, rounded up to a tenth.
 double tenths_up(double length) { return std::ceil(10.0 * length - 1e-9) / 10.0; }
-
-/// By how much a part is raised so that its new height above the tip is a whole tenth, at least
-/// `more`, if the leg was tried with it and is clear; else `longest_stick_out`.
-double tried_raise(const ExecutedLeg& cut, PartKind from, double now, double more) {
-    if (more >= longest_stick_out) return more;
-    const double raise = tenths_up(now + more) - now;
-    return raise <= more || keeps_clear(cut, from, raise) ? raise : longest_stick_out;
-}
 
 /// In which blocks a length was tried.
 std::string in_blocks(const ToolReach& reach) {
@@ -197,7 +210,7 @@ void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
         double& more = is_shank ? reach.more_flute : reach.more_stick_out;
         if (reach.computations++ >= enough) continue;
         const double now = is_shank ? top_of_flutes(cut.tool) : stick_out_of(cut.tool);
-        more = tried_raise(cut, pair.pair.part, now, needed(cut, pair.pair.part, more));
+        more = needed(ReachTrial(cut, pair.pair.part), now, more);
     }
 }
 
