@@ -118,7 +118,7 @@ void check_distances(Findings& findings, const FeedFacts& facts) {
                  fmt::format("The feeds of the program span {:.1f} m in {}; no machine is that "
                              "large.",
                              (high ? size.z : longest) / 1000.0, high ? "Z" : "X or Y"),
-                 "Check for missing decimal points, and G20 or G21.");
+                 "Check for missing decimal points, and the unit of the program.");
 }
 
 /// The first block that removes material faster than any machine can.
@@ -148,7 +148,7 @@ void check_volume(Findings& findings, const CheckRecord& record) {
         findings.add(
             std::nullopt,
             fmt::format("The program removes {:.1f} m3 of material.", record.removed / 1e9),
-            "Check the size of the stock, and G20 or G21.");
+            "Check the size of the stock, and the unit of the program.");
     }
 }
 
