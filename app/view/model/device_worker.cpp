@@ -1,17 +1,14 @@
 #include "app/view/model/device_worker.h"
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/coproc/device_judge.h"
 #include "app/coproc/study/coprocessor_report.h"
+#include "app/view/model/job_thread.h"
 
 namespace app::viewer {
 namespace {
@@ -29,93 +26,28 @@ struct DeviceJob {
 
 class DeviceWorker::Thread {
 public:
-    explicit Thread(std::function<void()> wake);
-    ~Thread();
+    explicit Thread(std::function<void()> wake)
+        : jobs_(std::move(wake),
+                [this](const DeviceJob& job, uint64_t run) { run_job(job, run); }) {}
 
-    uint64_t start(const DeviceJob& job);
-    void stop();
-    DeviceUpdate take();
+    uint64_t start(DeviceJob job) { return jobs_.start(std::move(job)); }
+    void stop() { jobs_.stop(); }
+    DeviceUpdate take() { return jobs_.take(); }
 
 private:
-    void work();
     void run_job(const DeviceJob& job, uint64_t run);
     core::Result<CoprocessorResult> emulate(const DeviceJob& job, const DeviceFile& file,
                                             std::vector<uint32_t> others, uint64_t run);
-    bool is_over(uint64_t run) const { return stopping_ || runs_ != run; }
-    void deliver(DeviceUpdate news);
+    bool is_over(uint64_t run) const { return jobs_.is_over(run); }
+    /// Keeps a study that the window has not taken yet.
+    void deliver(DeviceUpdate news) {
+        jobs_.deliver(std::move(news), [](DeviceUpdate& now, DeviceUpdate& untaken) {
+            if (!now.study) now.study = std::move(untaken.study);
+        });
+    }
 
-    std::function<void()> wake_;
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::optional<DeviceJob> wanted_;
-    DeviceUpdate news_;
-    std::atomic<bool> stopping_ = false;
-    std::atomic<uint64_t> runs_ = 0; // counts starts and stops; the current run has this number
-    std::thread thread_;             // last: it uses all of the above
+    JobThread<DeviceJob, DeviceUpdate> jobs_;
 };
-
-DeviceWorker::Thread::Thread(std::function<void()> wake)
-    : wake_(std::move(wake)), thread_([this] { work(); }) {}
-
-DeviceWorker::Thread::~Thread() {
-    {
-        const std::lock_guard lock(mutex_);
-        stopping_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-}
-
-uint64_t DeviceWorker::Thread::start(const DeviceJob& job) {
-    uint64_t run = 0;
-    {
-        const std::lock_guard lock(mutex_);
-        wanted_ = job;
-        news_ = {};
-        run = ++runs_;
-    }
-    changed_.notify_all();
-    return run;
-}
-
-void DeviceWorker::Thread::stop() {
-    const std::lock_guard lock(mutex_);
-    wanted_.reset();
-    news_ = {};
-    ++runs_;
-}
-
-DeviceUpdate DeviceWorker::Thread::take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(news_, {});
-}
-
-void DeviceWorker::Thread::deliver(DeviceUpdate news) {
-    {
-        const std::lock_guard lock(mutex_);
-        if (is_over(news.run)) return;
-        // Keep a study that the window has not taken yet.
-        if (!news.study) news.study = std::move(news_.study);
-        news_ = std::move(news);
-        news_.has_news = true;
-    }
-    wake_();
-}
-
-void DeviceWorker::Thread::work() {
-    while (true) {
-        DeviceJob job;
-        uint64_t run = 0;
-        {
-            std::unique_lock lock(mutex_);
-            changed_.wait(lock, [&] { return stopping_ || wanted_; });
-            if (stopping_) return;
-            job = *std::exchange(wanted_, std::nullopt);
-            run = runs_;
-        }
-        run_job(job, run);
-    }
-}
 
 core::Result<CoprocessorResult> DeviceWorker::Thread::emulate(const DeviceJob& job,
                                                               const DeviceFile& file,
