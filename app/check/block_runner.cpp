@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/check/block_events.h"
+#include "app/check/dog_legs.h"
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
@@ -60,6 +61,13 @@ BlockRunner::BlockRunner(const PreparedCheck& check)
       setup_(&check.run.setup),
       interpreter_(*check.library, check.file.environment),
       next_(gcode::initial_state(check.file.environment)) {}
+
+BlockRunner::~BlockRunner() = default;
+
+void BlockRunner::use(const core::Setup& setup) {
+    setup_ = &setup;
+    dog_legs_.reset();
+}
 
 std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& block,
                                                 const gcode::Lowering& lowering) const {
@@ -155,7 +163,13 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
     if (before_block) before_block(block, state);
     std::swap(state.control, next_);
     state.lowering = lowering;
+    std::optional<core::BlockResult> bent;
+    if (follows_dog_legs) {
+        if (!dog_legs_) dog_legs_ = std::make_unique<const DogLegTrial>(*setup_);
+        bent = dog_legs_->run(of_block, state.machine);
+    }
     step.checked.result = core::run_block(*setup_, of_block, state.machine);
+    if (bent) step.as_dog_legs = worse_than(step.checked.result, *bent);
     add_warnings(block, state, step.findings);
     for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
     if (path < core::PathCertainty::pose_unknown)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,7 @@ struct Lowering;
 
 namespace app {
 
+class DogLegTrial;
 struct PreparedCheck;
 struct RunState;
 
@@ -25,11 +27,18 @@ core::Finding finding_of(const core::Setup& setup, const gcode::Warning& warning
 /// The finding for an alarm of the control; empty if no rule names it.
 std::optional<core::Finding> alarm_finding(const core::Setup& setup, const core::Error& error);
 
+/// What a block does if its rapids are dog-legs, where that is worse than straight.
+struct DogLegResult {
+    core::Verdict verdict = core::Verdict::clear;
+    std::vector<core::Finding> errors; // that the block lacks if its rapids are straight
+};
+
 /// The result of one block.
 struct BlockStep {
     CheckedBlock checked;
     std::vector<core::Finding> findings;
-    std::vector<core::BlockTime> timed; // blocks whose start and duration are now final
+    std::vector<core::BlockTime> timed;           // blocks whose start and duration are now final
+    std::optional<DogLegResult> as_dog_legs = {}; // if asked for, and worse
 };
 
 /// Runs the blocks of a program one at a time. All state of the run is in the RunState. The check
@@ -37,6 +46,7 @@ struct BlockStep {
 class BlockRunner {
 public:
     explicit BlockRunner(const PreparedCheck& check);
+    ~BlockRunner();
 
     // Called after the control has read a block and before it moves, with the state before
     // the block.
@@ -44,11 +54,12 @@ public:
     // Called after the control has read a block, or failed to, with the state before it and the
     // control's state after it.
     std::function<void(const RunState&, const gcode::InterpreterState&)> after_reading;
-    BlockJudge judge; // empty: the distance core measures clearances
+    BlockJudge judge;              // empty: the distance core measures clearances
+    bool follows_dog_legs = false; // also runs rapids as dog-legs
 
     const core::Setup& setup() const { return *setup_; }
     /// Uses another set-up from the next block on. It must outlive the runner.
-    void use(const core::Setup& setup) { setup_ = &setup; }
+    void use(const core::Setup& setup);
 
     /// Runs the next block; empty at the end of the program.
     ///
@@ -76,6 +87,7 @@ private:
 
     const PreparedCheck& check_;
     const core::Setup* setup_;
+    std::unique_ptr<const DogLegTrial> dog_legs_; // under this set-up, once it is needed
     gcode::Interpreter interpreter_;
     gcode::InterpreterState next_; // after the block; a member to avoid an allocation per block
 };

@@ -8,6 +8,7 @@
 
 #include "app/check/block_runner.h"
 #include "app/check/check_run.h"
+#include "app/check/dog_legs.h"
 #include "app/check/prepared_check.h"
 #include "core/base/rule_table.h"
 #include "core/sim/run/simulator.h"
@@ -188,6 +189,41 @@ bool OtherReadings::note(const RunState& before, const gcode::InterpreterState& 
     return false;
 }
 
+bool OtherReadings::has_open_rapids() const {
+    return open_rapid_parameter(check_.file.environment) != nullptr;
+}
+
+void OtherReadings::note_dog_legs(const BlockStep& step) {
+    if (!step.as_dog_legs) return;
+    const CheckedBlock& block = step.checked;
+    bent_.push_back(
+        {block.block, block.line, block.file, step.as_dog_legs->verdict, step.as_dog_legs->errors});
+}
+
+ReadingResult OtherReadings::bent_reading(const std::vector<BentBlock>& blocks,
+                                          std::vector<std::string> when) const {
+    const gcode::ControlParameter& parameter = *open_rapid_parameter(check_.file.environment);
+    gcode::OpenPremise premise = gcode::premise_of(parameter, check_.file.environment);
+    ReadingResult result;
+    result.reason = std::move(premise.reason);
+    result.assumed = premise.readings[0].when;
+    result.when = std::move(when);
+    result.when.push_back(premise.readings[1].when);
+    result.effect = premise.readings[1].effect;
+    result.cure = std::move(premise.cure);
+    result.block = blocks.front().block;
+    result.line = blocks.front().line;
+    result.file = blocks.front().file;
+    for (const BentBlock& block : blocks) {
+        result.verdict = std::max(result.verdict, block.verdict);
+        result.error_count += block.errors.size();
+        for (const core::Finding& error : block.errors)
+            if (result.errors.size() < most_shown_errors)
+                result.errors.push_back({block.line, block.file, error});
+    }
+    return result;
+}
+
 void OtherReadings::resume_runs() {
     const auto differs = [&](const StoppedRun& run) {
         const Outcomes& own = run.fork.state.control.readings->answers;
@@ -211,6 +247,8 @@ void OtherReadings::forget_from(size_t blocks) {
     std::erase_if(forks_,
                   [&](const Fork& fork) { return core::value_of(fork.result.block) >= blocks; });
     std::erase_if(assumed_, [&](const Assumed& premise) { return premise.block >= blocks; });
+    std::erase_if(bent_,
+                  [&](const BentBlock& bent) { return core::value_of(bent.block) >= blocks; });
     visited_.clear();
     stopped_.clear();
     has_too_many_ = false;
@@ -223,6 +261,8 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     const std::set<FindingKey> known = errors_of(record);
     running_ = &fork;
     BlockRunner runner(check_);
+    runner.follows_dog_legs = has_open_rapids();
+    std::vector<BentBlock> bent;
     std::set<FindingKey> errors;
     bool joins = false;
     size_t blocks = core::value_of(result.block);
@@ -236,6 +276,9 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
         if (!step || !*step) break;
         const BlockStep& done = **step;
         result.verdict = std::max(result.verdict, done.checked.result.verdict);
+        if (done.as_dog_legs)
+            bent.push_back({result.block, done.checked.line, done.checked.file,
+                            done.as_dog_legs->verdict, done.as_dog_legs->errors});
         for (const core::Finding& finding : done.findings) {
             if (finding.severity == core::Severity::error)
                 errors.insert(key_of(finding, done.checked.file, done.checked.line));
@@ -252,6 +295,9 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
             add_error(result, known, finding, {}, 0);
     if (!joins && !result.stopped && !result.continues)
         result.avoided = avoided_by(errors, result, record);
+    // One finding about rapids is enough, but the verdict is that of the worst combination.
+    for (const BentBlock& block : bent) worst_bent_ = std::max(worst_bent_, block.verdict);
+    if (!bent.empty() && bent_.empty()) bent_readings_.push_back(bent_reading(bent, result.when));
     for (const std::string& condition : state.control.readings->repeated)
         repeated_.insert(condition);
     running_ = nullptr;
@@ -267,18 +313,26 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     std::vector<core::Finding> found;
     std::set<std::string> harmless;
     repeated_ = last.readings->repeated;
+    const auto report = [&](const ReadingResult& result) {
+        core::Finding finding = finding_of(setup, result);
+        const auto is_same = [&](const core::Finding& other) {
+            return other.message == finding.message;
+        };
+        if (std::none_of(found.begin(), found.end(), is_same)) found.push_back(std::move(finding));
+        if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
+            record.verdict = std::max(record.verdict, core::Verdict::undecided);
+    };
+    const auto add_bent = [&](ReadingResult result) {
+        record.verdict = std::max(record.verdict, result.verdict);
+        report(result);
+        record.readings.push_back(std::move(result));
+    };
+    if (!bent_.empty()) add_bent(bent_reading(bent_, {}));
     for (size_t i = 0; i < forks_.size(); ++i) {
         ReadingResult result = run(std::move(forks_[i]), record, goes_on);
         record.verdict = std::max(record.verdict, result.verdict);
         if (decides(result, assumed)) {
-            core::Finding finding = finding_of(setup, result);
-            const auto is_same = [&](const core::Finding& other) {
-                return other.message == finding.message;
-            };
-            if (std::none_of(found.begin(), found.end(), is_same))
-                found.push_back(std::move(finding));
-            if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
-                record.verdict = std::max(record.verdict, core::Verdict::undecided);
+            report(result);
         } else {
             harmless.insert(fmt::format(
                 "{}: it is assumed that {}; {} if {}", place_of(result.file, result.line),
@@ -292,6 +346,10 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
         record.readings.push_back(std::move(result));
         if (i + 1 == forks_.size()) resume_runs();
     }
+    for (ReadingResult& bent : bent_readings_) add_bent(std::move(bent));
+    record.verdict = std::max(record.verdict, worst_bent_);
+    bent_readings_.clear();
+    bent_.clear();
     for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
     assumed_.clear();
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);

@@ -18,6 +18,7 @@
 
 namespace app {
 
+struct BlockStep;
 struct PreparedCheck;
 
 /// The most readings that a check follows besides the one it assumes.
@@ -34,6 +35,12 @@ public:
     /// it, and `blocks` the number of blocks run so far. Returns whether another reading has been
     /// here in the same state.
     bool note(const RunState& before, const gcode::InterpreterState& after, size_t blocks);
+
+    /// Whether rapids may be dog-legs, because nothing states what they are.
+    bool has_open_rapids() const;
+
+    /// Notes a block of the assumed reading whose rapids are worse as dog-legs.
+    void note_dog_legs(const BlockStep& step);
 
     /// Forgets the premises met from a block on.
     void forget_from(size_t blocks);
@@ -70,7 +77,19 @@ private:
         std::vector<Outcomes> others;
     };
 
+    /// A block whose rapids are worse as dog-legs.
+    struct BentBlock {
+        core::BlockIndex block{};
+        uint32_t line = 0;
+        std::string file;
+        core::Verdict verdict = core::Verdict::clear;
+        std::vector<core::Finding> errors;
+    };
+
     void assume(const gcode::OpenPremise& premise, size_t blocks);
+    /// The reading in which rapids are dog-legs, in a run to which `when` has led.
+    ReadingResult bent_reading(const std::vector<BentBlock>& blocks,
+                               std::vector<std::string> when) const;
     ReadingResult run(Fork fork, const CheckRecord& record, const std::function<bool()>& goes_on);
     bool is_known(const Crossing& crossing, const RunState& before);
     void add_fork(Fork fork);
@@ -83,6 +102,9 @@ private:
     std::vector<StoppedRun> stopped_;
     std::set<std::string> repeated_; // conditions that a run has met again
     std::vector<Assumed> assumed_;
+    std::vector<BentBlock> bent_;                     // of the reading that the check assumes
+    std::vector<ReadingResult> bent_readings_;        // of the others
+    core::Verdict worst_bent_ = core::Verdict::clear; // likewise
     bool has_too_many_ = false;
 };
 

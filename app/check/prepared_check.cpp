@@ -134,6 +134,11 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(core::in_file(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
+    // What an earlier program stored on a Grbl is not where the machine is assumed to start.
+    if (*dialect == gcode::DialectId::grbl && file.is_inferred) {
+        file.environment.home.reset();
+        file.environment.second_home.reset();
+    }
     auto notes = apply(file.control, file.environment, file.setup.machine);
     if (!notes) return tl::unexpected(core::in_file(notes.error(), job.setup));
     for (std::string& note : *notes) run.assumptions.push_back(std::move(note));

@@ -150,6 +150,7 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
       readings_(std::make_unique<OtherReadings>(check)),
       state_(std::make_unique<RunState>(
           start_of_program(check.file.environment, input_.setup, std::move(*check.machine)))) {
+    runner_->follows_dog_legs = readings_->has_open_rapids();
     runner_->before_block = [this](const gcode::BlockCommands& block, const RunState& before) {
         follow_correction(block, before);
     };
@@ -324,6 +325,7 @@ bool ProgramRunner::advance() {
         end();
         return false;
     }
+    readings_->note_dog_legs(**step);
     CheckedBlock& checked = (**step).checked;
     record_.verdict = std::max(record_.verdict, checked.result.verdict);
     record_.removed += checked.result.removed;

@@ -189,6 +189,14 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
 
 } // namespace
 
+/// Whether the rapids of the machine are straight answers a question about the control, too.
+void answer_rapids(const TableReader& table, SetupFile& file) {
+    if (!table.has("rapid")) return;
+    const bool is_straight = file.setup.machine.rapid == core::RapidStyle::straight;
+    file.environment.control.answers[gcode::ControlQuestion::rapids_are_straight] =
+        is_straight ? 1.0 : 0.0;
+}
+
 bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source) {
     AxisList list;
     for (TableReader& axis : table.tables("axis", "[[axis]]")) read_axis(axis, machine, list);
@@ -329,6 +337,7 @@ void read_machine_file(const std::string& path, SetupFile& file,
         read_control(table, file.control);
         file.has_axes = read_machine(table, file.setup.machine,
                                      {std::filesystem::path(path).parent_path(), file.assumptions});
+        answer_rapids(table, file);
     }
     if (error && error->file.empty()) error->file = path;
 }
@@ -340,6 +349,7 @@ void read_machine_table(TableReader& table, BodyContext& context,
         read_machine_file((context.folder / *name).string(), context.file, error);
     const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
     if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
+    answer_rapids(table, context.file);
     if (leaves_axes_out) context.file.has_axes = false;
     const core::AxisPosition home = machine.home();
     if (home[0] && home[1] && home[2] && !context.file.environment.home) {

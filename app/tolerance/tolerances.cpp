@@ -11,6 +11,7 @@
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
+#include "app/check/dog_legs.h"
 #include "app/check/prepared_check.h"
 #include "app/tolerance/enclosure.h"
 #include "app/tolerance/limit_search.h"
@@ -393,7 +394,10 @@ core::Result<Tolerances> tolerances_of(const CheckJob& job, const CheckRun& run,
     const Stopwatch stopwatch;
     Tolerances tolerances{.refusal = refusal_of(job, run)};
     if (!tolerances.refusal.empty()) return tolerances;
-    FEELER_TRY(const PreparedCheck check, read_check(job));
+    FEELER_TRY(PreparedCheck check, read_check(job));
+    // The box of a dog-leg also holds the straight rapid.
+    if (open_rapid_parameter(check.file.environment))
+        check.run.setup.machine.rapid = core::RapidStyle::dogleg;
     auto readings = record_readings(check);
     if (!readings) {
         tolerances.refusal = readings.error().message;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -119,6 +120,9 @@ core::Result<void> set_cutter_radius(Execution& execution);     // G40 G41 G42
 core::Result<void> set_path_mode(Execution& execution);         // G61 G61.1 G64
 core::Result<void> set_tool_length(Execution& execution);       // G43 G43.1 G44 G49, H
 void cancel_length_offset(Execution& execution);
+/// On Fanuc mills, what a move of these axes to machine coordinates (G28, G30, G53) does to a
+/// length offset along them.
+void leave_length_behind(Execution& execution, const std::array<bool, axis_count>& moved);
 core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);  // G98 G99

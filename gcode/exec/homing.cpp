@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/readings.h"
 
@@ -25,6 +26,32 @@ Position known_home(Execution& execution, Position home, core::SourceSpan where,
     return home;
 }
 
+/// Whether G28 and G30 go to positions that earlier programs may have stored. Grbl keeps those of
+/// G28.1 and G30.1 in its memory.
+bool stores_homes(const Execution& execution) {
+    return execution.dialect.id == DialectId::grbl
+           && execution.environment.control.reports_premises;
+}
+
+/// The position that G28 or G30 of Grbl goes to; unknown unless the set-up or the program states
+/// it.
+Position stored_home(Execution& execution, const CodeWord& entry) {
+    const bool is_first = entry.code->number == g_code(28);
+    Position home = is_first ? execution.modal().home : execution.modal().second_home;
+    if (!(home[0] && home[1] && home[2]))
+        execution.result.warnings.push_back(
+            {Severity::warning, entry.word->span,
+             fmt::format("{0} goes to the position that {0}.1 has stored, which only the machine "
+                         "knows: the program does not store it before",
+                         is_first ? "G28" : "G30"),
+             core::rule_id("unknown-value"),
+             fmt::format("Retract with G53 G0 Z0 instead, or state {} in the set-up.",
+                         is_first ? "`home` of the axes" : "the second reference point")});
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (!home[axis]) home[axis] = 0.0;
+    return home;
+}
+
 Position home_of(Execution& execution, const CodeWord& entry) {
     const ModalState& modal = execution.modal();
     const Word* p_word = execution.statement.word('P');
@@ -35,6 +62,7 @@ Position home_of(Execution& execution, const CodeWord& entry) {
         std::copy(stated.begin(), stated.end(), home.begin());
         return home;
     }
+    if (stores_homes(execution)) return stored_home(execution, entry);
     return known_home(execution, entry.code->number == g_code(28) ? modal.home : modal.second_home,
                       entry.word->span, written(*entry.word));
 }
@@ -96,6 +124,7 @@ core::Result<void> go_home(Execution& execution) {
         cancel_length_offset(execution);
         execution.state.rules.length_cancelled = modal.tool.has_value();
     }
+    leave_length_behind(execution, moves);
     return {};
 }
 

@@ -2,19 +2,21 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/program_parameters.h"
 
 namespace gcode {
 namespace {
 
 using core::ErrorCode;
 
-core::Result<int> number_under(const Execution& execution, const CodeWord& entry, char letter) {
+core::Result<int> number_under(const Execution& execution, const CodeWord& entry, char letter,
+                               int highest = 9999) {
     const Word* word = execution.statement.word(letter);
     if (!word)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} needs a {} word", written(*entry.word), letter),
                           entry.word->span);
-    return whole_number(*word, 0, 9999);
+    return whole_number(*word, 0, highest);
 }
 
 /// M62 to M65: a digital output on or off. M67, M68: an analogue one.
@@ -57,6 +59,18 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
+/// M109 of Haas: the operator's answer is the value of a variable.
+core::Result<void> ask_operator(Execution& execution, const CodeWord& entry) {
+    FEELER_TRY(const int number, number_under(execution, entry, 'P', highest_parameter));
+    const auto& stated = execution.environment.control.values;
+    const auto known = stated.find(number);
+    ProgramParameters parameters(execution.state, execution.environment);
+    const double answer = known == stated.end() ? 0.0 : known->second;
+    if (auto done = parameters.set_numbered(number, answer, entry.word->span); !done) return done;
+    parameters.mark_numbered(number, known == stated.end());
+    return {};
+}
+
 void enable(Execution& execution, OverrideKind kind, bool enabled) {
     ModalState& modal = execution.modal();
     switch (kind) {
@@ -83,6 +97,8 @@ core::Result<void> switch_machine(Execution& execution) {
         const CodeNumber code = entry.code->number;
         if (code == m_code(66)) {
             if (auto done = wait_for_input(execution, entry); !done) return done;
+        } else if (code == m_code(109)) {
+            if (auto done = ask_operator(execution, entry); !done) return done;
         } else if (code >= m_code(62) && code <= m_code(68)) {
             if (auto done = set_output(execution, entry); !done) return done;
         }

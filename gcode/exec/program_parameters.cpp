@@ -17,6 +17,17 @@ namespace {
 
 using core::ErrorCode;
 
+/// The number under which a variable is stored: on Haas controls, #10100 is #100.
+///
+/// Source: Haas, list of system variables: those of the NGC and the legacy ones.
+int stored_number(int number, const Dialect& dialect) {
+    if (dialect.system_parameters != SystemParameters::haas) return number;
+    constexpr std::pair<int, int> aliases[] = {{10100, 10199}, {10500, 10699}, {10800, 10999}};
+    for (const auto& [first, last] : aliases)
+        if (number >= first && number <= last) return number - 10000;
+    return number;
+}
+
 /// The number of a parameter. A computed number may be off by a rounding error.
 core::Result<int> parameter_number(double number, int lowest, const Dialect& dialect,
                                    core::SourceSpan where) {
@@ -29,7 +40,7 @@ core::Result<int> parameter_number(double number, int lowest, const Dialect& dia
             fmt::format("{}{:.12g}: parameter numbers are whole numbers from {} to {}",
                         dialect.parameter_letter, number, lowest, highest_parameter),
             where);
-    return static_cast<int>(whole);
+    return stored_number(static_cast<int>(whole), dialect);
 }
 
 } // namespace
@@ -235,7 +246,8 @@ void load_parameters(InterpreterState& state, const Environment& environment) {
     }
     for (const auto& [number, value] : environment.control.values)
         if (knowledge_of(environment, number) == Knowledge::unknown_until_set)
-            state.parameters.write().set_numbered(number, value);
+            state.parameters.write().set_numbered(
+                stored_number(number, dialect(environment.dialect)), value);
 }
 
 namespace {

@@ -80,6 +80,17 @@ std::string_view trimmed(std::string_view text) {
 
 } // namespace
 
+OpenPremise premise_of(const ControlParameter& parameter, const Environment& environment) {
+    const std::span<const ParameterValue> values = parameter.values;
+    OpenPremise premise;
+    premise.id = {parameter.question};
+    premise.reason = fmt::format("The set-up does not state {}", parameter.name);
+    premise.cure = cure_of(parameter, environment);
+    for (const ParameterValue& value : parameter.is_open() ? values : values.first(1))
+        premise.readings.push_back(reading_of(parameter, value));
+    return premise;
+}
+
 bool is_open(const InterpreterState& state, const Environment& environment,
              ControlQuestion question) {
     if (!environment.control.reports_premises || stated_number(environment, question)) return false;
@@ -97,13 +108,8 @@ double number_for(InterpreterState& state, const Environment& environment, Contr
     const PremiseId id{question};
     const OpenPremise* met = find_met(*state.readings, id);
     if (met) return values[met->taken].answer;
-    OpenPremise premise;
-    premise.id = id;
+    OpenPremise premise = premise_of(*parameter, environment);
     premise.line = line;
-    premise.reason = fmt::format("The set-up does not state {}", parameter->name);
-    premise.cure = cure_of(*parameter, environment);
-    for (const ParameterValue& value : parameter->is_open() ? values : values.first(1))
-        premise.readings.push_back(reading_of(*parameter, value));
     return values[take_reading(state, std::move(premise))].answer;
 }
 

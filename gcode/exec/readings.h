@@ -10,6 +10,7 @@
 namespace gcode {
 
 struct Block;
+struct ControlParameter;
 class ProgramParameters;
 
 /// The answer to a question about the control: as stated, else as chosen for this run, else the
@@ -21,6 +22,9 @@ double number_for(InterpreterState& state, const Environment& environment, Contr
 /// The same for a question that is answered by yes or no.
 bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,
                uint32_t line);
+
+/// A parameter that nothing states, as a premise with its readings; none is taken yet.
+OpenPremise premise_of(const ControlParameter& parameter, const Environment& environment);
 
 /// Whether a question is open: neither stated nor met before.
 bool is_open(const InterpreterState& state, const Environment& environment,

@@ -8,6 +8,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 #include "gcode/language/lexer.h"
 
 namespace gcode {
@@ -369,6 +370,26 @@ core::Result<void> set_tool_length(Execution& execution) {
 void cancel_length_offset(Execution& execution) {
     execution.modal().length_sign = 0.0;
     use_offset(execution, std::nullopt, {});
+}
+
+// Fanuc B-63844EN, 14.1.2: G53, G28 and G30 cancel the offset along the axes that they move, and
+// the code on display stays G43. Parameter 5001#6 (EVO) restores it at the next block; otherwise
+// the next G43, G44 or H does.
+void leave_length_behind(Execution& execution, const std::array<bool, axis_count>& moved) {
+    const ModalState& modal = execution.modal();
+    constexpr ControlQuestion restores = ControlQuestion::length_is_reloaded;
+    const ControlSettings& control = execution.environment.control;
+    if (modal.length_sign == 0.0 || !find_parameter(restores, execution.environment.dialect)
+        || !(control.answer(restores) || control.reports_premises))
+        return;
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (!moved[axis] || modal.offsets.tool[axis] == 0.0) continue;
+        if (answer_to(execution.state, execution.environment, restores, execution.block.line))
+            return;
+        cancel_length_offset(execution);
+        execution.state.rules.length_cancelled = modal.tool.has_value();
+        return;
+    }
 }
 
 namespace {

@@ -178,7 +178,14 @@ core::Result<void> move_to_machine_position(Execution& execution) {
         return core::fail(ErrorCode::unsupported,
                           "G53 with G91 stops some controls and is ignored by others: use G90",
                           action->word->span);
-    if (execution.dialect.machine_move_is_rapid) return move_straight(execution, true);
+    if (execution.dialect.machine_move_is_rapid) {
+        std::array<bool, axis_count> moved{};
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            moved[axis] = execution.statement.word(axis_letters[axis]) != nullptr;
+        if (auto done = move_straight(execution, true); !done) return done;
+        leave_length_behind(execution, moved);
+        return {};
+    }
     if (modal.cycle || !is_straight(modal.motion))
         return core::fail(ErrorCode::syntax, "G53 needs G0 or G1", action->word->span);
     return move_straight(execution, modal.motion == MotionCode::rapid);

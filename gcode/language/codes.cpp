@@ -384,6 +384,7 @@ constexpr Code codes[] = {
     {m_code(107), other, "", klartext, {}},
     {m_code(108), other, "", klartext, {}},
     {m_code(109), other, "", klartext, {}},
+    {m_code(109), other, "P", haas, {}}, // interactive input
     {m_code(110), other, "", klartext, {}},
     {m_code(111), other, "", klartext, {}},
     {m_code(112), other, "", klartext, no_transitions},

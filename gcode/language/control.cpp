@@ -44,6 +44,10 @@ constexpr ParameterValue rapids[] = {
     {1, true, "rapids are straight"},
     {0, false, "each axis of a rapid runs at its own speed"},
 };
+constexpr ParameterValue rapid_modes[] = {
+    {1, true, "rapids are straight", "LINEAR"},
+    {0, false, "each axis of a rapid runs at its own speed", "NONE"},
+};
 constexpr ParameterValue block_delete[] = {
     {0, false, "blocks with / are executed"},
     {1, true, "blocks with / are skipped"},
@@ -206,8 +210,10 @@ constexpr ControlParameter parameters[] = {
      follow_all, "Haas, Help with the decimal points; mill operator's manual, settings"},
     {variables_are_kept, fanuc, "6001#6", "parameter 6001#6 (CCV)", clears_variables, follow_all,
      "Fanuc B-63950EN, parameters of custom macros"},
-    {rapids_are_straight, fanuc, "1401#1", "parameter 1401#1 (LRP)", rapids, go_on,
+    {rapids_are_straight, fanuc, "1401#1", "parameter 1401#1 (LRP)", rapids, follow_all,
      "Fanuc B-63950EN, parameters of feed rates; B-63944EN, positioning (G00)"},
+    {rapids_are_straight, haas, "setting 335", "setting 335 (Linear Rapid Mode)", rapid_modes,
+     follow_all, "Haas mill operator's manual, NGC, G00 and settings"},
     {point_is_implied, any_siemens, "MD10884", "MD10884 (EXTERN_FLOATINGPOINT_PROG)", decimal_point,
      follow_all, "SINUMERIK ISO Milling 04.07, 1.1.6, decimal point programming"},
     {length_keeps_axis, any_siemens, "SD42940", "SD42940 (TOOL_LENGTH_CONST)", length_in_planes,

@@ -22,7 +22,8 @@ SetupWriter post_beside_the_way() {
 }
 
 TEST(Rapid, PassesClearWhenItRunsStraight) {
-    const Checked checked = check(post_beside_the_way(), slanted);
+    const Checked checked = check(
+        post_beside_the_way().machine("rapid = \"straight\"\n" + SetupWriter::mill()), slanted);
     EXPECT_EQ(checked.status, 0);
     EXPECT_EQ(checked.errors(), "");
     // The corner X50 Y48 is this far from the line from the origin through X100 Y50.
@@ -44,6 +45,41 @@ TEST(Rapid, IsUndecidedWhereTheSpeedsOfADogLegAreNotKnown) {
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "undecided");
     EXPECT_EQ(checked.errors(), "dog-leg-rapid 7, dog-leg-rapid 7");
+}
+
+/// The same program for a control whose rapids need not be straight; nothing states what they are.
+Checked check_for(const std::string& dialect, const std::string& stated = {}) {
+    SetupWriter setup = post_beside_the_way();
+    setup.program("dialect = \"" + dialect
+                  + "\"\nstart = { X = -350, Y = -200, Z = 0 }\nno_decimal_point = \"units\"\n");
+    return check(setup.also(stated), slanted);
+}
+
+TEST(Rapid, IsFollowedAsADogLegWhereTheControlMayRunOne) {
+    for (const char* dialect : {"fanuc", "haas"}) {
+        const Checked open = check_for(dialect);
+        EXPECT_EQ(open.errors(), "open-premise 7") << dialect;
+        EXPECT_EQ(open.verdict, "collision") << dialect;
+        EXPECT_EQ(open.status, 1) << dialect;
+    }
+    EXPECT_NE(check_for("fanuc").finding("open-premise").message.find("1401#1"), std::string::npos);
+    EXPECT_NE(check_for("haas").finding("open-premise").message.find("setting 335"),
+              std::string::npos);
+}
+
+TEST(Rapid, IsStraightWhereTheSetupOrTheControlSaysSo) {
+    EXPECT_EQ(check_for("fanuc", "[control]\n\"1401#1\" = 1\n").errors(), "");
+    EXPECT_EQ(check_for("haas", "[control]\n\"setting 335\" = \"LINEAR\"\n").errors(), "");
+    EXPECT_EQ(check_for("linuxcnc").errors(), "");
+    SetupWriter straight = post_beside_the_way();
+    straight.machine("rapid = \"straight\"\n" + SetupWriter::mill());
+    EXPECT_EQ(check(straight, slanted).errors(), "");
+}
+
+TEST(Rapid, InFreeAirIsClearBothWays) {
+    SetupWriter setup;
+    setup.stock(far_stock);
+    EXPECT_EQ(check(setup.also("[rules]\nnothing-cut = \"off\"\n"), slanted).errors(), "");
 }
 
 /// The stock is out of the way, on purpose.

@@ -97,7 +97,7 @@ SetupWriter stating(const std::vector<const Premise*>& premises, unsigned choice
         else
             values += statement;
     }
-    setup.program(program);
+    setup.program(program).machine("rapid = \"straight\"\n" + SetupWriter::mill());
     if (!values.empty()) setup.also("[program.values]\n" + values);
     setup.also(control);
     setup.fixture("clamp", "box = [[40, 104, -30], [60, 130, 12]]\n");

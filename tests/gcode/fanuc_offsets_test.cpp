@@ -51,6 +51,23 @@ TEST(LengthOffset, EndsWithG28OnHaasOnly) {
     EXPECT_THAT(warnings_of(std::string(program) + "\nM5", DialectId::haas), Not(HasSubstr("G49")));
 }
 
+TEST(LengthOffset, IsCancelledByMachineMovesOfItsAxisOnFanucUnlessEvoRestoresIt) {
+    const auto z_after = [](std::string_view way, bool restores) {
+        Environment environment = known_environment(DialectId::fanuc);
+        environment.control.answers[ControlQuestion::length_is_reloaded] = restores;
+        const Ran ran = run_text(
+            "G10 L10 P5 R100\nG90 G43 H5 G0 Z9\n" + std::string(way) + "\nG90 G0 Z1", environment);
+        return machine_from_program(ran.run.state.modal.offsets, ran.run.state.modal.position)[2];
+    };
+    for (const char* way : {"G91 G28 Z0", "G91 G30 Z0", "G53 G0 Z0", "G28"}) {
+        EXPECT_EQ(z_after(way, false), 1.0) << way;
+        EXPECT_EQ(z_after(way, true), 101.0) << way;
+    }
+    for (const char* way : {"G91 G28 X0 Y0", "G53 G0 X0", "G28 Y0"})
+        EXPECT_EQ(z_after(way, false), 101.0) << way;
+    EXPECT_EQ(z_after("G53 G0 Z0\nG43 H5", false), 101.0);
+}
+
 TEST(CoordinatePreset, OfG921MovesNothingAndClearsTheNamedAxes) {
     const char* shift = "G90 G0 X10 Y20\nG92 X0 Y0\nG0 X1 Y2\n";
     EXPECT_EQ(machine_after(std::string(shift) + "G92.1 X0\nG0 X1 Y2")[0], 1.0);

@@ -131,6 +131,35 @@ TEST(Readings, ABranchOnAnInputIsOpen) {
     EXPECT_FALSE(high.visits(1));
 }
 
+TEST(Readings, AnAnswerOfTheOperatorIsOpen) {
+    constexpr const char* text = "G21 G90\n#501=0.\nM109 P501 (CLAMPED?)\n"
+                                 "IF [#501 EQ 89.] GOTO10\nG0 X1.\nN10 G0 X2.\nM30\n";
+    const Read no = read(text, reporting(DialectId::haas));
+    EXPECT_EQ(no.met(), "4 taken 0");
+    EXPECT_TRUE(no.visits(1));
+    const Read yes = read(text, reporting(DialectId::haas), {{{.line = {0, 4}}, 1}});
+    EXPECT_EQ(yes.met(), "4 taken 1");
+    EXPECT_FALSE(yes.visits(1));
+    Environment stated = reporting(DialectId::haas);
+    stated.control.values[501] = 89.0;
+    const Read known = read(text, stated);
+    EXPECT_EQ(known.met(), "");
+    EXPECT_FALSE(known.visits(1));
+    const Read used = read("G21 G90\nM109 P10501\nG0 X#501\nM30\n", reporting(DialectId::haas));
+    EXPECT_NE(used.warnings.find("unknown-value"), std::string::npos) << used.warnings;
+}
+
+TEST(Readings, AStoredPositionOfGrblIsUnknown) {
+    Environment environment = reporting(DialectId::grbl);
+    environment.home = {};
+    const Read unknown = read("G21 G90\nG28 G91 Z0\nG90\n", environment);
+    EXPECT_NE(unknown.warnings.find("unknown-value"), std::string::npos) << unknown.warnings;
+    EXPECT_FALSE(unknown.state.modal.position[2]);
+    const Read stored = read("G21 G90\nG0 X7 Z30\nG28.1\nG0 Z5\nG28 G91 Z0\nG90\n", environment);
+    EXPECT_EQ(stored.warnings, "");
+    EXPECT_EQ(stored.state.modal.position[2], 30.0);
+}
+
 TEST(Readings, ABranchOnAVariableThatWasNeverSetIsOpen) {
     constexpr std::pair<DialectId, const char*> programs[] = {
         {DialectId::fanuc, "G21 G90\nIF[#500EQ1]GOTO10\nG0 X1.\nN10 G0 X2.\nM30\n"},

@@ -22,6 +22,13 @@ std::string result_of(std::string_view text, DialectId dialect = DialectId::fanu
     return value ? fmt::format("{:.6g}", *value) : "vacant";
 }
 
+TEST(SystemVariables, HaasHasTwoNumbersForAVariable) {
+    EXPECT_EQ(result_of("#10501=7\n#100=#501", DialectId::haas), "7");
+    EXPECT_EQ(result_of("#10100=8", DialectId::haas), "8");
+    EXPECT_EQ(result_of("#899=9\n#100=#10899", DialectId::haas), "9");
+    EXPECT_EQ(result_of("#10300=6\n#100=#300", DialectId::haas), "vacant");
+}
+
 TEST(SystemVariables, PositionsAreThoseOfThePreviousBlock) {
     const std::string start = "G55 X10 Y2\nG43 H3 Z5\n";
     EXPECT_EQ(result_of(start + "#100=#5001"), "10");
