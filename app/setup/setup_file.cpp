@@ -187,8 +187,6 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
     table.finish();
 }
 
-} // namespace
-
 /// Whether the rapids of the machine are straight answers a question about the control, too.
 void answer_rapids(const TableReader& table, SetupFile& file) {
     if (!table.has("rapid")) return;
@@ -196,6 +194,8 @@ void answer_rapids(const TableReader& table, SetupFile& file) {
     file.environment.control.answers[gcode::ControlQuestion::rapids_are_straight] =
         is_straight ? 1.0 : 0.0;
 }
+
+} // namespace
 
 bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source) {
     AxisList list;

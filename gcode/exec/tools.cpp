@@ -373,23 +373,28 @@ void cancel_length_offset(Execution& execution) {
 }
 
 // Fanuc B-63844EN, 14.1.2: G53, G28 and G30 cancel the offset along the axes that they move, and
-// the code on display stays G43. Parameter 5001#6 (EVO) restores it at the next block; otherwise
-// the next G43, G44 or H does.
+// the code on display stays G43. With parameter 5001#6 (EVO) = 1 the next block restores it;
+// otherwise the next G43, G44 or H does. If it is not stated, the offset stays cancelled: then Z is
+// lower.
 void leave_length_behind(Execution& execution, const std::array<bool, axis_count>& moved) {
-    const ModalState& modal = execution.modal();
+    ModalState& modal = execution.modal();
     constexpr ControlQuestion restores = ControlQuestion::length_is_reloaded;
     const ControlSettings& control = execution.environment.control;
-    if (modal.length_sign == 0.0 || !find_parameter(restores, execution.environment.dialect)
-        || !(control.answer(restores) || control.reports_premises))
+    if (modal.length_sign == 0.0 || !find_parameter(restores, execution.environment.dialect))
         return;
-    for (size_t axis = 0; axis < axis_count; ++axis) {
-        if (!moved[axis] || modal.offsets.tool[axis] == 0.0) continue;
-        if (answer_to(execution.state, execution.environment, restores, execution.block.line))
-            return;
-        cancel_length_offset(execution);
-        execution.state.rules.length_cancelled = modal.tool.has_value();
-        return;
-    }
+    if (control.answer(restores).value_or(!control.reports_premises)) return;
+    const auto leaves = [&](size_t axis) {
+        const bool is_offset = modal.offsets.tool[axis] != 0.0
+                               || (axis == 2 && is_guess(execution, modal.length_number));
+        return moved[axis] && is_offset;
+    };
+    if (!leaves(0) && !leaves(1) && !leaves(2)) return;
+    Offsets offsets = modal.offsets;
+    offsets.tool = {};
+    change_offsets(execution, offsets); // moves nothing, unlike G49
+    modal.length_number.reset();
+    execution.emit(UseToolLengthOffset{std::nullopt, {}, offsets.follows_tip});
+    execution.state.rules.length_cancelled = modal.tool.has_value();
 }
 
 namespace {
