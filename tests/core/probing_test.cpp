@@ -184,6 +184,22 @@ TEST(Probing, ALowPassAfterAnIncrementalRetractIsUndecided) {
     EXPECT_NE(across.findings[0].message.find("probing move"), std::string::npos);
 }
 
+TEST(Probing, LimitsHoldForTheWholeRange) {
+    core::Setup setup = plate();
+    setup.machine.axes[2].max = 20.0 + setup.tools.at(ToolNumber{1}).length;
+    const auto findings_of = [&](const Move& retract) {
+        Shop shop(setup, {50, 50, 15});
+        EXPECT_TRUE(shop.move(probe({50, 50, -10})).findings.empty());
+        return shop.move(retract).findings;
+    };
+    // If the probe triggers at once, Z ends at 19, or at 25.
+    EXPECT_TRUE(findings_of({MotionKind::rapid, {50, 50, -6}, 3}).empty());
+    const std::vector<Finding> beyond = findings_of({MotionKind::rapid, {50, 50, 0}, 3});
+    ASSERT_EQ(beyond.size(), 1);
+    EXPECT_EQ(beyond[0].rule, "over-travel");
+    EXPECT_TRUE(findings_of({MotionKind::rapid, {50, 50, 20}}).empty());
+}
+
 TEST(Probing, WhatAFeedMayHaveCutIsNoLongerCertain) {
     const core::Setup setup = plate();
     Shop shop(setup, {50, 50, 20}, SpindleDirection::clockwise);

@@ -29,8 +29,11 @@ void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
     AxisRange range = axis_range(motion, setup.machine, chord_error(setup.mesh_size));
     const AxisSpread after = spread_after(motion, before);
     for (size_t i = 0; i < axis_count; ++i) {
-        range.min[i] -= std::max({before.below[i], after.below[i], 0.0});
-        range.max[i] += std::max({before.above[i], after.above[i], 0.0});
+        if (before.below[i] == 0.0 && before.above[i] == 0.0) continue;
+        // An arc has no extremes along such an axis.
+        const double from = motion.from[i].value_or(0.0), to = motion.to[i].value_or(0.0);
+        range.min[i] = std::min(from - before.below[i], to - after.below[i]);
+        range.max[i] = std::max(from + before.above[i], to + after.above[i]);
     }
     for (size_t i = 0; i < axis_count; ++i) {
         const MachineAxis& axis = setup.machine.axes[i];
