@@ -70,6 +70,8 @@ void add(StateDigest& digest, const core::SimulatorState& machine) {
         digest.add(uint64_t(value.has_value()));
         digest.add(value.value_or(0.0));
     }
+    for (const core::AxisValues& side : {machine.spread.below, machine.spread.above})
+        for (const double by : side) digest.add(by);
     digest.add(machine.tool ? uint64_t(core::value_of(*machine.tool)) + 1 : 0);
     digest.add(uint64_t(machine.tool_known));
     for (const bool is_there : machine.mounted_fixtures) digest.add(uint64_t(is_there));

@@ -1,6 +1,7 @@
 #include "app/coproc/device_check.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/dbm/covered_path.h"
 #include "core/motion/path.h"
@@ -189,6 +190,9 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
                   > 1;
     hold(before.tool, at);
     at.tool_known = before.tool_known;
+    for (size_t i = 0; i < core::axis_count; ++i)
+        if (before.spread.below[i] != 0.0 || before.spread.above[i] != 0.0)
+            at.uncertain |= static_cast<core::AxisSet>(1U << i);
     for (const core::Event& event : block)
         if (auto asked = query_event(event, at, pushed); !asked)
             return tl::unexpected(std::move(asked).error());
@@ -248,6 +252,12 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                                             PushedBlock& block) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
     at.position = motion.to;
+    const core::AxisSet uncertain =
+        std::exchange(at.uncertain, uncertain_after(motion, at.uncertain));
+    if (uncertain != 0 || at.uncertain != 0) {
+        deny(block.permit, "a probing move may end anywhere on its way", Teller::run);
+        return {};
+    }
     const bool rapid = motion.kind == core::MotionKind::rapid;
     // A permit is needed before the next motion is known, so whole rapids count as rounded.
     at.off_motion = rapid ? std::max(at.corners.rapids.deviation, at.corners.mixed.deviation)

@@ -103,6 +103,7 @@ private:
         core::RoundedCorners corners;
         double off_motion = 0.0; // deviation of the motion by rounded corners, mm
         core::AxisPosition position;
+        core::AxisSet uncertain = 0; // axes that a probing move may have stopped anywhere
         std::vector<bool> mounted_fixtures;
         core::CentreTracker centre;             // for a tool that does not cut at its centre
         std::optional<core::ToolNumber> called; // tool in the spindle, described or not

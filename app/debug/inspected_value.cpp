@@ -7,6 +7,7 @@
 
 #include "core/base/text.h"
 #include "core/motion/machine.h"
+#include "gcode/exec/probing.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/language/dialect.h"
 #include "gcode/siemens/siemens_state.h"
@@ -185,10 +186,11 @@ core::Result<InspectedValue> read(const Reference& asked, const gcode::Interpret
     case ValueKind::modal:
         return modal_table()[asked.index].read(control, gcode::dialect(environment.dialect));
     case ValueKind::axis:
-        return axis_quantity(asked.axis, modal.position[asked.axis]);
+        return axis_quantity(asked.axis, gcode::known_position(modal)[asked.axis]);
     case ValueKind::machine_axis:
         return axis_quantity(
-            asked.axis, gcode::machine_from_program(modal.offsets, modal.position)[asked.axis]);
+            asked.axis,
+            gcode::machine_from_program(modal.offsets, gcode::known_position(modal))[asked.axis]);
     case ValueKind::offset:
         return InspectedValue{std::nullopt, text_of(gcode::work_offset(tables, asked.index))};
     case ValueKind::origin:
@@ -266,7 +268,7 @@ std::vector<NamedValue> modal_values(const gcode::InterpreterState& control,
 
 std::vector<NamedValue> axis_values(const gcode::InterpreterState& control) {
     const gcode::Offsets& offsets = control.modal.offsets;
-    const gcode::Position& work = control.modal.position;
+    const gcode::Position work = gcode::known_position(control.modal);
     const gcode::Position machine = gcode::machine_from_program(offsets, work);
     std::vector<NamedValue> values;
     for (const bool of_machine : {false, true}) {

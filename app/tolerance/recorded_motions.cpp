@@ -7,6 +7,7 @@
 #include "app/check/block_events.h"
 #include "app/check/prepared_check.h"
 #include "core/motion/machine.h"
+#include "core/motion/path.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/lower/lowering.h"
 
@@ -111,6 +112,7 @@ core::Result<RecordedMotions> record_motions(const PreparedCheck& check,
     gcode::InterpreterState control = gcode::initial_state(observed);
     if (!choices.empty()) control.readings.write().chosen = choices;
     gcode::Lowering lowering = gcode::initial_lowering(observed);
+    core::AxisSet uncertain = 0; // axes that a probing move may have stopped anywhere
     while (true) {
         const auto next = interpreter.next(control);
         if (!next) recorded.alarm = next.error();
@@ -122,6 +124,11 @@ core::Result<RecordedMotions> record_motions(const PreparedCheck& check,
         recorded.blocks.push_back({block.block, block.line, std::string(block.file), block.is_cycle,
                                    block.goes_home, certainty_of(check, block, events)});
         for (const core::Event& event : events) {
+            const auto* motion = std::get_if<core::Motion>(&event);
+            const core::AxisSet before = uncertain;
+            if (motion) uncertain = uncertain_after(*motion, uncertain);
+            core::PathCertainty& path = recorded.blocks.back().path;
+            if (before != 0 || uncertain != 0) path = std::max(path, core::PathCertainty::doubtful);
             recorded.events.push_back(event);
             recorded.block_of.push_back(static_cast<uint32_t>(recorded.blocks.size() - 1));
         }

@@ -37,6 +37,18 @@ inline double fed_length(const AxisValues& by) {
 /// One value for each axis; empty where the position is unknown.
 using AxisPosition = std::array<std::optional<double>, axis_count>;
 
+/// A set of axes: one bit for each, by its index.
+using AxisSet = uint16_t;
+
+/// How far each axis may be below and above a position that is not known exactly, mm. A negative
+/// value: it is at least that far on the other side.
+struct AxisSpread {
+    AxisValues below{}, above{};
+
+    bool none() const { return *this == AxisSpread{}; }
+    bool operator==(const AxisSpread&) const = default;
+};
+
 /// A link of the machine: what an axis carries, by the index of the axis, or the base.
 enum class LinkId : uint8_t { base = 255 };
 
@@ -80,6 +92,10 @@ struct Motion {
     std::optional<ArcPath> arc = {}; // when kind is arc; both ends known then
     std::optional<TipPath> tip = {}; // when the control follows the tip; both ends known then
     double feed = 0.0;               // mm/min along the path; 0 on rapids
+    bool stops_at_contact = false;   // a probing move: it ends between its first contact and `to`
+    // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far
+    // from `to` as they started from `from`.
+    AxisSet settles = 0;
 };
 
 /// The new tool in the spindle; empty for T0, an empty spindle.

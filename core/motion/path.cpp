@@ -324,6 +324,109 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     return path;
 }
 
+namespace {
+
+/// A position moved to a corner of a spread, by one bit for each axis; empty if another choice
+/// gives the same corner.
+std::optional<AxisValues> corner_of(AxisValues position, const AxisSpread& spread, unsigned bits) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        const bool is_above = bits >> i & 1U;
+        if (is_above && spread.above[i] == -spread.below[i]) return std::nullopt;
+        position[i] += is_above ? spread.above[i] : -spread.below[i];
+    }
+    return position;
+}
+
+void add_corners(std::vector<AxisValues>& corners, const AxisValues& position,
+                 const AxisSpread& spread) {
+    for (unsigned bits = 0; bits < 1U << axis_count; ++bits)
+        if (const auto corner = corner_of(position, spread, bits))
+            if (std::find(corners.begin(), corners.end(), *corner) == corners.end())
+                corners.push_back(*corner);
+}
+
+/// The smallest spread that contains two.
+AxisSpread joined(const AxisSpread& a, const AxisSpread& b) {
+    AxisSpread both;
+    for (size_t i = 0; i < axis_count; ++i) {
+        both.below[i] = std::max(a.below[i], b.below[i]);
+        both.above[i] = std::max(a.above[i], b.above[i]);
+    }
+    return both;
+}
+
+/// Whether a spread leaves the rotary axes alone, and the axes along which an arc bends.
+bool is_along_other_axes(const Motion& motion, const AxisSpread& spread) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        const bool bends = motion.arc && i < 3 && i != static_cast<size_t>(motion.arc->normal);
+        if ((is_rotary(i) || bends) && (spread.below[i] != 0.0 || spread.above[i] != 0.0))
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
+Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
+             const Machine& machine, double max_error) {
+    Path path = path_of(motion, machine, max_error);
+    if ((from.none() && to.none()) || path.legs.empty() || !path.legs[0].start_known) return path;
+    const AxisSpread spread = joined(from, to);
+    bool is_known = !motion.tip && is_along_other_axes(motion, spread);
+    for (size_t i = 3; i < 6; ++i) is_known = is_known && motion.from[i] == motion.to[i];
+    if (!is_known) {
+        path.legs.clear();
+        return path;
+    }
+    std::vector<Leg> legs;
+    if (motion.arc) {
+        for (const Leg& chord : path.legs) {
+            Leg hull{.begin = chord.begin,
+                     .end = chord.end,
+                     .path_error = chord.path_error,
+                     .straight = false};
+            for (const AxisValues& end : chord.positions) add_corners(hull.positions, end, spread);
+            legs.push_back(std::move(hull));
+        }
+    } else {
+        Leg hull{.end = path.duration, .straight = false};
+        add_corners(hull.positions, values_of(motion.from), from);
+        add_corners(hull.positions, values_of(motion.to), to);
+        if (motion.kind == MotionKind::rapid && machine.rapid == RapidStyle::dogleg) {
+            // A dog leg leaves the hull of its ends, but not their box.
+            const AxisValues first = hull.positions.front();
+            AxisRange range{first, first};
+            for (const AxisValues& position : hull.positions) extend(range, position);
+            AxisSpread box;
+            for (size_t i = 0; i < axis_count; ++i) {
+                box.below[i] = first[i] - range.min[i];
+                box.above[i] = range.max[i] - first[i];
+            }
+            hull.positions.clear();
+            add_corners(hull.positions, first, box);
+        }
+        legs.push_back(std::move(hull));
+    }
+    if (from.none()) legs.front().certain.push_back(values_of(motion.from));
+    if (to.none()) legs.back().certain.push_back(values_of(motion.to));
+    path.legs = std::move(legs);
+    return path;
+}
+
+AxisSet uncertain_after(const Motion& motion, AxisSet before) {
+    if (!motion.stops_at_contact) return static_cast<AxisSet>(before & ~motion.settles);
+    AxisSet after = before;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (motion.from[i] != motion.to[i]) after |= static_cast<AxisSet>(1U << i);
+    return after;
+}
+
+AxisSpread spread_after(const Motion& motion, AxisSpread spread) {
+    for (size_t i = 0; i < axis_count; ++i)
+        if ((motion.settles >> i & 1U) || !motion.to[i]) spread.below[i] = spread.above[i] = 0.0;
+    return spread;
+}
+
 AxisRange axis_range(const Motion& motion, const Machine& machine, double max_error) {
     AxisRange range;
     range.min.fill(infinity);

@@ -66,6 +66,18 @@ double chord_error(double mesh_size);
 ///          If a rotary axis starts or ends at an unknown angle, the path is empty.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
+/// The legs of a motion after a probing move, whose start and end may deviate by these spreads:
+/// hulls of all possible positions. Only an end without spread is certain. Empty when rotary axes
+/// move, when the control follows the tip, or when an axis may be anywhere.
+Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
+             const Machine& machine, double max_error);
+
+/// The axes that are not known exactly after a motion, from those before it.
+AxisSet uncertain_after(const Motion& motion, AxisSet before);
+
+/// The spread at the end of a motion that starts with a spread.
+AxisSpread spread_after(const Motion& motion, AxisSpread spread);
+
 /// The least and the greatest value of each axis.
 struct AxisRange {
     AxisValues min, max;

@@ -199,7 +199,7 @@ bool rises(const Leg& leg) {
     const auto &from = leg.positions.front(), &to = leg.positions.back();
     for (size_t i = 0; i < axis_count; ++i)
         if (i == 2 ? to[i] < from[i] : to[i] != from[i]) return false;
-    return leg.positions.size() <= 2;
+    return leg.straight && leg.positions.size() <= 2;
 }
 
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,

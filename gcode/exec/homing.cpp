@@ -5,6 +5,7 @@
 
 #include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/probing.h"
 #include "gcode/exec/readings.h"
 
 namespace gcode {
@@ -217,11 +218,11 @@ core::Result<void> skip_move(Execution& execution) {
                feed_rate(execution, distance_between(execution.modal().position, end)));
     execution.warn(
         entry.word->span,
-        fmt::format(
-            "{}: where the skip signal stops the move is unknown; the whole move is checked",
-            written(*entry.word)));
-    execution.modal().position = end;
-    execution.emit(StraightProbe{end, rate, true, false});
+        fmt::format("{}: where the skip signal stops the move is unknown; the whole move is "
+                    "checked, and it may end anywhere on its way",
+                    written(*entry.word)),
+        Severity::note);
+    probe_to(execution, {end, rate, true, false});
     return {};
 }
 

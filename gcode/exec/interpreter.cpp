@@ -15,6 +15,7 @@
 #include "gcode/exec/following.h"
 #include "gcode/exec/linuxcnc_parameters.h"
 #include "gcode/exec/loop_detector.h"
+#include "gcode/exec/probing.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/exec/quick_move.h"
 #include "gcode/exec/readings.h"
@@ -127,6 +128,7 @@ struct Interpreter::Scratch {
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, ProgramLine here);
     core::Result<bool> try_next(InterpreterState& state);
+    core::Result<bool> read_next(InterpreterState& state);
     bool try_quick_move(InterpreterState& state);
     bool asks_for_stop(const InterpreterState& state) const {
         return state.next_block % 1024 == 0 && environment.limits.is_stopped;
@@ -228,6 +230,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
     result.path = core::PathCertainty::known;
     result.commands.clear();
     result.columns.clear();
+    result.settled.clear();
     result.warnings.clear();
 }
 
@@ -315,6 +318,26 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     return true;
 }
 
+/// try_next. After a probing move that may have ended anywhere on its way, the block is also run
+/// from the other end of that way, to see which axes it positions.
+core::Result<bool> Interpreter::Scratch::read_next(InterpreterState& state) {
+    if (!is_stopped_somewhere(state.modal)) return try_next(state);
+    const InterpreterState here = state;
+    InterpreterState elsewhere = here;
+    start_elsewhere(elsewhere.modal);
+    const auto found_there = try_next(elsewhere);
+    const bool runs_there = found_there && *found_there;
+    const BlockCommands there = result;
+    undos.clear();
+    auto found = try_next(state);
+    if (!found || !*found) return found;
+    if (runs_there && settle_positions(here.modal, state, result, elsewhere, there)) return found;
+    state = here;
+    forget_uncertain_axes(state.modal);
+    undos.clear();
+    return try_next(state);
+}
+
 /// Executes a line that is only a straight move; otherwise returns false and changes nothing. It
 /// cannot fail, so nothing is saved.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
@@ -379,7 +402,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
         keep(state, scratch.before);
         scratch.undos.clear();
         const uint32_t source = state.next.source;
-        auto found = scratch.try_next(state);
+        auto found = scratch.read_next(state);
         if (found)
             scratch.position_in_lines();
         else

@@ -2,6 +2,7 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/probing.h"
 #include "gcode/exec/program_parameters.h"
 
 namespace gcode {
@@ -192,10 +193,10 @@ core::Result<void> probe(Execution& execution) {
     const bool must_succeed = kind == MotionCode::probe_toward || kind == MotionCode::probe_away;
     execution.warn(mover.span,
                    fmt::format("{}: where the probe makes contact is unknown; the whole move is "
-                               "checked, and the program continues from its end point",
-                               written(mover)));
-    execution.emit(StraightProbe{end, rate, towards, must_succeed});
-    modal.position = end;
+                               "checked, and it may end anywhere on its way",
+                               written(mover)),
+                   Severity::note);
+    probe_to(execution, {end, rate, towards, must_succeed});
     Parameters& parameters = execution.state.parameters.write();
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const double value = end[axis].value_or(0.0);

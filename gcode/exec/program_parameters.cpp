@@ -8,6 +8,7 @@
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/klartext_parameters.h"
 #include "gcode/exec/linuxcnc_parameters.h"
+#include "gcode/exec/probing.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/block.h"
 #include "gcode/language/language.h"
@@ -190,7 +191,10 @@ void ProgramParameters::forget_reads() const {
 }
 
 void ProgramParameters::note_read(int number, bool is_local) const {
-    const Knowledge knowledge = is_local ? Knowledge::known : knowledge_of(environment_, number);
+    const Knowledge knowledge = is_local ? Knowledge::known
+                                : reads_unknown_position(state_.modal, environment_, number)
+                                    ? Knowledge::unknown
+                                    : knowledge_of(environment_, number);
     const bool is_set = !is_local && state_.parameters->numbered(number).has_value();
     const bool is_unknown = (knowledge == Knowledge::unknown_until_set && !is_set)
                             || (knowledge == Knowledge::unknown_once_set && is_set)

@@ -4,6 +4,7 @@
 
 #include "gcode/contour/contour.h"
 #include "gcode/exec/following.h"
+#include "gcode/exec/probing.h"
 #include "gcode/language/codes.h"
 
 namespace gcode {
@@ -66,7 +67,7 @@ bool moves_quickly(const InterpreterState& state) {
     return is_straight(modal.motion) && !modal.cycle && modal.compensation == Side::none
            && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode && modal.distance_said
            && (modal.unit_said || state.said_unit) && !transforms.polar && !is_uncertain(modal)
-           && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
+           && !is_stopped_somewhere(modal) && !transforms.before_rotation && !state.rules.waits() && state.modal_macros.empty()
            && state.contour->is_idle() && !state.is_iso_mode;
 }
 

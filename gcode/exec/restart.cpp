@@ -141,7 +141,7 @@ private:
         const ModalState& modal = at_.after;
         std::string position;
         for (size_t axis = 0; axis < 3; ++axis) {
-            if (!modal.position[axis]) continue;
+            if (!modal.position[axis] || modal.spread[axis] != 0.0) continue;
             const std::optional<double>& alone = at_.alone.position[axis];
             if (alone && std::abs(*alone - *modal.position[axis]) < 1e-6) continue;
             if (at_.alone_failed && at_.before.position[axis] != modal.position[axis]) continue;

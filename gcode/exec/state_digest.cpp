@@ -120,6 +120,7 @@ void add(Digest& digest, const ModalState& modal) {
     for (const Position* position :
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *position);
+    add_all(digest, modal.spread);
     digest.add(uint64_t{modal.axis_offset_on});
     digest.add(number_of(int(modal.distance_said) + 2 * int(modal.work_said)));
     add_all(digest, modal.offset_travel);

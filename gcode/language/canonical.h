@@ -216,6 +216,9 @@ struct BlockCommands {
     core::PathCertainty path = core::PathCertainty::known;
     std::vector<CanonicalCommand> commands{};
     std::vector<uint32_t> columns{}; // of the words that produced the commands
+    // Of each command, the axes that it brings to a known position although a probing move ended at
+    // an unknown point; empty while the position is known.
+    std::vector<core::AxisSet> settled{};
     std::vector<Warning> warnings{};
     std::shared_ptr<const std::string> own_text{}; // owns `text` when the windows have moved on
 

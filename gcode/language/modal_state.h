@@ -259,6 +259,9 @@ struct ModalState {
     bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 
     Position position;                       // tool tip, program coordinates
+    // Since a probing move: the travel from `position` to the farthest point at which the machine
+    // may be instead; 0 where an axis is known.
+    AxisValues spread{};
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // saved by G92.2 for G92.3
     bool axis_offset_on = false;             // G92 or G52 is active, even if zero

@@ -6,6 +6,7 @@
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/contour/flat_path.h"
+#include "gcode/exec/probing.h"
 #include "gcode/language/environment.h"
 
 namespace gcode {
@@ -99,6 +100,7 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
 /// One overload for each command that affects the machine or the offsets.
 struct Visitor {
     Lowering& lowering;
+    core::AxisSet settles;
     std::vector<core::Event> events;
 
     void note_axis(size_t axis) {
@@ -152,6 +154,7 @@ struct Visitor {
             lowering.offsets.frame.tilts_tool && !is_fixed_to_work(lowering.offsets);
         motion.to = there;
         motion.feed = feed;
+        motion.settles = settles;
         if (lowering.offsets.follows_tip) follow_tip(motion);
         lowering.machine = there;
         return motion;
@@ -182,7 +185,10 @@ struct Visitor {
         events.emplace_back(motion);
     }
     void operator()(const StraightProbe& command) {
-        events.emplace_back(motion_to(command.end, core::MotionKind::feed, command.feed));
+        core::Motion motion = motion_to(command.end, core::MotionKind::feed, command.feed);
+        motion.stops_at_contact = true;
+        events.emplace_back(motion);
+        lowering.machine = where_probing_ends(lowering.offsets, motion.from, motion.to);
     }
     void operator()(const ThreadFeed& command) {
         const Position from = program_from_machine(lowering.offsets, lowering.machine);
@@ -234,8 +240,8 @@ struct Visitor {
 
 } // namespace
 
-std::vector<core::Event> Lowering::lower(const CanonicalCommand& command) {
-    Visitor visitor{*this, {}};
+std::vector<core::Event> Lowering::lower(const CanonicalCommand& command, core::AxisSet settles) {
+    Visitor visitor{*this, settles, {}};
     std::visit(visitor, command);
     return std::move(visitor.events);
 }
@@ -253,8 +259,13 @@ Lowering initial_lowering(const Environment& environment) {
 
 std::vector<core::Event> lower(const BlockCommands& block, Lowering& lowering) {
     std::vector<core::Event> events;
-    for (const CanonicalCommand& command : block.commands)
-        for (core::Event& event : lowering.lower(command)) events.push_back(event);
+    for (size_t i = 0; i < block.commands.size(); ++i) {
+        // Without an uncertain position, all ends are known.
+        const core::AxisSet settles =
+            block.settled.empty() ? core::AxisSet{0xffff} : block.settled[i];
+        for (core::Event& event : lowering.lower(block.commands[i], settles))
+            events.push_back(event);
+    }
     return events;
 }
 

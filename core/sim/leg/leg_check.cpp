@@ -64,6 +64,28 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     }
 }
 
+void LegCheck::pass(const Leg& leg, double start, const CutModel& stock,
+                    std::vector<TrackedPair>& pairs) {
+    fixtures_.check(leg, start, pairs);
+    stock_.check_bodies(leg, start, stock, pairs);
+}
+
+FluteContact LegCheck::contact_of_flutes(const Leg& leg, const CutModel& stock) {
+    std::vector<TrackedPair> pairs;
+    pass(leg, 0.0, stock, pairs);
+    FluteContact contact;
+    for (const TrackedPair& pair : pairs) {
+        if (pair.pair.part != PartKind::flutes) continue;
+        contact.may_touch = contact.may_touch || pair.lower <= 0.0;
+        contact.collides = contact.collides || pair.verdict == Verdict::collision;
+        // A fixture that is probed is nearer than its allowance.
+        contact.is_clear = contact.is_clear
+                           && (pair.verdict == Verdict::clear
+                               || (pair.pair.fixture && pair.verdict == Verdict::violation));
+    }
+    return contact;
+}
+
 double LegCheck::reach_into_raw_stock(const Pair& pair, const Leg& leg,
                                       const CutModel& stock) const {
     const MovingBody& body = context_.body_of(pair);

@@ -121,6 +121,13 @@ private:
     bool only_tool_ = false; // the machine bodies have been checked already
 };
 
+/// What is known of the contact of flutes.
+struct FluteContact {
+    bool may_touch = false; // not proven apart
+    bool is_clear = true;   // they touch at most, as is allowed
+    bool collides = false;  // certainly beyond that
+};
+
 /// Checks a tool and the bodies that move with it along the legs of a path, against fixtures and a
 /// stock that it cuts. Refers to the constructor's arguments.
 class LegCheck {
@@ -148,6 +155,12 @@ public:
     /// Checks all bodies at rest, `time` seconds after the block's start, without cutting.
     void rest(const AxisValues& position, double time, const CutModel& stock,
               std::vector<TrackedPair>& pairs);
+
+    /// Checks a straight leg without cutting, whatever is in the way.
+    void pass(const Leg& leg, double start, const CutModel& stock, std::vector<TrackedPair>& pairs);
+
+    /// How the flutes meet the stock and the fixtures on a straight leg, if they do not cut.
+    FluteContact contact_of_flutes(const Leg& leg, const CutModel& stock);
 
     /// Cuts the stock along a leg without a check; the volume removed, mm3.
     double only_cut(const Leg& leg, CutModel& stock) { return flutes_.along_turning(leg, stock); }

@@ -23,10 +23,18 @@ BlockMotion label(const Motion& motion) {
 
 } // namespace
 
-void BlockRun::check_limits(const Motion& motion) {
+void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
     for (size_t i = 0; i < axis_count; ++i)
         if (setup.machine.axes[i].present && (!motion.from[i] || !motion.to[i])) return;
-    const AxisRange range = axis_range(motion, setup.machine, chord_error(setup.mesh_size));
+    AxisRange range = axis_range(motion, setup.machine, chord_error(setup.mesh_size));
+    const AxisSpread after = spread_after(motion, before);
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (before.below[i] == 0.0 && before.above[i] == 0.0) continue;
+        // An arc has no extremes along such an axis.
+        const double from = motion.from[i].value_or(0.0), to = motion.to[i].value_or(0.0);
+        range.min[i] = std::min(from - before.below[i], to - after.below[i]);
+        range.max[i] = std::max(from + before.above[i], to + after.above[i]);
+    }
     for (size_t i = 0; i < axis_count; ++i) {
         const MachineAxis& axis = setup.machine.axes[i];
         if (!axis.present) continue;
@@ -35,8 +43,8 @@ void BlockRun::check_limits(const Motion& motion) {
         const double beyond = std::max(below, above);
         if (beyond <= resolution) continue;
         find(rule_id("over-travel"),
-             fmt::format("{} goes to {} in machine coordinates, {} {} beyond its limit.",
-                         axis_letters[i],
+             fmt::format("{} {} to {} in machine coordinates, {} {} beyond its limit.",
+                         axis_letters[i], before.none() ? "goes" : "may go",
                          below > above ? at_least(range.min[i]) : at_most(range.max[i]),
                          at_most(beyond), is_rotary(i) ? "degrees" : "mm"),
              i == 2         ? "Move the work, or use another tool length or work offset."
@@ -87,7 +95,7 @@ void remove_all(CutModel& stock) {
 } // namespace
 
 void BlockRun::move_unmeasured(const Motion& motion, const Path& path) {
-    if (block.path == PathCertainty::pose_unknown) check_limits(motion);
+    if (block.path == PathCertainty::pose_unknown) check_limits(motion, state.spread);
     if (!tool()) move_without_tool(motion);
     if (tool() && use(motion) == FluteUse::cutting) {
         // It may have cut anything.
@@ -146,17 +154,17 @@ void BlockRun::execute_motion(const Motion& motion) {
     drills_sideways = drills_sideways
                       || (tool() && motion.kind != MotionKind::rapid
                           && turns_to_cut(state.spindle, *tool()) && !cuts_along(*tool(), motion));
-    const Path path = path_of(motion, setup.machine, chord_error(setup.mesh_size));
+    const AxisSpread before = state.spread;
+    const bool is_certain = before.none() && !motion.stops_at_contact;
+    const Path path = take_path(motion);
     if (path.assumed_speed)
         state.assumptions.insert("rapids run at 10,000 mm/min on axes whose "
                                  "speed is not stated");
     if (block.path >= PathCertainty::pose_unknown) return move_unmeasured(motion, path);
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
-    check_limits(motion);
-    if (motion.from != state.position) {
-        forget_bounds();
-        state.corners.last = {};
-    }
+    check_limits(motion, before);
+    if (motion.from != state.position || !is_certain) forget_bounds();
+    if (motion.from != state.position) state.corners.last = {};
     round_corners(motion);
     state.memory.off_path = off_path + state.corners.of_cuts;
     doubt_assumed_start(motion);
@@ -168,11 +176,15 @@ void BlockRun::execute_motion(const Motion& motion) {
         check_from_unknown(motion, path);
     } else if (block.judgement) {
         follow_path(motion, path);
+    } else if (motion.stops_at_contact && use(motion) != FluteUse::cutting) {
+        check_probing(motion, path);
     } else {
         check_corner(motion, path);
-        check_path(motion, path);
+        check_path(motion, path, !is_certain);
     }
+    if (!is_certain) forget_bounds();
     note_corner(state.corners, motion, path);
+    if (motion.stops_at_contact) state.corners.last = {};
     result.duration += path.duration;
 }
 
@@ -205,9 +217,9 @@ void BlockRun::track_centre(const Motion& motion, const Leg& leg) {
     flutes.time = result.duration + leg.begin + contact->fraction * (leg.end - leg.begin);
 }
 
-void BlockRun::check_path(const Motion& motion, const Path& path) {
+void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread) {
     const bool rapid = motion.kind == MotionKind::rapid;
-    const bool dog_leg = rapid && (path.legs.size() > 1 || !path.legs[0].straight);
+    const bool dog_leg = rapid && !is_spread && (path.legs.size() > 1 || !path.legs[0].straight);
     const bool links = rapid && tool() && state.rules.has_fed && goes_across(path.legs[0]);
     std::optional<CutModel> before;
     if (dog_leg || links) before = state.stock;
@@ -217,7 +229,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path) {
         track_centre(motion, leg);
         removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
         legs.push_back({leg, result.duration, use(motion)});
-        if (use(motion) == FluteUse::cutting && !state.rules.length_in_doubt)
+        if (use(motion) == FluteUse::cutting && leg.straight && !state.rules.length_in_doubt)
             note_reach(state.rules.reaches,
                        {setup, *tool(), block.block, leg, state.mounted_fixtures,
                         state.certain_stock ? *state.certain_stock : state.stock},
@@ -270,7 +282,10 @@ void BlockRun::repeat_cuts(size_t first) {
 }
 
 void BlockRun::note_doubt(LegCheck& check, const Motion& motion, const Path& path) {
-    if (use(motion) == FluteUse::cutting) return;
+    const auto is_straight = [](const Leg& leg) { return leg.straight; };
+    if (use(motion) == FluteUse::cutting
+        && std::all_of(path.legs.begin(), path.legs.end(), is_straight))
+        return;
     const auto flutes = std::find_if(pairs.begin(), pairs.end(), [](const TrackedPair& pair) {
         return pair.pair == Pair{PartKind::flutes};
     });

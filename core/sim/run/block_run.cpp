@@ -63,26 +63,20 @@ void BlockRun::execute_motion(const FixtureChange& change) {
     forget_bounds();
     state.mounted_fixtures[change.fixture] = change.is_there;
     state.memory.cuts.erase(change.fixture); // another fixture may be there now
-    const Path path = path_of({.from = state.position, .to = state.position}, setup.machine, 0.0);
+    const Path path = path_of({.from = state.position, .to = state.position}, state.spread,
+                              state.spread, setup.machine, 0.0);
     if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
         return;
-    const std::vector<TrackedPair> before = pairs;
-    LegCheck check = leg_check(FluteUse::not_cutting);
-    check.rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
-    if (state.certain_stock)
-        doubt_clearances(check, {.positions = {path.legs[0].positions[0]}}, before);
+    check_rest(path);
 }
 
 void BlockRun::check_tool_change() {
     if (block.judgement) return;
     const Motion stay{.from = state.position, .to = state.position};
-    const Path path = path_of(stay, setup.machine, 0.0);
+    const Path path = path_of(stay, state.spread, state.spread, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
     std::vector<TrackedPair> of_last_tool = std::exchange(pairs, {});
-    LegCheck check = leg_check(FluteUse::not_cutting);
-    check.rest(path.legs[0].positions[0], result.duration, state.stock, pairs);
-    if (state.certain_stock)
-        doubt_clearances(check, {.positions = {path.legs[0].positions[0]}}, {});
+    check_rest(path);
     const std::vector<TrackedPair> there = std::exchange(pairs, std::move(of_last_tool));
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
@@ -175,7 +169,7 @@ bool BlockRun::may_study(const PairClearance& pair) {
     constexpr size_t most_findings = 40, most_of_a_pair = 8; // of a run
     constexpr size_t most_work = 40'000'000;
     if (block.judgement || block.is_trial || !tool() || legs.empty()) return false;
-    if (block.path != PathCertainty::known) return false;
+    if (block.path != PathCertainty::known || is_uncertain) return false;
     if (pair.verdict != Verdict::collision && pair.verdict != Verdict::violation) return false;
     TrialMemory& memory = state.trials;
     const auto alike = std::count(memory.studied.begin(), memory.studied.end(), pair.pair);
@@ -213,6 +207,10 @@ Finding BlockRun::finding_about(const PairClearance& pair, const PairStudy& stud
         finding.message += " It is certain unless an earlier motion, itself undecided, has removed "
                            "the stock there.";
         finding.cure = "Make the earlier undecided motion safe first.";
+    } else if (is_uncertain && pair.verdict == Verdict::undecided) {
+        finding.message += " A probing move may have ended anywhere between its start and its "
+                           "contact, and the program has not positioned all axes since.";
+        finding.cure = "After probing, retract in G90 to a stated position that is clear.";
     }
     if (pair.pair != Pair{PartKind::flutes} || pair.verdict != Verdict::collision) return finding;
     if (drills_sideways) {

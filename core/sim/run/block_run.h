@@ -30,6 +30,7 @@ struct BlockRun {
     bool turns = false;                 // whether rotary axes move
     bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
+    bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
     double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
     double off_path_rapids = 0.0; // likewise of its rapids
     bool only_dog_leg = false;    // a rapid of this block would be clear if it were straight
@@ -90,7 +91,8 @@ struct BlockRun {
     void execute_motion(const PathModeChange& change);
     void execute_motion(const FixtureChange& change);
 
-    void check_path(const Motion& motion, const Path& path);
+    /// `is_spread`: the legs are hulls because the start or the end of the motion is uncertain.
+    void check_path(const Motion& motion, const Path& path, bool is_spread);
     /// Whether a pair at most touches the raw stock on all legs of the block, so that it does not
     /// matter what is left of it.
     bool only_touches_raw_stock(const PairClearance& pair);
@@ -126,8 +128,16 @@ struct BlockRun {
                                           bool rapid_in_stock) const;
     void check_tool_change();
     void forget_bounds();
-    void check_limits(const Motion& motion);
+    /// `before`: how far the machine may be from the start of the motion.
+    void check_limits(const Motion& motion, const AxisSpread& before);
     void round_corners(const Motion& motion);
+    /// The legs of a motion from everywhere where the machine may be; advances `state.spread`.
+    Path take_path(const Motion& motion);
+    /// Follows a probing move until its flutes make contact, which is its purpose, and checks the
+    /// other bodies up to there. The machine may then be anywhere on this way.
+    void check_probing(const Motion& motion, const Path& path);
+    /// Measures all bodies at rest wherever the machine may be.
+    void check_rest(const Path& path);
     void check_corner(const Motion& motion, const Path& path);
     void check_from_unknown(const Motion& motion, const Path& path);
     /// Whether a motion with an unknown start is proven clear from every possible start.

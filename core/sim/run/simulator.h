@@ -36,6 +36,7 @@ struct SimulatorState {
     std::optional<ToolNumber> tool;     // tool in the spindle; empty: none, or unknown
     bool tool_known = false;            // a tool or an empty spindle was called
     AxisPosition position;              // at the end of the last motion
+    AxisSpread spread;                  // around `position`, since a probing move
     std::vector<bool> mounted_fixtures; // whether each fixture of the set-up is mounted
     SpindleChange spindle;
     LengthOffsetChange length_offset;
