@@ -89,10 +89,10 @@ std::optional<core::Error> BlockRunner::refusal(const gcode::BlockCommands& bloc
 void BlockRunner::add_warnings(const gcode::BlockCommands& block, const RunState& state,
                                std::vector<core::Finding>& findings) const {
     for (const gcode::Warning& warning : block.warnings) {
-        // A work offset in the set-up counts as set even if it is all zeros.
+        // A work offset in the set-up counts as set even if it is all zeros, and assumed ones do.
         const auto active = static_cast<int>(state.control.modal.offsets.active);
         if (warning.rule == core::rule_id("work-offset-unset")
-            && check_.file.offsets_set.contains(active))
+            && (check_.file.infers_frame || check_.file.offsets_set.contains(active)))
             continue;
         core::Finding finding = finding_of(*setup_, warning);
         finding.block = block.block;

@@ -13,6 +13,7 @@
 #include "core/base/rule_table.h"
 #include "core/sim/run/simulator.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/error_rules.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -82,6 +83,10 @@ std::string consequence_of(const ReadingResult& result) {
         return fmt::format("the error in {} ({}) does not occur.",
                            place_of(result.avoided->file, result.avoided->line),
                            result.avoided->finding.rule);
+    if (result.errors.empty() && result.stopped)
+        return fmt::format("the check stops in {}, and what follows is not checked: {}.",
+                           place_of(result.stopped->file, result.stopped->where.line),
+                           result.stopped->message);
     if (result.errors.empty())
         return fmt::format("the verdict is {}.", core::name_of(result.verdict));
     const ReadingError& first = result.errors.front();
@@ -114,11 +119,27 @@ core::Finding finding_of(const core::Setup& setup, const ReadingResult& result) 
     return finding;
 }
 
-core::Finding too_many(const core::Setup& setup) {
+/// What the readings that were followed depend on: each reason once, the first ones only.
+std::string reasons_of(const std::vector<ReadingResult>& readings) {
+    constexpr size_t most_shown = 8;
+    std::vector<std::string> reasons;
+    for (const ReadingResult& reading : readings)
+        if (std::find(reasons.begin(), reasons.end(), reading.reason) == reasons.end())
+            reasons.push_back(reading.reason);
+    const size_t shown = std::min(reasons.size(), most_shown);
+    const std::string more = shown < reasons.size()
+                                 ? fmt::format("; and {} more", reasons.size() - shown)
+                                 : std::string();
+    reasons.resize(shown);
+    return fmt::format("{}{}", fmt::join(reasons, "; "), more);
+}
+
+core::Finding too_many(const core::Setup& setup, const std::vector<ReadingResult>& followed) {
     return open_premise(setup,
                         fmt::format("The program can take more than {} ways, depending on values "
-                                    "that only the machine knows. The others were not checked.",
-                                    most_readings),
+                                    "that only the machine knows. The others were not checked. "
+                                    "{}.",
+                                    most_readings, reasons_of(followed)),
                         "State these values under [program.values] in the set-up.");
 }
 
@@ -301,7 +322,12 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     for (const std::string& condition : state.control.readings->repeated)
         repeated_.insert(condition);
     running_ = nullptr;
-    if (result.stopped && result.stopped->code == core::ErrorCode::unsupported)
+    // Where the control stops with an alarm, nothing moves any more. Other stops are those of the
+    // check alone: the control may know the word, or have the subprogram.
+    const bool is_alarm = result.stopped
+                          && (result.stopped->code == gcode::program_alarm
+                              || !gcode::rule_of(*result.stopped).empty());
+    if (result.stopped && !is_alarm)
         result.verdict = std::max(result.verdict, core::Verdict::undecided);
     return result;
 }
@@ -354,7 +380,7 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     assumed_.clear();
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
     if (has_too_many_) {
-        found.push_back(too_many(setup));
+        found.push_back(too_many(setup, record.readings));
         record.verdict = std::max(record.verdict, core::Verdict::undecided);
     }
     for (core::Finding& finding : found)

@@ -7,6 +7,7 @@
 
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/error_rules.h"
 
 namespace gcode {
 namespace {
@@ -235,7 +236,7 @@ core::Result<void> execute_alarm(const Block& block, const Dialect& dialect, dou
         block.comments.empty() ? std::string() : std::string(block.comments.back().text);
     if (number == alarm)
         return core::fail(
-            core::ErrorCode::invalid_value,
+            program_alarm,
             fmt::format("the program raises alarm {:.12g} here{}{}; the control stops",
                         dialect.first_alarm + value.value_or(0.0), text.empty() ? "" : ": ", text),
             where);

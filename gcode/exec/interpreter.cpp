@@ -95,10 +95,12 @@ bool changes_level(FlowKind kind) {
            || kind == FlowKind::call_program || is_siemens_statement(kind);
 }
 
-/// Whether a line is skipped without parsing. Its words may be for another machine.
-bool is_deleted(std::string_view line) {
+/// The switch that skips a line without parsing: its words may be for another machine. 0: none.
+int switch_before(std::string_view line) {
     const size_t first = line.find_first_not_of(" \t");
-    return first != std::string_view::npos && line[first] == '/';
+    if (first == std::string_view::npos || line[first] != '/') return 0;
+    const char next = first + 1 < line.size() ? line[first + 1] : ' ';
+    return next >= '1' && next <= '9' ? next - '0' : 1;
 }
 
 } // namespace
@@ -120,7 +122,6 @@ struct Interpreter::Scratch {
 
     Scratch& speaking(const InterpreterState& state);
     core::Result<bool> read_line(InterpreterState& state);
-    bool deletes_blocks(InterpreterState& state, uint32_t line) const;
     core::Result<bool> end_of_text(InterpreterState& state);
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
@@ -158,7 +159,10 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         std::string_view text = language.block_at ? language.block_at(program, number) : *found;
         if (language.lines_of) state.next.line = number + language.lines_of(text);
         if (program.windows) text = line_text.assign(text); // flow statements read other lines
-        if (is_deleted(text) && deletes_blocks(state, number)) continue;
+        const auto is_skipped = [&](int at) {
+            return deletes_blocks(state, environment, at, number);
+        };
+        if (const int at = switch_before(text); at != 0 && is_skipped(at)) continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
         const bool inside = state.frames.size() > 1;
@@ -170,18 +174,13 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         }
         if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
-        if (block.words_before_slash && deletes_blocks(state, number))
+        if (block.words_before_slash && is_skipped(1))
             block.words.erase(block.words.begin()
                                   + static_cast<std::ptrdiff_t>(*block.words_before_slash),
                               block.words.end());
-        if (block.is_empty() || (block.block_delete && deletes_blocks(state, number))) continue;
+        if (block.is_empty() || (block.block_delete && is_skipped(*block.block_delete))) continue;
         return true;
     }
-}
-
-bool Interpreter::Scratch::deletes_blocks(InterpreterState& state, uint32_t line) const {
-    return environment.block_delete
-           || answer_to(state, environment, ControlQuestion::blocks_are_deleted, line);
 }
 
 /// Where O numbers begin separate programs, a program ends where the next begins.

@@ -89,7 +89,7 @@ private:
 struct PremiseId {
     std::optional<ControlQuestion> question; // empty: a condition
     ProgramLine line{};                      // of the condition
-    uint32_t occurrence = 0;                 // how often it was evaluated before
+    uint32_t occurrence = 0; // how often it was evaluated before; of a question: the switch
 
     auto operator<=>(const PremiseId&) const = default;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/control.h"
@@ -41,8 +42,12 @@ void write_origin(const Execution& execution, WorkOffset& offset) {
     if (const Word* word = execution.statement.word('R')) offset.rotation_deg = word->value;
 }
 
-/// G10 L20: the origin for which the current position has the given coordinates.
-core::Result<void> write_origin_here(const Execution& execution, WorkOffset& offset) {
+/// The axes of which a block makes the offset unknown.
+using LostAxes = std::array<bool, axis_count>;
+
+/// G10 L20: the origin for which the current position has the given coordinates. Where that
+/// position is not known, the origin stays and the axis is lost.
+core::Result<LostAxes> write_origin_here(const Execution& execution, WorkOffset& offset) {
     const ModalState& modal = execution.modal();
     const Position machine = machine_from_program(modal.offsets, modal.position);
     if (const Word* word = execution.statement.word('R'))
@@ -53,15 +58,12 @@ core::Result<void> write_origin_here(const Execution& execution, WorkOffset& off
     Offsets there = modal.offsets;
     there.work = offset;
     Position read = program_from_machine(there, machine);
+    LostAxes lost{};
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
-        if (!read[axis])
-            return core::fail(
-                ErrorCode::missing_value,
-                fmt::format("{}: G10 L20 needs a known position, and the {} position is unknown",
-                            written(*word), axis_letters[axis]),
-                word->span);
+        lost[axis] = !read[axis];
+        if (lost[axis]) continue;
         read[axis] = axis_value(execution, axis, *word);
     }
     // The origin moves by the difference between the machine position and where these coordinates
@@ -69,7 +71,7 @@ core::Result<void> write_origin_here(const Execution& execution, WorkOffset& off
     const Position meant = machine_from_program(there, read);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (meant[axis] && machine[axis]) offset.origin[axis] += *machine[axis] - *meant[axis];
-    return {};
+    return lost;
 }
 
 /// Checks whether this control allows R to rotate a work offset.
@@ -118,25 +120,44 @@ core::Result<size_t> selected_offset(const Execution& execution, const CodeWord&
     return static_cast<size_t>(whole_of(code) - 54 + tenth_of(code));
 }
 
-core::Result<void> write_work_offset(Execution& execution, const CodeWord& entry,
-                                     const Word& kind) {
+core::Result<LostAxes> write_work_offset(Execution& execution, const CodeWord& entry,
+                                         const Word& kind) {
     const Word* number = execution.statement.word('P');
     const bool extended = execution.dialect.has_extended_offsets;
-    if (extended && kind.value == 2.0 && number && number->value == 0.0)
-        return write_external_offset(execution);
+    LostAxes lost{};
+    if (extended && kind.value == 2.0 && number && number->value == 0.0) {
+        if (auto done = write_external_offset(execution); !done)
+            return tl::unexpected(std::move(done).error());
+        return lost;
+    }
     FEELER_TRY(const size_t index, work_offset_index(execution, entry));
     WorkOffset offset = work_offset(*execution.state.tables, index);
-    if (kind.value == 2.0 || extended)
+    if (kind.value == 2.0 || extended) {
         write_origin(execution, offset);
-    else if (auto done = write_origin_here(execution, offset); !done)
-        return done;
+    } else {
+        FEELER_TRY(lost, write_origin_here(execution, offset));
+    }
     writable_work_offset(execution.state.tables.write(), index) = offset;
-    return {};
+    return lost;
 }
 
 void use(Execution& execution, const Offsets& offsets) {
     change_offsets(execution, offsets);
     execution.emit(SetOffset{offsets});
+}
+
+/// The position of these axes gets the given coordinates, as after G92 at an unknown position.
+void lose_offsets(Execution& execution, const LostAxes& lost) {
+    ModalState& modal = execution.modal();
+    Offsets offsets = modal.offsets;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (lost[axis]) offsets.axis[axis].reset();
+    if (offsets == modal.offsets) return;
+    modal.suspended_axis = offsets.axis;
+    use(execution, offsets);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]); word && lost[axis])
+            modal.position[axis] = axis_value(execution, axis, *word);
 }
 
 /// After G10, LinuxCNC recomputes its position ignoring G92 or G52. If the rotation of the offset
@@ -223,8 +244,9 @@ core::Result<void> write_offset(Execution& execution) {
                         written(*kind)),
             kind->span);
     if (auto checked = check_turn(execution); !checked) return checked;
-    if (auto done = write_work_offset(execution, entry, *kind); !done) return done;
+    FEELER_TRY(const LostAxes lost, write_work_offset(execution, entry, *kind));
     use_written_offset(execution, entry);
+    lose_offsets(execution, lost);
     return {};
 }
 
@@ -425,9 +447,20 @@ core::Result<void> write_external_offset(Execution& execution) {
 }
 
 void skip_data(Execution& execution, const Word& kind) {
-    execution.warn(kind.span, fmt::format("G10 {}: tool life data and control parameters are not "
-                                          "modelled; the blocks up to G11 have no effect",
-                                          written(kind)));
+    if (kind.value == 3.0) {
+        execution.warn(kind.span,
+                       fmt::format("G10 {}: tool life data are not modelled; the blocks up to G11 "
+                                   "have no effect",
+                                   written(kind)));
+        return;
+    }
+    execution.result.warnings.push_back(
+        {Severity::warning, kind.span,
+         fmt::format("G10 {} changes parameters of the control up to G11; they are not changed "
+                     "here, and what depends on them is not proven clear",
+                     written(kind)),
+         core::rule_id("undecided"),
+         "Check with a set-up that states the control as these blocks leave it, without them."});
 }
 
 } // namespace gcode

@@ -98,19 +98,43 @@ bool is_open(const InterpreterState& state, const Environment& environment,
     return parameter && parameter->is_open() && !find_met(*state.readings, {question});
 }
 
-double number_for(InterpreterState& state, const Environment& environment, ControlQuestion question,
-                  uint32_t line) {
+namespace {
+
+/// As number_for, for one of several switches that have the same parameter: `which`, 0 if there is
+/// only one.
+double number_of(InterpreterState& state, const Environment& environment, ControlQuestion question,
+                 uint32_t which, uint32_t line) {
     if (const auto stated = stated_number(environment, question)) return *stated;
     const ControlParameter* parameter = find_parameter(question, environment.dialect);
     if (!parameter || parameter->values.empty()) return 0.0;
     const std::span<const ParameterValue> values = parameter->values;
     if (!is_premise(environment, *parameter)) return values[0].answer;
-    const PremiseId id{question};
+    const PremiseId id{question, {}, which};
     const OpenPremise* met = find_met(*state.readings, id);
     if (met) return values[met->taken].answer;
     OpenPremise premise = premise_of(*parameter, environment);
+    premise.id = id;
     premise.line = line;
+    for (Reading& reading : premise.readings)
+        if (const size_t slash = reading.when.find("/ "); which > 0 && slash != std::string::npos)
+            reading.when.insert(slash + 1, std::to_string(which));
     return values[take_reading(state, std::move(premise))].answer;
+}
+
+} // namespace
+
+double number_for(InterpreterState& state, const Environment& environment, ControlQuestion question,
+                  uint32_t line) {
+    return number_of(state, environment, question, 0, line);
+}
+
+bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
+                    uint32_t line) {
+    // `/` and `/1` are the same switch.
+    const uint32_t which = number > 1 ? static_cast<uint32_t>(number) : 0;
+    return environment.block_delete
+           || number_of(state, environment, ControlQuestion::blocks_are_deleted, which, line)
+                  != 0.0;
 }
 
 bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,

@@ -23,6 +23,10 @@ double number_for(InterpreterState& state, const Environment& environment, Contr
 bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,
                uint32_t line);
 
+/// Whether blocks with `/`, which is switch 1, or with `/2` to `/9` are skipped.
+bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
+                    uint32_t line);
+
 /// A parameter that nothing states, as a premise with its readings; none is taken yet.
 OpenPremise premise_of(const ControlParameter& parameter, const Environment& environment);
 

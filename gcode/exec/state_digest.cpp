@@ -225,6 +225,7 @@ uint64_t digest_of(const InterpreterState& state) {
     for (const OpenPremise& premise : state.readings->met) {
         if (!premise.id.question) continue;
         digest.add(number_of(static_cast<int>(*premise.id.question)));
+        digest.add(uint64_t{premise.id.occurrence});
         digest.add(uint64_t{premise.taken});
     }
     return digest.value();
