@@ -3,6 +3,10 @@
 #include <algorithm>
 
 #include "app/check/block_runner.h"
+#include "core/motion/kinematics.h"
+#include "core/motion/path.h"
+#include "core/sim/clearance.h"
+#include "core/sim/moving_body.h"
 #include "gcode/language/control.h"
 #include "gcode/language/environment.h"
 
@@ -17,6 +21,49 @@ bool may_bend(const core::Event& event) {
     for (size_t axis = 0; axis < core::axis_count; ++axis)
         moving += motion->from[axis] && motion->to[axis] && motion->from[axis] != motion->to[axis];
     return moving > 1;
+}
+
+/// Whether a body comes near the stock or a fixture on a leg, by their boxes.
+bool comes_near(const core::Setup& setup, const core::MovingBody& body, const core::Leg& leg,
+                const core::Aabb& stock) {
+    constexpr double slack = 1.0; // mm
+    core::Pair pair{body.kind, {}, body.carried};
+    const auto is_near = [&](const core::Mount& mount, const core::Aabb& box) {
+        const core::RelativeLeg way = core::relative_leg(setup.machine, mount, body.mover, leg);
+        const double margin = core::allowance_of(setup, pair).distance + slack;
+        return core::overlaps(core::bounds(body, way).grown(margin), box);
+    };
+    if (is_near(setup.stock_mount, stock)) return true;
+    for (size_t i = 0; i < setup.fixtures.size(); ++i) {
+        const core::Fixture& fixture = setup.fixtures[i];
+        pair.fixture = i;
+        if (!core::is_exempt(setup.machine, body, fixture)
+            && is_near(fixture.mount, core::bounds(fixture.body)))
+            return true;
+    }
+    return false;
+}
+
+/// Whether all rapids of a block stay far from everything also as dog-legs, by boxes alone. False
+/// if that is not known.
+bool stays_away(const core::Setup& setup, const core::BlockEvents& block,
+                const core::SimulatorState& before) {
+    const auto tool = before.tool ? setup.tools.find(*before.tool) : setup.tools.end();
+    if (tool == setup.tools.end() || setup.machine.has_rotary()) return false;
+    const std::vector<core::MovingBody> bodies = core::moving_bodies(setup, tool->second);
+    for (const core::Event& event : block.events) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        if (!motion || motion->stops_at_contact || before.spread != core::AxisSpread{})
+            return false;
+        if (!may_bend(event)) continue;
+        const core::Path path =
+            core::path_of(*motion, setup.machine, core::chord_error(setup.mesh_size));
+        for (const core::Leg& leg : path.legs)
+            for (const core::MovingBody& body : bodies)
+                if (comes_near(setup, body, leg, before.stock.outer_box)) return false;
+        if (path.legs.empty()) return false;
+    }
+    return true;
 }
 
 } // namespace
@@ -39,6 +86,7 @@ std::optional<core::BlockResult> DogLegTrial::run(const core::BlockEvents& block
     if (block.path != core::PathCertainty::known) return std::nullopt;
     const auto last = std::find_if(block.events.rbegin(), block.events.rend(), may_bend);
     if (last == block.events.rend()) return std::nullopt;
+    if (stays_away(setup_, block, before)) return std::nullopt;
     core::BlockEvents trial = block;
     trial.events = block.events.first(static_cast<size_t>(block.events.rend() - last));
     trial.judgement = nullptr;

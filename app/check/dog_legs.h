@@ -24,9 +24,10 @@ public:
     explicit DogLegTrial(const core::Setup& setup);
 
     /// Runs a block up to its last rapid of two or more axes, from a copy of `before`. Empty if the
-    /// block has none, or if its path is not known anyway.
+    /// block has none, if its path is not known anyway, or if the boxes of the bodies stay away
+    /// from each other.
     ///
-    /// Cost: that of the block, for blocks with such a rapid.
+    /// Cost: that of the block and of a copy of the stock, for blocks with such a rapid near them.
     std::optional<core::BlockResult> run(const core::BlockEvents& block,
                                          const core::SimulatorState& before) const;
 

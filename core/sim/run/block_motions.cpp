@@ -74,6 +74,12 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     }
     result.checked = false;
     if (std::exchange(state.reported_unknown_start, true)) return;
+    if (state.time > 0.0)
+        return find(rule_id("first-move"),
+                    "The position of the machine is not known any more, so this motion cannot be "
+                    "checked.",
+                    "Position all axes in machine coordinates, or state in the set-up what the "
+                    "program takes from the control.");
     find(rule_id("first-move"),
          "The start position of the machine is unknown, so this motion cannot be checked.",
          "State the axis positions at the first block: `start` under [program] in the set-up, or "
