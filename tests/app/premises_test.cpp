@@ -55,6 +55,27 @@ TEST(Premises, ALengthThatNobodyStatedIsNotZero) {
     EXPECT_EQ(errors({"--dialect", "linuxcnc"}), "");
 }
 
+TEST(Premises, AReadingThatTheCheckCannotFinishIsUndecided) {
+    const std::string branch = head + std::string("G0 X50. Y50.\nIF[#1005EQ1]GOTO77\nGOTO88\n");
+    const std::string end = "N88 G0 Z200.\nM30\n";
+    const std::string missing = branch + "N77 G65 P9810 Z-10.\n" + end;
+    EXPECT_EQ(errors_with(missing, "[control]\n\"5006#6\" = 1\n"), "open-premise 7");
+    // After an alarm of the program, nothing moves.
+    const std::string alarm = branch + "N77 #3000=1 (NO PART)\n" + end;
+    EXPECT_EQ(errors_with(alarm, "[control]\n\"5006#6\" = 1\n"), "");
+}
+
+TEST(Premises, EachBlockDeleteSwitchIsOneOfItsOwn) {
+    const auto errors = [](const std::string& up, const std::string& across) {
+        return errors_with(head + std::string("G0 X50. Y50.\nG0 Z5.\n") + up + " G0 Z60.\n" + across
+                               + " G0 Y115.\nG0 Z100.\nM30\n",
+                           "[control]\n\"5006#6\" = 1\n");
+    };
+    EXPECT_EQ(errors("/2", "/2"), ""); // both or none
+    EXPECT_EQ(errors("/", "/1"), "");
+    EXPECT_EQ(errors("/2", "/3"), "open-premise 8");
+}
+
 TEST(Premises, AReadingWithoutErrorsIsAnAssumption) {
     const Checked safe =
         check(plate("fanuc"), head + std::string("G0 X50. Y50.\nG0 Z200.\nG49\nM30\n"));
