@@ -77,7 +77,7 @@ struct KlartextState {
     bool calls_after_motions = false; // M89
     std::optional<double> call_feed;  // F of TOOL CALL, mm/min
     Transforms transforms;
-    bool turns_short_way = false;        // M126
+    bool turns_short_way = false; // M126
     bool looks_ahead = false; // searching the motion after a corner; corners are ignored meanwhile
 
     bool operator==(const KlartextState&) const = default;

@@ -258,7 +258,7 @@ struct ModalState {
     double fastest_speed = 0.0;       // rev/min, D of G96; 0 without a limit
     bool feed_override = true, speed_override = true, adaptive_feed = false, feed_hold = true;
 
-    Position position;                       // tool tip, program coordinates
+    Position position; // tool tip, program coordinates
     // Since a probing move: the travel from `position` to the farthest point at which the machine
     // may be instead; 0 where an axis is known.
     AxisValues spread{};

@@ -122,10 +122,10 @@ std::string cure_by(LinkCheck& probe, const Pair& pair, double higher, const std
     for (const TrackedPair& each : above)
         if (each.pair == pair) keeps = each.lower;
     constexpr double least_shown = 0.001; // mm
-    const std::string kept =
-        keeps < least_shown ? std::string("is clear")
-                            : fmt::format("keeps {} mm from {}", clearance_at_least(keeps),
-                                          pair.fixture ? body : "the stock");
+    const std::string kept = keeps < least_shown
+                                 ? std::string("is clear")
+                                 : fmt::format("keeps {} mm from {}", clearance_at_least(keeps),
+                                               pair.fixture ? body : "the stock");
     return fmt::format("Retract {:.1f} mm higher before moving across (tried: this rapid then {}).",
                        tried, kept);
 }
