@@ -293,7 +293,11 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     while (!joins) {
         const auto step = runner.step(state);
         if (joins) break;
-        if (!step) result.stopped = step.error();
+        if (!step) {
+            result.stopped = step.error();
+            if (result.stopped->file == check_.library->program(0).file)
+                result.stopped->file.clear();
+        }
         if (!step || !*step) break;
         const BlockStep& done = **step;
         result.verdict = std::max(result.verdict, done.checked.result.verdict);

@@ -76,7 +76,7 @@ core::Result<void> take_feed(Execution& execution) {
 
 core::Result<void> program_error_of(const Execution& execution) {
     const Word* word = execution.statement.word('P');
-    return core::fail(ErrorCode::invalid_value,
+    return core::fail(program_alarm,
                       fmt::format("FN 14: the program stops here with its own error {:.12g}",
                                   word ? word->value : 0.0),
                       klartext_of(execution.block).span);

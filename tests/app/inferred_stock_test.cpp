@@ -268,13 +268,14 @@ TEST(InferredStock, IsNoHigherThanRapidsGoDownToBeforeTheyDrill) {
 }
 
 TEST(MeshSize, FollowsTheSizeOfASmallStock) {
-    const auto mesh_size = [](const std::string& x) {
-        return infer("G21 G90\nM3 S1\nG0 Z3\nX0 Y0\nG1 Z-1 F9\nX" + x + "\nG0 Z3\nM2\n")
+    const auto mesh_size = [](const std::string& x, const std::string& z = "-1") {
+        return infer("G21 G90\nM3 S1\nG0 Z3\nX0 Y0\nG1 Z" + z + " F9\nX" + x + "\nG0 Z3\nM2\n")
             .run.setup.mesh_size;
     };
     EXPECT_DOUBLE_EQ(mesh_size("0.5"), 0.2); // 6.5 mm with the tool
     EXPECT_DOUBLE_EQ(mesh_size("80"), 0.5);
-    EXPECT_DOUBLE_EQ(mesh_size("594"), 1.0);
+    EXPECT_DOUBLE_EQ(mesh_size("594", "-20"), 1.0);
+    EXPECT_DOUBLE_EQ(mesh_size("594"), 0.75); // four cells across a thickness of 3 mm
 }
 
 } // namespace
