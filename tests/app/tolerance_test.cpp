@@ -17,6 +17,11 @@ const std::string slot = "G21 G90 G17 G40 G49 G80\nT1 M6\nS3000 M3\nG54\nG0 X10 
 /// The tip stands 5 mm below the stock's face, so the holder, 40 mm wide, begins 40 mm above it.
 test_support::SetupWriter plate() { return test_support::SetupWriter().also(lengths_in_mm); }
 
+/// With a control on which a length offset stays active after G53.
+test_support::SetupWriter plate_that_keeps_lengths() {
+    return test_support::SetupWriter().also(lengths_in_mm + "\"5001#6\" = 1\n");
+}
+
 Tolerances tolerances(const ToleranceCase& one) {
     const auto run = app::run_check(one.job);
     if (!run) {
@@ -261,7 +266,7 @@ TEST(Tolerance, OfAToolThatDoesNotCutAtItsCentre) {
 
 TEST(Tolerance, IsNotGivenToADrillThatADeviationFeedsSideways) {
     // From a machine position, the drill is fed to a position under G54 straight below it.
-    auto setup = plate();
+    auto setup = plate_that_keeps_lengths();
     setup.tool("number = 1\nshape = \"drill\"\ndiameter = 10\nflute_length = 40\n"
                "shank = [[10, 10, 25]]\nholder = [[40, 40, 30]]\n");
     const std::string drill = "G21 G90 G17 G40 G49 G80\nT1 M6\nS3000 M3\nG54\nG43 H1 G0 Z50\n"
@@ -277,7 +282,7 @@ TEST(Tolerance, IsNotGivenToADrillThatADeviationFeedsSideways) {
 
 TEST(Tolerance, HoldsWhereACycleBeginsAtAMachinePosition) {
     // The cycle begins 2 mm above its retract plane, which a deviation raises above that.
-    auto setup = plate();
+    auto setup = plate_that_keeps_lengths();
     setup.tool("number = 1\nshape = \"drill\"\ndiameter = 10\nflute_length = 40\n"
                "shank = [[10, 10, 25]]\nholder = [[40, 40, 30]]\n");
     const std::string cycle = "G21 G90 G17 G40 G49 G80\nT1 M6\nS3000 M3\nG54\nG43 H1 G0 Z50\n"
