@@ -93,7 +93,8 @@ TEST(WrongLength, LeavesADrillThatIsFedSideways) {
 TEST(WrongLength, LeavesCollisionsOfMovesInMachineCoordinates) {
     // G53 ignores the length offset, so the right one changes nothing.
     const std::string lines = "G0 X50. Y110.\nG53 G0 Z-318.\n";
-    const Checked wrong = check(with_clamp(85, 12), with_length(1, 3, lines));
+    const SetupWriter setup = with_clamp(85, 12).also("[control]\n\"5001#6\" = 1\n");
+    const Checked wrong = check(setup, with_length(1, 3, lines));
     EXPECT_THAT(wrong.errors(), HasSubstr("collision 7"));
     EXPECT_THAT(all_words(wrong), Not(HasSubstr("lower than intended")));
 }
