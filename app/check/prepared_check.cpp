@@ -8,6 +8,7 @@
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
 #include "app/check/tool_mismatch.h"
+#include "app/setup/coverage.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/inference/inferred_stock.h"
 #include "app/setup/setup_file.h"
@@ -134,16 +135,17 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(core::in_file(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
-    // What an earlier program stored on a Grbl is not where the machine is assumed to start.
-    if (*dialect == gcode::DialectId::grbl && file.is_inferred) {
-        file.environment.home.reset();
-        file.environment.second_home.reset();
+    // What an earlier program stored is not where the machine is assumed to start.
+    if (gcode::dialect(*dialect).stores_homes) {
+        if (file.infers_home || file.assumed.contains("start")) file.environment.home.reset();
+        if (file.infers_second_home) file.environment.second_home.reset();
     }
     auto notes = apply(file.control, file.environment, file.setup.machine);
     if (!notes) return tl::unexpected(core::in_file(notes.error(), job.setup));
     for (std::string& note : *notes) run.assumptions.push_back(std::move(note));
     file.environment.limits.is_stopped = job.is_stopped;
     check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock)
+                            && !file.assumed.contains("stock")
                             && !stands_for_no_stock(file.setup.stock);
     check.tool_mismatches = tool_mismatches(*check.program, file);
     if (const auto whole = complete_setup(file, *check.program); !whole)
@@ -168,6 +170,8 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     file.environment.limits.is_stopped = {};
     file.environment.control.reports_premises =
         core::severity_of(run.setup, core::rule_id("open-premise")) != core::Severity::off;
+    file.environment.control.follows_units = check.stock_is_stated || !run.setup.fixtures.empty()
+                                             || run.coverage->limits == Known::described;
     add_standing_assumptions(run.setup, run);
     run.times.read = reading.seconds();
     return check;

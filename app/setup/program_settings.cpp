@@ -111,6 +111,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.spindle_at_start, over.spindle_at_start);
     replace(settings.values, over.values);
     replace(settings.speed_by_hand, over.speed_by_hand);
+    replace(settings.measured_offsets_are_stated, over.measured_offsets_are_stated);
     return settings;
 }
 
@@ -125,6 +126,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
             environment.block_delete;
     }
     if (settings.machine_unit) environment.machine_unit = *settings.machine_unit;
+    environment.machine_unit_is_stated |= settings.machine_unit.has_value();
     if (settings.units_at_start) environment.units_at_start = settings.units_at_start;
     if (settings.max_blocks) environment.limits.blocks = *settings.max_blocks;
     if (settings.counts_smallest_steps) {
@@ -133,6 +135,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
             !*settings.counts_smallest_steps;
     }
     environment.control.values = settings.values;
+    environment.measured_offsets_are_stated = settings.measured_offsets_are_stated.value_or(false);
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         replace(environment.start[axis], settings.start[axis]);
     replace(environment.search_path, settings.search_path);
@@ -256,6 +259,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
     if (auto values = table.table("values", "[program.values]"))
         read_values(*values, settings.values);
     settings.speed_by_hand = table.boolean("speed_by_hand");
+    if (table.word("measured_offsets", {"as stated"})) settings.measured_offsets_are_stated = true;
     if (const auto tool = table.integer("tool_at_start"))
         settings.tool_at_start = core::ToolNumber{*tool};
     if (const auto spindle =

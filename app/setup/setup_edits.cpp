@@ -104,6 +104,7 @@ core::Result<void> apply(const SetupEdits& edits, SetupFile& file) {
         file.setup.stock.tolerance = tolerance;
         file.setup.earlier_cuts = nullptr;
         file.needs_stock = false;
+        file.assumed.erase("stock");
     }
     for (const auto& [number, stated] : edits.tools) {
         core::ToolAssembly tool = *core::assemble(stated.tool);
@@ -260,6 +261,18 @@ NewTable new_allowance(const toml::table& root, double allowance, const std::set
     return {before, before, text + "\n"};
 }
 
+/// Takes the stock out of what the file calls assumed. Whether it was there.
+bool state_stock(toml::table& root) {
+    toml::array* words = root["assumed"].as_array();
+    if (!words) return false;
+    const size_t before = words->size();
+    for (auto word = words->begin(); word != words->end();)
+        word = word->value<std::string>() == "stock" ? words->erase(word) : std::next(word);
+    const bool changes = words->size() < before;
+    if (words->empty()) root.erase("assumed");
+    return changes;
+}
+
 /// Replaces or adds a tool in the tree that the new text must give when read.
 void put(toml::table& root, const std::string& text, core::ToolNumber number) {
     toml::table fresh = toml::parse(text);
@@ -303,6 +316,13 @@ core::Result<std::string> rewritten_setup(const std::string& text, const SetupEd
         FEELER_TRY(const std::string stock, new_stock(before, *edits.stock));
         wanted.insert_or_assign("stock", *toml::parse(stock)["stock"].as_table());
         replace(before["stock"].as_table(), stock);
+        if (state_stock(wanted)) {
+            std::ostringstream line;
+            if (const toml::array* words = wanted["assumed"].as_array())
+                line << "assumed = " << *words;
+            const size_t at = line_of(*before.get("assumed"));
+            tables.push_back({at, at + 1, line.str()});
+        }
     }
     for (const auto& [number, stated] : edits.tools) {
         const std::string tool = tool_table(stated.tool);

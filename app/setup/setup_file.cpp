@@ -489,11 +489,24 @@ Known known_limits(const core::Machine& machine) {
     return Known::described;
 }
 
+/// What the file states and calls assumed.
+void read_assumed(TableReader& root, SetupFile& file) {
+    for (const std::string& word :
+         root.strings("assumed", 0).value_or(std::vector<std::string>{})) {
+        if (std::find(assumed_words.begin(), assumed_words.end(), word) == assumed_words.end())
+            return root.refuse("assumed", fmt::format("is a list of {}; \"{}\" is none of them",
+                                                      fmt::join(assumed_words, ", "), word));
+        file.assumed.insert(word);
+    }
+    file.infers_start = file.assumed.contains("start");
+}
+
 void read_root(TableReader& root, const toml::table& text, BodyContext& context,
                const ProgramSettings& over, std::optional<core::Error>& error) {
     SetupFile& file = context.file;
     core::Setup& setup = file.setup;
     file.mesh_is_stated = root.has("mesh_size");
+    read_assumed(root, file);
     setup.mesh_size = root.number_or("mesh_size", 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
     if (const auto megabytes = root.number("memory_limit")) {
@@ -554,8 +567,10 @@ std::string assume_machine_zero(SetupFile& file) {
             environment.start[axis] = home[axis].value_or(axis == 2 ? top : 0.0);
             file.infers_start = file.infers_start || !home[axis];
         }
-    if (!environment.home) environment.home = gcode::AxisValues{0.0, 0.0, top};
-    if (!environment.second_home && top != 0.0)
+    file.infers_home = !environment.home;
+    file.infers_second_home = !environment.second_home;
+    if (file.infers_home) environment.home = gcode::AxisValues{0.0, 0.0, top};
+    if (file.infers_second_home && top != 0.0)
         environment.second_home = gcode::AxisValues{0.0, 0.0, top};
     bool has_limits = false;
     for (core::MachineAxis& axis : machine.axes) {

@@ -63,9 +63,11 @@ struct SetupFile {
     bool infers_frame = false;    // no work offset is stated
     bool mesh_is_stated = false;  // the mesh size
     Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
-    bool infers_start = false;            // the start position, with the work offsets
-    std::string start_assumption;         // of a start position that nothing states; or empty
-    std::string not_judged;               // why motions are not checked; empty if they are
+    bool infers_start = false; // the start position, with the work offsets
+    bool infers_home = false, infers_second_home = false; // likewise the reference points
+    std::set<std::string> assumed; // words of `assumed`: what the file states without knowing it
+    std::string start_assumption;  // of a start position that nothing states; or empty
+    std::string not_judged;        // why motions are not checked; empty if they are
     std::vector<std::string> assumptions; // facts that the file does not state, and mesh repairs
 };
 
@@ -79,6 +81,9 @@ core::Result<SetupFile> read_setup(const std::string& path, const ProgramSetting
 /// position of the machine, where it starts and has its home unless stated otherwise. Axis limits
 /// are dropped, because they would be compared with a guess. Returns the assumption as a clause.
 std::string assume_machine_zero(SetupFile& file);
+
+/// What a set-up can state and call assumed at the same time: words of the key `assumed`.
+inline constexpr std::array<std::string_view, 3> assumed_words = {"stock", "offsets", "start"};
 
 /// The name of the project file, which assigns set-ups to the programs of a folder.
 constexpr const char* project_file_name = "feeler.toml";

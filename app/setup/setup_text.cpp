@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/setup/coverage.h"
 #include "app/setup/setup_file.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/control.h"
@@ -220,6 +221,21 @@ std::string rules_text(const SetupFile& setup) {
     return text;
 }
 
+/// What the file states and nobody knows yet.
+std::string assumed_text(const SetupFile& setup) {
+    std::vector<std::string> words;
+    const auto add = [&](bool is_assumed, std::string_view word) {
+        if (is_assumed) words.push_back(fmt::format("\"{}\"", word));
+    };
+    add(setup.stock_known == Known::inferred, "stock");
+    add(setup.offsets_known == Known::inferred, "offsets");
+    add(setup.infers_start, "start");
+    if (words.empty()) return {};
+    return fmt::format("assumed = [{}]     # remove each word when you have compared it with the "
+                       "machine\n",
+                       fmt::join(words, ", "));
+}
+
 } // namespace
 
 std::string setup_text(const SetupFile& setup, const std::string& program) {
@@ -229,6 +245,7 @@ std::string setup_text(const SetupFile& setup, const std::string& program) {
     text += "#\n";
     for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
     text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));
+    text += assumed_text(setup);
     if (setup.setup.allowance)
         text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
     text += program_text(setup) + control_text(setup) + machine_text(setup) + offsets_text(setup)

@@ -123,6 +123,9 @@ void cancel_length_offset(Execution& execution);
 /// On Fanuc mills, what a move of these axes to machine coordinates (G28, G30, G53) does to a
 /// length offset along them.
 void leave_length_behind(Execution& execution, const std::array<bool, axis_count>& moved);
+/// Asks whether the control has restored the length offset that such a move cancelled, in the
+/// first block to which it matters.
+core::Result<void> take_length_up(Execution& execution);
 core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
 core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);  // G98 G99

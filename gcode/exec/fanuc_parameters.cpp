@@ -7,6 +7,7 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
+#include "gcode/exec/readings.h"
 
 namespace gcode {
 namespace {
@@ -17,11 +18,20 @@ constexpr int milliseconds_timer = 3001, hours_timer = 3002, date = 3011, time_o
 constexpr int tool_of_8000s = 8550;
 constexpr double seconds_of_block = 1.0;
 
+/// Variables whose meaning depends on how the control stores tool offsets.
+enum class Stored : uint8_t {
+    always_so,
+    as_size,   // a diameter, or a radius on a control on which radii are entered
+    as_wear,   // of H, or of H and D; or the only value of the number
+    as_length, // of H, or of H and D
+};
+
 /// A range of variables for consecutive axes, offsets or tools.
 struct Range {
     int first, last;
     Value (*read)(const InterpreterState& state, int index);
     void (*write)(InterpreterState& state, int index, double value); // null: read-only
+    Stored stored = Stored::always_so;
 };
 
 double shown(const InterpreterState& state, size_t axis, double value) {
@@ -204,13 +214,13 @@ constexpr Range common_ranges[] = {
 };
 
 constexpr Range fanuc_ranges[] = {
-    {2001, 2200, tool_part<length_wear>, set_tool_part<length_wear>},
-    {2201, 2400, tool_part<length>, set_tool_part<length>},
+    {2001, 2200, tool_part<length_wear>, set_tool_part<length_wear>, Stored::as_wear},
+    {2201, 2400, tool_part<length>, set_tool_part<length>, Stored::as_length},
     {5041, 5049, work_position, nullptr},
     {7401, 7960, [](const InterpreterState& s, int i) { return extended_offset(s, i + 400); },
      [](InterpreterState& s, int i, double v) { set_extended_offset(s, i + 400, v); }},
-    {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>},
-    {11001, 11999, tool_part<length>, set_tool_part<length>},
+    {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>, Stored::as_wear},
+    {11001, 11999, tool_part<length>, set_tool_part<length>, Stored::as_length},
     {12001, 12999, tool_part<radius_wear>, set_tool_part<radius_wear>},
     {13001, 13999, tool_part<radius>, set_tool_part<radius>},
     {14001, 19980, extended_offset, set_extended_offset},
@@ -219,15 +229,15 @@ constexpr Range fanuc_ranges[] = {
 constexpr Range haas_ranges[] = {
     {2001, 2200, tool_part<length>, set_tool_part<length>},
     {2201, 2400, tool_part<length_wear>, set_tool_part<length_wear>},
-    {2401, 2600, tool_part<diameter>, set_tool_part<diameter>},
-    {2601, 2800, tool_part<diameter_wear>, set_tool_part<diameter_wear>},
+    {2401, 2600, tool_part<diameter>, set_tool_part<diameter>, Stored::as_size},
+    {2601, 2800, tool_part<diameter_wear>, set_tool_part<diameter_wear>, Stored::as_size},
     {3026, 3026, tool_in_spindle, nullptr},
     {3027, 3027, spindle_speed, nullptr},
     {5041, 5049, block_end, nullptr}, // the tip: without the tool offset
     {8553, 8553, named_tool_part<length>, nullptr},
     {8554, 8554, named_tool_part<length_wear>, nullptr},
-    {8555, 8555, named_tool_part<diameter>, nullptr},
-    {8556, 8556, named_tool_part<diameter_wear>, nullptr},
+    {8555, 8555, named_tool_part<diameter>, nullptr, Stored::as_size},
+    {8556, 8556, named_tool_part<diameter_wear>, nullptr, Stored::as_size},
     {14001, 15980, extended_offset, set_extended_offset},
 };
 
@@ -250,13 +260,45 @@ bool is_zero_at_first(int number) {
            || number == 3901 || number == 3902;
 }
 
+bool enters_radii(const InterpreterState& state, const Environment& environment) {
+    return current_number(state, environment, ControlQuestion::radii_are_entered) != 0.0;
+}
+
+/// Sets a value or wear of H that the same number also has under D, by the type of the memory.
+void set_shared_offset(InterpreterState& state, const Environment& environment, const Range& range,
+                       int index, double value, uint32_t line) {
+    const auto memory = static_cast<OffsetMemory>(
+        number_for(state, environment, ControlQuestion::offset_memory, line));
+    const bool is_wear = range.stored == Stored::as_wear;
+    if (is_wear && memory == OffsetMemory::one_value) {
+        set_tool_part<length_wear>(state, index, 0.0);
+        set_tool_part<radius_wear>(state, index, 0.0);
+        set_tool_part<radius>(state, index, value);
+        set_tool_part<length>(state, index, value);
+        return;
+    }
+    range.write(state, index, value);
+    if (memory == OffsetMemory::separate) return;
+    if (is_wear)
+        set_tool_part<radius_wear>(state, index, value);
+    else
+        set_tool_part<radius>(state, index, value);
+}
+
 } // namespace
 
 std::optional<Value> fanuc_parameter(const InterpreterState& state, const Environment& environment,
                                      int number) {
     if (number < 1000) return std::nullopt;
-    if (const Range* range = range_of(environment, number))
-        return range->read(state, number - range->first);
+    if (const Range* range = range_of(environment, number)) {
+        // As set by the program or stated, whatever the type of the memory.
+        if (range->stored == Stored::as_wear)
+            if (const Value set = state.parameters->numbered(number)) return set;
+        Value value = range->read(state, number - range->first);
+        if (range->stored == Stored::as_size && value && enters_radii(state, environment))
+            *value /= 2.0;
+        return value;
+    }
     if (is_zero_at_first(number)) return Value(state.parameters->numbered(number).value_or(0.0));
     // The position at which the last G31 made contact; if there was none, the current position.
     if (number >= 5061 && number <= 5069 && !state.parameters->numbered(number))
@@ -271,8 +313,34 @@ core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environmen
     if (!range->write)
         return core::fail(core::ErrorCode::invalid_value,
                           fmt::format("#{} is read-only and cannot be set", number), where);
-    range->write(state, number - range->first, value.value_or(0.0));
+    const int index = number - range->first;
+    double set = value.value_or(0.0);
+    const Offsets before = state.modal.offsets;
+    switch (range->stored) {
+    case Stored::as_size:
+        if (answer_to(state, environment, ControlQuestion::radii_are_entered, where.line))
+            set *= 2.0;
+        range->write(state, index, set);
+        break;
+    case Stored::as_wear:
+        state.parameters.write().set_numbered(number, set);
+        [[fallthrough]];
+    case Stored::as_length:
+        set_shared_offset(state, environment, *range, index, set, where.line);
+        if (state.modal.offsets.tool != before.tool
+            && !answer_to(state, environment, ControlQuestion::length_is_reloaded, where.line))
+            change_offsets(state.modal, before);
+        break;
+    case Stored::always_so:
+        range->write(state, index, set);
+    }
     return true;
+}
+
+void forget_offset_as_set(InterpreterState& state, int number) {
+    for (const int first : {2000, 10000})
+        if (state.parameters->numbered(first + number))
+            state.parameters.write().set_numbered(first + number, {});
 }
 
 bool is_modelled_variable(const Environment& environment, int number) {

@@ -29,6 +29,9 @@ bool is_modelled_variable(const Environment& environment, int number);
 /// Whether an assignment to this variable changes an offset.
 bool sets_fanuc_offset(const Environment& environment, int number);
 
+/// Forgets what the program wrote into the variables of a tool offset number, since G10 writes it.
+void forget_offset_as_set(InterpreterState& state, int number);
+
 /// Whether this is a clock variable. Programs are checked without a clock.
 bool is_of_clock(int number);
 

@@ -27,34 +27,39 @@ Position known_home(Execution& execution, Position home, core::SourceSpan where,
     return home;
 }
 
-/// Whether G28 and G30 go to positions that earlier programs may have stored. Grbl keeps those of
-/// G28.1 and G30.1 in its memory.
-bool stores_homes(const Execution& execution) {
-    return execution.dialect.id == DialectId::grbl
-           && execution.environment.control.reports_premises;
-}
-
-/// The position that G28 or G30 of Grbl goes to; unknown unless the set-up or the program states
-/// it.
-Position stored_home(Execution& execution, const CodeWord& entry) {
-    const bool is_first = entry.code->number == g_code(28);
+/// The position that G28.1 or G30.1 has stored: that of G28 or G30. Unknown unless the set-up or
+/// the program states it.
+Position stored_home(Execution& execution, bool is_first, core::SourceSpan where,
+                     const std::string& mover) {
     Position home = is_first ? execution.modal().home : execution.modal().second_home;
-    if (!(home[0] && home[1] && home[2]))
+    if (!(home[0] && home[1] && home[2])) {
+        std::string_view place = is_first ? "`home` of the axes" : "the second reference point";
+        if (execution.dialect.has_variables_file)
+            place = is_first ? "`home` of the axes or the variables file (`parameters`)"
+                             : "the variables file (`parameters`)";
         execution.result.warnings.push_back(
-            {Severity::warning, entry.word->span,
-             fmt::format("{0} goes to the position that {0}.1 has stored, which only the machine "
+            {Severity::warning, where,
+             fmt::format("{0} goes to the position that {1}.1 has stored, which only the machine "
                          "knows: the program does not store it before",
-                         is_first ? "G28" : "G30"),
+                         mover, is_first ? "G28" : "G30"),
              core::rule_id("unknown-value"),
-             fmt::format("Retract with G53 G0 Z0 instead, or state {} in the set-up.",
-                         is_first ? "`home` of the axes" : "the second reference point")});
+             fmt::format("Retract with G53 G0 Z0 instead, or state {} in the set-up.", place)});
+    }
     for (size_t axis = 3; axis < axis_count; ++axis)
         if (!home[axis]) home[axis] = 0.0;
     return home;
 }
 
+/// The reference point of G28 or G30 on this control.
+Position reference_point(Execution& execution, bool is_first, core::SourceSpan where,
+                         const std::string& mover) {
+    if (execution.dialect.stores_homes && execution.environment.control.reports_premises)
+        return stored_home(execution, is_first, where, mover);
+    return known_home(execution, is_first ? execution.modal().home : execution.modal().second_home,
+                      where, mover);
+}
+
 Position home_of(Execution& execution, const CodeWord& entry) {
-    const ModalState& modal = execution.modal();
     const Word* p_word = execution.statement.word('P');
     if (entry.code->number == g_code(30) && p_word && p_word->value >= 3.0) {
         Position home;
@@ -63,9 +68,8 @@ Position home_of(Execution& execution, const CodeWord& entry) {
         std::copy(stated.begin(), stated.end(), home.begin());
         return home;
     }
-    if (stores_homes(execution)) return stored_home(execution, entry);
-    return known_home(execution, entry.code->number == g_code(28) ? modal.home : modal.second_home,
-                      entry.word->span, written(*entry.word));
+    return reference_point(execution, entry.code->number == g_code(28), entry.word->span,
+                           written(*entry.word));
 }
 
 /// A rapid to a position in machine coordinates; axes without a value stay.
@@ -137,10 +141,10 @@ void move_to_tool_change(Execution& execution) {
         traverse_in_machine(execution, up);
     }
     if (motion.goes_to_second_home)
-        traverse_in_machine(execution,
-                            known_home(execution, execution.modal().second_home,
+        traverse_in_machine(
+            execution, reference_point(execution, false,
                                        {.line = execution.block.line, .column = execution.column},
-                                       "tool change"));
+                                       "the tool change"));
     traverse_in_machine(execution, motion.position);
 }
 

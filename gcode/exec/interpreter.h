@@ -120,6 +120,8 @@ struct Readings {
     std::map<std::string, bool> answers; // outcomes of conditions, by their text
     std::set<std::string> repeated;      // conditions whose answer was used again
     std::set<std::string> reported;      // values that are unknown, once each
+    // What variables were computed from that only the machine knows, by their names as written.
+    std::map<std::string, std::vector<std::string>> origins;
 
     bool operator==(const Readings& other) const { return met.size() == other.met.size(); }
 };

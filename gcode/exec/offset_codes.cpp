@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/control.h"
 
@@ -45,6 +48,32 @@ void write_origin(const Execution& execution, WorkOffset& offset) {
 /// The axes of which a block makes the offset unknown.
 using LostAxes = std::array<bool, axis_count>;
 
+/// Whether the program gives an axis its offset at a contact that it has probed.
+bool is_measured(const ModalState& modal, size_t axis) {
+    return modal.has_probed && (!modal.position[axis] || modal.spread[axis] != 0.0);
+}
+
+/// Whether the offset of an axis stays because the set-up states the one that is measured.
+bool stays_as_stated(const Execution& execution, size_t axis) {
+    return execution.environment.measured_offsets_are_stated
+           && is_measured(execution.modal(), axis);
+}
+
+/// Reports an offset that is set at a contact.
+void report_measured(Execution& execution, const core::SourceSpan where, size_t axis) {
+    if (!is_measured(execution.modal(), axis)) return;
+    std::set<std::string>& reported = execution.state.readings.write().reported;
+    if (!reported.insert(fmt::format("the offset of {}", axis_letters[axis])).second) return;
+    execution.result.warnings.push_back(
+        {Severity::warning, where,
+         fmt::format("The offset of {} is set where the probe made contact, which only the machine "
+                     "knows",
+                     axis_letters[axis]),
+         core::rule_id("unknown-value"),
+         "If the set-up has the offset that the machine measures, state measured_offsets = \"as "
+         "stated\" under [program]."});
+}
+
 /// G10 L20: the origin for which the current position has the given coordinates. Where that
 /// position is not known, the origin stays and the axis is lost.
 core::Result<LostAxes> write_origin_here(const Execution& execution, WorkOffset& offset) {
@@ -61,7 +90,7 @@ core::Result<LostAxes> write_origin_here(const Execution& execution, WorkOffset&
     LostAxes lost{};
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
-        if (!word) continue;
+        if (!word || stays_as_stated(execution, axis)) continue;
         lost[axis] = !read[axis];
         if (lost[axis]) continue;
         read[axis] = axis_value(execution, axis, *word);
@@ -150,8 +179,11 @@ void use(Execution& execution, const Offsets& offsets) {
 void lose_offsets(Execution& execution, const LostAxes& lost) {
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
-    for (size_t axis = 0; axis < axis_count; ++axis)
-        if (lost[axis]) offsets.axis[axis].reset();
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (!lost[axis]) continue;
+        offsets.axis[axis].reset();
+        report_measured(execution, execution.statement.word(axis_letters[axis])->span, axis);
+    }
     if (offsets == modal.offsets) return;
     modal.suspended_axis = offsets.axis;
     use(execution, offsets);
@@ -323,7 +355,8 @@ core::Result<void> set_axis_offset(Execution& execution) {
         if (auto checked = need_an_axis(execution); !checked) return checked;
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const Word* word = execution.statement.word(axis_letters[axis]);
-            if (!word) continue;
+            if (!word || stays_as_stated(execution, axis)) continue;
+            report_measured(execution, word->span, axis);
             const std::optional<double> position = modal.position[axis];
             const double wanted = axis_value(execution, axis, *word);
             // The machine does not move; its position gets the given coordinate. From an unknown
@@ -336,7 +369,8 @@ core::Result<void> set_axis_offset(Execution& execution) {
         modal.suspended_axis = offsets.axis;
         change_offsets(execution, offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
-            if (const Word* word = execution.statement.word(axis_letters[axis]))
+            if (const Word* word = execution.statement.word(axis_letters[axis]);
+                word && !stays_as_stated(execution, axis))
                 modal.position[axis] = axis_value(execution, axis, *word);
         execution.emit(SetOffset{offsets});
         return {};
@@ -385,19 +419,41 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
                                       number ? "an R word, the value" : "a P word, the number"),
                           entry.word->span);
     FEELER_TRY(const int index, whole_number(*number, 1, 999));
+    const bool has_diameters =
+        find_parameter(ControlQuestion::radii_are_entered, execution.dialect.id);
+    const bool is_length = kind <= 11;
+    const auto memory = static_cast<OffsetMemory>(
+        is_length ? number_for(execution.state, execution.environment,
+                               ControlQuestion::offset_memory, execution.block.line)
+                  : 0.0);
+    const bool is_radius =
+        !has_diameters
+        || (!is_length
+            && answer_to(execution.state, execution.environment, ControlQuestion::radii_are_entered,
+                         execution.block.line));
+    const bool is_shared = memory != OffsetMemory::separate;
+    forget_offset_as_set(execution.state, index);
     Tables& tables = execution.state.tables.write();
     const bool known = tables.lengths.count(OffsetNumber(index)) != 0;
     const double length = known ? 0.0 : length_under(tables, index).value_or(0.0);
     LengthOffset& offset = tables.lengths[OffsetNumber(index)];
     if (!known) offset.length = length;
     const double written_value = length_of(execution, *value);
-    const double radii = execution.dialect.diameters_in_tool_entries ? 1.0 : 2.0;
+    const double radii = is_radius ? 2.0 : 1.0;
     switch (kind) {
     case 10:
         write(execution, written_value, offset.length);
+        if (is_shared) offset.diameter = 2.0 * offset.length;
         break;
     case 11:
+        if (memory == OffsetMemory::one_value) {
+            write(execution, written_value, offset.length);
+            offset.diameter = 2.0 * offset.length;
+            offset.wear = offset.radius_wear = 0.0;
+            break;
+        }
         write(execution, written_value, offset.wear);
+        if (is_shared) offset.radius_wear = offset.wear;
         break;
     case 12:
         write(execution, radii * written_value, offset.diameter);
@@ -406,7 +462,7 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
         write(execution, 0.5 * radii * written_value, offset.radius_wear);
         break;
     }
-    if (kind <= 11) apply_offset_in_use(execution, index, *value);
+    if (is_length) apply_offset_in_use(execution, index, *value);
     return {};
 }
 

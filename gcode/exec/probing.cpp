@@ -188,6 +188,7 @@ void probe_to(Execution& execution, const StraightProbe& command) {
     ModalState& modal = execution.modal();
     const Position from = modal.position;
     execution.emit(command);
+    modal.has_probed = true;
     modal.position = where_probing_ends(modal.offsets, from, command.end);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (!modal.position[axis])

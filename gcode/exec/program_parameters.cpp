@@ -204,22 +204,48 @@ void ProgramParameters::note_read(int number, bool is_local) const {
                                : state_.parameters->is_unpredictable(number);
     if (!is_unknown && !is_marked) return;
     reads_vary_ |= knowledge == Knowledge::unknown;
-    const int shown = number == highest_parameter ? 0 : number;
-    unpredictable_.push_back(fmt::format("{}{}", dialect_.parameter_letter, shown));
+    note_unpredictable(shown_name(number), is_unknown);
+}
+
+/// The name of a numbered variable as the program writes it.
+std::string ProgramParameters::shown_name(int number) const {
+    return fmt::format("{}{}", dialect_.parameter_letter, number == highest_parameter ? 0 : number);
+}
+
+/// A variable that was computed stands for what it was computed from.
+void ProgramParameters::note_unpredictable(std::string name, bool is_origin) const {
+    const auto& origins = state_.readings->origins;
+    const auto found = is_origin ? origins.end() : origins.find(name);
+    if (found == origins.end()) return unpredictable_.push_back(std::move(name));
+    for (const std::string& origin : found->second)
+        if (std::find(unpredictable_.begin(), unpredictable_.end(), origin) == unpredictable_.end())
+            unpredictable_.push_back(origin);
+}
+
+void ProgramParameters::keep_origins(std::string name) {
+    Readings& readings = state_.readings.write();
+    readings.answers.clear();
+    if (unpredictable_.empty())
+        readings.origins.erase(name);
+    else
+        readings.origins.insert_or_assign(std::move(name), unpredictable_);
 }
 
 void ProgramParameters::note_read(std::string_view name) const {
     const auto& marked = is_global(name) ? state_.parameters->unpredictable_names()
                                          : state_.frames.back().unpredictable_names;
     if (marked.find(name) == marked.end()) return;
-    unpredictable_.push_back(dialect_.names_are_declared ? std::string(name)
-                                                         : fmt::format("#<{}>", name));
+    note_unpredictable(shown_name(name), false);
+}
+
+std::string ProgramParameters::shown_name(std::string_view name) const {
+    return dialect_.names_are_declared ? std::string(name) : fmt::format("#<{}>", name);
 }
 
 void ProgramParameters::mark_numbered(double number, bool unpredictable) {
     const auto index = parameter_number(number, 1, dialect_, {});
     if (!index) return;
-    if (unpredictable) state_.readings.write().answers.clear();
+    if (unpredictable) keep_origins(shown_name(*index));
     if (*index <= dialect_.local_count) {
         const uint64_t bit = uint64_t{1} << static_cast<unsigned>(*index);
         uint64_t& marks = locals().unpredictable_locals;
@@ -230,7 +256,7 @@ void ProgramParameters::mark_numbered(double number, bool unpredictable) {
 }
 
 void ProgramParameters::mark_named(std::string_view name, bool unpredictable) {
-    if (unpredictable) state_.readings.write().answers.clear();
+    if (unpredictable) keep_origins(shown_name(name));
     if (is_global(name)) {
         const auto& marked = state_.parameters->unpredictable_names();
         if ((marked.find(name) != marked.end()) != unpredictable)

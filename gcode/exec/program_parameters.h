@@ -49,6 +49,11 @@ private:
     /// Passes on the value of a system variable that an expression reads.
     Value told(Value system_value) const;
     void note_read(std::string_view name) const;
+    std::string shown_name(int number) const;
+    std::string shown_name(std::string_view name) const;
+    void note_unpredictable(std::string name, bool is_origin) const;
+    /// Records what the variable that was just set depends on.
+    void keep_origins(std::string name);
 
     Frame& locals();
     const Frame& locals() const;

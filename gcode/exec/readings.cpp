@@ -128,6 +128,25 @@ double number_for(InterpreterState& state, const Environment& environment, Contr
     return number_of(state, environment, question, 0, line);
 }
 
+double current_number(const InterpreterState& state, const Environment& environment,
+                      ControlQuestion question) {
+    if (const auto stated = stated_number(environment, question)) return *stated;
+    const ControlParameter* parameter = find_parameter(question, environment.dialect);
+    if (!parameter || parameter->values.empty()) return 0.0;
+    const OpenPremise* met = find_met(*state.readings, {question});
+    return parameter->values[met ? met->taken : 0].answer;
+}
+
+LengthUnit first_unit(InterpreterState& state, const Environment& environment, uint32_t line) {
+    const bool is_known =
+        dialect(environment.dialect).unit_is_machines && environment.machine_unit_is_stated;
+    constexpr ControlQuestion question = ControlQuestion::starts_in_inches;
+    if (is_known || !environment.control.follows_units
+        || !find_parameter(question, environment.dialect))
+        return state.modal.unit;
+    return answer_to(state, environment, question, line) ? LengthUnit::inch : LengthUnit::mm;
+}
+
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line) {
     // `/` and `/1` are the same switch.
@@ -259,6 +278,11 @@ Knowledge knowledge_of_macro_variable(const Environment& environment, bool is_ha
     if (is_in(number, 150, 999)) return Knowledge::unknown_until_set;
     if (is_in(number, 1000, 1099)) return Knowledge::unknown;
     if (is_in(number, 1100, 1199) || is_in(number, 3901, 3902)) return Knowledge::unknown_until_set;
+    // The whole offset in memory A, otherwise its wear.
+    const bool is_wear_or_offset = is_in(number, 2001, 2200) || is_in(number, 10001, 10999);
+    if (!is_haas && is_wear_or_offset
+        && !environment.control.number(ControlQuestion::offset_memory))
+        return Knowledge::unknown_until_set;
     if (number == 3011 || number == 3012) return Knowledge::unknown;
     if (is_in(number, 5061, 5069)) return Knowledge::unknown; // where the last G31 stopped
     if (is_haas && is_in(number, 10000, 10999)) return Knowledge::unknown_until_set;

@@ -23,6 +23,15 @@ double number_for(InterpreterState& state, const Environment& environment, Contr
 bool answer_to(InterpreterState& state, const Environment& environment, ControlQuestion question,
                uint32_t line);
 
+/// The answer that this run goes by: as stated, else as chosen, else the usual one. Nothing is
+/// recorded.
+double current_number(const InterpreterState& state, const Environment& environment,
+                      ControlQuestion question);
+
+/// The unit of the first length of a program that states none: that of the control, which may be
+/// an open premise.
+LengthUnit first_unit(InterpreterState& state, const Environment& environment, uint32_t line);
+
 /// Whether blocks with `/`, which is switch 1, or with `/2` to `/9` are skipped.
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line);

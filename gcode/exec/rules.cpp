@@ -124,10 +124,7 @@ void check_length(Execution& execution, const ModalState& before) {
     else if (before.position[2] && modal.position[2] < before.position[2])
         advise(execution, where, core::rule_id("length-offset-cancelled"),
                fmt::format("tool {} moves down after its length offset was cancelled{}", tool,
-                           modal.length_sign != 0.0
-                               ? " by a move to machine coordinates (restored if parameter 5001#6 "
-                                 "is 1)"
-                               : ""),
+                           modal.length_sign != 0.0 ? " by a move to machine coordinates" : ""),
                cure);
     else
         return; // moves up after G49

@@ -121,7 +121,7 @@ void add(Digest& digest, const ModalState& modal) {
          {&modal.position, &modal.home, &modal.second_home, &modal.suspended_axis})
         add_all(digest, *position);
     add_all(digest, modal.spread);
-    digest.add(uint64_t{modal.axis_offset_on});
+    digest.add(number_of(int(modal.axis_offset_on) + 2 * int(modal.has_probed)));
     digest.add(number_of(int(modal.distance_said) + 2 * int(modal.work_said)));
     add_all(digest, modal.offset_travel);
     add_all(digest, modal.length_travel);
@@ -131,6 +131,7 @@ void add(Digest& digest, const ModalState& modal) {
     add_id(digest, modal.selected_tool);
     add_id(digest, modal.tool);
     add_id(digest, modal.length_number);
+    add_id(digest, modal.length_left);
     digest.add(number_of(modal.radius_number));
     add(digest, modal.offsets);
     add(digest, modal.transforms);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -374,8 +375,8 @@ void cancel_length_offset(Execution& execution) {
 
 // Fanuc B-63844EN, 14.1.2: G53, G28 and G30 cancel the offset along the axes that they move, and
 // the code on display stays G43. With parameter 5001#6 (EVO) = 1 the next block restores it;
-// otherwise the next G43, G44 or H does. If it is not stated, the offset stays cancelled: then Z is
-// lower.
+// otherwise the next G43, G44 or H does. If it is not stated, the question is asked only where the
+// program goes on to a Z without one of these.
 void leave_length_behind(Execution& execution, const std::array<bool, axis_count>& moved) {
     ModalState& modal = execution.modal();
     constexpr ControlQuestion restores = ControlQuestion::length_is_reloaded;
@@ -392,9 +393,31 @@ void leave_length_behind(Execution& execution, const std::array<bool, axis_count
     Offsets offsets = modal.offsets;
     offsets.tool = {};
     change_offsets(execution, offsets); // moves nothing, unlike G49
+    if (!control.answer(restores)) modal.length_left = modal.length_number;
     modal.length_number.reset();
     execution.emit(UseToolLengthOffset{std::nullopt, {}, offsets.follows_tip});
     execution.state.rules.length_cancelled = modal.tool.has_value();
+}
+
+core::Result<void> take_length_up(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const bool is_new =
+        execution.statement.of(ModalGroup::tool_length) || execution.statement.word('H');
+    const CodeWord* action = execution.statement.of(ModalGroup::action);
+    const bool goes_home =
+        action && (action->code->number == g_code(28) || action->code->number == g_code(30));
+    const bool is_in_work =
+        execution.statement.word('Z') && !in_machine_coordinates(execution) && !goes_home;
+    if (!is_new && !is_in_work) return {};
+    const auto number = std::exchange(modal.length_left, std::nullopt);
+    if (is_new
+        || !answer_to(execution.state, execution.environment, ControlQuestion::length_is_reloaded,
+                      execution.block.line))
+        return {};
+    modal.length_number = number;
+    reload_length(execution);
+    execution.state.rules.length_cancelled = false;
+    return {};
 }
 
 namespace {

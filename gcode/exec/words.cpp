@@ -6,6 +6,7 @@
 
 #include "core/base/units.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/readings.h"
 #include "gcode/language/error_rules.h"
 
 namespace gcode {
@@ -142,6 +143,8 @@ core::Result<void> note_assumed_units(Execution& execution) {
         return {};
     for (const Word& word : execution.block.words) {
         if (letters_of_lengths.find(word.letter) == std::string_view::npos) continue;
+        execution.modal().unit =
+            first_unit(execution.state, execution.environment, execution.block.line);
         const bool inch = execution.modal().unit == LengthUnit::inch;
         execution.state.said_unit = true;
         execution.warn(word.span,

@@ -49,6 +49,10 @@ bool lacks_units(const Execution& execution) {
 
 bool has_comments(const Execution& execution) { return !execution.block.comments.empty(); }
 
+bool has_left_length(const Execution& execution) {
+    return execution.modal().length_left.has_value();
+}
+
 bool is_compensated(const Execution& execution) {
     return execution.modal().compensation != Side::none
            || execution.statement.of(ModalGroup::cutter_radius);
@@ -83,6 +87,7 @@ constexpr ExecutionStep execution_steps[] = {
     {set_units, groups({units})},
     {set_diameter_mode, groups({diameter})},
     {set_cutter_radius, 0, 0, is_compensated},
+    {take_length_up, 0, 0, has_left_length},
     {set_tool_length, groups({tool_length}), letter_bits("H")},
     {select_offset, groups({work_offset})},
     {set_path_mode, groups({path_control})},

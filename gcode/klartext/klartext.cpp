@@ -169,6 +169,11 @@ core::Result<void> run_klartext_block(Execution& execution) {
 
 core::Result<void> run_klartext(Execution& execution, const ModalState& before) {
     if (auto done = run_klartext_block(execution); !done) return done;
+    const auto& commands = execution.result.commands;
+    if (!klartext_of(execution.state).has_moved && !in_machine_coordinates(execution)
+        && std::any_of(commands.begin(), commands.end(),
+                       [](const CanonicalCommand& command) { return is_motion(command); }))
+        writable_klartext(execution.state).has_moved = true;
     for (size_t axis = 3; axis < 6; ++axis)
         if (klartext_of(execution.state).turns_short_way
             && execution.statement.word(axis_letters[axis]))
@@ -388,7 +393,7 @@ void add(Digest& digest, const KlartextState& klartext) {
     }
     add(digest, klartext.cycle);
     digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)
-                         + 4 * int(klartext.turns_short_way)));
+                         + 4 * int(klartext.turns_short_way) + 8 * int(klartext.has_moved)));
     digest.add(klartext.call_feed);
     digest.add(klartext.datum);
     add(digest, klartext.transforms);

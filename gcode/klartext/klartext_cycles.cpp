@@ -317,7 +317,22 @@ void set_datum(Execution& execution) {
     const double row = q_number(execution, 339);
     KlartextState& klartext = writable_klartext(execution.state);
     uint8_t& doubt = execution.modal().doubt;
-    if (!klartext.datum) {
+    if (!klartext.datum) klartext.datum = execution.environment.datum;
+    const bool is_premise = execution.environment.control.reports_premises;
+    if (!klartext.datum && is_premise && klartext.has_moved) {
+        doubt |= datum_is_in_doubt;
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("CYCL DEF 247: the program has moved before, and whether datum {:.12g} of "
+                         "the preset table is the one that was active there is not known. Motions "
+                         "are followed as if it were, and are not proven clear",
+                         row),
+             core::rule_id("undecided"),
+             fmt::format(
+                 "If the work offset of the set-up is this datum, state \"datum\" = {:.12g} "
+                 "under [control].",
+                 row)});
+    } else if (!klartext.datum) {
         klartext.datum = row;
         execution.warn(where,
                        fmt::format("CYCL DEF 247: datum {:.12g} of the preset table is assumed to "

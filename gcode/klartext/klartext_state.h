@@ -74,6 +74,7 @@ struct KlartextState {
     std::optional<Corner> corner;
     DefinedCycle cycle;
     std::optional<double> datum;      // the first row of the preset table that is used (cycle 247)
+    bool has_moved = false;           // in work coordinates
     bool calls_after_motions = false; // M89
     std::optional<double> call_feed;  // F of TOOL CALL, mm/min
     Transforms transforms;

@@ -16,6 +16,7 @@ using enum IfNotStated;
 constexpr DialectId fanuc[] = {DialectId::fanuc};
 constexpr DialectId haas[] = {DialectId::haas};
 constexpr DialectId linuxcnc[] = {DialectId::linuxcnc};
+constexpr DialectId heidenhain[] = {DialectId::heidenhain};
 constexpr DialectId siemens[] = {DialectId::siemens};
 constexpr DialectId all[] = {DialectId::linuxcnc,   DialectId::fanuc,   DialectId::haas,
                              DialectId::grbl,       DialectId::siemens, DialectId::heidenhain,
@@ -59,6 +60,10 @@ constexpr ParameterValue inches[] = {
 constexpr ParameterValue dimensioning[] = {
     {0, false, "lengths are in mm until G20", "MM"},
     {1, true, "lengths are in inches until G21", "INCH"},
+};
+constexpr ParameterValue ini_units[] = {
+    {0, false, "lengths are in mm until G20", "mm"},
+    {1, true, "lengths are in inches until G21", "inch"},
 };
 constexpr ParameterValue siemens_units[] = {
     {2, false, "G71 is active at the start"},
@@ -112,6 +117,19 @@ constexpr ParameterValue length_of_axis[] = {
 constexpr ParameterValue length_reload[] = {
     {0, false, "a length that G10 writes counts from the next G43, G44 or H"},
     {1, true, "a length that G10 writes counts from the next block"},
+};
+constexpr ParameterValue offset_memories[] = {
+    {3, static_cast<double>(OffsetMemory::separate),
+     "H and D have values of their own, each with a wear: #2001 and G10 L11 set the wear of H",
+     "C"},
+    {2, static_cast<double>(OffsetMemory::with_wear),
+     "H and D have the same value and wear: #2001 and G10 L11 set the wear", "B"},
+    {1, static_cast<double>(OffsetMemory::one_value),
+     "H and D have the same value and no wear: #2001 and G10 L11 set the value", "A"},
+};
+constexpr ParameterValue offset_sizes[] = {
+    {0, false, "sizes in the table of tool offsets are diameters", "DIAMETER"},
+    {1, true, "sizes in the table of tool offsets are radii", "RADIUS"},
 };
 constexpr ParameterValue entry_types[] = {
     {0, false, "the tool goes straight to the first offset point and straight off the last one"},
@@ -240,12 +258,14 @@ constexpr ControlParameter parameters[] = {
      "ISO 6983-1, block delete",
      "State block_delete = false or true under [program] in the set-up."},
 
-    {starts_in_inches, fanuc, "0#2", "parameter 0#2 (INI)", inches, go_on,
+    {starts_in_inches, fanuc, "0#2", "parameter 0#2 (INI)", inches, follow_all,
      "Fanuc B-63950EN, parameters of setting"},
-    {starts_in_inches, haas, "setting 9", "setting 9 (Dimensioning)", dimensioning, go_on,
+    {starts_in_inches, linuxcnc, "LINEAR_UNITS", "LINEAR_UNITS of the ini file", ini_units,
+     follow_all, "LinuxCNC 2.9, INI configuration, [TRAJ]"},
+    {starts_in_inches, haas, "setting 9", "setting 9 (Dimensioning)", dimensioning, follow_all,
      "Haas mill operator's manual 96-8000, settings"},
     {starts_in_inches, siemens, "MD20150[12]", "MD20150[12] (GCODE_RESET_VALUES)", siemens_units,
-     go_on, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 13"},
+     follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 13"},
     {starts_incremental, fanuc, "3402#3", "parameter 3402#3 (G91)", distance_modes, follow_all,
      "Fanuc B-63950EN, parameters of programs"},
     {starts_incremental,
@@ -279,6 +299,11 @@ constexpr ControlParameter parameters[] = {
      "Fanuc B-63943EN-1, 12.5.2, tool length compensation A, B and C"},
     {length_is_reloaded, fanuc, "5001#6", "parameter 5001#6 (EVO)", length_reload, follow_all,
      "Fanuc B-63950EN, parameters of tool compensation"},
+    {offset_memory, fanuc, "tool offset memory", "the type of the tool offset memory",
+     offset_memories, follow_all,
+     "Fanuc B-63944EN, tool compensation values, and system variables of tool compensation"},
+    {radii_are_entered, haas, "setting 40", "setting 40 (Tool Offset Measure)", offset_sizes,
+     follow_all, "Haas mill operator's manual 96-8000, settings"},
     {entry_has_corner, fanuc, "5003#0", "parameter 5003#0 (SUP)", entry_types, follow_all,
      "Fanuc B-63944EN-2, 6.6.2, tool movement in start-up, types A and B"},
     {entry_is_upright, fanuc, "5003#1", "parameter 5003#1 (SUV)", upright_entry, follow_all,
@@ -429,6 +454,10 @@ constexpr ControlSetting settings[] = {
          to.one_way_approach.emplace().fill(-std::get<double>(value));
      },
      "Haas mill operator's manual 96-8000, settings, G60"},
+    {heidenhain, "datum", "the row of the preset table that is the work offset of the set-up",
+     SettingKind::number,
+     [](Environment& to, const SettingValue& value) { to.datum = std::get<double>(value); },
+     "Heidenhain TNC 640, cycle programming, datum setting (cycle 247)"},
     {linuxcnc, "TOOL_CHANGE_POSITION", "where M6 moves to", SettingKind::position,
      [](Environment& to, const SettingValue& value) {
          to.tool_change.position = std::get<Position>(value);

@@ -63,7 +63,6 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .g98_cycle_starts_high = true,
                                       .cycle_stays_above_r = true,
                                       .has_extended_offsets = false,
-                                      .diameters_in_tool_entries = false,
                                       .has_older_tool_entries = false,
                                       .g87_is_back_boring = false,
                                       .cycle_levels_follow_g91 = true,
@@ -114,7 +113,9 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .deepest_calls = 10,
                                       .same_offset_stays = true,
                                       .offset_writes_miss_axis_offset = true,
-                                      .surface_speed_needs_s = true};
+                                      .surface_speed_needs_s = true,
+                                      .stores_homes = true,
+                                      .has_variables_file = true};
 
 // Fanuc 30i user's manual B-63944EN, "Custom macro"; angles as with parameter 6004 = 0.
 constexpr Arithmetic fanuc_arithmetic = {.bitwise_logic = true,
@@ -153,7 +154,6 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .g98_cycle_starts_high = false,
                                    .cycle_stays_above_r = false,
                                    .has_extended_offsets = true,
-                                   .diameters_in_tool_entries = false,
                                    .has_older_tool_entries = true,
                                    .g87_is_back_boring = true,
                                    .cycle_levels_follow_g91 = false,
@@ -204,7 +204,9 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .deepest_calls = 15,
                                    .same_offset_stays = false,
                                    .offset_writes_miss_axis_offset = false,
-                                   .surface_speed_needs_s = false};
+                                   .surface_speed_needs_s = false,
+                                   .stores_homes = false,
+                                   .has_variables_file = false};
 
 constexpr Dialect haas_dialect = [] {
     Dialect entry = fanuc_dialect;
@@ -215,7 +217,6 @@ constexpr Dialect haas_dialect = [] {
     entry.arithmetic.angles_have_no_sign = false;
     entry.machine_move_is_rapid = false;
     entry.machine_move_needs_g90 = false;
-    entry.diameters_in_tool_entries = true;
     entry.has_older_tool_entries = false;
     entry.last_of_group_counts = false;
     entry.pecks_may_shrink = true;
@@ -253,6 +254,7 @@ constexpr Dialect grbl_dialect = [] {
     entry.has_o_words = false;
     entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;
+    entry.has_variables_file = false;
     return entry;
 }();
 
@@ -263,7 +265,7 @@ constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
                                          .limit = 1.0,
                                          .warned_mm = 0.05};
 
-constexpr Dialect heidenhain = [] {
+constexpr Dialect heidenhain_dialect = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::heidenhain;
     entry.name = "heidenhain";
@@ -344,8 +346,8 @@ constexpr Dialect siemens_iso = [] {
     return entry;
 }();
 
-constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect, haas_dialect, grbl_dialect,
-                                 siemens_dialect,  heidenhain,    siemens_iso};
+constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect,      haas_dialect, grbl_dialect,
+                                 siemens_dialect,  heidenhain_dialect, siemens_iso};
 
 constexpr auto names_of_dialects = [] {
     std::array<std::string_view, dialects.size()> found;

@@ -78,11 +78,10 @@ struct Dialect {
     bool g98_cycle_starts_high; // with G98 the move to the hole first retracts to the initial level
     bool cycle_stays_above_r;   // below R, a cycle first retracts to R; that is also its G98 level
     bool has_extended_offsets;  // G54.1 P1; G10 L20 P1 writes it
-    bool diameters_in_tool_entries; // G10 L12 R is a diameter; otherwise a radius
-    bool has_older_tool_entries;    // G10 P R, and L1 for L11
-    bool g87_is_back_boring;        // otherwise boring with manual retract
-    bool cycle_levels_follow_g91;   // with G91, R and Z programmed with G90 become distances
-    bool boring_feeds_to_r;         // G85 and G89 feed to R and continue in rapid
+    bool has_older_tool_entries;  // G10 P R, and L1 for L11
+    bool g87_is_back_boring;      // otherwise boring with manual retract
+    bool cycle_levels_follow_g91; // with G91, R and Z programmed with G90 become distances
+    bool boring_feeds_to_r;       // G85 and G89 feed to R and continue in rapid
     bool pecks_may_shrink;     // I, J, K of G73 and G83: first depth, reduction per peck, minimum
     bool peck_sign_is_ignored; // Q-2 pecks as Q2
     bool scale_without_point_is_thousandths; // G51 P2000 doubles
@@ -132,6 +131,8 @@ struct Dialect {
     bool same_offset_stays;              // G54 while G54 is active does not reload the table
     bool offset_writes_miss_axis_offset; // G10 recomputes the position without G92
     bool surface_speed_needs_s;          // G96 needs S in the same block
+    bool stores_homes;       // G28 and G30 go where G28.1 and G30.1 were, also in earlier programs
+    bool has_variables_file; // which can be read: LinuxCNC
 };
 
 const Dialect& dialect(DialectId id);

@@ -38,6 +38,8 @@ enum class ControlQuestion : uint8_t {
     length_follows_plane, // they act along the axis normal to the plane
     length_follows_axis,  // they act along the axis that the block of G43 names
     length_is_reloaded,   // G10 acts on the length offset in use
+    offset_memory,        // what an offset number holds, an OffsetMemory
+    radii_are_entered,    // a size in the table of tool offsets is a radius; otherwise a diameter
     entry_has_corner,     // cutter radius compensation begins and ends with a corner
     entry_is_upright,     // G41, G42 and G40 without a move shift the tool at once
     // Cycles:
@@ -69,6 +71,13 @@ enum class ControlQuestion : uint8_t {
     increment_has_length, // incremental words also travel a change of the tool length
 };
 
+/// What each number of a table of tool offsets holds.
+enum class OffsetMemory : uint8_t {
+    separate,  // C: a length for H and a radius for D, each with its wear
+    with_wear, // B: one value with its wear, a length under H and a radius under D
+    one_value, // A: one value
+};
+
 /// What is known about a control.
 struct ControlSettings {
     // As stated in the set-up or by its preset. Yes is 1 and no is 0.
@@ -76,6 +85,9 @@ struct ControlSettings {
     /// Whether the interpreter reports open premises. Otherwise the first value of each parameter
     /// counts, and variables that were never set are empty.
     bool reports_premises = false;
+    /// Whether the unit of a program that states none is one of them. Only what stands in the
+    /// machine can show which it is, so otherwise the unit is noted as an assumption.
+    bool follows_units = false;
     /// Values of variables that the program cannot know, by number: inputs, results of probing.
     std::map<int, double> values{};
 
@@ -108,9 +120,10 @@ struct ToolChangeMotion {
 /// The state of the control before the program starts. Lengths in mm, positions in machine
 /// coordinates.
 struct Environment {
-    DialectId dialect{};                        // LinuxCNC
-    bool block_delete = false;                  // true: blocks with `/` are skipped
-    LengthUnit machine_unit = LengthUnit::mm;   // unit of LinuxCNC's offsets and start positions
+    DialectId dialect{};                      // LinuxCNC
+    bool block_delete = false;                // true: blocks with `/` are skipped
+    LengthUnit machine_unit = LengthUnit::mm; // unit of LinuxCNC's offsets and start positions
+    bool machine_unit_is_stated = false;
     std::optional<LengthUnit> units_at_start{}; // of the program; empty: not stated
     std::array<AxisValues, plain_offset_count> work_offsets{};
     std::map<size_t, AxisValues> extended_offsets{}; // by index, from plain_offset_count on
@@ -126,6 +139,10 @@ struct Environment {
     std::array<std::optional<AxisValues>, 2> further_homes{}; // G30 P3 and P4
     // G60: the last part of its rapid, whose sign is the direction; empty: not known.
     std::optional<AxisValues> one_way_approach{};
+    bool measured_offsets_are_stated =
+        false; // offsets set at a probed contact are those of the table
+    // Heidenhain: the row of the preset table that is the work offset of the set-up.
+    std::optional<double> datum{};
     ToolChangeMotion tool_change{};
     bool counts_smallest_steps = false; // X5 is 5 um and X5. is 5 mm, where the point matters
     ControlSettings control{};

@@ -262,6 +262,7 @@ struct ModalState {
     // Since a probing move: the travel from `position` to the farthest point at which the machine
     // may be instead; 0 where an axis is known.
     AxisValues spread{};
+    bool has_probed = false;
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // saved by G92.2 for G92.3
     bool axis_offset_on = false;             // G92 or G52 is active, even if zero
@@ -274,6 +275,8 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool; // in the spindle since M6; T0 is an empty spindle
     std::optional<core::OffsetNumber> length_number;
+    // That of a length offset that G28, G30 or G53 may have cancelled for good.
+    std::optional<core::OffsetNumber> length_left;
     int radius_number = 0;    // the last D, on controls where it is modal
     double length_sign = 0.0; // +1 after G43, -1 after G44, 0 without a length from the table
     Offsets offsets;

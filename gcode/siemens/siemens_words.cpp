@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/following.h"
+#include "gcode/exec/readings.h"
 #include "gcode/siemens/siemens.h"
 
 namespace gcode {
@@ -56,11 +57,11 @@ void note_assumed_siemens_units(Execution& execution) {
     for (const Word& word : execution.block.words) {
         if (siemens_length_letters.find(word.letter) == std::string_view::npos) continue;
         execution.state.said_unit = true;
+        modal.unit = first_unit(execution.state, execution.environment, execution.block.line);
         execution.warn(
             word.span,
-            fmt::format(
-                "no units (G70, G71, G700 or G710) programmed before {}; millimetres assumed",
-                written(word)),
+            fmt::format("no units (G70, G71, G700 or G710) programmed before {}; {} assumed",
+                        written(word), modal.unit == LengthUnit::inch ? "inches" : "millimetres"),
             Severity::note);
         return;
     }

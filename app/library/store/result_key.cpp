@@ -43,7 +43,8 @@ KeyJson settings_json(const ProgramSettings& settings) {
     // This does not compile after a member was added: add it to the key below.
     const auto& [dialect, block_delete, start, machine_unit, units_at_start, max_blocks,
                  counts_smallest_steps, ini, parameters, tool_table, search_path, machine_codes,
-                 tool_at_start, spindle_at_start, values, speed_by_hand] = settings;
+                 tool_at_start, spindle_at_start, values, measured_offsets_are_stated,
+                 speed_by_hand] = settings;
     KeyJson variables = KeyJson::array();
     for (const auto& [number, value] : values) variables.push_back({number, value});
     KeyJson positions = KeyJson::array(), folders = KeyJson::array();
@@ -64,6 +65,7 @@ KeyJson settings_json(const ProgramSettings& settings) {
             {"tool_at_start", enum_json(tool_at_start)},
             {"spindle_at_start", enum_json(spindle_at_start)},
             {"values", variables},
+            {"measured_offsets_are_stated", optional_json(measured_offsets_are_stated)},
             {"speed_by_hand", optional_json(speed_by_hand)}};
 }
 

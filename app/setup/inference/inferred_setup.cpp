@@ -391,12 +391,16 @@ bool stands_for_no_stock(const core::Solid& stock) {
 
 std::shared_ptr<const Coverage> coverage_of(const SetupFile& file) {
     const bool has_stock = !stands_for_no_stock(file.setup.stock);
+    const auto known = [&](Known stated, const char* word) {
+        return file.assumed.contains(word) ? std::min(stated, Known::inferred) : stated;
+    };
+    const Known start = file.infers_start ? Known::inferred : Known::described;
     return std::make_shared<const Coverage>(
-        Coverage{.stock = has_stock ? file.stock_known : Known::missing,
+        Coverage{.stock = has_stock ? known(file.stock_known, "stock") : Known::missing,
                  .fixtures = file.fixtures_known,
-                 .offsets = file.offsets_known,
+                 .offsets = known(file.offsets_known, "offsets"),
                  .limits = file.limits_known,
-                 .start = file.infers_start ? Known::inferred : Known::described});
+                 .start = known(start, "start")});
 }
 
 namespace {
