@@ -13,6 +13,7 @@
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
 #include "core/sim/setup.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -220,7 +221,10 @@ std::vector<core::Finding> implausible_findings(const PreparedCheck& check,
     for (core::Finding& value : implausible_values(end.feeds, record, setup)) add(std::move(value));
     for (core::Finding& tool : findings_of(check.tool_mismatches, end.feeds, setup))
         add(std::move(tool));
-    add(units_doubtful(*check.program, end.feeds, setup, stock, unit_said));
+    add(units_doubtful(*check.program, end.feeds, setup, stock, unit_said,
+                       check.file.environment.dialect == gcode::DialectId::siemens
+                           ? UnitCodes{"G71 or G710", "G70 or G700"}
+                           : UnitCodes{}));
     return findings;
 }
 

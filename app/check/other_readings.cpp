@@ -11,6 +11,7 @@
 #include "app/check/dog_legs.h"
 #include "app/check/prepared_check.h"
 #include "core/base/rule_table.h"
+#include "core/base/text.h"
 #include "core/sim/run/simulator.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/error_rules.h"
@@ -20,9 +21,6 @@ namespace app {
 namespace {
 
 constexpr size_t most_shown_errors = 20;
-
-/// Identifies a finding in the program, independently of the block count.
-using FindingKey = std::tuple<std::string, std::string, uint32_t, std::string, std::string>;
 
 FindingKey key_of(const core::Finding& finding, const std::string& file, uint32_t line) {
     return {finding.rule, file, line, finding.pair[0], finding.pair[1]};
@@ -134,6 +132,18 @@ std::string reasons_of(const std::vector<ReadingResult>& readings) {
     return fmt::format("{}{}", fmt::join(reasons, "; "), more);
 }
 
+/// Conditions on the same unknown value of which no outcome makes a difference.
+std::string note_of(const std::string& reason, const std::set<std::string>& places) {
+    constexpr size_t most_shown = 4;
+    std::vector<std::string> shown(places.begin(), places.end());
+    const size_t count = shown.size();
+    if (count > most_shown) shown.resize(most_shown);
+    return fmt::format("{}; there are no further errors with the other outcome, in {}{}",
+                       core::lower_case(reason.substr(0, 1)) + reason.substr(1),
+                       fmt::join(shown, ", "),
+                       count > most_shown ? fmt::format(" and {} more", count - most_shown) : "");
+}
+
 core::Finding too_many(const core::Setup& setup, const std::vector<ReadingResult>& followed) {
     return open_premise(setup,
                         fmt::format("The program can take more than {} ways, depending on values "
@@ -154,7 +164,7 @@ bool OtherReadings::is_known(const Crossing& crossing, const RunState& before) {
         return false;
     }
     if (std::find(visits.begin(), visits.end(), outcomes) == visits.end() && running_) {
-        Fork fork{before, running_->result, crossing};
+        Fork fork{before, running_->result, running_->parent, crossing};
         fork.result.continues = true;
         stopped_.push_back({std::move(fork), visits});
         visits.push_back(outcomes);
@@ -188,7 +198,7 @@ bool OtherReadings::note(const RunState& before, const gcode::InterpreterState& 
         if (!premise.id.question && is_known({where, digest_of(before)}, before)) return true;
         for (size_t other = 0; other < premise.readings.size(); ++other) {
             if (other == premise.taken) continue;
-            Fork fork{before, {}};
+            Fork fork{before, {}, outcome_};
             gcode::Readings& readings = fork.state.control.readings.write();
             for (size_t j = first; j < i; ++j) readings.chosen[met[j].id] = met[j].taken;
             readings.chosen[premise.id] = other;
@@ -279,7 +289,12 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
                                  const std::function<bool()>& goes_on) {
     ReadingResult result = fork.result;
     RunState& state = fork.state;
-    const std::set<FindingKey> known = errors_of(record);
+    std::set<FindingKey> known = errors_of(record);
+    outcome_ = std::make_shared<Outcome>();
+    if (fork.parent) {
+        *outcome_ = *fork.parent;
+        known.insert(outcome_->errors.begin(), outcome_->errors.end());
+    }
     running_ = &fork;
     BlockRunner runner(check_);
     runner.follows_dog_legs = has_open_rapids();
@@ -316,8 +331,10 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
         }
     }
     if (!joins)
-        for (const core::Finding& finding : core::end_of_run(check_.run.setup, state.machine))
+        for (const core::Finding& finding : core::end_of_run(check_.run.setup, state.machine)) {
+            if (finding.severity == core::Severity::error) errors.insert(key_of(finding, {}, 0));
             add_error(result, known, finding, {}, 0);
+        }
     if (!joins && !result.stopped && !result.continues)
         result.avoided = avoided_by(errors, result, record);
     // One finding about rapids is enough, but the verdict is that of the worst combination.
@@ -326,6 +343,7 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     for (const std::string& condition : state.control.readings->repeated)
         repeated_.insert(condition);
     running_ = nullptr;
+    outcome_->errors.insert(errors.begin(), errors.end());
     // Where the control stops with an alarm, nothing moves any more. Other stops are those of the
     // check alone: the control may know the word, or have the subprogram.
     const bool is_alarm = result.stopped
@@ -333,6 +351,8 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
                               || !gcode::rule_of(*result.stopped).empty());
     if (result.stopped && !is_alarm)
         result.verdict = std::max(result.verdict, core::Verdict::undecided);
+    outcome_->verdict = std::max(outcome_->verdict, result.verdict);
+    outcome_ = nullptr;
     return result;
 }
 
@@ -342,6 +362,8 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     const core::Verdict assumed = record.verdict;
     std::vector<core::Finding> found;
     std::set<std::string> harmless;
+    std::map<std::string, std::set<std::string>>
+        conditions; // harmless ones, by what they depend on
     repeated_ = last.readings->repeated;
     const auto report = [&](const ReadingResult& result) {
         core::Finding finding = finding_of(setup, result);
@@ -359,10 +381,13 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     };
     if (!bent_.empty()) add_bent(bent_reading(bent_, {}));
     for (size_t i = 0; i < forks_.size(); ++i) {
+        const std::shared_ptr<const Outcome> parent = forks_[i].parent;
         ReadingResult result = run(std::move(forks_[i]), record, goes_on);
         record.verdict = std::max(record.verdict, result.verdict);
-        if (decides(result, assumed)) {
+        if (decides(result, parent ? std::max(assumed, parent->verdict) : assumed)) {
             report(result);
+        } else if (result.is_condition && !result.avoided) {
+            conditions[result.reason].insert(place_of(result.file, result.line));
         } else {
             harmless.insert(fmt::format(
                 "{}: it is assumed that {}; {} if {}", place_of(result.file, result.line),
@@ -382,6 +407,7 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     bent_.clear();
     for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
     assumed_.clear();
+    for (const auto& [reason, places] : conditions) harmless.insert(note_of(reason, places));
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
     if (has_too_many_) {
         found.push_back(too_many(setup, record.readings));

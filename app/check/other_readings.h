@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,6 +25,9 @@ struct PreparedCheck;
 
 /// The most readings that a check follows besides the one it assumes.
 inline constexpr size_t most_readings = 64;
+
+/// Identifies a finding in the program, independently of the block count: rule, file, line, bodies.
+using FindingKey = std::tuple<std::string, std::string, uint32_t, std::string, std::string>;
 
 /// Follows the other readings of the premises that a program meets. A reading is run from the block
 /// where the premise matters to the end of the program, or to a condition that another reading
@@ -63,10 +68,19 @@ private:
         std::string clause;
     };
 
+    /// What is wrong in a run and in those that it branches off from.
+    struct Outcome {
+        std::set<FindingKey> errors;
+        core::Verdict verdict = core::Verdict::clear;
+    };
+
     /// A run that is still to be made.
     struct Fork {
         RunState state; // before the block
         ReadingResult result;
+        // Of the run that it branches off from, whose findings are not its own. Null: the reading
+        // that the check assumes.
+        std::shared_ptr<const Outcome> parent;
         std::optional<Crossing> goes_past = {}; // it was stopped there, and goes on
     };
 
@@ -97,7 +111,8 @@ private:
 
     const PreparedCheck& check_;
     std::vector<Fork> forks_;
-    const Fork* running_ = nullptr; // null: the reading that the check assumes
+    const Fork* running_ = nullptr;    // null: the reading that the check assumes
+    std::shared_ptr<Outcome> outcome_; // of the running one
     std::map<Crossing, std::vector<Outcomes>> visited_;
     std::vector<StoppedRun> stopped_;
     std::set<std::string> repeated_; // conditions that a run has met again

@@ -232,8 +232,8 @@ std::vector<UnitClue> unit_clues_of_feeds(const FeedFacts& facts, LengthUnit uni
 
 std::optional<core::Finding> units_doubtful(const gcode::Program& program, const FeedFacts& facts,
                                             const core::Setup& setup,
-                                            const std::optional<core::Aabb>& stock,
-                                            bool unit_said) {
+                                            const std::optional<core::Aabb>& stock, bool unit_said,
+                                            const UnitCodes& codes) {
     if (!facts.first || facts.in_mm == facts.in_inches) return std::nullopt;
     const LengthUnit unit = facts.in_inches ? LengthUnit::inch : LengthUnit::mm;
     std::vector<UnitClue> clues = unit_clues_of_comments(program);
@@ -258,10 +258,12 @@ std::optional<core::Finding> units_doubtful(const gcode::Program& program, const
                     name_of(unit), unit_said ? "" : ", because it states no unit",
                     name_of(other_than(unit)), fmt::join(reasons, "; "));
     finding.cure = unit_said ? fmt::format("Check {} and the numbers of the program.",
-                                           unit == LengthUnit::mm ? "G21" : "G20")
-                             : "State the unit in the program: G20 for inches, G21 for mm. "
-                               "If the control is always in this unit, state it with --units or "
-                               "`units_at_start` under [program] in the set-up.";
+                                           unit == LengthUnit::mm ? codes.mm : codes.inch)
+                             : fmt::format("State the unit in the program: {} for inches, {} for "
+                                           "mm. If the control is always in this unit, state it "
+                                           "with --units or `units_at_start` under [program] in "
+                                           "the set-up.",
+                                           codes.inch, codes.mm);
     return finding;
 }
 

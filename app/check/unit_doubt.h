@@ -34,12 +34,18 @@ std::vector<UnitClue> unit_clues_of_comments(const gcode::Program& program);
 std::vector<UnitClue> unit_clues_of_feeds(const FeedFacts& facts, gcode::LengthUnit unit,
                                           const std::optional<core::Aabb>& stock);
 
+/// The codes that choose the unit of a program.
+struct UnitCodes {
+    std::string_view mm = "G21", inch = "G20";
+};
+
 /// The finding `units-doubtful`: the clues for the other unit outweigh those for the unit of the
 /// feeds. It takes more if the program states its unit. In a program that states none, a single
 /// clue is a warning.
 std::optional<core::Finding> units_doubtful(const gcode::Program& program, const FeedFacts& facts,
                                             const core::Setup& setup,
-                                            const std::optional<core::Aabb>& stock, bool unit_said);
+                                            const std::optional<core::Aabb>& stock, bool unit_said,
+                                            const UnitCodes& codes = {});
 
 /// The finding `units-jump`: the feeds span about 25.4 times the stock or, if the program states no
 /// unit, 1/25.4 of it.

@@ -14,6 +14,7 @@
 #include "gcode/language/control.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
+#include "gcode/language/lexer.h"
 
 namespace app {
 namespace {
@@ -43,7 +44,8 @@ std::vector<std::string> known_keys() {
 }
 
 /// The key that was probably meant: that of a parameter with this name, such as "5006#6" for TOS,
-/// else the most similar one.
+/// else a word that differs in few letters; empty if there is none. Another number is another
+/// parameter.
 std::string suggestion(const std::string& key) {
     std::string plain; // "SETTING_9" is "setting 9"
     for (const char c : key) {
@@ -58,7 +60,9 @@ std::string suggestion(const std::string& key) {
     }
     const std::vector<std::string> keys = known_keys();
     if (std::find(keys.begin(), keys.end(), plain) != keys.end()) return plain;
-    return core::nearest_name(key, keys);
+    const std::string nearest = core::nearest_name(key, keys);
+    const bool has_digit = std::any_of(key.begin(), key.end(), gcode::is_digit);
+    return has_digit || core::edit_distance(key, nearest) > 3 ? std::string() : nearest;
 }
 
 template <typename Row>
@@ -146,8 +150,11 @@ void read_key(TableReader& table, const char* key, StatedControl& control) {
         return read_parameter(table, key, *parameter, control);
     if (const auto* setting = row_named(gcode::control_settings(), key))
         return read_setting(table, key, *setting, control);
-    table.refuse(key, fmt::format("is not a parameter that Feeler knows; did you mean \"{}\"?",
-                                  suggestion(key)));
+    const std::string meant = suggestion(key);
+    table.refuse(key, "is not a parameter that Feeler knows; "
+                          + (meant.empty() ? std::string("the manual lists them under "
+                                                         "\"The control\"")
+                                           : fmt::format("did you mean \"{}\"?", meant)));
 }
 
 void answer(const ControlParameter& parameter, double number, gcode::Environment& environment,

@@ -174,7 +174,8 @@ core::Result<IniFile> read_ini(const std::string& path) {
 gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit machine_unit) {
     gcode::ToolChangeMotion motion{.quill_up = ini.quill_up,
                                    .goes_to_second_home = ini.tool_change_at_g30,
-                                   .keeps_spindle_running = ini.tool_change_with_spindle_on};
+                                   .keeps_spindle_running = ini.tool_change_with_spindle_on,
+                                   .is_stated = true};
     for (size_t i = 0; i < ini.tool_change_position.size(); ++i) {
         const double value = ini.tool_change_position[i];
         motion.position[i] = core::is_rotary(i) ? value : gcode::to_mm(value, machine_unit);

@@ -72,6 +72,7 @@ Separation between(const std::vector<ConvexShape>& shapes, const ExactBody& fixt
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool) {
     std::vector<MovingBody> bodies;
     for (const ToolPart& part : tool.parts) bodies.push_back(moving_part(setup, tool, part));
+    if (tool.reach_is_assumed) return bodies;
     for (size_t i = 0; i < setup.machine.bodies.size(); ++i)
         if (!is_on_table_side(setup.machine, setup.machine.bodies[i].link))
             bodies.push_back(moving_machine_body(setup, tool, i));

@@ -21,8 +21,8 @@ struct MovingBody {
     Mover mover;
 };
 
-/// All moving bodies; first the parts of the tool, from the flutes up. The result refers to the
-/// set-up and the tool.
+/// All moving bodies whose place is known; first the parts of the tool, from the flutes up. The
+/// result refers to the set-up and the tool.
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
 
 /// Whether two bodies are never checked against each other: they are fixed to each other, or are

@@ -50,6 +50,8 @@ struct ToolAssembly {
     ToolDescription description;
     std::vector<ToolPart> parts; // existing parts, from the flutes up
     double length = 0.0;         // gauge length, mm; if touched off, the length in the control
+    // Nobody stated how far it sticks out, so where the spindle is, is not known.
+    bool reach_is_assumed = false;
     // For checks that must hold for a range of tools (docs/decisions/tolerances.md):
     std::optional<RevolvedProfile> certain_flutes = {}; // cut instead of the flutes
     Play holder_play = {}; // of the holder and the spindle against the tip, along Z

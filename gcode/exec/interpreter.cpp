@@ -225,7 +225,7 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
     result.calls.clear();
     for (size_t level = 1; level < state.frames.size(); ++level)
         result.calls.push_back(state.frames[level].called_from.line);
-    result.is_cycle = result.goes_home = false;
+    result.is_cycle = result.goes_home = result.in_machine = false;
     result.path = core::PathCertainty::known;
     result.commands.clear();
     result.columns.clear();
@@ -283,6 +283,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
         keep_calls(state, before);
     Execution execution{library, environment, dialect, block, statement, state, result};
     ask_for_first_modes(execution);
+    result.in_machine = in_machine_coordinates(execution);
     if (auto done = language.execute(execution, before.modal); !done) return done;
     mark_uncertain_motions(execution, before.modal);
     return {};
@@ -614,6 +615,7 @@ void begin_modes(ModalState& modal, const Environment& environment) {
         modal.path_tolerance = *tolerance;
     modal.distance_said = !find_parameter(ControlQuestion::starts_incremental, environment.dialect);
     modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect);
+    modal.plane_said = !find_parameter(ControlQuestion::starts_in_plane, environment.dialect);
 }
 
 void leave_work_offset(ModalState& modal) {
@@ -634,10 +636,46 @@ bool has_coordinates(const Execution& execution) {
     return execution.statement.has_axis_word() && !others && !in_machine_coordinates(execution);
 }
 
+/// Whether the way of a block depends on the plane.
+bool uses_plane(const Execution& execution) {
+    const Statement& statement = execution.statement;
+    const CodeWord* motion = statement.of(ModalGroup::motion);
+    const bool is_arc_block =
+        motion ? motion->code->number == g_code(2) || motion->code->number == g_code(3)
+               : is_arc(execution.modal().motion) && has_coordinates(execution);
+    const CodeWord* cycle = statement.of(ModalGroup::cycle);
+    const CodeWord* radius = statement.of(ModalGroup::cutter_radius);
+    return is_arc_block || (cycle && cycle->code->is_cycle())
+           || (radius && radius->code->number != g_code(40)) || statement.of(ModalGroup::rotation);
+}
+
+/// Asks for the plane at the start where it matters.
+void ask_for_plane(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const auto asks = [&](ControlQuestion question) {
+        return number_for(execution.state, execution.environment, question, execution.block.line);
+    };
+    if (execution.statement.of(ModalGroup::plane)) {
+        modal.plane_said = true;
+    } else if (uses_plane(execution)) {
+        modal.plane_said = true;
+        if (!execution.environment.control.follows_start) return;
+        if (asks(ControlQuestion::starts_in_plane) == 18.0)
+            modal.plane = Plane::zx;
+        else if (find_parameter(ControlQuestion::starts_in_yz, execution.dialect.id)
+                 && asks(ControlQuestion::starts_in_yz) != 0.0)
+            modal.plane = Plane::yz;
+        else if (asks(ControlQuestion::starts_in_plane) == 19.0)
+            modal.plane = Plane::yz;
+        if (modal.plane != Plane::xy) execution.emit(SelectPlane{modal.plane});
+    }
+}
+
 } // namespace
 
 void ask_for_first_modes(Execution& execution) {
     ModalState& modal = execution.modal();
+    if (!modal.plane_said) ask_for_plane(execution);
     if (modal.distance_said && modal.work_said) return;
     const Statement& statement = execution.statement;
     const bool relies = has_coordinates(execution);

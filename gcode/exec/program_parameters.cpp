@@ -11,6 +11,7 @@
 #include "gcode/exec/probing.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/block.h"
+#include "gcode/language/control.h"
 #include "gcode/language/language.h"
 
 namespace gcode {
@@ -75,7 +76,7 @@ core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan 
     if (index == 0) return Value{};
     if (environment_.control.reports_premises) {
         const auto stated = environment_.control.values.find(index);
-        if (stated != environment_.control.values.end()
+        if (stated != environment_.control.values.end() && index > dialect_.local_count
             && knowledge_of(environment_, index) != Knowledge::unknown_until_set)
             return Value{stated->second};
         note_read(index, index <= dialect_.local_count);
@@ -191,11 +192,12 @@ void ProgramParameters::forget_reads() const {
 }
 
 void ProgramParameters::note_read(int number, bool is_local) const {
-    const Knowledge knowledge = is_local ? Knowledge::known
+    const Knowledge knowledge = is_local ? knowledge_of_locals()
                                 : reads_unknown_position(state_.modal, environment_, number)
                                     ? Knowledge::unknown
                                     : knowledge_of(environment_, number);
-    const bool is_set = !is_local && state_.parameters->numbered(number).has_value();
+    const bool is_set = is_local ? locals().locals[static_cast<size_t>(number)].has_value()
+                                 : state_.parameters->numbered(number).has_value();
     const bool is_unknown = (knowledge == Knowledge::unknown_until_set && !is_set)
                             || (knowledge == Knowledge::unknown_once_set && is_set)
                             || knowledge == Knowledge::unknown;
@@ -205,6 +207,15 @@ void ProgramParameters::note_read(int number, bool is_local) const {
     if (!is_unknown && !is_marked) return;
     reads_vary_ |= knowledge == Knowledge::unknown;
     note_unpredictable(shown_name(number), is_unknown);
+}
+
+/// Those of a macro are its arguments or vacant; those of the main program may be left over.
+Knowledge ProgramParameters::knowledge_of_locals() const {
+    constexpr ControlQuestion question = ControlQuestion::locals_are_kept;
+    const bool may_be_kept = find_parameter(question, environment_.dialect)
+                             && environment_.control.answer(question) != false;
+    return may_be_kept && &locals() == &state_.frames.front() ? Knowledge::unknown_until_set
+                                                              : Knowledge::known;
 }
 
 /// The name of a numbered variable as the program writes it.
@@ -275,7 +286,9 @@ void load_parameters(InterpreterState& state, const Environment& environment) {
         if (own && !(taken && *taken)) state.parameters.write().set_numbered(number, value);
     }
     for (const auto& [number, value] : environment.control.values)
-        if (knowledge_of(environment, number) == Knowledge::unknown_until_set)
+        if (number >= 1 && number <= dialect(environment.dialect).local_count)
+            state.frames.front().locals[static_cast<size_t>(number)] = value;
+        else if (knowledge_of(environment, number) == Knowledge::unknown_until_set)
             state.parameters.write().set_numbered(
                 stored_number(number, dialect(environment.dialect)), value);
 }

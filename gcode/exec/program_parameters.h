@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "gcode/language/expression.h"
 
 namespace gcode {
+
+enum class Knowledge : uint8_t;
 
 /// The parameters as seen by expressions: those of the program and the system variables.
 class ProgramParameters : public ParameterReader {
@@ -49,6 +52,7 @@ private:
     /// Passes on the value of a system variable that an expression reads.
     Value told(Value system_value) const;
     void note_read(std::string_view name) const;
+    Knowledge knowledge_of_locals() const;
     std::string shown_name(int number) const;
     std::string shown_name(std::string_view name) const;
     void note_unpredictable(std::string name, bool is_origin) const;

@@ -45,12 +45,28 @@ Reading reading_of(const ControlParameter& parameter, const ParameterValue& valu
     return {fmt::format("{} is {}", parameter.name, number_text(value)), std::string(value.text)};
 }
 
+/// Whether a question is about a mode at the start that an earlier program may have left.
+bool is_start_mode(ControlQuestion question) {
+    using enum ControlQuestion;
+    return question == starts_incremental || question == starts_with_feed
+           || question == starts_in_plane || question == starts_in_yz;
+}
+
 std::string cure_of(const ControlParameter& parameter, const Environment& environment) {
     if (!parameter.statement.empty()) return std::string(parameter.statement);
     // What stays from an earlier program can only be programmed.
-    if (parameter.question == ControlQuestion::starts_incremental
+    if (is_start_mode(parameter.question)
         && environment.control.answer(ControlQuestion::modes_are_initial) == false)
-        return "Program G90 before the first move.";
+        return fmt::format("Program {} before the first move.",
+                           parameter.question == ControlQuestion::starts_incremental ? "G90"
+                           : parameter.question == ControlQuestion::starts_with_feed ? "G0 or G1"
+                                                                                     : "G17");
+    if (parameter.question == ControlQuestion::starts_in_inches)
+        return fmt::format(
+            "Program {} at the beginning, or state \"{}\" = {} under [control] in the "
+            "set-up.",
+            environment.dialect == DialectId::siemens ? "G71 or G70" : "G21 or G20", parameter.key,
+            parameter.choices());
     return fmt::format("State \"{}\" = {} under [control] in the set-up.", parameter.key,
                        parameter.choices());
 }
@@ -59,7 +75,7 @@ std::string cure_of(const ControlParameter& parameter, const Environment& enviro
 /// nothing; where it restores them and no parameter chooses them, they are the first ones.
 std::optional<double> stated_number(const Environment& environment, ControlQuestion question) {
     const ControlSettings& control = environment.control;
-    if (question != ControlQuestion::starts_incremental) return control.number(question);
+    if (!is_start_mode(question)) return control.number(question);
     const auto restores = control.answer(ControlQuestion::modes_are_initial);
     if (restores == false) return std::nullopt;
     const ControlParameter* parameter = find_parameter(question, environment.dialect);
@@ -100,10 +116,29 @@ bool is_open(const InterpreterState& state, const Environment& environment,
 
 namespace {
 
+/// Whether the initial value of a mode is stated, but not that the control restores it.
+bool may_be_left(const Environment& environment, ControlQuestion question) {
+    constexpr ControlQuestion restores = ControlQuestion::modes_are_initial;
+    const ControlSettings& control = environment.control;
+    return control.reports_premises && is_start_mode(question) && control.number(question)
+           && !control.number(restores) && find_parameter(restores, environment.dialect);
+}
+
+/// The answer other than that number.
+double other_answer(const ControlParameter& parameter, double number) {
+    for (const ParameterValue& value : parameter.values)
+        if (value.answer != number) return value.answer;
+    return number;
+}
+
 /// As number_for, for one of several switches that have the same parameter: `which`, 0 if there is
 /// only one.
 double number_of(InterpreterState& state, const Environment& environment, ControlQuestion question,
                  uint32_t which, uint32_t line) {
+    if (may_be_left(environment, question)
+        && number_of(state, environment, ControlQuestion::modes_are_initial, 0, line) == 0.0)
+        return other_answer(*find_parameter(question, environment.dialect),
+                            *environment.control.number(question));
     if (const auto stated = stated_number(environment, question)) return *stated;
     const ControlParameter* parameter = find_parameter(question, environment.dialect);
     if (!parameter || parameter->values.empty()) return 0.0;
@@ -141,7 +176,7 @@ LengthUnit first_unit(InterpreterState& state, const Environment& environment, u
     const bool is_known =
         dialect(environment.dialect).unit_is_machines && environment.machine_unit_is_stated;
     constexpr ControlQuestion question = ControlQuestion::starts_in_inches;
-    if (is_known || !environment.control.follows_units
+    if (is_known || !environment.control.follows_start
         || !find_parameter(question, environment.dialect))
         return state.modal.unit;
     return answer_to(state, environment, question, line) ? LengthUnit::inch : LengthUnit::mm;

@@ -335,6 +335,9 @@ core::Result<void> change_tool(Execution& execution) {
         modal.spindle = core::SpindleDirection::stopped;
         execution.emit(Spindle{modal.spindle, 0.0});
     }
+    if (!execution.environment.tool_change.is_stated)
+        answer_to(execution.state, execution.environment, ControlQuestion::change_moves,
+                  execution.block.line);
     move_to_tool_change(execution);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});

@@ -106,8 +106,9 @@ void warn_of_unknown_m_codes(Execution& execution) {
     for (const Word* word : execution.statement.unknown_m_codes)
         execution.warn(
             word->span,
-            fmt::format("{}: unknown M code, probably of the machine builder; it is ignored",
-                        written(*word)));
+            fmt::format(
+                "{}: unknown M code, probably of the machine builder: what it does is not checked",
+                written(*word)));
 }
 
 namespace {

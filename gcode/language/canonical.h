@@ -213,6 +213,7 @@ struct BlockCommands {
     std::vector<uint32_t> calls{}; // lines of the calls that led here, outermost first
     bool is_cycle = false;         // a canned cycle, G28 or G30: one block, several motions
     bool goes_home = false;        // G28 or G30
+    bool in_machine = false;       // moves to machine coordinates: G53, SUPA, M91
     core::PathCertainty path = core::PathCertainty::known;
     std::vector<CanonicalCommand> commands{};
     std::vector<uint32_t> columns{}; // of the words that produced the commands

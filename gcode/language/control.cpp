@@ -41,6 +41,10 @@ constexpr ParameterValue clears_variables[] = {
     {0, false, "a reset clears #100 to #149"},
     {1, true, "#100 to #149 keep the values of earlier programs"},
 };
+constexpr ParameterValue clears_locals[] = {
+    {0, false, "a reset clears #1 to #33"},
+    {1, true, "#1 to #33 keep the values of earlier programs"},
+};
 constexpr ParameterValue rapids[] = {
     {1, true, "rapids are straight"},
     {0, false, "each axis of a rapid runs at its own speed"},
@@ -131,6 +135,7 @@ constexpr ParameterValue offset_sizes[] = {
     {0, false, "sizes in the table of tool offsets are diameters", "DIAMETER"},
     {1, true, "sizes in the table of tool offsets are radii", "RADIUS"},
 };
+constexpr ParameterValue tool_change_motion[] = {{0, false, "M6 does not move the machine"}};
 constexpr ParameterValue entry_types[] = {
     {0, false, "the tool goes straight to the first offset point and straight off the last one"},
     {1, true, "outside corners at the first and the last move are extended as on the contour"},
@@ -228,6 +233,8 @@ constexpr ControlParameter parameters[] = {
      follow_all, "Haas, Help with the decimal points; mill operator's manual, settings"},
     {variables_are_kept, fanuc, "6001#6", "parameter 6001#6 (CCV)", clears_variables, follow_all,
      "Fanuc B-63950EN, parameters of custom macros"},
+    {locals_are_kept, fanuc, "6001#7", "parameter 6001#7 (CLV)", clears_locals, follow_all,
+     "Fanuc B-63950EN, parameters of custom macros"},
     {rapids_are_straight, fanuc, "1401#1", "parameter 1401#1 (LRP)", rapids, follow_all,
      "Fanuc B-63950EN, parameters of feed rates; B-63944EN, positioning (G00)"},
     {rapids_are_straight, haas, "setting 335", "setting 335 (Linear Rapid Mode)", rapid_modes,
@@ -278,18 +285,26 @@ constexpr ControlParameter parameters[] = {
      program_g90},
     {starts_incremental, siemens, "MD20150[13]", "MD20150[13] (GCODE_RESET_VALUES)",
      siemens_distance, assume, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 14"},
-    {modes_are_initial, fanuc, "3402#6", "parameter 3402#6 (CLR)", clear_state, go_on,
+    {modes_are_initial, fanuc, "3402#6", "parameter 3402#6 (CLR)", clear_state, follow_all,
      "Fanuc B-63950EN, parameters of programs"},
     {modes_are_initial, haas, "setting 56", "setting 56 (M30 Restore Default G)", restores_codes,
-     go_on, "Haas mill operator's manual 96-8000, settings"},
+     follow_all, "Haas mill operator's manual 96-8000, settings"},
     {starts_with_feed, fanuc, "3402#0", "parameter 3402#0 (G01)", motion_modes, follow_all,
      "Fanuc B-63950EN, parameters of programs"},
-    {starts_in_plane, fanuc, "3402#1", "parameter 3402#1 (G18)", zx_plane, go_on,
+    {starts_in_plane, fanuc, "3402#1", "parameter 3402#1 (G18)", zx_plane, follow_all,
      "Fanuc B-63950EN, parameters of programs"},
-    {starts_in_yz, fanuc, "3402#2", "parameter 3402#2 (G19)", yz_plane, go_on,
+    {starts_in_yz, fanuc, "3402#2", "parameter 3402#2 (G19)", yz_plane, follow_all,
      "Fanuc B-63950EN, parameters of programs"},
+    {starts_in_plane,
+     haas,
+     {},
+     "whether an earlier program left G18",
+     zx_plane,
+     follow_all,
+     "Haas mill operator's manual 96-8000, setting 56",
+     "Program G17 before the first arc or cycle."},
     {starts_in_plane, siemens, "MD20150[5]", "MD20150[5] (GCODE_RESET_VALUES)", siemens_plane,
-     go_on, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
+     follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
     {starts_without_work, siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)", siemens_work,
      follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 8"},
 
@@ -419,6 +434,14 @@ constexpr ControlParameter parameters[] = {
      "LinuxCNC 2.9, INI configuration, [RS274NGC]",
      {},
      of_inches},
+    {change_moves,
+     linuxcnc,
+     {},
+     "where M6 moves the machine",
+     tool_change_motion,
+     assume,
+     "LinuxCNC 2.9, INI configuration, [EMCIO]",
+     "Give the ini file with --ini, or state TOOL_CHANGE_POSITION under [control]."},
     {one_way_is_modal, fanuc, "5431#0", "parameter 5431#0 (MDL)", one_way, assume,
      "Fanuc B-63950EN, parameters of single direction positioning"},
 };
@@ -461,18 +484,21 @@ constexpr ControlSetting settings[] = {
     {linuxcnc, "TOOL_CHANGE_POSITION", "where M6 moves to", SettingKind::position,
      [](Environment& to, const SettingValue& value) {
          to.tool_change.position = std::get<Position>(value);
+         to.tool_change.is_stated = true;
      },
      "LinuxCNC 2.9, INI configuration, [EMCIO]"},
     {linuxcnc, "TOOL_CHANGE_AT_G30", "whether M6 moves to the reference point of G30",
      SettingKind::flag,
      [](Environment& to, const SettingValue& value) {
          to.tool_change.goes_to_second_home = std::get<bool>(value);
+         to.tool_change.is_stated = true;
      },
      "LinuxCNC 2.9, INI configuration, [EMCIO]"},
     {linuxcnc, "TOOL_CHANGE_QUILL_UP", "whether M6 moves Z to machine zero first",
      SettingKind::flag,
      [](Environment& to, const SettingValue& value) {
          to.tool_change.quill_up = std::get<bool>(value);
+         to.tool_change.is_stated = true;
      },
      "LinuxCNC 2.9, INI configuration, [EMCIO]"},
     {linuxcnc, "TOOL_CHANGE_WITH_SPINDLE_ON", "whether M6 leaves the spindle running",
@@ -497,7 +523,7 @@ constexpr ControlSetting settings[] = {
      [](Environment&, const SettingValue&) {}, "LinuxCNC 2.9, INI configuration, [RS274NGC]"},
 };
 
-constexpr ControlPreset::Value fanuc_as_delivered[] = {{"5006#6", 0}, {"6001#6", 0}};
+constexpr ControlPreset::Value fanuc_as_delivered[] = {{"5006#6", 0}, {"6001#6", 0}, {"6001#7", 0}};
 
 // Values that makers deliver differently, or that builders change as a rule, are not in a preset.
 constexpr ControlPreset presets[] = {

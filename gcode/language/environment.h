@@ -24,6 +24,7 @@ enum class ControlQuestion : uint8_t {
     length_change_moves, // a change of the length offset alone moves the axis
     point_is_implied,    // X100 is 100 mm; otherwise 100 least increments
     variables_are_kept,  // variables that the program never sets may hold any value
+    locals_are_kept,     // likewise the local ones of the main program
     rapids_are_straight, // all axes of a rapid arrive together
     blocks_are_deleted,  // the switch for block delete is on
     // At the start of the program:
@@ -56,6 +57,7 @@ enum class ControlQuestion : uint8_t {
     scale_unit,       // of G51 without a decimal point
     scale_default,    // of G51 without a factor
     local_is_work,    // G52 is a work offset of its own
+    change_moves,     // M6 moves the machine first, where no ini file says it
     // Others:
     increment_is_finer,   // the least increment is 0.0001 mm instead of 0.001 mm
     increment_is_coarser, // it is 0.01 mm
@@ -85,9 +87,9 @@ struct ControlSettings {
     /// Whether the interpreter reports open premises. Otherwise the first value of each parameter
     /// counts, and variables that were never set are empty.
     bool reports_premises = false;
-    /// Whether the unit of a program that states none is one of them. Only what stands in the
-    /// machine can show which it is, so otherwise the unit is noted as an assumption.
-    bool follows_units = false;
+    /// Whether the unit and the plane of a program that states none are among them. Only what is in
+    /// the machine can show which they are, so otherwise the usual ones are assumed.
+    bool follows_start = false;
     /// Values of variables that the program cannot know, by number: inputs, results of probing.
     std::map<int, double> values{};
 
@@ -115,6 +117,7 @@ struct ToolChangeMotion {
     bool goes_to_second_home = false;   // rapid of all axes to the reference point of G30
     Position position{};                // rapid to here; axes without a value stay
     bool keeps_spindle_running = false; // otherwise M6 stops the spindle
+    bool is_stated = false;             // also that it does nothing
 };
 
 /// The state of the control before the program starts. Lengths in mm, positions in machine

@@ -275,6 +275,7 @@ struct ModalState {
     std::optional<core::ToolNumber> selected_tool; // T
     std::optional<core::ToolNumber> tool; // in the spindle since M6; T0 is an empty spindle
     std::optional<core::OffsetNumber> length_number;
+    bool plane_said = false; // by the program, or settled
     // That of a length offset that G28, G30 or G53 may have cancelled for good.
     std::optional<core::OffsetNumber> length_left;
     int radius_number = 0;    // the last D, on controls where it is modal

@@ -90,6 +90,40 @@ TEST(Coverage, NamesWhatASetupLacks) {
               Json::array({1}));
 }
 
+TEST(Coverage, WhatASetupCallsAssumedIsNotDescribed) {
+    for (const std::string word : {"stock", "offsets", "start"}) {
+        const Json report = json_of(slot, "assumed = [\"" + word + "\"]\n" + setup_of(all_tables));
+        EXPECT_EQ(report["headline"], "NO ERROR IN THE PROGRAM ITSELF") << word;
+        EXPECT_EQ(report["coverage"][word], "inferred") << word;
+    }
+    const auto wrong = run(slot, "assumed = [\"stok\"]\n" + setup_of(all_tables));
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("is a list of stock, offsets, start"));
+}
+
+TEST(Coverage, OffsetsIncludeThoseOfRapids) {
+    for (const std::string offset : {"G55", "G54.1 P7"}) {
+        const std::string program =
+            test_support::program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60.",
+                                   offset + " G0 X0. Y0.", "G0 Z60."});
+        const Json report = json_of(program, setup_of(all_tables));
+        EXPECT_EQ(report["coverage"]["offsets"], "inferred") << offset;
+    }
+    const std::string machine = test_support::program({"G0 X-20. Y50.", "G53 G0 Z0."});
+    EXPECT_EQ(json_of(machine, setup_of(all_tables))["coverage"]["offsets"], "described");
+}
+
+TEST(Coverage, AWrittenSetupIsAssumedUntilSomebodyStatesIt) {
+    const test_support::ScopedFolder folder;
+    const std::string program = folder.write("p.nc", slot), setup = folder / "s.toml";
+    ASSERT_EQ(feeler({"setup", program, "-o", setup}).status, 0);
+    const Json bare = Json::parse(feeler({"check", program, "--format", "json"}).out);
+    const Json report =
+        Json::parse(feeler({"check", program, "--setup", setup, "--format", "json"}).out);
+    EXPECT_EQ(report["coverage"], bare["coverage"]);
+    EXPECT_EQ(report["headline"], bare["headline"]);
+}
+
 TEST(Coverage, IsCompleteWithoutFixturesIfTheSetupSaysSo) {
     const std::string none = "fixtures = \"none\"\n" + setup_of(without("fixture"));
     EXPECT_EQ(json_of(slot, none)["headline"], "CLEAR");

@@ -145,7 +145,9 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
 std::vector<std::string> put_tools(SetupFile& file, const std::vector<FoundTool>& tools,
                                    const ProgramSurvey& seen, double least_flutes) {
     std::vector<std::string> assumed;
-    for (const FoundTool& tool : tools) {
+    for (FoundTool tool : tools) {
+        if (seen.left_taps.contains(tool.tool.number))
+            tool.tool.cuts = core::SpindleDirection::counterclockwise;
         auto length = seen.control_lengths.find(tool.tool.number);
         if (length == seen.control_lengths.end()) // the tool in the spindle before the first call
             length = seen.control_lengths.find(ToolNumber{0});
@@ -245,15 +247,17 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         "the program uses no tool length offset: Z is touched off with each tool");
 }
 
-/// Whether the set-up or the program states every work offset under which the program feeds.
+/// Whether the set-up or the program states every work offset in whose coordinates the program
+/// moves.
 Known known_offsets(const SetupFile& file, const ProgramSurvey& seen) {
-    if (seen.work_areas.empty() && file.offsets_set.empty()) return Known::inferred;
+    if (seen.offsets.empty() && file.offsets_set.empty()) return Known::inferred;
     const bool has_table = !file.infers_frame && !file.environment.parameters.empty();
-    for (const auto& [offset, area] : seen.work_areas) {
+    for (const auto& [offset, is_set] : seen.offsets) {
+        if (offset >= gcode::no_work_offset) continue;
         const bool is_stated = file.offsets_set.contains(static_cast<int>(offset));
         const bool is_in_table =
             has_table && file.environment.work_offset(offset) != gcode::AxisValues{};
-        if (!is_stated && !is_in_table && !area.is_set) return Known::inferred;
+        if (!is_stated && !is_in_table && !is_set) return Known::inferred;
     }
     return Known::described;
 }
@@ -463,12 +467,15 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                         && entry->second.length > tool.stick_out.value_or(0.0);
     if (!file.infers_tools && longer && !tool.gauge_length)
         tool.gauge_length = entry->second.length;
+    const bool is_held =
+        found.tool.stick_out || found.tool.gauge_length || !found.tool.holder.empty();
     auto assembled = core::assemble(tool);
     if (!assembled) {
         whole.assumed = fmt::format("{}; treated as a flat end mill of {:g} mm",
                                     assembled.error().message, tool.diameter);
         assembled = plain_tool(tool);
     }
+    assembled->reach_is_assumed = !is_held;
     file.environment.tool_lengths[tool.number] = assembled->length;
     if (tool.length_is_guess) file.environment.guessed_lengths.insert(tool.number);
     file.environment.tool_diameters[tool.number] = assembled->description.diameter;

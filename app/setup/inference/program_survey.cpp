@@ -104,6 +104,33 @@ Vec3 zero_of(const gcode::Offsets& offsets) {
     return zero;
 }
 
+/// Whether the program has set the active work offset itself.
+bool sets_active_offset(const ProgramEvent& event, const gcode::Environment& environment) {
+    const size_t active = event.offsets.active;
+    return active < gcode::no_work_offset
+           && event.offsets.work.origin != environment.work_offset(active);
+}
+
+/// Tells taps by a spindle that turns back at the bottom of the hole.
+class Tapping {
+public:
+    void operator()(const ProgramEvent& event, ProgramSurvey& result) {
+        if (const auto* spindle = std::get_if<core::SpindleChange>(&event.event)) {
+            const bool turns_back = event.is_cycle && fed_left_in_ == event.line
+                                    && spindle->direction == core::SpindleDirection::clockwise;
+            if (turns_back && event.tool) result.left_taps.insert(*event.tool);
+            direction_ = spindle->direction;
+        }
+        const auto* motion = std::get_if<Motion>(&event.event);
+        if (motion && motion->kind != MotionKind::rapid)
+            fed_left_in_ = direction_ == core::SpindleDirection::counterclockwise ? event.line : 0;
+    }
+
+private:
+    core::SpindleDirection direction_ = core::SpindleDirection::stopped;
+    uint32_t fed_left_in_ = 0; // line of the last feed, if the spindle turned counterclockwise
+};
+
 void add_work_area(const ProgramEvent& event, const TipTrack& path,
                    const gcode::Environment& environment, ProgramSurvey& result) {
     const size_t active = event.offsets.active;
@@ -112,7 +139,7 @@ void add_work_area(const ProgramEvent& event, const TipTrack& path,
     for (const Vec3& p : path.positions) area->second.reach.extend(p);
     area->second.way += path.length();
     if (active >= gcode::no_work_offset) return;
-    const bool is_set = event.offsets.work.origin != environment.work_offset(active);
+    const bool is_set = sets_active_offset(event, environment);
     area->second.is_set = area->second.is_set || is_set;
     result.sets_offsets = result.sets_offsets || is_set;
 }
@@ -151,13 +178,19 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
     ProgramSurvey result;
     Notes notes{result};
     Travel travel;
+    Tapping tapping;
     result.tool_names = visit_events(program, environment, [&](const ProgramEvent& event) {
         std::visit(notes, event.event);
+        tapping(event, result);
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
         const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
         const std::set<size_t> displaced = displaced_axes(*motion, event.offsets);
         result.other_axes.insert(displaced.begin(), displaced.end());
+        if (event.is_in_work && motion->from != motion->to) {
+            bool& is_set = result.offsets[event.offsets.active];
+            is_set = is_set || sets_active_offset(event, environment);
+        }
         if (!path) return;
         if (displaced.empty()) travel.note(motion->kind == MotionKind::rapid, *path);
         if (motion->kind == MotionKind::rapid) return;
@@ -203,7 +236,8 @@ visit_events(const gcode::Program& program, const gcode::Environment& environmen
         if (!block || !*block) break;
         for (const core::Event& event : gcode::lower(**block, lowering)) {
             if (const auto* change = std::get_if<core::ToolChange>(&event)) tool = change->tool;
-            visit({event, tool, lowering.offsets, (*block)->line, (*block)->is_cycle});
+            visit({event, tool, lowering.offsets, (*block)->line, (*block)->is_cycle,
+                   !(*block)->in_machine && !(*block)->goes_home});
         }
     }
     std::map<core::ToolNumber, std::string> names;

@@ -41,6 +41,8 @@ struct ProgramSurvey {
     std::map<core::ToolNumber, bool> mills;             // of each tool that feeds: whether sideways
 
     std::map<size_t, WorkArea> work_areas; // by work offset with feeds, 0 is G54
+    std::map<size_t, bool> offsets;        // in whose coordinates it moves: whether it sets them
+    std::set<core::ToolNumber> left_taps;  // tools that tap with the spindle counterclockwise
     bool sets_offsets = false;             // sets a work offset that it then uses
     std::set<size_t> other_axes;           // beyond Z, away from 0, that no machine describes
 
@@ -75,6 +77,7 @@ struct ProgramEvent {
     const gcode::Offsets& offsets;
     uint32_t line = 0;
     bool is_cycle = false;
+    bool is_in_work = true; // its block moves in the coordinates of the program
 };
 
 /// Runs a program to its end or its first error and reports every event. Checks nothing.
