@@ -115,7 +115,7 @@ void take_tool_at_start(PreparedCheck& check) {
     if (setup.tool_at_start || setup.tools.size() != 1 || calls_tools(check)) return;
     setup.tool_at_start = setup.tools.begin()->first;
     check.run.assumptions.push_back(
-        fmt::format("the program calls no tool: tool {} is in the spindle",
+        fmt::format("the program changes no tool: tool {} is in the spindle",
                     core::value_of(*setup.tool_at_start)));
 }
 

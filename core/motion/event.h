@@ -89,10 +89,11 @@ enum class PathCertainty : uint8_t {
 struct Motion {
     MotionKind kind = MotionKind::rapid;
     AxisPosition from, to;
-    std::optional<ArcPath> arc = {}; // when kind is arc; both ends known then
-    std::optional<TipPath> tip = {}; // when the control follows the tip; both ends known then
-    double feed = 0.0;               // mm/min along the path; 0 on rapids
-    bool stops_at_contact = false;   // a probing move: it ends between its first contact and `to`
+    std::optional<ArcPath> arc = {};   // when kind is arc; both ends known then
+    std::optional<TipPath> tip = {};   // when the control follows the tip; both ends known then
+    double feed = 0.0;                 // mm/min along the path; 0 on rapids
+    bool axes_are_independent = false; // of a rapid: each axis moves at a speed that is not known
+    bool stops_at_contact = false;     // a probing move: it ends between its first contact and `to`
     // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far
     // from `to` as they started from `from`.
     AxisSet settles = 0;

@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
+#include "core/motion/timing.h"
 
 namespace core {
 namespace {
@@ -86,12 +87,13 @@ size_t moving_axes(const AxisValues& from, const AxisValues& to) {
     return count;
 }
 
-void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to) {
+void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to,
+                bool has_own_speeds) {
     const AxisValues times = axis_times(from, to, machine, path);
     const double total = longest_time(times);
     bool only_linear = true;
     for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
-    if (path.assumed_speed && only_linear) {
+    if ((path.assumed_speed || has_own_speeds) && only_linear) {
         path.legs.push_back({.positions = box_corners(from, to),
                              .end = total,
                              .straight = false,
@@ -316,8 +318,8 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
         add_straight(path, *from, *to,
                      motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
                                        : 0.0);
-    } else if (machine.rapid == RapidStyle::dogleg && moving_axes(*from, *to) > 1) {
-        add_dogleg(path, machine, *from, *to);
+    } else if (is_dogleg(motion, machine) && moving_axes(*from, *to) > 1) {
+        add_dogleg(path, machine, *from, *to, motion.axes_are_independent);
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }
@@ -392,7 +394,7 @@ Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
         Leg hull{.end = path.duration, .straight = false};
         add_corners(hull.positions, values_of(motion.from), from);
         add_corners(hull.positions, values_of(motion.to), to);
-        if (motion.kind == MotionKind::rapid && machine.rapid == RapidStyle::dogleg) {
+        if (is_dogleg(motion, machine)) {
             // A dog leg leaves the hull of its ends, but not their box.
             const AxisValues first = hull.positions.front();
             AxisRange range{first, first};

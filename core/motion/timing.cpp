@@ -313,7 +313,8 @@ std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machi
 }
 
 bool is_dogleg(const Motion& motion, const Machine& machine) {
-    return machine.rapid == RapidStyle::dogleg && motion.kind == MotionKind::rapid;
+    return motion.kind == MotionKind::rapid
+           && (machine.rapid == RapidStyle::dogleg || motion.axes_are_independent);
 }
 
 DoglegTime dogleg_time(const Motion& motion, const Machine& machine) {

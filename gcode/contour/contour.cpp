@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/language/canonical.h"
 
@@ -264,6 +265,16 @@ void place_move(Contour& contour, const CompensatedMove& move) {
     slot.moves.push_back(
         command_of(move, block.result.commands[index], slot.start, contour.plane, tip));
     if (!move.rounds_corner) slot.is_waiting = false;
+    if (move.is_in_doubt) {
+        block.result.path = std::max(block.result.path, core::PathCertainty::doubtful);
+        block.result.warnings.push_back(
+            {Severity::warning,
+             {.line = block.result.line, .column = block.result.columns[index]},
+             "how the control passes the outside corner at the start of this move is not known in "
+             "detail; the move is not proven clear",
+             core::rule_id("undecided"),
+             "Round the corner in the program, or pass it with G450 in a feed."});
+    }
     if (move.turned_round)
         block.result.warnings.push_back(
             {Severity::warning,
@@ -392,6 +403,7 @@ core::Result<void> begin_path(Contour& contour, const ModalState& before, const 
     contour.path->extends_corners = contour.style == ContourStyle::fanuc;
     contour.path->extends_ends = contour.extends_ends;
     contour.path->enters_upright = contour.enters_upright;
+    contour.path->outside = contour.outside;
     contour.tip = contour.path->radius * tip_of(after.turning_orientation, after.plane);
     return {};
 }

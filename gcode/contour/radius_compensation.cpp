@@ -276,6 +276,49 @@ CompensatedMoves pass_round(RadiusCompensation& compensation, const Corner& corn
     return moves;
 }
 
+/// Outside corner on Siemens with G450, and beyond the limit of G451: an arc about the corner.
+core::Result<CompensatedMoves> pass_in_arc(RadiusCompensation& compensation, const Corner& corner,
+                                           const ContourMove& move) {
+    if (auto checked = check_direction(compensation, corner.tool_arriving); !checked)
+        return tl::unexpected(checked.error());
+    CompensatedMoves moves = pass_round(compensation, corner, move);
+    moves.back().is_in_doubt = move.rapid; // an arc, or straight across
+    return moves;
+}
+
+/// Outside corner on Siemens with G451: the intersection of the offset paths. Where one of them is
+/// an arc, the control may continue it instead of its tangent.
+core::Result<CompensatedMoves> pass_at_intersection(RadiusCompensation& compensation,
+                                                    const Corner& corner, const ContourMove& move) {
+    const double cosine = dot(corner.arriving, corner.leaving);
+    if (std::acos(std::clamp(cosine, -1.0, 1.0)) > compensation.outside.limit)
+        return pass_in_arc(compensation, corner, move);
+    const double beyond = compensation.radius * std::sqrt((1.0 - cosine) / (1.0 + cosine));
+    const FlatPoint out = corner.tool_arriving + beyond * corner.arriving;
+    const bool after_arc = compensation.waiting.front().arc.has_value();
+    const FlatPoint end = after_arc ? corner.tool_arriving : out;
+    if (auto checked = check_direction(compensation, end); !checked)
+        return tl::unexpected(checked.error());
+    CompensatedMoves moves = end_waiting(compensation, end);
+    if (after_arc) add_straight(moves, move, out);
+    if (move.arc) add_straight(moves, move, corner.tool_leaving);
+    moves.back().is_in_doubt = after_arc || move.arc;
+    compensation.reached = move.arc ? corner.tool_leaving : out;
+    return moves;
+}
+
+core::Result<CompensatedMoves> pass_outside(RadiusCompensation& compensation, const Corner& corner,
+                                            const ContourMove& move) {
+    switch (compensation.outside.kind) {
+    case OutsideCorner::rounded:
+        return pass_in_arc(compensation, corner, move);
+    case OutsideCorner::met:
+        return pass_at_intersection(compensation, corner, move);
+    default:
+        return pass_straight(compensation, corner, move);
+    }
+}
+
 /// Ends the waiting moves where the contour continues straight or bends towards the tool.
 core::Result<CompensatedMoves> stay_inside(RadiusCompensation& compensation, const Corner& corner,
                                            Bend bend, const ContourMove& move) {
@@ -309,7 +352,7 @@ core::Result<CompensatedMoves> join(RadiusCompensation& compensation, const Corn
         return moves;
     }
     if (bend != Bend::outside) return stay_inside(compensation, corner, bend, move);
-    if (compensation.extends_corners) return pass_straight(compensation, corner, move);
+    if (compensation.extends_corners) return pass_outside(compensation, corner, move);
     if (!move.arc)
         if (auto checked = check_direction(compensation, corner.tool_arriving); !checked)
             return tl::unexpected(checked.error());

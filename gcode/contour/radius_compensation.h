@@ -32,6 +32,8 @@ struct CompensatedMove {
     /// The inside corner at its start took up more than its length, so it runs backwards and the
     /// tool cuts into the contour. LinuxCNC reports this only at the next inside corner and at G40.
     bool turned_round = false;
+    /// How the control passes the corner at its start is not known in detail.
+    bool is_in_doubt = false;
     FlatPoint end;
     std::optional<FlatArc> arc; // empty: straight
 
@@ -39,6 +41,19 @@ struct CompensatedMove {
 };
 
 using CompensatedMoves = std::vector<CompensatedMove>;
+
+/// How the tool passes outside corners.
+enum class OutsideCorner : uint8_t {
+    extended, // along both tangents to their intersection, cut off beyond a right angle: Fanuc
+    rounded,  // by an arc about the corner: Siemens' G450
+    met,      // to the intersection, or as an arc beyond a limit: G451
+};
+struct OutsideCorners {
+    OutsideCorner kind = OutsideCorner::extended;
+    double limit = 0.0; // of `met`: the largest change of direction, radians
+
+    bool operator==(const OutsideCorners&) const = default;
+};
 
 /// Cutter radius compensation between G41 or G42 and G40: plane geometry with a look-ahead of one
 /// move, because the end of a move at an inside corner depends on the next move.
@@ -48,14 +63,15 @@ using CompensatedMoves = std::vector<CompensatedMove>;
 struct RadiusCompensation {
     ContourSide side = ContourSide::left;
     double radius = 0.0;          // mm, positive
-    bool extends_corners = false; // Fanuc: outside corners are extended; otherwise rounded
-    bool extends_ends = false;    // Fanuc, type B: also those after the entry and before the exit
-    bool enters_upright = false;  // Fanuc, type C: a shift at right angles comes before the entry
-    FlatPoint programmed;         // position in the program
-    FlatPoint tool;               // tool centre if no further move follows
-    FlatPoint reached;            // tool centre after the final moves
-    bool entered = false;         // the entry move was given
-    bool entering = false;        // the entry move is still waiting
+    bool extends_corners = false; // Fanuc, Siemens: not as LinuxCNC; the next one holds then
+    OutsideCorners outside{};
+    bool extends_ends = false;   // Fanuc, type B: also those after the entry and before the exit
+    bool enters_upright = false; // Fanuc, type C: a shift at right angles comes before the entry
+    FlatPoint programmed;        // position in the program
+    FlatPoint tool;              // tool centre if no further move follows
+    FlatPoint reached;           // tool centre after the final moves
+    bool entered = false;        // the entry move was given
+    bool entering = false;       // the entry move is still waiting
 
     CompensatedMoves waiting{}; // a move in the plane, then those without motion in it
     FlatPoint waiting_way{};    // displacement of the first one, as programmed

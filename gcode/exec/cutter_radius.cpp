@@ -34,9 +34,10 @@ constexpr CodeNumber rs274_m[] = {m_code(6),  m_code(48), m_code(49), m_code(50)
 
 // Codes by which the tool leaves the contour on Fanuc controls, besides cycles: reference points,
 // machine coordinates, offsets (B-63944EN-2, 6.6, "Notes on cutter compensation"), cycles of Haas
-// that act in their block only, and G74, which is the reference point of Siemens controls.
-constexpr auto fanuc_g = g_codes(
-    {27, 28, 29, 30, 52, 53, 54, 54.1, 55, 56, 57, 58, 59, 92, 74, 154, 12, 13, 150, 70, 71, 72});
+// that act in their block only, and G74 and G75, which are positions of the machine on Siemens
+// controls.
+constexpr auto fanuc_g = g_codes({27, 28, 29, 30, 52,  53, 54, 54.1, 55, 56, 57, 58,
+                                  59, 92, 74, 75, 154, 12, 13, 150,  70, 71, 72});
 constexpr CodeNumber fanuc_m[] = {m_code(6)};
 
 bool is_among(std::span<const CodeNumber> codes, CodeNumber code) {

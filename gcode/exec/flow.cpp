@@ -58,9 +58,11 @@ core::Result<void> enter(InterpreterState& state, const Environment& environment
 void leave(InterpreterState& state) {
     Frame& frame = state.frames.back();
     if (frame.rounds_left > 0) {
+        if (frame.restore) frame.restore(state, frame);
         --frame.rounds_left;
         note_repetitions(state, frame.called_from, frame.rounds_left);
         frame.repeats.clear();
+        frame.repeated.clear();
         if (frame.again) frame.locals = *frame.again;
         state.next = frame.begin;
         return;
@@ -71,6 +73,7 @@ void leave(InterpreterState& state) {
 void leave_to(InterpreterState& state, uint32_t line) {
     Frame& frame = state.frames.back();
     if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
+    if (frame.restore) frame.restore(state, frame);
     // Fanuc B-64304, modal call: local variables keep their values between the calls.
     if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
         state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;

@@ -16,6 +16,9 @@ namespace gcode {
 
 struct Dialect;
 struct FlowIndex;
+struct Frame;
+struct InterpreterState;
+class LanguageState;
 struct Program;
 
 /// The type of a variable that a program declares.
@@ -41,6 +44,14 @@ struct ModalMacro {
     bool operator==(const ModalMacro&) const = default;
 };
 
+/// Lines that a statement elsewhere repeats: Siemens' REPEAT of a label up to ENDLABEL.
+struct RepeatedLines {
+    uint32_t first = 0, last = 0;
+    uint32_t statement = 0; // line of the REPEAT, which is next after the last line
+
+    bool operator==(const RepeatedLines&) const = default;
+};
+
 /// One call level; the first is the main program.
 struct Frame {
     ProgramLine called_from; // the line of the call
@@ -53,11 +64,15 @@ struct Frame {
     std::set<std::string, std::less<>> unpredictable_names{};
     std::map<std::string, VariableType, std::less<>> types{}; // of declared names that are not REAL
     std::map<uint32_t, int64_t> repeats{};     // remaining repetitions, by the line of `repeat`
+    std::vector<RepeatedLines> repeated{};     // being repeated, outermost first
     int64_t rounds_left = 0;                   // remaining repetitions of M98 L
     std::optional<LocalParameters> again{};    // locals at the start of each repetition
-    Shared<std::optional<ModalState>> saved{}; // M70, M73
+    Shared<std::optional<ModalState>> saved{}; // M70, M73, SAVE
     bool restores = false;                     // M73: restore at the return
-    size_t modal_macro = 0;                    // the G66 that called it, counted from 1; 0 for none
+    // SAVE: what each return does with `saved` and with the state of the language at the call.
+    void (*restore)(InterpreterState& state, const Frame& frame) = nullptr;
+    std::shared_ptr<const LanguageState> saved_language{};
+    size_t modal_macro = 0;             // the G66 that called it, counted from 1; 0 for none
     std::vector<uint32_t> known_subs{}; // main program: lines of O word subs called or passed
 
     bool operator==(const Frame&) const = default;

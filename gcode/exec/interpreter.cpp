@@ -15,6 +15,7 @@
 #include "gcode/exec/following.h"
 #include "gcode/exec/linuxcnc_parameters.h"
 #include "gcode/exec/loop_detector.h"
+#include "gcode/exec/modes.h"
 #include "gcode/exec/probing.h"
 #include "gcode/exec/program_parameters.h"
 #include "gcode/exec/quick_move.h"
@@ -152,6 +153,9 @@ Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& sta
 /// Reads the next line with something to execute; false at the end of the text.
 core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
     while (true) {
+        if (const auto& repeated = state.frames.back().repeated;
+            !repeated.empty() && state.next.line == repeated.back().last + 1)
+            state.next.line = repeated.back().statement;
         const Program& program = library.program(state.next.source);
         FEELER_TRY(const auto found, program.find_line(state.next.line));
         if (!found) return false;
@@ -294,6 +298,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
         return core::fail(ErrorCode::unsupported,
                           fmt::format("the dialect {} is not supported yet", dialect.name));
     FEELER_TRY(bool found, read_line(state));
+    const bool returns = !found;
     while (!found) {
         FEELER_TRY(const bool goes_on, end_of_text(state));
         if (!goes_on) return false;
@@ -301,6 +306,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     }
     const ProgramLine here{state.next.source, block.line};
     begin_result(state, here);
+    if (returns) announce_modes(result, 1, before.modal, state.modal);
     if (state.next_block >= environment.limits.blocks)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("the program was stopped after {} blocks; if it really is "

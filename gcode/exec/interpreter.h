@@ -65,6 +65,9 @@ public:
 
     const LanguageState* get() const { return state_.get(); }
 
+    /// The state as it is now; later writes do not change it.
+    std::shared_ptr<const LanguageState> now() const { return state_; }
+
     /// T must be the state type of the active language.
     template <typename T>
     const T& as() const {

@@ -169,6 +169,7 @@ void add(Digest& digest, const Frame& frame) {
         digest.add(number_of(line));
         digest.add(number_of(left));
     }
+    for (const RepeatedLines& lines : frame.repeated) digest.add(number_of(lines.statement));
     for (const uint32_t line : frame.known_subs) digest.add(number_of(line));
     digest.add(number_of(frame.rounds_left));
     digest.add(
@@ -177,6 +178,7 @@ void add(Digest& digest, const Frame& frame) {
     if (frame.again) add_all(digest, *frame.again);
     digest.add(uint64_t{frame.saved->has_value()});
     if (*frame.saved) add(digest, **frame.saved);
+    if (frame.saved_language) frame.saved_language->add_to(digest);
 }
 
 namespace {

@@ -40,6 +40,21 @@ void switch_tip_control(Execution& execution) {
     }
 }
 
+/// M118 lets the operator shift the axes with the handwheel; M101 lets the control change to a
+/// replacement tool.
+void note_what_may_intervene(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->number == m_code(118))
+            execution.warn(entry.word->span,
+                           "M118: shifts by the handwheel during the program are not checked");
+        if (entry.code->number == m_code(101))
+            execution.warn(entry.word->span,
+                           "M101: changes to a replacement tool when the time of a tool is over "
+                           "are not checked",
+                           Severity::note);
+    }
+}
+
 /// M126 and M127: rotary axes take the short way. M94: reduces their positions to less than a turn.
 core::Result<void> turn_rotary_axes(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
@@ -142,6 +157,7 @@ core::Result<void> call_cycle(Execution& execution) {
 core::Result<void> run_klartext_block(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     warn_of_unknown_m_codes(execution);
+    note_what_may_intervene(execution);
     switch_tip_control(execution);
     const bool late_spindle = ends_block(execution, ModalGroup::spindle, m_code(5));
     const bool late_coolant = ends_block(execution, ModalGroup::coolant, m_code(9));
@@ -359,7 +375,7 @@ core::Result<void> read_system_datum(Execution& execution) {
 namespace {
 
 void add(Digest& digest, const DefinedCycle& cycle) {
-    digest.add(number_of(cycle.number));
+    digest.add(number_of(2 * cycle.number + int(cycle.feed_of_call)));
     for (const double value : {cycle.clearance,   cycle.depth,       cycle.feed,
                                cycle.peck,        cycle.surface,     cycle.second_clearance,
                                cycle.dwell_above, cycle.dwell_below, cycle.retract_feed,

@@ -7,6 +7,8 @@
 
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
+#include "gcode/exec/program_parameters.h"
+#include "gcode/exec/readings.h"
 #include "gcode/klartext/klartext.h"
 
 namespace gcode {
@@ -266,6 +268,8 @@ void read_old_cycle(Execution& execution, DefinedCycle& cycle) {
     }
 }
 
+constexpr int first_with_parameters = 200;
+
 /// Whether Q395 says what the depth of a cycle refers to.
 bool has_depth_reference(int number) { return number == 200 || number == 203 || number == 205; }
 
@@ -297,6 +301,53 @@ DefinedCycle new_cycle(const Execution& execution, int number) {
             .pitch = number == 207 || number == 209 ? length(239) : 0.0,
             .infeed = number == 208 ? length(334) : 0.0,
             .diameter = number == 208 ? length(335) : 0.0};
+}
+
+core::Result<void> check_depth_reference(const Execution& execution, int number) {
+    const core::SourceSpan where = klartext_of(execution.block).span;
+    if (q_number(execution, 395) != 0.0 && has_depth_reference(number))
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("CYCL DEF {}: Q395={:g} counts the depth to the full "
+                                      "diameter of the drill, which depends on T-ANGLE in the "
+                                      "tool table and is not supported: program Q395=+0 and "
+                                      "the depth of the tip",
+                                      number, q_number(execution, 395)),
+                          where);
+    if (number == 240 && q_number(execution, 343) != 0.0)
+        return core::fail(ErrorCode::unsupported,
+                          "CYCL DEF 240: Q343=1 centres to a diameter, and its depth depends "
+                          "on T-ANGLE in the tool table, which is not supported: program "
+                          "Q343=+0 and the depth Q201",
+                          where);
+    return {};
+}
+
+/// Reports parameters of the cycle that were computed from what only the machine knows.
+void report_unknown_parameters(Execution& execution) {
+    const ProgramParameters parameters(execution.state, execution.environment);
+    parameters.forget_reads();
+    for (const int q : {200, 201, 202, 203, 204, 205, 212, 239, 334, 335, 379})
+        if (execution.state.parameters->is_unpredictable(q))
+            (void)parameters.numbered(static_cast<double>(q), klartext_of(execution.block).span);
+    report_unknown(parameters, execution.result, klartext_of(execution.block).span,
+                   "the called cycle");
+}
+
+/// The defined cycle as it is called here. Cycles from 200 on take the Q parameters as they are at
+/// the call, which may be others than those of the definition.
+///
+/// Source: Heidenhain TNC 640, cycle programming, "Working with fixed cycles": the parameters of a
+///         cycle are the global Q parameters with these numbers.
+core::Result<DefinedCycle> called_cycle(Execution& execution) {
+    const KlartextState& klartext = klartext_of(execution.state);
+    const DefinedCycle& defined = klartext.cycle;
+    if (defined.number < first_with_parameters) return defined;
+    if (auto checked = check_depth_reference(execution, defined.number); !checked)
+        return tl::unexpected(std::move(checked).error());
+    report_unknown_parameters(execution);
+    DefinedCycle cycle = new_cycle(execution, defined.number);
+    if (defined.feed_of_call) cycle.feed = klartext.call_feed.value_or(0.0);
+    return cycle;
 }
 
 /// CYCL DEF 32.1 T0.05: the permitted deviation from the path; without T, that of the machine.
@@ -387,28 +438,11 @@ core::Result<void> define_cycle(Execution& execution) {
     KlartextState& klartext = writable_klartext(execution.state);
     klartext.calls_after_motions = false;
     if (number != 1) {
-        if (q_number(execution, 395) != 0.0 && has_depth_reference(number))
-            return core::fail(ErrorCode::unsupported,
-                              fmt::format("CYCL DEF {}: Q395={:g} counts the depth to the full "
-                                          "diameter of the drill, which depends on T-ANGLE in the "
-                                          "tool table and is not supported: program Q395=+0 and "
-                                          "the depth of the tip",
-                                          number, q_number(execution, 395)),
-                              command.span);
-        if (number == 240 && q_number(execution, 343) != 0.0)
-            return core::fail(ErrorCode::unsupported,
-                              "CYCL DEF 240: Q343=1 centres to a diameter, and its depth depends "
-                              "on T-ANGLE in the tool table, which is not supported: program "
-                              "Q343=+0 and the depth Q201",
-                              command.span);
-        klartext.cycle = new_cycle(execution, number);
-        if (command.feed_of_call) {
-            if (!klartext.call_feed)
-                return core::fail(ErrorCode::missing_value,
-                                  "FAUTO: no TOOL CALL with F has been programmed yet",
-                                  command.span);
-            klartext.cycle.feed = *klartext.call_feed;
-        }
+        if (auto checked = check_depth_reference(execution, number); !checked) return checked;
+        if (command.feed_of_call && !klartext.call_feed)
+            return core::fail(ErrorCode::missing_value,
+                              "FAUTO: no TOOL CALL with F has been programmed yet", command.span);
+        klartext.cycle = {.number = number, .feed_of_call = command.feed_of_call};
     } else if (command.part == 0)
         klartext.cycle = {.number = 1};
     else
@@ -429,11 +463,9 @@ double shift_of_call(const Execution& execution) {
 
 } // namespace
 
-core::Result<void> call_defined_cycle(Execution& execution) {
-    const DefinedCycle cycle = klartext_of(execution.state).cycle;
-    if (cycle.number == 0)
-        return refuse_statement(execution,
-                                "there is no cycle to call: no CYCL DEF has been programmed yet");
+namespace {
+
+core::Result<void> make_hole(Execution& execution, const DefinedCycle& cycle) {
     if (cycle.depth == 0.0) return {}; // as on the control
     if (auto checked = check(execution, cycle); !checked) return checked;
     ModalState& modal = execution.modal();
@@ -461,6 +493,16 @@ core::Result<void> call_defined_cycle(Execution& execution) {
     const double second = surface + cycle.second_clearance;
     if (cycle.number != 1 && second > hole.above) hole.rapid(second);
     return {};
+}
+
+} // namespace
+
+core::Result<void> call_defined_cycle(Execution& execution) {
+    if (klartext_of(execution.state).cycle.number == 0)
+        return refuse_statement(execution,
+                                "there is no cycle to call: no CYCL DEF has been programmed yet");
+    FEELER_TRY(const DefinedCycle cycle, called_cycle(execution));
+    return make_hole(execution, cycle);
 }
 
 namespace {
@@ -504,16 +546,25 @@ core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
     return positions;
 }
 
+/// Q365=1: the tool travels from hole to hole on the pitch circle.
+void doubt_way_on_circle(Execution& execution) {
+    execution.result.path = core::PathCertainty::doubtful;
+    execution.result.warnings.push_back(
+        {Severity::warning, klartext_of(execution.block).span,
+         "CYCL DEF 220: with Q365=1 the tool travels from hole to hole on the pitch circle. The "
+         "straight way is checked, and is not proven clear",
+         core::rule_id("undecided"), "Program Q365=0, or the holes one by one."});
+}
+
 } // namespace
 
 core::Result<void> run_pattern(Execution& execution) {
-    DefinedCycle cycle = klartext_of(execution.state).cycle;
-    if (cycle.number < 200)
+    if (klartext_of(execution.state).cycle.number < first_with_parameters)
         return refuse_statement(execution, "there is no cycle for the pattern to repeat: program "
                                            "the CYCL DEF of a cycle from 200 on first");
-    cycle.clearance = std::abs(q_length(execution, 200));
-    cycle.surface = q_length(execution, 203);
-    cycle.second_clearance = std::abs(q_length(execution, 204));
+    FEELER_TRY(const DefinedCycle cycle, called_cycle(execution));
+    if (q_number(execution, 365) != 0.0 && klartext_of(execution.block).number == 220)
+        doubt_way_on_circle(execution);
     FEELER_TRY(const std::vector<PlanePoint> positions, positions_of(execution));
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const bool high = q_number(execution, 301) != 0.0;
@@ -528,10 +579,9 @@ core::Result<void> run_pattern(Execution& execution) {
         over[axes.first] = positions[i][0];
         over[axes.second] = positions[i][1];
         execution.traverse(over);
-        DefinedCycle& called = writable_klartext(execution.state).cycle;
-        called = cycle;
+        DefinedCycle called = cycle;
         if (!high && i + 1 < positions.size()) called.second_clearance = 0.0;
-        if (auto done = call_defined_cycle(execution); !done) return done;
+        if (auto done = make_hole(execution, called); !done) return done;
     }
     return {};
 }

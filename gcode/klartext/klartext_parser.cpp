@@ -503,6 +503,14 @@ core::Result<void> read_axes(KlartextReader& reader, bool with_values) {
     return {};
 }
 
+/// Whether the next character is part of the name before a value, as in V.ZEIT.
+bool is_in_name(KlartextReader& reader) {
+    const char c = reader.next();
+    if (c != '.') return is_letter(c) && upper(c) != 'Q';
+    const size_t after = reader.lexer.at + 1;
+    return after < reader.lexer.line.size() && !is_digit(reader.lexer.line[after]);
+}
+
 core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
     const size_t from = (reader.next(), reader.lexer.at);
     if (cycle == 7 && reader.next() == '#')
@@ -524,8 +532,8 @@ core::Result<void> read_cycle_part(KlartextReader& reader, int cycle) {
         return reader.word('R', from,
                            letters == "IROT" ? Addressing::incremental : Addressing::absolute);
     }
-    while (is_letter(reader.next()) && upper(reader.next()) != 'Q') ++reader.lexer.at;
-    return reader.word('P', from); // DIST2, DEPTH-20, PLNGNG5, DWELL0, F200
+    while (is_in_name(reader)) ++reader.lexer.at;
+    return reader.word('P', from); // DIST2, DEPTH-20, PLNGNG5, DWELL0, V.ZEIT 0, F200
 }
 
 core::Result<void> read_cycle_call(KlartextReader& reader) {

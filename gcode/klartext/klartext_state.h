@@ -12,7 +12,8 @@ namespace gcode {
 /// A point or direction along the first and second axis of the plane.
 using PlanePoint = std::array<double, 2>;
 
-/// A drilling cycle as defined by CYCL DEF, called by M99, M89 and CYCL CALL. mm, mm/min, s.
+/// A drilling cycle as defined by CYCL DEF, called by M99, M89 and CYCL CALL. mm, mm/min, s. Of
+/// cycles from 200 on, the state holds only the number and FAUTO.
 struct DefinedCycle {
     int number = 0;                // 0: none
     double clearance = 0.0;        // Q200: above the surface
@@ -31,12 +32,13 @@ struct DefinedCycle {
     double break_every = 0.0;      // Q257
     double stop_above =
         0.0; // Q258: distance above the last depth at which a rapid ends, first peck
-    double stop_below = 0.0;  // Q259: as Q258, for the last peck
-    double start_depth = 0.0; // Q379
-    double disengage = 0.0;   // Q214
-    double pitch = 0.0;       // Q239
-    double infeed = 0.0;      // Q334: infeed per turn of the helix
-    double diameter = 0.0;    // Q335
+    double stop_below = 0.0;   // Q259: as Q258, for the last peck
+    double start_depth = 0.0;  // Q379
+    double disengage = 0.0;    // Q214
+    double pitch = 0.0;        // Q239
+    double infeed = 0.0;       // Q334: infeed per turn of the helix
+    double diameter = 0.0;     // Q335
+    bool feed_of_call = false; // FAUTO: the feed is that of TOOL CALL
 
     bool operator==(const DefinedCycle&) const = default;
 };

@@ -19,6 +19,7 @@ namespace gcode {
 /// mm/min; end points in program coordinates of the offsets active at the command.
 struct StraightTraverse {
     Position end;
+    bool axes_are_independent = false; // each axis moves on its own, as to a reference point
 
     bool operator==(const StraightTraverse&) const = default;
 };

@@ -70,6 +70,8 @@ constexpr std::string_view no_builders_code =
 
 constexpr std::string_view no_five_axes = "moves of rotary axes are not supported yet";
 
+constexpr std::string_view no_last_preset =
+    "the preset that was set last is not known: activate it with CYCL DEF 247";
 constexpr std::string_view no_machine_point = "the machine builder's datum is unknown: use M91";
 
 constexpr std::string_view no_turn_feed =
@@ -381,6 +383,7 @@ constexpr Code codes[] = {
     {m_code(101), other, "", klartext, {}},
     {m_code(102), other, "", klartext, {}},
     {m_code(103), other, "", klartext, {}},
+    {m_code(104), other, "", klartext, no_last_preset},
     {m_code(107), other, "", klartext, {}},
     {m_code(108), other, "", klartext, {}},
     {m_code(109), other, "", klartext, {}},

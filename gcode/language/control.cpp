@@ -222,6 +222,16 @@ constexpr ParameterValue length_in_increments[] = {
     {1, true, "incremental words also travel a change of the tool length"},
     {0, false, "incremental words travel the programmed distance only"},
 };
+constexpr ParameterValue tool_change_modes[] = {
+    {0, true, "T changes the tool"},
+    {1, false, "M6 changes the tool, and T selects the next one"},
+};
+constexpr ParameterValue outside_corners[] = {
+    {1, false, "G450 is active at the start"},
+    {2, true, "G451 is active at the start"},
+};
+constexpr ParameterValue hundred_degrees[] = {{100, 100, "100 degrees"}};
+constexpr ParameterRange of_corners{0.0, 180.0, "degrees"};
 constexpr DialectId any_siemens[] = {DialectId::siemens, DialectId::siemens_iso};
 
 constexpr ControlParameter parameters[] = {
@@ -256,6 +266,19 @@ constexpr ControlParameter parameters[] = {
     {increment_has_length, any_siemens, "SD42442", "SD42442 (TOOL_OFFSET_INCR_PROG)",
      length_in_increments, follow_all,
      "SINUMERIK 840D sl, Programming Manual Fundamentals, incremental dimensions (G91, IC)"},
+    {tool_changes_with_t, siemens, "MD22550", "MD22550 (TOOL_CHANGE_MODE)", tool_change_modes,
+     follow_all, "SINUMERIK 840D sl, Programming Manual Fundamentals, tool change without M6"},
+    {corners_are_met, siemens, "MD20150[17]", "MD20150[17] (GCODE_RESET_VALUES)", outside_corners,
+     follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 18"},
+    {corner_limit,
+     siemens,
+     "MD20210",
+     "MD20210 (CUTCOM_CORNER_LIMIT)",
+     hundred_degrees,
+     assume,
+     "SINUMERIK 840D sl, Programming Manual Fundamentals, compensation at outside corners (G451)",
+     {},
+     of_corners},
     {blocks_are_deleted,
      all,
      {},
@@ -477,6 +500,9 @@ constexpr ControlSetting settings[] = {
          to.one_way_approach.emplace().fill(-std::get<double>(value));
      },
      "Haas mill operator's manual 96-8000, settings, G60"},
+    {siemens, "MD30600", "first fixed point (G75), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.fixed_point = whole(value); },
+     "SINUMERIK 840D sl, Programming Manual Fundamentals, approaching a fixed point (G75)"},
     {heidenhain, "datum", "the row of the preset table that is the work offset of the set-up",
      SettingKind::number,
      [](Environment& to, const SettingValue& value) { to.datum = std::get<double>(value); },

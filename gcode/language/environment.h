@@ -71,6 +71,9 @@ enum class ControlQuestion : uint8_t {
     change_selects_edge,  // a tool change without D selects the first cutting edge
     increment_has_offset, // incremental words also travel a change of the zero offset
     increment_has_length, // incremental words also travel a change of the tool length
+    tool_changes_with_t,  // T changes the tool; otherwise M6
+    corners_are_met,      // G451 is active at the start; otherwise G450
+    corner_limit,         // of G451: a larger change of direction has an arc, degrees
 };
 
 /// What each number of a table of tool offsets holds.
@@ -139,6 +142,7 @@ struct Environment {
     Position start{};                        // gauge line; X, Y, Z empty if unknown
     std::optional<AxisValues> home{};        // G28; machine zero if not stated
     std::optional<AxisValues> second_home{}; // G30; likewise
+    std::optional<AxisValues> fixed_point{}; // Siemens' G75; machine coordinates
     std::array<std::optional<AxisValues>, 2> further_homes{}; // G30 P3 and P4
     // G60: the last part of its rapid, whose sign is the direction; empty: not known.
     std::optional<AxisValues> one_way_approach{};

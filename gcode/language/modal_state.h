@@ -216,9 +216,9 @@ struct Following {
 // Reasons for which motions are followed only as far as is known, so that they cannot be clear:
 // several tools have the called name (from then on); the offset of this cutting edge is not known;
 // rapids need not be straight (RTLIOF); the approach to contours is another (KONT); the datum is
-// another than that of the set-up (cycle 247).
+// another than that of the set-up (cycle 247); corners of the contour have another shape (DISC).
 constexpr uint8_t tool_is_in_doubt = 1, edge_is_in_doubt = 2, rapids_are_in_doubt = 4,
-                  approach_is_in_doubt = 8, datum_is_in_doubt = 16;
+                  approach_is_in_doubt = 8, datum_is_in_doubt = 16, corner_is_in_doubt = 32;
 
 /// How far the control may round corners, besides P and Q of G64, mm; empty: not stated.
 struct CornerTolerances {

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
+#include "core/base/units.h"
+#include "gcode/contour/contour.h"
 #include "gcode/exec/flow.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/readings.h"
@@ -14,6 +16,7 @@
 #include "gcode/language/language.h"
 #include "gcode/language/lexer.h"
 #include "gcode/siemens/siemens_parser.h"
+#include "gcode/text/source.h"
 
 namespace gcode {
 namespace {
@@ -198,6 +201,7 @@ core::Result<void> call_modal(Execution& execution) {
                     [](const Frame& frame) { return frame.modal_macro > 0; }))
         return {};
     Frame frame = *siemens.modal_call;
+    if (frame.restore) save_siemens_modes(execution.state, frame);
     frame.called_from = {execution.state.next.source, execution.block.line};
     return enter(execution.state, execution.environment, std::move(frame),
                  {.line = execution.block.line, .column = 1});
@@ -211,7 +215,7 @@ core::Result<void> end_block(Execution& execution) {
     const bool returns = execution.statement.of(ModalGroup::subprogram) != nullptr;
     const bool inside = execution.state.frames.size() > 1;
     if (inside && (ends || returns)) {
-        leave(execution.state);
+        return_to_caller(execution.state, execution.result, execution.column);
         return {};
     }
     if (returns) {
@@ -219,27 +223,6 @@ core::Result<void> end_block(Execution& execution) {
         return {};
     }
     return stop(execution);
-}
-
-/// What the path mode and its words say of the corners.
-///
-/// Source: SINUMERIK 840D sl Basic Functions, B1. G641 rounds within ADIS and ADISPOS of the
-/// corner; where only one motion is a rapid, the smaller applies. G642 to G645 keep a tolerance of
-/// the path, or these distances, as machine data MD20480 says: both are taken. Without a value, as
-/// with G64.
-void set_corner_tolerances(const SiemensState& siemens, ModalState& modal) {
-    modal.path_tolerance = modal.naive_tolerance = 0.0;
-    modal.corner_tolerances = {};
-    modal.path = siemens.path_code == 60 ? PathMode::exact_stop : PathMode::continuous;
-    if (siemens.path_code < 641) return;
-    CornerTolerances& corners = modal.corner_tolerances;
-    if (siemens.feed_rounding > 0.0) corners.distance = siemens.feed_rounding;
-    if (siemens.rapid_rounding > 0.0) corners.rapid_distance = siemens.rapid_rounding;
-    corners.between_kinds = true;
-    if (siemens.path_code == 641 || siemens.contour_tolerance == 0.0) return;
-    modal.path_tolerance = siemens.contour_tolerance;
-    corners.rapid_tolerance = siemens.contour_tolerance;
-    if (siemens.compresses) modal.naive_tolerance = siemens.contour_tolerance;
 }
 
 /// ADIS, ADISPOS or CTOL.
@@ -268,6 +251,25 @@ core::Result<void> take_smoothing(Execution& execution) {
     return {};
 }
 
+/// Notes a code of this block by which the control leaves the path by a distance that neither the
+/// program nor the set-up states.
+void note_unstated_tolerance(Execution& execution) {
+    const SiemensState& siemens = siemens_of(execution.state);
+    if (siemens.contour_tolerance > 0.0) return;
+    const auto say_so = [&](core::SourceSpan where, std::string_view code) {
+        execution.warn(where,
+                       fmt::format("{}: the program states no tolerance (CTOL or CYCLE832), so how "
+                                   "far the control leaves the path is set at the machine; "
+                                   "`corner_tolerance` of the machine is assumed",
+                                   code),
+                       Severity::note);
+    };
+    const CodeWord* entry = execution.statement.of(ModalGroup::path_control);
+    if (entry && siemens.path_code > 641) say_so(entry->word->span, written(*entry->word));
+    const SiemensKeywordUse* use = use_of(execution, compressor_on);
+    if (use) say_so(use->span, use->keyword->name);
+}
+
 /// G60, G64 and G641 to G645 with their tolerances.
 core::Result<void> set_siemens_path(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::path_control);
@@ -292,6 +294,7 @@ core::Result<void> set_siemens_path(Execution& execution) {
         }
     }
     if (!changes) return {};
+    note_unstated_tolerance(execution);
     set_corner_tolerances(siemens_of(execution.state), execution.modal());
     execution.emit(path_mode_of(execution.modal()));
     return {};
@@ -322,6 +325,25 @@ constexpr SiemensStep siemens_steps[] = {
 };
 
 } // namespace
+
+/// Source: SINUMERIK 840D sl Basic Functions, B1. G641 rounds within ADIS and ADISPOS of the
+/// corner; where only one motion is a rapid, the smaller applies. G642 to G645 keep a tolerance of
+/// the path, or these distances, as machine data MD20480 says: both are taken. Without a value, as
+/// with G64.
+void set_corner_tolerances(const SiemensState& siemens, ModalState& modal) {
+    modal.path_tolerance = modal.naive_tolerance = 0.0;
+    modal.corner_tolerances = {};
+    modal.path = siemens.path_code == 60 ? PathMode::exact_stop : PathMode::continuous;
+    if (siemens.path_code < 641) return;
+    CornerTolerances& corners = modal.corner_tolerances;
+    if (siemens.feed_rounding > 0.0) corners.distance = siemens.feed_rounding;
+    if (siemens.rapid_rounding > 0.0) corners.rapid_distance = siemens.rapid_rounding;
+    corners.between_kinds = true;
+    if (siemens.path_code == 641 || siemens.contour_tolerance == 0.0) return;
+    modal.path_tolerance = siemens.contour_tolerance;
+    corners.rapid_tolerance = siemens.contour_tolerance;
+    if (siemens.compresses) modal.naive_tolerance = siemens.contour_tolerance;
+}
 
 const SiemensKeywordUse* use_of(const Execution& execution, SiemensAction action) {
     for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords)
@@ -426,11 +448,10 @@ void use_length(Execution& execution, core::SourceSpan where) {
     execution.emit(UseToolLengthOffset{number, offsets.tool, offsets.follows_tip});
 }
 
-void change(Execution& execution, core::SourceSpan where, bool stops_spindle) {
+void change(Execution& execution, core::SourceSpan where) {
     ModalState& modal = execution.modal();
     modal.tool = modal.selected_tool;
-    if (stops_spindle && modal.spindle != core::SpindleDirection::stopped)
-        turn_siemens_spindle(execution, 5);
+    if (modal.spindle != core::SpindleDirection::stopped) turn_siemens_spindle(execution, 5);
     move_to_tool_change(execution);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
@@ -489,11 +510,84 @@ void settle_length_axis(Execution& execution, bool straight) {
     use_length(execution, {.line = execution.block.line, .column = 1});
 }
 
+/// Whether a line has M6 or M1=6 outside comments and texts.
+bool has_tool_change(std::string_view line) {
+    const auto digits_from = [&](size_t& at) {
+        const size_t begin = at;
+        while (at < line.size() && is_digit(line[at])) ++at;
+        size_t first = begin;
+        while (first + 1 < at && line[first] == '0') ++first;
+        return line.substr(first, at - first);
+    };
+    bool quoted = false;
+    for (size_t at = 0; at < line.size(); ++at) {
+        if (line[at] == '"') quoted = !quoted;
+        if (quoted) continue;
+        if (line[at] == ';') return false;
+        if (upper(line[at]) != 'M'
+            || (at > 0 && is_name_part(line[at - 1]) && !is_digit(line[at - 1])))
+            continue;
+        size_t end = at + 1;
+        while (end < line.size() && line[end] == ' ') ++end;
+        std::string_view number = digits_from(end);
+        if (end < line.size() && line[end] == '=') {
+            while (++end < line.size() && line[end] == ' ') {
+            }
+            number = digits_from(end);
+        }
+        if (number == "6" && (end >= line.size() || !is_name_part(line[end]))) return true;
+    }
+    return false;
+}
+
+/// Whether one of these lines has M6.
+bool has_tool_change(const Program& program, size_t from, size_t end) {
+    for (size_t line = from; line < end; ++line) {
+        const auto text = program.find_line(line);
+        if (!text || !*text) return false;
+        if (has_tool_change(**text)) return true;
+    }
+    return false;
+}
+
+/// Whether the program that is running, or the main program, has M6.
+bool has_tool_change(const Execution& execution) {
+    const uint32_t source = execution.state.next.source;
+    const Program& program = execution.library.program(source);
+    const size_t here = execution.block.line;
+    return has_tool_change(program, here, SIZE_MAX) || has_tool_change(program, 1, here)
+           || (source != 0 && has_tool_change(execution.library.program(0), 1, SIZE_MAX));
+}
+
+/// Finds out at the first T which word changes the tool. A program with M6 is for a machine that
+/// needs it, unless the set-up states otherwise.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, "Tool change with M6" and "Tool
+///         change without M6"; MD22550 TOOL_CHANGE_MODE.
+void settle_tool_change(Execution& execution, core::SourceSpan where) {
+    if (siemens_of(execution.state).tool_change != SiemensToolChange::not_known_yet) return;
+    constexpr ControlQuestion question = ControlQuestion::tool_changes_with_t;
+    const ControlSettings& control = execution.environment.control;
+    const bool is_stated = control.number(question).has_value();
+    const bool with_t =
+        (is_stated || !has_tool_change(execution))
+        && answer_to(execution.state, execution.environment, question, execution.block.line);
+    writable_siemens(execution.state).tool_change =
+        with_t ? SiemensToolChange::with_t : SiemensToolChange::with_m6;
+    if (with_t && !is_stated && !control.reports_premises)
+        execution.warn(where,
+                       "the program has no M6: the tool is assumed to be changed by T alone, which "
+                       "depends on the machine data of the control (MD22550)",
+                       Severity::note);
+}
+
 core::Result<void> select(Execution& execution, int number, core::SourceSpan where) {
+    settle_tool_change(execution, where);
     execution.modal().selected_tool = ToolNumber(number);
     execution.column = where.column;
     execution.emit(SelectTool{ToolNumber(number)});
-    if (siemens_of(execution.state).changes_with_t) change(execution, where, true);
+    if (siemens_of(execution.state).tool_change == SiemensToolChange::with_t)
+        change(execution, where);
     return {};
 }
 
@@ -542,10 +636,8 @@ core::Result<void> use_siemens_tool(Execution& execution) {
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word has been programmed yet",
                           entry->word->span);
-    if (!siemens_of(execution.state).changes_with_m6)
-        writable_siemens(execution.state).changes_with_m6 = true;
-    if (siemens_of(execution.state).changes_with_t) return {};
-    change(execution, entry->word->span, true);
+    if (siemens_of(execution.state).tool_change == SiemensToolChange::with_t) return {};
+    change(execution, entry->word->span);
     return {};
 }
 
@@ -554,27 +646,69 @@ core::Result<void> use_siemens_edge(Execution& execution) {
     if (!word) return {};
     FEELER_TRY(const int edge, whole_number(*word, 0, 32000));
     execution.column = word->span.column;
-    const ModalState& modal = execution.modal();
-    const SiemensState& siemens = siemens_of(execution.state);
-    // MD22550: on a machine without M6, T changes the tool.
-    const bool with_t = edge > 0 && !siemens.changes_with_m6 && !siemens.changes_with_t
-                        && modal.selected_tool && !modal.tool;
-    if (with_t) {
-        execution.warn(word->span,
-                       "no M6 before this D: the tool is assumed to be changed by T alone, which "
-                       "depends on the machine data of the control",
-                       Severity::note);
-        writable_siemens(execution.state).changes_with_t = true;
-        change(execution, word->span, false);
-    }
     writable_siemens(execution.state).edge = edge;
     writable_siemens(execution.state).edge_is_assumed = false;
     use_length(execution, word->span);
     return {};
 }
 
+namespace {
+
+/// G450, G451 and DISC.
+core::Result<void> note_corner_style(Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes())
+        if (entry.code->number == g_code(450))
+            writable_siemens(execution.state).corner_code =
+                static_cast<int>(std::lround(entry.word->value));
+    const SiemensKeywordUse* use = use_of(execution, corner_shape);
+    if (!use) return {};
+    FEELER_TRY(const double shape, value_of_argument(flow_step_of(execution), use->value));
+    writable_siemens(execution.state).corner_shape = shape;
+    if (shape != 0.0)
+        execution.result.warnings.push_back(
+            {Severity::warning, use->span,
+             fmt::format("DISC={:g}: the shape of this path around corners is not modelled: with "
+                         "G450 an arc is followed, and motions with cutter radius compensation are "
+                         "not proven clear",
+                         shape),
+             core::rule_id("undecided"), "Program DISC=0, or G451."});
+    return {};
+}
+
+/// How the tool passes the outside corners of the contour that is active after this block.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, "Compensation at the outside corners
+///         (G450, G451, DISC)": an arc about the corner, or the intersection of the offset paths;
+///         a corner sharper than MD20210 has the arc in both cases.
+void use_corner_style(Execution& execution) {
+    ModalState& modal = execution.modal();
+    modal.doubt &= static_cast<uint8_t>(~corner_is_in_doubt);
+    if (modal.compensation == Side::none) return;
+    InterpreterState& state = execution.state;
+    const uint32_t line = execution.block.line;
+    if (siemens_of(state).corner_code == 0)
+        writable_siemens(state).corner_code =
+            answer_to(state, execution.environment, ControlQuestion::corners_are_met, line) ? 451
+                                                                                            : 450;
+    const bool met = siemens_of(state).corner_code == 451;
+    if (!met && siemens_of(state).corner_shape != 0.0) modal.doubt |= corner_is_in_doubt;
+    const double limit_deg =
+        met ? number_for(state, execution.environment, ControlQuestion::corner_limit, line) : 0.0;
+    const OutsideCorners corners{met ? OutsideCorner::met : OutsideCorner::rounded,
+                                 limit_deg * core::radians_per_degree};
+    const Contour& now = *state.contour;
+    if (now.outside == corners && (!now.path || now.path->outside == corners)) return;
+    Contour& contour = state.contour.write();
+    contour.outside = corners;
+    if (contour.path) contour.path->outside = corners;
+}
+
+} // namespace
+
 core::Result<void> set_siemens_radius(Execution& execution) {
+    if (auto noted = note_corner_style(execution); !noted) return noted;
     const CodeWord* entry = execution.statement.of(ModalGroup::cutter_radius);
+    if (!entry) execution.modal().doubt &= static_cast<uint8_t>(~corner_is_in_doubt);
     if (!entry && execution.modal().compensation == Side::none) return {};
     // D is the cutting edge here, not an offset number.
     Statement without = execution.statement;
@@ -582,6 +716,7 @@ core::Result<void> set_siemens_radius(Execution& execution) {
     Execution shared{execution.library, execution.environment, execution.dialect, execution.block,
                      without,           execution.state,       execution.result,  execution.column};
     if (auto done = set_cutter_radius(shared); !done) return done;
+    use_corner_style(execution);
     if (entry && execution.modal().compensation != Side::none) settle_edge(execution);
     if (!entry || execution.modal().compensation == Side::none) return {};
     if (siemens_of(execution.state).edge == 0) {
@@ -638,14 +773,14 @@ void add(Digest& digest, const SiemensState& siemens) {
     digest.add(uint64_t{siemens.modal_call.has_value()});
     if (siemens.modal_call) add(digest, *siemens.modal_call);
     digest.add(number_of(siemens.edge));
-    digest.add(number_of(int(siemens.changes_with_t) + 2 * int(siemens.changes_with_m6)
-                         + 4 * int(siemens.feeds_in_inches) + 8 * int(siemens.compresses)
-                         + 16 * int(siemens.edge_is_assumed)
+    digest.add(number_of(int(siemens.tool_change) + 4 * int(siemens.feeds_in_inches)
+                         + 8 * int(siemens.compresses) + 16 * int(siemens.edge_is_assumed)
                          + 32 * int(siemens.length_follows_plane)
                          + 64 * int(siemens.length_axis_is_settled)));
     digest.add(number_of(siemens.path_code));
-    for (const double value :
-         {siemens.feed_rounding, siemens.rapid_rounding, siemens.contour_tolerance})
+    digest.add(number_of(siemens.corner_code));
+    for (const double value : {siemens.feed_rounding, siemens.rapid_rounding,
+                               siemens.contour_tolerance, siemens.corner_shape})
         digest.add(value);
 }
 

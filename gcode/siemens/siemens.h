@@ -28,6 +28,7 @@ core::Result<void> use_siemens_edge(Execution& execution);      // D
 core::Result<void> select_siemens_offset(Execution& execution); // G54 G500 G505
 core::Result<void> set_siemens_radius(Execution& execution);    // G40 G41 G42
 core::Result<void> change_siemens_frame(Execution& execution);  // TRANS ROT SCALE MIRROR
+void delete_siemens_frame(Execution& execution);                // as TRANS alone
 core::Result<void> set_pole(Execution& execution);              // G110 G111 G112
 core::Result<void> move_in_siemens(Execution& execution);      // G0 to G3, CIP, CT, polar positions
 core::Result<void> go_to_fixed_position(Execution& execution); // G74 G75
@@ -36,6 +37,9 @@ core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordU
 core::Result<void> run_hole_cycle(Execution& execution, const SiemensKeywordUse& use);
 core::Result<void> drill_here(Execution& execution, const SiemensDrilling& cycle);
 core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordUse& use);
+
+/// What the path mode and its words say of the corners.
+void set_corner_tolerances(const SiemensState& siemens, ModalState& modal);
 
 /// The parameters of a cycle in order; empty where one is left out.
 core::Result<std::vector<std::optional<double>>> cycle_values(Execution& execution,

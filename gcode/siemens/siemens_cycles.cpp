@@ -107,6 +107,24 @@ core::Result<void> check_modes(const Execution& execution, const SiemensKeywordU
     return {};
 }
 
+/// Index of the parameter _AXN, the axis along which the cycle drills; 100: the cycle has none.
+size_t axis_parameter_of(int number) {
+    return number == 840 ? 11 : number == 83 || number == 84 ? 12 : 100;
+}
+
+core::Result<void> check_axis(const Execution& execution, const SiemensKeywordUse& use,
+                              const Values& values, int number) {
+    const size_t index = axis_parameter_of(number);
+    const int axis = values.whole(index, 0.0);
+    if (axis == 0 || static_cast<size_t>(axis) == axes_of(execution.modal().plane).normal + 1)
+        return {};
+    return refuse_use(use,
+                      fmt::format("parameter {} (_AXN) is {}: drilling along another axis than the "
+                                  "normal of the plane is not supported yet",
+                                  index + 1, axis),
+                      ErrorCode::unsupported);
+}
+
 void read_deep_hole(SiemensDrilling& cycle, const Values& values) {
     // FDEP FDPR DAM DTB DTS FRF VARI AXN MDEP VRT DTD DIS1
     cycle.first_depth = values.has(6) && values.plain(6) != 0.0
@@ -214,6 +232,8 @@ core::Result<SiemensDrilling> drilling_of(Execution& execution, const SiemensKey
     const bool relative = values.plain(4) != 0.0 || !values.has(3);
     cycle.bottom = relative ? cycle.reference - std::abs(values.length(4)) : values.length(3);
     if (auto checked = check_modes(execution, use, values, cycle.number); !checked)
+        return tl::unexpected(std::move(checked).error());
+    if (auto checked = check_axis(execution, use, values, cycle.number); !checked)
         return tl::unexpected(std::move(checked).error());
     if (auto read = read_special(cycle, use, values); !read)
         return tl::unexpected(std::move(read).error());

@@ -248,7 +248,31 @@ core::Result<void> drill_here(Execution& execution, const SiemensDrilling& cycle
     return {};
 }
 
+namespace {
+
+/// Reports a list of positions that are left out, _HIDE.
+core::Result<void> check_hidden_positions(const Execution& execution,
+                                          const SiemensKeywordUse& use) {
+    for (const SiemensArgument& argument : siemens_of(execution.block).arguments)
+        if (argument.kind == SiemensArgument::Kind::text && !argument.text.empty())
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{}: \"{}\" leaves out positions, which is not supported "
+                                          "yet: program the positions one by one",
+                                          use.keyword->name, argument.text),
+                              argument.span);
+    return {};
+}
+
+/// Whether the tool travels from hole to hole on the circle: the tens digit of _VARI.
+bool travels_on_circle(const std::vector<std::optional<double>>& values) {
+    if (values.size() <= 6) return false;
+    return std::fmod(std::floor(std::abs(values[6].value_or(0.0)) / 10.0), 10.0) != 0.0;
+}
+
+} // namespace
+
 core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordUse& use) {
+    if (auto checked = check_hidden_positions(execution, use); !checked) return checked;
     FEELER_TRY(const auto values, cycle_values(execution, use));
     constexpr int most_holes = 10000;
     std::vector<double> given(6, 0.0);
@@ -262,8 +286,7 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                                       "number from 1 to {}, but is {:.12g}",
                                       use.keyword->name, most_holes, count),
                           use.span);
-    const bool may_be_round = !row && values.size() > 6 && values[6].value_or(0.0) != 0.0;
-    if (may_be_round) {
+    if (!row && travels_on_circle(values)) {
         execution.result.path = core::PathCertainty::doubtful;
         execution.result.warnings.push_back(
             {Severity::warning, use.span,
@@ -271,7 +294,7 @@ core::Result<void> run_siemens_holes(Execution& execution, const SiemensKeywordU
                          "circle. The straight way is checked, and is not proven clear",
                          use.keyword->name, *values[6]),
              core::rule_id("undecided"),
-             "Leave parameter 7 out, or program the holes one by one."});
+             "Set the tens digit of parameter 7 to 0, or program the holes one by one."});
     }
     const std::optional<SiemensDrilling> cycle = siemens_of(execution.state).modal_cycle;
     if (!cycle)

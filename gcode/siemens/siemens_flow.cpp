@@ -48,6 +48,7 @@ private:
     const FlowMark* structure() const;
     core::Result<uint32_t> partner(std::string_view wanted) const;
     core::Result<void> jump();
+    void leave_repeated_lines(uint32_t target);
     std::optional<uint32_t> line_of(const SiemensJump& jump) const;
     std::optional<uint32_t> first_in(const std::string& name, uint32_t from, uint32_t end) const;
     std::optional<uint32_t> last_in(const std::string& name, uint32_t from, uint32_t end) const;
@@ -117,6 +118,17 @@ std::optional<uint32_t> SiemensFlowing::line_of(const SiemensJump& jump) const {
     return found;
 }
 
+/// A jump out of lines that are being repeated ends their repetition.
+void SiemensFlowing::leave_repeated_lines(uint32_t target) {
+    Frame& frame = step_.state.frames.back();
+    while (!frame.repeated.empty()) {
+        const RepeatedLines& lines = frame.repeated.back();
+        if (target >= lines.first && target <= lines.last) return;
+        frame.repeats.erase(lines.statement);
+        frame.repeated.pop_back();
+    }
+}
+
 core::Result<void> SiemensFlowing::jump() {
     for (const SiemensJump& jump : siemens_of(step_.block).jumps) {
         bool goes = true;
@@ -126,6 +138,7 @@ core::Result<void> SiemensFlowing::jump() {
         if (!goes) continue;
         if (const auto line = line_of(jump)) {
             step_.state.next.line = *line;
+            leave_repeated_lines(*line);
             return {};
         }
         if (jump.direction == JumpDirection::no_alarm) return {};
@@ -190,11 +203,12 @@ core::Result<void> SiemensFlowing::count_on() {
     return begins ? go_after(other) : core::Result<void>{};
 }
 
-/// `REPEAT BEGIN END P=5`: repeats the lines from one label to the other, or to this block, five
-/// more times. Only blocks before this one are searched, as on the control.
+/// `REPEAT BEGIN P=5`: repeats the lines from the label to ENDLABEL, or to this block, five more
+/// times. Only blocks before this one are searched, as on the control.
 core::Result<void> SiemensFlowing::repeat_part() {
     const auto& jumps = siemens_of(step_.block).jumps;
-    auto& repeats = step_.state.frames.back().repeats;
+    Frame& frame = step_.state.frames.back();
+    auto& repeats = frame.repeats;
     const ProgramLines lines = lines_around(index_, line_);
     double count = 1.0;
     if (siemens_of(step_.block).repeats.kind != SiemensArgument::Kind::nothing) {
@@ -212,11 +226,16 @@ core::Result<void> SiemensFlowing::repeat_part() {
                           step_.block.flow.span);
     const auto rounds = static_cast<int64_t>(std::clamp(count, 0.0, 1e15));
     int64_t& left = repeats.try_emplace(line_, rounds).first->second;
+    const bool repeats_lines = !frame.repeated.empty() && frame.repeated.back().statement == line_;
     if (left > 0) {
         --left;
         step_.state.next.line = *begin;
+        const auto end = first_in("ENDLABEL", *begin, line_);
+        if (end && !repeats_lines)
+            frame.repeated.push_back({.first = *begin, .last = *end, .statement = line_});
     } else {
         repeats.erase(line_);
+        if (repeats_lines) frame.repeated.pop_back();
     }
     return {};
 }
@@ -260,7 +279,7 @@ core::Result<void> SiemensFlowing::run() {
 
 core::Result<void> return_from(const FlowStep& step) {
     if (step.state.frames.size() > 1)
-        leave(step.state);
+        return_to_caller(step.state, step.result, step.block.flow.span.column);
     else
         step.state.ending = ProgramStatus::main_return;
     return {};
@@ -426,10 +445,7 @@ core::Result<Frame> called_frame(const FlowStep& step) {
     FEELER_TRY(const Block head, head_of(step, begin));
     if (auto set = set_parameters(step, head, frame); !set)
         return tl::unexpected(std::move(set).error());
-    if (siemens_of(head).saves_modes) {
-        frame.restores = true;
-        frame.saved.write() = step.state.modal;
-    }
+    if (siemens_of(head).saves_modes) save_siemens_modes(step.state, frame);
     FEELER_TRY(const int64_t rounds, rounds_of(step));
     frame.rounds_left = rounds - 1;
     return frame;

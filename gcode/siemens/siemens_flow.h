@@ -23,6 +23,12 @@ core::Result<void> call_siemens_program(const FlowStep& step);
 /// The call level for a program call, with its parameters set.
 core::Result<Frame> called_frame(const FlowStep& step);
 
+/// SAVE: what a call level restores at each return.
+void save_siemens_modes(const InterpreterState& state, Frame& frame);
+
+/// Returns from a called program and emits the commands for the modes that this restores.
+void return_to_caller(InterpreterState& state, BlockCommands& result, uint32_t column);
+
 /// Initialises the variables declared by DEF.
 core::Result<void> declare_variables(const FlowStep& step);
 

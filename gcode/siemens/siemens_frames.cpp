@@ -81,6 +81,8 @@ void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues
 
 } // namespace
 
+void delete_siemens_frame(Execution& execution) { use_frame(execution, {}, {}); }
+
 core::Result<void> change_siemens_frame(Execution& execution) {
     for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
         const SiemensAction action = use.keyword->action;

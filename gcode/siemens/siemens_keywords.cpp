@@ -164,7 +164,7 @@ constexpr SiemensKeyword keywords[] = {
     {"DIAMON", diameters},
     {"DIAMONA", refusal, no_diameters},
     {"DISABLE", note},
-    {"DISC", noted_address},
+    {"DISC", corner_shape},
     {"DISCL", refused_address, no_smooth_approach},
     {"DISPLOF", note},
     {"DISPLON", note},

@@ -23,6 +23,7 @@ enum class SiemensAction : uint8_t {
     orient_spindle,  // SPOS=90
     fixed_point,     // FP= of G75
     tolerance,       // ADIS, ADISPOS and CTOL
+    corner_shape,    // DISC
     compressor_on,
     compressor_off,
     // motions and modes

@@ -358,13 +358,20 @@ bool has_frame_words(const Execution& execution) {
 
 } // namespace
 
-core::Result<void> move_in_siemens(Execution& execution) {
-    const Statement& statement = execution.statement;
+namespace {
+
+/// Sets the motion code for the block.
+void take_motion_code(Execution& execution) {
     ModalState& modal = execution.modal();
-    const CodeWord* code = statement.of(ModalGroup::motion);
+    const CodeWord* code = execution.statement.of(ModalGroup::motion);
     if (code) modal.motion = motion_of(code->code->number);
     if (use_of(execution, SiemensAction::arc_by_point)) modal.motion = by_point;
     if (use_of(execution, SiemensAction::tangent_arc)) modal.motion = by_tangent;
+}
+
+core::Result<void> make_motion(Execution& execution) {
+    const Statement& statement = execution.statement;
+    ModalState& modal = execution.modal();
     if (has_frame_words(execution) || statement.axis_word_owner()) return {};
     const bool circles = is_arc(modal.motion);
     const bool moves =
@@ -380,8 +387,18 @@ core::Result<void> move_in_siemens(Execution& execution) {
         if (statement.word(axis_letters[axis]) || (mixes && axis < 3))
             forget_travel(execution, axis);
     remember_direction(execution, start);
-    // G63 is not modal.
-    if (modal.motion == MotionCode::compensated_tap) modal.motion = MotionCode::straight;
+    return {};
+}
+
+} // namespace
+
+/// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, G63: it acts in its block only; then
+///         the motion code before it is active again.
+core::Result<void> move_in_siemens(Execution& execution) {
+    const std::optional<MotionCode> before = execution.modal().motion;
+    take_motion_code(execution);
+    if (auto moved = make_motion(execution); !moved) return moved;
+    if (execution.modal().motion == MotionCode::compensated_tap) execution.modal().motion = before;
     return {};
 }
 

@@ -391,6 +391,7 @@ core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begi
         if (auto value = read_value(begin); !value) return tl::unexpected(std::move(value).error());
         break;
     case tolerance:
+    case corner_shape:
     case fixed_point: {
         FEELER_TRY(const SiemensArgument value, read_value(begin));
         siemens_.keywords.push_back({&keyword, lexer_.span_from(begin), value});

@@ -42,6 +42,9 @@ struct SiemensDrilling {
     bool operator==(const SiemensDrilling&) const = default;
 };
 
+/// Which word changes the tool, MD22550.
+enum class SiemensToolChange : uint8_t { not_known_yet, with_t, with_m6 };
+
 /// The state of a native Siemens control between two blocks besides the modes.
 struct SiemensState {
     std::array<double, 2> pole{};               // G110 to G112; program coordinates in the plane
@@ -53,9 +56,10 @@ struct SiemensState {
     bool edge_is_assumed = false;               // selected by a tool change without D
     bool length_follows_plane = false;          // SD42940 is 0
     bool length_axis_is_settled = false;        // by SD42940, or by the program
-    bool changes_with_t = false;                // the machine has no M6
-    bool changes_with_m6 = false;
+    SiemensToolChange tool_change = SiemensToolChange::not_known_yet;
     bool feeds_in_inches = false; // G700
+    int corner_code = 0;          // G450, G451; 0: not programmed, and not asked yet
+    double corner_shape = 0.0;    // DISC
     int path_code = 0;            // G60, G64, G641 to G645; 0: that of the machine
     double feed_rounding = 0.0, rapid_rounding = 0.0; // ADIS and ADISPOS, mm
     double contour_tolerance = 0.0;                   // CTOL and CYCLE832, mm; 0: of the machine

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/rule_table.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/readings.h"
 #include "gcode/siemens/siemens.h"
@@ -116,6 +117,15 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
+/// Whether CYCLE800 replaces the programmed frame: without parameters, or with a new plane.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Job Planning, CYCLE800: units digit of ST.
+bool deletes_frames(const std::vector<std::optional<double>>& values) {
+    constexpr size_t st = 2;
+    if (values.size() <= st) return true;
+    return std::fmod(std::floor(std::abs(values[st].value_or(0.0))), 10.0) == 0.0;
+}
+
 /// CYCLE800 is accepted if it leaves the plane unchanged; tilted planes are an error.
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
@@ -134,6 +144,15 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "CYCLE800 while a rotary axis is away from 0 is not supported yet: turn "
                           "it to 0 first",
                           use.span);
+    if (deletes_frames(values)) {
+        if (execution.modal().compensation != Side::none)
+            return core::fail(ErrorCode::unsupported,
+                              "CYCLE800 between G41 or G42 and G40 is not supported yet: cancel "
+                              "cutter radius compensation first",
+                              use.span);
+        execution.column = use.span.column;
+        delete_siemens_frame(execution);
+    }
     if (!values.empty() && values[0].value_or(0.0) != 0.0)
         lose_positions(execution, use.span,
                        "CYCLE800: where it retracts before the swivel is set at the machine. That "
@@ -182,46 +201,106 @@ core::Result<void> select_siemens_offset(Execution& execution) {
     return {};
 }
 
+namespace {
+
+/// A point of the machine to which G74 or G75 moves; empty where the set-up does not state it.
+struct MachinePoint {
+    Position position;
+    std::string_view what, key; // "fixed point", and how to state it
+};
+
+MachinePoint point_of(const Execution& execution, const CodeWord& entry) {
+    if (entry.code->number == g_code(74))
+        return {execution.modal().home, "reference point", "`home` of the axes"};
+    MachinePoint point{{}, "fixed point", "MD30600 under [control]"};
+    if (const auto& stated = execution.environment.fixed_point)
+        std::copy(stated->begin(), stated->end(), point.position.begin());
+    return point;
+}
+
+bool names(const Execution& execution, size_t axis) {
+    return execution.statement.word(axis_letters[axis]) != nullptr;
+}
+
+/// The point is not stated: where the axes of the block go is not known.
+void assume_machine_zero(Execution& execution, const CodeWord& entry, const MachinePoint& point) {
+    const std::string code = written(*entry.word);
+    if (!execution.environment.control.reports_premises) {
+        if (!execution.state.said_home)
+            execution.warn(entry.word->span, fmt::format("{}: the {} is not given and assumed to "
+                                                         "be machine zero",
+                                                         code, point.what));
+        execution.state.said_home = true;
+        return;
+    }
+    Following& following = execution.modal().following;
+    uint8_t unknown = following.unknown_axes;
+    for (size_t axis = 0; axis < 3; ++axis)
+        if (names(execution, axis) || mixes_axes(execution.modal().offsets))
+            unknown |= static_cast<uint8_t>(1u << axis);
+    lose_positions(execution, entry.word->span,
+                   fmt::format("{}: the {} is not stated. This move is not checked, nor are later "
+                               "ones until the axes have been programmed again",
+                               code, point.what),
+                   fmt::format("State {} in the set-up.", point.key));
+    following.unknown_axes = unknown;
+    execution.result.is_cycle = true; // its words are no positions
+}
+
+/// Where a rotary axis turns while others move, nothing bounds the path.
+void doubt_rotary_axes(Execution& execution) {
+    size_t linear = 0, rotary = 0;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (names(execution, axis)) ++(is_rotary(axis) ? rotary : linear);
+    if (rotary == 0 || rotary + linear < 2) return;
+    execution.result.path = std::max(execution.result.path, core::PathCertainty::doubtful);
+    execution.result.warnings.push_back(
+        {Severity::warning, execution.statement.of(ModalGroup::action)->word->span,
+         "each axis moves at its own speed here, rotary axes too: the straight way is checked, and "
+         "is not proven clear",
+         core::rule_id("undecided"),
+         "Move the linear axes and the rotary axes in separate blocks."});
+}
+
+core::Result<void> check_fixed_point(Execution& execution) {
+    const SiemensKeywordUse* point = use_of(execution, SiemensAction::fixed_point);
+    if (!point) return {};
+    FEELER_TRY(const double number, value_of_argument(flow_step_of(execution), point->value));
+    if (number == 1.0) return {};
+    return core::fail(
+        ErrorCode::unsupported,
+        fmt::format("FP={:.12g}: only the first fixed point is known to the set-up", number),
+        point->span);
+}
+
+} // namespace
+
+/// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, G74 and G75: each axis moves on its
+///         own, without interpolation.
 core::Result<void> go_to_fixed_position(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
-    const bool reference = entry.code->number == g_code(74);
-    const Position& position = reference ? modal.home : modal.second_home;
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} has no axis word: it needs words such as X1=0 Y1=0 Z1=0",
                                       written(*entry.word)),
                           entry.word->span);
-    if (!(position[0] && position[1] && position[2]) && !execution.state.said_home) {
-        execution.state.said_home = true;
-        execution.warn(entry.word->span,
-                       fmt::format("{}: the {} is not given and assumed to be machine zero",
-                                   written(*entry.word),
-                                   reference ? "reference point" : "fixed point"));
-    }
-    if (const SiemensKeywordUse* point = use_of(execution, SiemensAction::fixed_point)) {
-        FEELER_TRY(const double number, value_of_argument(flow_step_of(execution), point->value));
-        if (number != 1.0)
-            return core::fail(ErrorCode::unsupported,
-                              fmt::format("FP={:.12g}: only the first fixed point is known to the "
-                                          "set-up",
-                                          number),
-                              point->span);
-    }
+    if (auto checked = check_fixed_point(execution); !checked) return checked;
+    const MachinePoint point = point_of(execution, entry);
+    const Position& position = point.position;
+    if (!(position[0] && position[1] && position[2])) assume_machine_zero(execution, entry, point);
     Position machine = machine_from_program(modal.offsets, modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (execution.statement.word(axis_letters[axis]))
-            machine[axis] = position[axis].value_or(0.0);
+        if (names(execution, axis)) machine[axis] = position[axis].value_or(0.0);
     const Position end = program_from_machine(modal.offsets, machine);
-    Position target = modal.position;
     const bool turned = mixes_axes(modal.offsets);
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
-            target[axis] = end[axis];
+        if (names(execution, axis) || (turned && axis < 3)) modal.position[axis] = end[axis];
     execution.column = entry.word->span.column;
-    execution.traverse(target);
+    execution.emit(StraightTraverse{modal.position, true});
+    doubt_rotary_axes(execution);
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (execution.statement.word(axis_letters[axis])) forget_travel(execution, axis);
+        if (names(execution, axis)) forget_travel(execution, axis);
     return {};
 }
 

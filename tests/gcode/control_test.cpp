@@ -135,7 +135,8 @@ INSTANTIATE_TEST_SUITE_P(Control, TellingProgram, testing::ValuesIn(tellings));
 const std::set<std::string_view> told_elsewhere = {
     "3401#0",  "setting 162", "6001#6",  "1401#1",  "setting 335", "3402#6",  "setting 56",
     "1013#1",  "1013#0",      "5431#0",  "",        "setting 85",  "MD10884", "SD42940",
-    "MD20270", "MD10760",     "MD20382", "SD42440", "SD42442"};
+    "MD20270", "MD10760",     "MD20382", "SD42440", "SD42442",     "MD22550", "MD20150[17]",
+    "MD20210"};
 
 TEST(Control, EachParameterHasAProgramThatTellsItsValuesApart) {
     for (const ControlParameter& parameter : control_parameters()) {

@@ -18,6 +18,7 @@ inline Environment known_environment(DialectId dialect) {
     environment.start = zero_position;
     environment.home = AxisValues{};
     environment.second_home = AxisValues{0.0, 0.0, -50.0};
+    environment.fixed_point = environment.second_home;
     return environment;
 }
 

@@ -70,7 +70,7 @@ TEST(SiemensWords, WarnsOfUnknownMCodesOnly) {
     EXPECT_THAT(warnings_of("G710\nM123\nM30\n", DialectId::siemens),
                 HasSubstr("M123: unknown M code, probably of the machine builder"));
     EXPECT_EQ(
-        warnings_of("G710 SOFT FFWON COMPCAD\nCYCLE832(0.01,3)\nSTOPRE\nM30\n", DialectId::siemens),
+        warnings_of("G710 SOFT FFWON COMPOF\nCYCLE832(0.01,3)\nSTOPRE\nM30\n", DialectId::siemens),
         "");
     EXPECT_THAT(warnings_of("G710\nTRAORI\nM30\n", DialectId::siemens),
                 HasSubstr("TRAORI: motions are not checked while it is on and a rotary axis"));
