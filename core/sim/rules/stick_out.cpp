@@ -12,8 +12,8 @@ namespace core {
 namespace {
 
 constexpr double longest_stick_out = 300.0; // mm, maximum increase that is tried
-constexpr size_t enough = 500;     // maximum number of legs per tool that are checked again
-constexpr size_t long_work = 6000; // tests; a computation counts once more for each of them
+constexpr size_t enough = 500;      // maximum number of legs per tool that are checked again
+constexpr size_t long_work = 20000; // tests; a computation counts once more for each of them
 
 /// The tool with its holder, or its shank and holder, raised by `by`. Raising the holder leaves no
 /// gap: the shank becomes longer.

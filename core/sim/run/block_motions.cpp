@@ -238,7 +238,9 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
     if (dog_leg || links) before = state.stock;
     LegCheck check = leg_check(use(motion));
     double removed = 0.0;
+    const auto is_clear = [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; };
     for (const Leg& leg : path.legs) {
+        if (setup.needs_only_verdict && !std::all_of(pairs.begin(), pairs.end(), is_clear)) break;
         track_centre(motion, leg);
         removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
         legs.push_back({leg, result.duration, use(motion)});
