@@ -8,6 +8,7 @@
 
 #include "app/check/check_run.h"
 #include "app/check/length_mismatch.h"
+#include "app/check/over_travel.h"
 #include "app/check/prepared_check.h"
 #include "app/check/stock_file.h"
 #include "app/setup/coverage.h"
@@ -109,6 +110,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     check_both_switch_positions(run, run, *check.program, check.file.environment);
     apply_allowed_rules(run, run, check.file.allow_comments);
     combine_consequences(run, run, mismatches);
+    combine_over_travels(run, run);
 }
 
 namespace {

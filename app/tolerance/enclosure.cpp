@@ -100,13 +100,13 @@ struct Enclosure::Run {
 
 Enclosure::Enclosure(const PreparedCheck& check, const core::Setup& base,
                      const RecordedMotions& motions, const Shifts& shifts,
-                     const Deviation& deviation, std::function<bool()> is_stopped)
+                     const Deviation& deviation, std::function<bool(size_t)> may_go_on)
     : check_(check),
       base_(base),
       motions_(motions),
       shifts_(shifts),
       deviation_(deviation),
-      is_stopped_(std::move(is_stopped)) {
+      may_go_on_(std::move(may_go_on)) {
     find_frames();
 }
 
@@ -526,7 +526,19 @@ std::optional<LimitingPair> Enclosure::judge(Run& run, size_t event) const {
     return limit;
 }
 
+namespace {
+
+/// The work of a simulation after some events; see most_tolerance_work.
+size_t work_of(const core::Statistics& done, size_t events) {
+    constexpr size_t per_square = 20, per_cut = 100, per_event = 100;
+    return done.box_tests + done.shape_tests + per_square * done.refined + per_cut * done.sweeps
+           + per_event * events;
+}
+
+} // namespace
+
 std::optional<LimitingPair> Enclosure::simulate(uint16_t frame, const DeviationRange& range) const {
+    if (!may_go_on_(0)) return LimitingPair{};
     core::Setup exact = in_frame(frame, range);
     exact.detail = core::Detail::verdict;
     exact.needs_only_verdict = true;
@@ -538,11 +550,21 @@ std::optional<LimitingPair> Enclosure::simulate(uint16_t frame, const DeviationR
     run.state.spindle.direction = run.exact.spindle_at_start;
     if (run.state.spindle.direction != core::SpindleDirection::stopped)
         run.state.spindle.speed = 1.0;
-    constexpr size_t poll_interval = 64; // events
+    return judge_all(run);
+}
+
+std::optional<LimitingPair> Enclosure::judge_all(Run& run) const {
+    constexpr size_t poll_interval = 16; // events
+    size_t reported = 0;
+    const auto goes_on = [&](size_t events) {
+        const size_t work = work_of(run.state.statistics, events);
+        return may_go_on_(work - std::exchange(reported, work));
+    };
     for (size_t event = 0; event < motions_.events.size(); ++event) {
-        if (event % poll_interval == 0 && is_stopped_()) return LimitingPair{};
-        if (auto limit = judge(run, event)) return limit;
+        if (event % poll_interval == 0 && !goes_on(event)) return LimitingPair{};
+        if (auto limit = judge(run, event)) return goes_on(event + 1) ? limit : LimitingPair{};
     }
+    if (!goes_on(motions_.events.size())) return LimitingPair{};
     return std::nullopt;
 }
 

@@ -34,9 +34,11 @@ struct DeviationRange {
 class Enclosure {
 public:
     /// `base`: the set-up without deviation; `shifts`: how the deviation displaces the motions;
-    /// `is_stopped`: polled by simulations, which then show nothing.
+    /// `may_go_on`: told by simulations from time to time what they have done since the last call,
+    /// in tests; false: they end, and show nothing.
     Enclosure(const PreparedCheck& check, const core::Setup& base, const RecordedMotions& motions,
-              const Shifts& shifts, const Deviation& deviation, std::function<bool()> is_stopped);
+              const Shifts& shifts, const Deviation& deviation,
+              std::function<bool(size_t)> may_go_on);
 
     /// Whether the program is clear for all deviations of the range: empty if it is.
     std::optional<LimitingPair> first_limit(const DeviationRange& range) const;
@@ -65,6 +67,7 @@ private:
     core::Setup with_doubt(const core::Setup& setup, double doubt) const;
     double doubt_of(size_t event, uint16_t frame, const DeviationRange& range) const;
     std::optional<LimitingPair> simulate(uint16_t frame, const DeviationRange& range) const;
+    std::optional<LimitingPair> judge_all(Run& run) const;
     std::optional<LimitingPair> judge(Run& run, size_t event) const;
     std::optional<LimitingPair> judge_hull(Run& run, size_t event,
                                            const core::Motion& motion) const;
@@ -86,7 +89,7 @@ private:
     const RecordedMotions& motions_;
     const Shifts& shifts_;
     const Deviation& deviation_;
-    std::function<bool()> is_stopped_;
+    std::function<bool(size_t)> may_go_on_;
     std::vector<Displacement> frames_;   // frame 0: none
     std::vector<Shifts::Ends> frame_of_; // of each event
     std::vector<bool> turns_;            // of each event: rotary axes move

@@ -30,6 +30,7 @@ std::string title_of(const Deviation& deviation) {
 }
 
 std::string range_text(const Tolerance& tolerance, bool inch) {
+    if (!tolerance.not_studied.empty()) return "not studied: " + tolerance.not_studied;
     if (!tolerance.unknown.empty()) return "not known: " + tolerance.unknown;
     const ToleranceLimit &less = tolerance.less, &more = tolerance.more;
     const char* unit = inch ? "in" : "mm";

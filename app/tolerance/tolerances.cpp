@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <list>
 #include <map>
 #include <numeric>
 #include <thread>
@@ -44,6 +45,28 @@ struct Task {
     bool is_done = false;
 };
 
+/// The work of tasks that are done one after another or at the same time.
+///
+/// A task counts as too much if its work and that of all tasks before it exceed the limit, so that
+/// does not depend on which thread is faster. It can end as soon as what they have done so far
+/// does: their work only grows. So no more than the limit is done, but for the intervals between
+/// reports.
+class Workload {
+public:
+    Workload(size_t tasks, size_t most) : done_(tasks), most_(most) {}
+
+    void add(size_t task, size_t work) { done_[task] += work; }
+    size_t done_by(size_t task) const { return done_[task]; }
+    bool is_exceeded(size_t task) const {
+        return std::accumulate(done_.begin(), done_.begin() + std::ptrdiff_t(task) + 1, size_t{0})
+               > most_;
+    }
+
+private:
+    std::vector<std::atomic<size_t>> done_;
+    size_t most_;
+};
+
 /// A check that can be read once and deviated often.
 class ToleranceStudy {
 public:
@@ -54,7 +77,8 @@ public:
     /// All quantities that can deviate, with the reason where nothing can be said of one.
     std::vector<Task> tasks();
 
-    void search(Task& task, const std::function<bool()>& is_stopped) const;
+    /// `may_go_on`: see Enclosure.
+    void search(Task& task, const std::function<bool(size_t)>& may_go_on) const;
 
     /// Whether the control still takes the same course at both limits; sets `unknown` if not.
     void confirm_course(Task& task) const;
@@ -349,8 +373,7 @@ void ToleranceStudy::confirm_course(Task& task) const {
             task.result.unknown = another_course;
 }
 
-void ToleranceStudy::search(Task& task, const std::function<bool()>& is_stopped) const {
-    task.is_done = true;
+void ToleranceStudy::search(Task& task, const std::function<bool(size_t)>& may_go_on) const {
     if (!task.result.unknown.empty()) return;
     const Deviation& deviation = task.result.deviation;
     const double widest =
@@ -364,14 +387,47 @@ void ToleranceStudy::search(Task& task, const std::function<bool()>& is_stopped)
                                 .tool = deviation.tool,
                                 .pair = {"flutes", "holder"}};
     }
+    std::list<Enclosure> enclosures;
     for (const Case& one : task.cases) {
-        const Enclosure enclosure(check_, task.base, *one.motions, one.shifts, deviation,
-                                  is_stopped);
-        task.result.unknown = enclosure.obstacle();
+        enclosures.emplace_back(check_, task.base, *one.motions, one.shifts, deviation, may_go_on);
+        task.result.unknown = enclosures.back().obstacle();
         if (!task.result.unknown.empty()) return;
-        for (const bool more : {false, true}) search_side(task, one, enclosure, more);
     }
-    task.is_done = !is_stopped(); // else its simulations may have ended early
+    auto enclosure = enclosures.begin();
+    for (const Case& one : task.cases) {
+        for (const bool more : {false, true})
+            if (may_go_on(0)) search_side(task, one, *enclosure, more);
+        ++enclosure;
+    }
+}
+
+/// Why a quantity was not studied.
+std::string limit_of(size_t most_work) {
+    return fmt::format("the simulations reached their limit of {} tests",
+                       most_work % 1'000'000 == 0 ? fmt::format("{} million", most_work / 1'000'000)
+                                                  : std::to_string(most_work));
+}
+
+/// Searches all tasks on all processors, in their order.
+void search_all(const ToleranceStudy& study, std::vector<Task>& tasks, Workload& workload,
+                const std::function<bool(double)>& goes_on) {
+    std::atomic<size_t> next = 0, done = 0;
+    const auto is_stopped = [&] {
+        return goes_on && !goes_on(double(done) / double(std::max<size_t>(tasks.size(), 1)));
+    };
+    const auto work = [&] {
+        for (size_t i = next++; i < tasks.size() && !is_stopped(); i = next++, ++done) {
+            study.search(tasks[i], [&, i](size_t more) {
+                workload.add(i, more);
+                return !workload.is_exceeded(i) && !is_stopped();
+            });
+            tasks[i].is_done = !is_stopped(); // else its simulations may have ended early
+        }
+    };
+    std::vector<std::thread> threads;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads) thread.join();
 }
 
 /// Why there are no tolerances; empty if there are.
@@ -390,7 +446,8 @@ std::string refusal_of(const CheckJob& job, const CheckRun& run) {
 } // namespace
 
 core::Result<Tolerances> tolerances_of(const CheckJob& job, const CheckRun& run,
-                                       const std::function<bool(double)>& goes_on) {
+                                       const std::function<bool(double)>& goes_on,
+                                       size_t most_work) {
     const Stopwatch stopwatch;
     Tolerances tolerances{.refusal = refusal_of(job, run)};
     if (!tolerances.refusal.empty()) return tolerances;
@@ -411,22 +468,18 @@ core::Result<Tolerances> tolerances_of(const CheckJob& job, const CheckRun& run,
     if (!tolerances.refusal.empty()) return tolerances;
     ToleranceStudy study(check, *std::move(readings));
     std::vector<Task> tasks = study.tasks();
-    std::atomic<size_t> next = 0, done = 0;
-    const auto is_stopped = [&] {
-        return goes_on && !goes_on(double(done) / double(std::max<size_t>(tasks.size(), 1)));
-    };
-    const auto work = [&] {
-        for (size_t i = next++; i < tasks.size() && !is_stopped(); i = next++, ++done)
-            study.search(tasks[i], is_stopped);
-    };
-    std::vector<std::thread> threads;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads) thread.join();
-    for (Task& task : tasks) {
+    Workload workload(tasks.size(), most_work);
+    search_all(study, tasks, workload, goes_on);
+    for (size_t i = 0; i < tasks.size(); ++i) {
+        Task& task = tasks[i];
         if (!task.is_done) continue;
-        study.confirm_course(task); // reads subprograms, so not on several threads
-        tolerances.runs += task.runs;
+        if (task.result.unknown.empty() && workload.is_exceeded(i)) {
+            task.result = {.deviation = task.result.deviation, .not_studied = limit_of(most_work)};
+        } else {
+            study.confirm_course(task); // reads subprograms, so not on several threads
+            tolerances.runs += task.runs;
+            tolerances.work += workload.done_by(i);
+        }
         tolerances.list.push_back(std::move(task.result));
     }
     tolerances.seconds = stopwatch.seconds();

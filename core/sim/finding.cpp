@@ -30,6 +30,15 @@ bool is_worse(const Finding& finding, const Finding& than) {
     return depth(finding) > depth(than);
 }
 
+std::string beyond_text(const OverTravel& over_travel) {
+    return fmt::format("{} {}", at_most(over_travel.beyond),
+                       is_rotary(over_travel.axis) ? "degrees" : "mm");
+}
+
+std::string target_text(const OverTravel& over_travel) {
+    return over_travel.is_upper ? at_most(over_travel.to) : at_least(over_travel.to);
+}
+
 std::string direction_text(const Vec3& direction) {
     constexpr double significant = 0.3; // some 17 degrees
     std::string text;

@@ -27,6 +27,16 @@ struct Overlap {
     bool operator==(const Overlap&) const = default;
 };
 
+/// How far an axis goes beyond one of its limits.
+struct OverTravel {
+    size_t axis = 0;
+    bool is_upper = false; // which limit
+    double to = 0.0;       // machine coordinates, mm or degrees
+    double beyond = 0.0;   // mm or degrees
+
+    bool operator==(const OverTravel&) const = default;
+};
+
 /// A fact about a block that a person should know.
 struct Finding {
     std::string rule; // stable id, such as `near-miss`
@@ -37,12 +47,17 @@ struct Finding {
     std::array<std::string, 2> pair{};   // the two bodies concerned; empty if there are none
     double shortfall = 0.0;              // minimum clearance minus clearance, mm
     std::optional<Overlap> overlap = {}; // of the pair, if it collides and the depth was measured
+    std::optional<OverTravel> over_travel = {}; // of the axis, if it is about a limit
 
     bool operator==(const Finding&) const = default;
 };
 
 /// Whether a finding has a larger shortfall or, with equal ones, a deeper overlap.
 bool is_worse(const Finding& finding, const Finding& than);
+
+/// "1.000 mm": how far an axis goes beyond its limit; "201.000": where it goes.
+std::string beyond_text(const OverTravel& over_travel);
+std::string target_text(const OverTravel& over_travel);
 
 /// A direction in the frame of the stock by its main axes: "X+ Z+".
 std::string direction_text(const Vec3& direction);

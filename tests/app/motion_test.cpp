@@ -114,6 +114,27 @@ TEST(OverTravel, IsFoundAHairBeyondTheLimitAndNotAtIt) {
     EXPECT_EQ(check(setup, program({"G0 Y200.001"})).errors(), "over-travel 6");
 }
 
+TEST(OverTravel, OfALoopIsOneFindingForEachLimitThatNamesTheLargestExcess) {
+    // Y200 of the work is the limit: from the 11th pass on the loop is beyond it, at last by 40.
+    const Checked checked =
+        check(without_cuts(), program({"G0 X100. Y150.", "#1=0", "WHILE[#1LT50]DO1", "#1=#1+1",
+                                       "G0 Y[190.+#1]", "END1", "G0 Y150.", "G0 Y205."}));
+    EXPECT_EQ(checked.errors(), "over-travel 10");
+    EXPECT_EQ(checked.finding("over-travel").message,
+              "Y goes to 1.000 in machine coordinates, 1.000 mm beyond its limit. 41 blocks go "
+              "beyond it (lines 10, 13), the farthest by 40.000 mm, to 40.000, in line 10.");
+}
+
+TEST(OverTravel, IsReportedAtBothLimitsOfAnAxis) {
+    const Checked checked =
+        check(without_cuts(), program({"G0 Y205.", "G0 Y150.", "G0 Y-1000.", "G0 Y203."}));
+    EXPECT_EQ(checked.errors(), "over-travel 6, over-travel 8");
+    EXPECT_NE(checked.findings.at(0).message.find("2 blocks go beyond it (lines 6, 9), none of "
+                                                  "them farther."),
+              std::string::npos);
+    EXPECT_EQ(checked.findings.at(1).message.find("blocks go beyond"), std::string::npos);
+}
+
 TEST(FirstMove, FromAnUnknownPositionIsAWarningOnly) {
     const SetupWriter setup = SetupWriter().without_machine().program("dialect = \"fanuc\"\n");
     const Checked checked =

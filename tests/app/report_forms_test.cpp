@@ -12,8 +12,10 @@
 #include "app/commands/progress.h"
 #include "app/commands/report_formats.h"
 #include "app/report/exchange/exchange_reports.h"
+#include "app/report/html/html_facts.h"
 #include "app/report/json/json_report.h"
 #include "app/report/text/text_report.h"
+#include "app/tolerance/tolerances.h"
 
 namespace app {
 namespace {
@@ -153,6 +155,21 @@ TEST(VerdictOnly, FindsTheSameAsAFullCheck) {
     }
     for (size_t i = 0; i < full.blocks.size(); ++i)
         EXPECT_EQ(full.blocks[i].result.verdict, brief.blocks[i].result.verdict) << i;
+}
+
+TEST(Reports, SayWhichTolerancesWereNotStudied) {
+    CheckRun run = clamped_plate(core::Detail::verdict);
+    Tolerances tolerances;
+    tolerances.list.push_back({.deviation = {.quantity = Quantity::stock, .axis = 1}});
+    tolerances.list[0].not_studied = "the simulations reached their limit of 7 tests";
+    run.tolerances = std::make_shared<const Tolerances>(tolerances);
+    const std::string words = "not studied: the simulations reached their limit of 7 tests";
+    EXPECT_NE(text_report(run, {}).find("stock Y  " + words), std::string::npos);
+    EXPECT_NE(html_tolerances(run).find("<td>" + words + "</td>"), std::string::npos);
+    const auto entry = nlohmann::json::parse(json_report(run, false))["tolerances"]["list"][0];
+    EXPECT_EQ(entry["not_studied"], tolerances.list[0].not_studied);
+    EXPECT_EQ(entry["text"], words);
+    EXPECT_FALSE(entry.contains("less"));
 }
 
 TEST(ReportFormats, AreInTheManual) {

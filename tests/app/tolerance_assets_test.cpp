@@ -20,7 +20,7 @@ void expect_clear_at_ends(const std::string& program, const std::string& setup, 
     ASSERT_EQ(all->refusal, "");
     size_t known = 0;
     for (const app::Tolerance& tolerance : all->list) {
-        if (!tolerance.unknown.empty()) continue;
+        if (!tolerance.is_known()) continue;
         ++known;
         for (const double by : {-tolerance.less.by, tolerance.more.by}) {
             const auto end = checked_with(job, tolerance.deviation, by);

@@ -48,7 +48,7 @@ void compare_tolerances(unsigned seed, ToleranceTally& tally, double rounding) {
     ASSERT_TRUE(tolerances.has_value());
     if (!tolerances->refusal.empty()) return;
     for (const app::Tolerance& tolerance : tolerances->list) {
-        if (!tolerance.unknown.empty()) continue;
+        if (!tolerance.is_known()) continue;
         for (const bool more : {false, true})
             compare_side(one, tolerance, more, seed, random.dice, tally);
     }

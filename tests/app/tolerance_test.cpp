@@ -333,6 +333,44 @@ TEST(Tolerance, SearchIsNotMisledByShortfallsThatHardlyGrow) {
         }
 }
 
+TEST(Tolerance, IsNotStudiedBeyondTheLimitOfWork) {
+    auto setup = plate();
+    setup.fixture("clamp", "box = [[85, 40, 0], [99, 60, 80]]\n");
+    const ToleranceCase one(setup.text(), slot);
+    const Tolerances all = tolerances(one);
+    const size_t most = all.work / 2;
+    const auto run = app::run_check(one.job);
+    ASSERT_TRUE(run.has_value());
+    const auto limited = app::tolerances_of(one.job, *run, {}, most);
+    ASSERT_TRUE(limited.has_value());
+    ASSERT_EQ(limited->list.size(), all.list.size());
+    EXPECT_LE(limited->work, most);
+    const std::string reason =
+        fmt::format("not studied: the simulations reached their limit of {} tests", most);
+    size_t studied = 0;
+    while (studied < all.list.size() && limited->list[studied].not_studied.empty()) ++studied;
+    EXPECT_GE(studied, 1U);
+    EXPECT_LT(studied, all.list.size());
+    for (size_t i = 0; i < all.list.size(); ++i)
+        EXPECT_EQ(range_text(limited->list[i]), i < studied ? range_text(all.list[i]) : reason);
+    // The first quantity that does not fit ends the study, whichever thread is faster.
+    const auto again = app::tolerances_of(one.job, *run, {}, most);
+    ASSERT_TRUE(again.has_value());
+    EXPECT_EQ(again->work, limited->work);
+}
+
+TEST(Tolerance, EndsItsSimulationsSoonAfterTheLimitOfWork) {
+    const ToleranceCase one(plate().text(), slot);
+    const auto run = app::run_check(one.job);
+    ASSERT_TRUE(run.has_value());
+    const auto none = app::tolerances_of(one.job, *run, {}, 0);
+    ASSERT_TRUE(none.has_value());
+    EXPECT_EQ(none->work, 0U);
+    EXPECT_EQ(none->runs, 0U);
+    ASSERT_FALSE(none->list.empty());
+    for (const Tolerance& tolerance : none->list) EXPECT_NE(tolerance.not_studied, "");
+}
+
 TEST(Tolerance, HoldsForRandomJobs) {
     ToleranceTally tally;
     for (unsigned seed = 1; seed <= 6; ++seed) compare_tolerances(seed, tally);

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "core/sim/leg/leg_check.h"
@@ -176,6 +178,48 @@ TEST(FixtureCheck, MeasuresFixturesThatAreThere) {
     EXPECT_NEAR(flutes.upper, 20.0 - 5.0 - 5.0, 1e-6);
     EXPECT_NEAR(flutes.time, 3.5, 1e-3);
     EXPECT_EQ(flutes.at_end, flutes.lower);
+}
+
+TEST(StockProbe, SaysWhetherABodyIsClearAsAnObservationDoesWithLessWork) {
+    Bench bench{block_setup()};
+    const auto chord = [&](int k, double z) {
+        const auto corner = [&](int i) {
+            const double angle = 0.25 * i;
+            return Vec3(50.0 + 20.0 * std::cos(angle), 50.0 + 20.0 * std::sin(angle), z);
+        };
+        return bench.leg(corner(k), corner(k + 1));
+    };
+    constexpr int chords = 12;
+    for (int k = 0; k < chords; ++k) bench.flutes.along(chord(k, -25.0), bench.stock);
+    // At Z-25 the shank rubs along the wall; at Z-28 it is 3 mm deep in the floor; at Z-43.5 the
+    // holder is still clear, at Z-44.5 not.
+    Statistics observed, asked;
+    size_t clear = 0, questions = 0;
+    for (int k = 0; k < chords; ++k)
+        for (const double z : {-10.0, -25.0, -28.0, -43.5, -44.5, -60.0}) {
+            const Leg leg = chord(k, z);
+            for (const MovingBody& body : bench.context.bodies) {
+                bench.statistics = {};
+                const StockObservation seen = bench.probe.observe(body, leg, bench.stock, 50.0);
+                const Verdict verdict = bench.probe.clearance(body, leg, 0.0, seen, seen).verdict;
+                observed.box_tests += bench.statistics.box_tests;
+                observed.refined += bench.statistics.refined;
+                bench.statistics = {};
+                const bool is_clear = bench.probe.is_clear(body, leg, bench.stock);
+                asked.box_tests += bench.statistics.box_tests;
+                asked.refined += bench.statistics.refined;
+                if (body.kind != PartKind::flutes)
+                    EXPECT_EQ(is_clear, verdict == Verdict::clear) << k << " " << z;
+                else // an observation also knows where the flutes have been
+                    EXPECT_LE(is_clear, verdict == Verdict::clear) << k << " " << z;
+                clear += is_clear;
+                ++questions;
+            }
+        }
+    EXPECT_GE(clear, questions / 4);
+    EXPECT_LE(clear, questions * 3 / 4);
+    EXPECT_LT(2 * asked.box_tests, observed.box_tests);
+    EXPECT_LE(asked.refined, observed.refined);
 }
 
 } // namespace

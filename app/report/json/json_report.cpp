@@ -229,10 +229,9 @@ Json tolerance_json(const Tolerance& tolerance) {
     json["axis"] =
         deviation.is_place() ? Json(std::string(1, "XYZ"[deviation.axis])) : Json(nullptr);
     json["text"] = range_text(tolerance);
-    if (!tolerance.unknown.empty()) {
-        json["unknown"] = tolerance.unknown;
-        return json;
-    }
+    if (!tolerance.not_studied.empty()) json["not_studied"] = tolerance.not_studied;
+    if (!tolerance.unknown.empty()) json["unknown"] = tolerance.unknown;
+    if (!tolerance.is_known()) return json;
     json["less"] = limit_json(tolerance.less);
     json["more"] = limit_json(tolerance.more);
     return json;
@@ -245,6 +244,7 @@ Json tolerances_json(const Tolerances& tolerances) {
     for (const Tolerance& tolerance : tolerances.list)
         json["list"].push_back(tolerance_json(tolerance));
     json["runs"] = tolerances.runs;
+    json["work"] = tolerances.work;
     json["seconds"] = tolerances.seconds;
     return json;
 }

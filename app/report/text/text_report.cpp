@@ -169,7 +169,7 @@ std::string tolerances_text(const Tolerances& tolerances, const TextOptions& opt
         const std::string title = title_of(tolerance.deviation);
         text += "    " + trimmed(title) + std::string(width - characters_in(title), ' ') + "  "
                 + range_text(tolerance) + "\n";
-        if (!tolerance.unknown.empty()) continue;
+        if (!tolerance.is_known()) continue;
         for (const auto& [sign, limit] : {std::pair("-", &tolerance.less), {"+", &tolerance.more}})
             if (const std::string why = limit_text(*limit); !why.empty())
                 text += wrapped(fmt::format("{} {}", sign, why), 8, 2, options.width);

@@ -45,7 +45,7 @@ ToleranceSheet tolerance_sheet(const ViewModel& model) {
         sheet.lines.push_back(
             {.name = title_of(tolerance.deviation),
              .range = range_text(tolerance, model.settings.inch),
-             .is_known = tolerance.unknown.empty(),
+             .is_known = tolerance.is_known(),
              .causes = {cause_of(model, tolerance.less), cause_of(model, tolerance.more)}});
     return sheet;
 }

@@ -86,6 +86,12 @@ FluteContact LegCheck::contact_of_flutes(const Leg& leg, const CutModel& stock) 
     return contact;
 }
 
+bool LegCheck::keeps_clear(PartKind kind, const Leg& leg, const CutModel& stock) {
+    return std::all_of(context_.bodies.begin(), context_.bodies.end(), [&](const MovingBody& body) {
+        return body.kind != kind || probe_.is_clear(body, leg, stock);
+    });
+}
+
 double LegCheck::reach_into_raw_stock(const Pair& pair, const Leg& leg,
                                       const CutModel& stock) const {
     const MovingBody& body = context_.body_of(pair);

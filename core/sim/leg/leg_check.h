@@ -174,6 +174,10 @@ public:
         return probe_.certain_clearance(context_.body_of(pair), leg, start, certain);
     }
 
+    /// Whether all bodies of a kind keep their allowances from a stock that is not cut:
+    /// StockProbe::is_clear.
+    bool keeps_clear(PartKind kind, const Leg& leg, const CutModel& stock);
+
     /// How far a body reaches at most into the box of the raw stock on a leg, in the direction in
     /// which that is least, mm; negative: it stays outside.
     double reach_into_raw_stock(const Pair& pair, const Leg& leg, const CutModel& stock) const;

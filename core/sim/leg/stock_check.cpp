@@ -63,7 +63,8 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     if (!settled && length(leg) > context_.setup.mesh_size && depends_on_time(checks, leg, stock)) {
         bounds_.begin_leg(0.5 * bounds_.travel());
         double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
-        removed += check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
+        if (!is_enough(context_.setup, pairs))
+            removed += check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
         bounds_.begin_leg(2.0 * bounds_.travel());
         return removed;
     }

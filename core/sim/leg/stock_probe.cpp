@@ -29,7 +29,7 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     goal.first_line = hint;
     goal.threshold = std::min(goal.threshold, goal.limit);
     size_t& futile_left = futile_left_[static_cast<size_t>(body.kind)];
-    goal.futile_limit = std::min<size_t>(futile_left, 500);
+    goal.futile_limit = std::min({goal.futile_limit, futile_left, size_t{500}});
     const StockSeparation found = separation(shapes, stock, goal);
     futile_left -= std::min(futile_left, found.futile);
     if (found.line) hint = found.line;
@@ -177,6 +177,23 @@ PairClearance StockProbe::clearance(const MovingBody& body, const Leg& leg, doub
     return now;
 }
 
+bool StockProbe::is_clear(const MovingBody& body, const Leg& leg, const CutModel& stock) {
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    if (relative.turns) return false;
+    const Allowance allowance = allowance_of(context_.setup, pair_of(body));
+    // Where a square of the finest side is too near, the answer is known.
+    StockGoal goal{.bound = StockBound::lower, .futile_limit = 0};
+    goal.threshold = deciding_distance(allowance);
+    goal.limit = allowance.distance + relative.error + 2.0 * resolution;
+    const double lower = widened(to_stock(body, relative, stock, goal), relative).lower;
+    if (allowance.distance > resolution) return lower >= allowance.distance - resolution;
+    if (lower > 0.0 || !body.profile) return lower > 0.0;
+    goal.threshold = resolution + relative.error;
+    goal.limit = 2.0 * goal.threshold;
+    const double shrink = contact_shrink(allowance, *body.profile);
+    return widened(to_stock(body, relative, stock, goal, shrink), relative).lower > 0.0;
+}
+
 double StockProbe::distance_to_box(const MovingBody& body, const RelativeLeg& leg,
                                    const Aabb& box) {
     const ConvexShape shape = convex(box);
@@ -227,7 +244,7 @@ double StockProbe::earliest(const Leg& leg, const Pair& pair, double distance,
 
 void StockProbe::settle_time(PairClearance& now, const Leg& leg, double start,
                              const CutModel& stock) {
-    if (now.verdict == Verdict::clear || !now.found()) return;
+    if (now.verdict == Verdict::clear || !now.found() || context_.setup.needs_only_verdict) return;
     const double begin = start + leg.begin, takes = leg.end - leg.begin;
     const double seen = takes > 0.0 ? (now.time - begin) / takes : 0.0;
     now.time = begin + earliest(leg, now.pair, now.upper, stock, seen) * takes;

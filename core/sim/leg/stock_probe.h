@@ -58,6 +58,10 @@ public:
     PairClearance certain_clearance(const MovingBody& body, const Leg& leg, double start,
                                     const CutModel& certain);
 
+    /// Whether a body keeps its allowance from a stock that is not cut, over a straight leg on
+    /// which the path is exact. False if it is not proven, and on a leg on which the body turns.
+    bool is_clear(const MovingBody& body, const Leg& leg, const CutModel& stock);
+
     /// Fraction of the leg at which the pair first comes within `distance`. `seen` is a fraction at
     /// which it does, if one is known.
     double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,

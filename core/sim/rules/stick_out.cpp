@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/rule_table.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
@@ -11,7 +12,8 @@ namespace core {
 namespace {
 
 constexpr double longest_stick_out = 300.0; // mm, maximum increase that is tried
-constexpr size_t enough = 500; // maximum number of legs per tool that are checked again
+constexpr size_t enough = 500;      // maximum number of legs per tool that are checked again
+constexpr size_t long_work = 20000; // tests; a computation counts once more for each of them
 
 /// The tool with its holder, or its shank and holder, raised by `by`. Raising the holder leaves no
 /// gap: the shank becomes longer.
@@ -36,7 +38,12 @@ ToolAssembly raised(ToolAssembly tool, PartKind from, double by) {
 class ReachTrial {
 public:
     ReachTrial(const ExecutedLeg& cut, PartKind from)
-        : cut_(cut), from_(from), setup_(cut.setup), tool_(cut.tool) {
+        : cut_(cut),
+          from_(from),
+          setup_(cut.setup),
+          tool_(cut.tool),
+          turns_(turn_of(setup_.machine, cut.leg.positions.front(), cut.leg.positions.back())
+                 > 0.0) {
         setup_.fixtures.clear();
         setup_.machine.bodies.clear();
         setup_.needs_only_verdict = true;
@@ -46,29 +53,35 @@ public:
     }
 
     /// Whether the part, raised by `by`, keeps its allowance.
-    bool keeps_clear(double by) const {
+    bool keeps_clear(double by) {
         const ToolAssembly longer = raised(tool_, from_, by);
-        CutModel stock = cut_.stock;
         CheckMemory memory;
-        Statistics statistics;
+        LegCheck check(setup_, longer, FluteUse::cutting, cut_.block, {}, memory, done_);
+        // The flutes have cut the leg already: nothing more is removed on it.
+        if (!turns_) return check.keeps_clear(from_, cut_.leg, cut_.stock);
+        CutModel stock = cut_.stock;
         std::vector<TrackedPair> pairs;
-        LegCheck(setup_, longer, FluteUse::cutting, cut_.block, {}, memory, statistics)
-            .run(cut_.leg, 0.0, stock, pairs);
+        check.run(cut_.leg, 0.0, stock, pairs);
         return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
             return pair.pair.part == PartKind::flutes || pair.verdict == Verdict::clear;
         });
     }
+
+    /// The tests of all trials; a recomputed square takes as long as 20 of them.
+    size_t work() const { return done_.box_tests + done_.shape_tests + 20 * done_.refined; }
 
 private:
     const ExecutedLeg& cut_;
     PartKind from_;
     Setup setup_;
     ToolAssembly tool_; // its flutes and the part
+    bool turns_;        // rotary axes move on the leg
+    Statistics done_;
 };
 
 /// The least raise, at least `known`, that keeps the leg clear and after which the height of the
 /// part, now `now`, is a whole tenth; `longest_stick_out` if there is none.
-double needed(const ReachTrial& trial, double now, double known) {
+double needed(ReachTrial& trial, double now, double known) {
     if (known > 0.0 && trial.keeps_clear(known)) return known;
     constexpr double tenths = 10.0;
     const auto raise = [&](int height) { return height / tenths - now; };
@@ -208,9 +221,14 @@ void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
         auto& first = is_shank ? reach.shank_block : reach.holder_block;
         if (!first) first = cut.block;
         double& more = is_shank ? reach.more_flute : reach.more_stick_out;
-        if (reach.computations++ >= enough) continue;
+        if (reach.computations >= enough) {
+            reach.computations = enough + 1; // this one is left out
+            continue;
+        }
         const double now = is_shank ? top_of_flutes(cut.tool) : stick_out_of(cut.tool);
-        more = needed(ReachTrial(cut, pair.pair.part), now, more);
+        ReachTrial trial(cut, pair.pair.part);
+        more = needed(trial, now, more);
+        reach.computations = std::min(enough, reach.computations + 1 + trial.work() / long_work);
     }
 }
 

@@ -21,6 +21,21 @@ BlockMotion label(const Motion& motion) {
     }
 }
 
+/// The finding about an axis beyond its limit. `is_certain`: it is known where the motion begins.
+Finding over_travel(const OverTravel& far, bool is_certain) {
+    Finding finding;
+    finding.rule = rule_id("over-travel");
+    finding.message = fmt::format("{} {} to {} in machine coordinates, {} beyond its limit.",
+                                  axis_letters[far.axis], is_certain ? "goes" : "may go",
+                                  target_text(far), beyond_text(far));
+    finding.cure = far.axis == 2 ? "Move the work, or use another tool length or work offset."
+                   : is_rotary(far.axis)
+                       ? "Turn the work, or reach the same position from the other side."
+                       : "Move the work, or use another work offset.";
+    finding.over_travel = far;
+    return finding;
+}
+
 } // namespace
 
 void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
@@ -40,16 +55,8 @@ void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
         if (!axis.present) continue;
         const double below = axis.min.value_or(-infinity) - range.min[i];
         const double above = range.max[i] - axis.max.value_or(infinity);
-        const double beyond = std::max(below, above);
-        if (beyond <= resolution) continue;
-        find(rule_id("over-travel"),
-             fmt::format("{} {} to {} in machine coordinates, {} {} beyond its limit.",
-                         axis_letters[i], before.none() ? "goes" : "may go",
-                         below > above ? at_least(range.min[i]) : at_most(range.max[i]),
-                         at_most(beyond), is_rotary(i) ? "degrees" : "mm"),
-             i == 2         ? "Move the work, or use another tool length or work offset."
-             : is_rotary(i) ? "Turn the work, or reach the same position from the other side."
-                            : "Move the work, or use another work offset.");
+        if (below > resolution) tell(over_travel({i, false, range.min[i], below}, before.none()));
+        if (above > resolution) tell(over_travel({i, true, range.max[i], above}, before.none()));
     }
 }
 
@@ -231,7 +238,9 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
     if (dog_leg || links) before = state.stock;
     LegCheck check = leg_check(use(motion));
     double removed = 0.0;
+    const auto is_clear = [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; };
     for (const Leg& leg : path.legs) {
+        if (setup.needs_only_verdict && !std::all_of(pairs.begin(), pairs.end(), is_clear)) break;
         track_centre(motion, leg);
         removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
         legs.push_back({leg, result.duration, use(motion)});

@@ -142,9 +142,13 @@ private:
         }
         const std::vector<ConvexShape> shapes =
             body.profile ? shapes_of(*body.profile, leg) : shapes_of(*body.body, leg);
-        // Material found on a scan line ends the search before any column is divided.
-        const StockGoal goal{
-            .limit = 2.0 * enough, .threshold = enough, .finest = 0.1, .work_limit = 250};
+        // Material found on a scan line ends the search before any column is divided, and a square
+        // of the finest side that is too near ends the division: they are not proven apart.
+        const StockGoal goal{.limit = 2.0 * enough,
+                             .threshold = enough,
+                             .finest = 0.1,
+                             .work_limit = 250,
+                             .futile_limit = 0};
         return separation(shapes, *piece.before, goal).separation.lower >= enough;
     }
 
