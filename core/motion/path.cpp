@@ -303,6 +303,11 @@ Leg still_half_way(const Leg& leg) {
     return still;
 }
 
+bool is_dogleg(const Motion& motion, const Machine& machine) {
+    return motion.kind == MotionKind::rapid
+           && (machine.rapid == RapidStyle::dogleg || motion.bends);
+}
+
 Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     Path path;
     const auto from = known(motion.from, machine), to = known(motion.to, machine);
@@ -316,7 +321,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
         add_straight(path, *from, *to,
                      motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
                                        : 0.0);
-    } else if (machine.rapid == RapidStyle::dogleg && moving_axes(*from, *to) > 1) {
+    } else if (is_dogleg(motion, machine) && moving_axes(*from, *to) > 1) {
         add_dogleg(path, machine, *from, *to);
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
@@ -392,7 +397,7 @@ Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
         Leg hull{.end = path.duration, .straight = false};
         add_corners(hull.positions, values_of(motion.from), from);
         add_corners(hull.positions, values_of(motion.to), to);
-        if (motion.kind == MotionKind::rapid && machine.rapid == RapidStyle::dogleg) {
+        if (is_dogleg(motion, machine)) {
             // A dog leg leaves the hull of its ends, but not their box.
             const AxisValues first = hull.positions.front();
             AxisRange range{first, first};
