@@ -19,6 +19,7 @@ namespace gcode {
 /// mm/min; end points in program coordinates of the offsets active at the command.
 struct StraightTraverse {
     Position end;
+    bool bends = false; // each axis runs at its own speed even where other rapids are straight
 
     bool operator==(const StraightTraverse&) const = default;
 };

@@ -161,7 +161,9 @@ struct Visitor {
     }
 
     void operator()(const StraightTraverse& command) {
-        events.emplace_back(motion_to(command.end, core::MotionKind::rapid, 0.0));
+        core::Motion motion = motion_to(command.end, core::MotionKind::rapid, 0.0);
+        motion.bends = command.bends;
+        events.emplace_back(motion);
     }
     void operator()(const StraightFeed& command) {
         events.emplace_back(motion_to(command.end, core::MotionKind::feed, command.feed));
