@@ -51,9 +51,13 @@ void add_standing_assumptions(const core::Setup& setup, CheckInput& run) {
         "clearances are compared with the minimum to within {:g} mm", core::resolution));
     if (setup.stock.tolerance == 0.0)
         run.assumptions.push_back("the raw stock has exactly the size in the set-up");
-    run.assumptions.push_back(setup.machine.rapid == core::RapidStyle::straight
-                                  ? "rapids run straight"
-                                  : "rapids run as dog-legs, each axis at its own speed");
+    if (setup.machine.rapid == core::RapidStyle::dogleg)
+        run.assumptions.push_back("rapids run as dog-legs, each axis at its own speed");
+    else if (gcode::dialect(run.dialect).machine_move_bends)
+        run.assumptions.push_back("rapids run straight; those of G53, and of G28 and G30 from the "
+                                  "intermediate point, run as dog-legs");
+    else
+        run.assumptions.push_back("rapids run straight");
 }
 
 /// What controls of a dialect do at corners, where the machine does not say.

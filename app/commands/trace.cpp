@@ -26,20 +26,19 @@ struct TraceOptions {
     std::string format = "text";
 };
 
-/// The environment of the program. `dialect` is empty if neither options nor set-up state it.
-core::Result<gcode::Environment> environment_of(const TraceOptions& options,
-                                                std::optional<gcode::DialectId>& dialect) {
-    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
-    if (!options.setup.empty()) {
-        FEELER_TRY(const SetupFile setup, read_setup(options.setup, settings));
-        dialect = setup.dialect;
-        return setup.environment;
-    }
-    gcode::Environment environment;
-    FEELER_TRY(const std::vector<std::string> notes, apply(settings, environment));
+void print_notes(const std::vector<std::string>& notes) {
     for (const std::string& note : notes) print_note(fmt::format("feeler: {}\n", note));
-    dialect = settings.dialect;
-    return environment;
+}
+
+/// What is stated about the program. `dialect` is empty if neither options nor set-up state it.
+core::Result<SetupFile> stated_by(const TraceOptions& options) {
+    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
+    if (!options.setup.empty()) return read_setup(options.setup, settings);
+    SetupFile file;
+    FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
+    print_notes(notes);
+    file.dialect = settings.dialect;
+    return file;
 }
 
 /// The stated dialect, else the recognised one, which is printed as a note.
@@ -113,9 +112,12 @@ core::Result<void> run_trace(const TraceOptions& options) {
     FEELER_TRY(gcode::Program program, gcode::open_program(options.program));
     const auto safe = check_output(options.output, {options.program, options.setup});
     if (!safe) return safe;
-    std::optional<gcode::DialectId> stated;
-    FEELER_TRY(gcode::Environment environment, environment_of(options, stated));
-    FEELER_TRY(environment.dialect, choose_dialect(stated, program));
+    FEELER_TRY(SetupFile stated, stated_by(options));
+    gcode::Environment& environment = stated.environment;
+    FEELER_TRY(environment.dialect, choose_dialect(stated.dialect, program));
+    FEELER_TRY(const std::vector<std::string> notes,
+               apply(stated.control, environment, stated.setup.machine));
+    print_notes(notes);
     // A Klartext block may span several lines, which must be adjacent in memory.
     if (gcode::dialect(environment.dialect).language == gcode::Language::klartext
         && program.windows) {

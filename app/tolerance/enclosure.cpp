@@ -313,8 +313,7 @@ std::optional<core::Leg> hull_of(const core::Motion& motion, const core::Machine
     core::Leg leg{.straight = false};
     leg.positions = from;
     leg.positions.insert(leg.positions.end(), to.begin(), to.end());
-    const bool dog_leg =
-        motion.kind == core::MotionKind::rapid && machine.rapid == core::RapidStyle::dogleg;
+    const bool dog_leg = core::is_dogleg(motion, machine);
     std::vector<size_t> moving;
     core::AxisValues least = from[0], most = from[0];
     for (const core::AxisValues& at : leg.positions)

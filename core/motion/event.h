@@ -97,6 +97,7 @@ struct Motion {
     // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far
     // from `to` as they started from `from`.
     AxisSet settles = 0;
+    bool bends = false; // a rapid of which each axis runs at its own speed on every machine
 };
 
 /// The new tool in the spindle; empty for T0, an empty spindle.

@@ -305,6 +305,11 @@ Leg still_half_way(const Leg& leg) {
     return still;
 }
 
+bool is_dogleg(const Motion& motion, const Machine& machine) {
+    return motion.kind == MotionKind::rapid
+           && (machine.rapid == RapidStyle::dogleg || motion.bends || motion.axes_are_independent);
+}
+
 Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     Path path;
     const auto from = known(motion.from, machine), to = known(motion.to, machine);

@@ -56,6 +56,9 @@ constexpr double assumed_rapid = 10'000.0;
 /// The maximum distance of a chord from its arc, mm.
 double chord_error(double mesh_size);
 
+/// Whether a motion is a rapid of which each axis runs at its own speed.
+bool is_dogleg(const Motion& motion, const Machine& machine);
+
 /// The legs of a motion.
 ///
 /// Shape:   a straight move is one leg. An arc or helix becomes chords within `max_error` of it

@@ -312,11 +312,6 @@ std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machi
     return path;
 }
 
-bool is_dogleg(const Motion& motion, const Machine& machine) {
-    return motion.kind == MotionKind::rapid
-           && (machine.rapid == RapidStyle::dogleg || motion.axes_are_independent);
-}
-
 DoglegTime dogleg_time(const Motion& motion, const Machine& machine) {
     DoglegTime time;
     const auto by = travels(motion);

@@ -116,9 +116,6 @@ MachineLimits limits_of(const Machine& machine);
 ///          rapid, whose axes do not move along one path.
 std::optional<PathMotion> path_motion(const Motion& motion, const Machine& machine);
 
-/// Whether each axis moves on its own, from rest to rest.
-bool is_dogleg(const Motion& motion, const Machine& machine);
-
 /// Duration of a dog-leg rapid, that of its slowest axis, seconds: with and without accelerations.
 struct DoglegTime {
     double duration = 0.0;

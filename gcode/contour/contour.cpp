@@ -337,20 +337,60 @@ std::optional<ContourMove> exit_of(const Contour& contour, const BlockCommands& 
     return std::nullopt;
 }
 
-/// Fanuc controls look ahead only a few blocks. If too many of them have no move in the plane, the
-/// tool goes to the offset end point of the previous move and cuts into an inside corner.
-void warn_of_blocks_between(Contour& contour, size_t number, const ContourMove& move) {
-    constexpr size_t harmless = 1;
+bool stops_reading(const CanonicalCommand& command) {
+    return std::holds_alternative<ProgramStop>(command)
+           || std::holds_alternative<OptionalStop>(command)
+           || std::holds_alternative<WaitForInput>(command);
+}
+
+/// Why the control did not know the move of the last pending block when it ended the waiting one;
+/// empty if it did. It reads a few blocks ahead, and none past a stop.
+///
+/// Source: Fanuc B-63944EN-2, 6.6, blocks without tool movement; B-63950EN, parameter 19625: with
+///         3 blocks, one of them may have no move in the plane.
+std::string reason_to_stop(const Contour& contour, size_t number) {
     const RadiusCompensation& path = *contour.path;
-    const bool stays = !move.arc && move.end == path.programmed;
-    if (!path.extends_corners || path.waiting.empty() || stays) return;
+    if (!path.extends_corners || path.waiting.empty()) return {};
     const size_t before = path.waiting.front().id / commands_of_a_block;
-    if (number <= before + 1 + harmless) return;
+    for (size_t at = before; at < number; ++at) {
+        const auto& commands = contour.pending[at - contour.first_pending].result.commands;
+        if (std::any_of(commands.begin(), commands.end(), stops_reading))
+            return "the control does not read past the stop before this block";
+    }
+    const size_t without_move = number - before - 1;
+    if (without_move + 2 <= contour.look_ahead) return {};
+    return fmt::format(
+        "{} blocks without a move in the plane come before this one, and the control "
+        "reads {} blocks ahead",
+        without_move, contour.look_ahead);
+}
+
+/// At a corner that the control does not know in time, it ends the move before at right angles to
+/// its end. Inside corners are then cut into, and outside ones passed in another way: what is
+/// executed from there to the end of the last pending block is not clear.
+void doubt_corner(Contour& contour, size_t before, const std::string& reason,
+                  core::SourceSpan where) {
+    for (size_t at = before - contour.first_pending; at < contour.pending.size(); ++at) {
+        core::PathCertainty& path = contour.pending[at].result.path;
+        path = std::max(path, core::PathCertainty::doubtful);
+    }
     contour.pending.back().result.warnings.push_back(
-        {Severity::warning, move.where,
-         fmt::format("{} blocks without a move in the plane come before this one: a control that "
-                     "does not look ahead farther than that cuts into an inside corner here",
-                     number - before - 1)});
+        {Severity::warning, where,
+         fmt::format(
+             "{}: where the corner of the compensated contour leads is not known; an inside "
+             "corner is cut into",
+             reason),
+         core::rule_id("undecided"),
+         "Move the blocks between the two moves to another place, or state \"19625\" under "
+         "[control] in the set-up."});
+}
+
+/// Whether the waiting move ends elsewhere than at right angles to its programmed end.
+bool has_corner(const CompensatedMoves& done, size_t waiting, FlatPoint upright) {
+    constexpr double slack = 1e-6; // mm
+    return std::any_of(done.begin(), done.end(), [&](const CompensatedMove& move) {
+        return move.id != waiting || length(move.end - upright) > slack;
+    });
 }
 
 /// Adds one motion of the last pending block to the contour.
@@ -370,8 +410,13 @@ core::Result<void> take_motion(Contour& contour, size_t index) {
                      .where = where};
     if (const auto* arc = std::get_if<ArcFeed>(&command))
         move.arc = FlatArc{{arc->centre[0], arc->centre[1]}, arc->turns};
-    warn_of_blocks_between(contour, number, move);
+    const bool stays = !move.arc && move.end == contour.path->programmed;
+    const std::string reason = stays ? std::string() : reason_to_stop(contour, number);
+    const size_t waiting = reason.empty() ? 0 : contour.path->waiting.front().id;
+    const FlatPoint upright = contour.path->tool;
     FEELER_TRY(const CompensatedMoves moves, add_move(*contour.path, move));
+    if (!reason.empty() && has_corner(moves, waiting, upright))
+        doubt_corner(contour, waiting / commands_of_a_block, reason, where);
     block.slots[index].is_waiting = true;
     for (const CompensatedMove& done : moves) place_move(contour, done);
     return {};

@@ -90,6 +90,7 @@ struct Contour {
     bool extends_ends = false;   // of the next path, as in RadiusCompensation
     bool enters_upright = false; // likewise
     OutsideCorners outside{};    // likewise
+    size_t look_ahead = 3;       // blocks that the control reads ahead
     std::deque<PendingBlock> pending{};
     std::deque<BlockCommands> ready{};
     size_t first_pending = 0;             // number of blocks before the pending ones

@@ -6,6 +6,8 @@
 #include "gcode/contour/flat_path.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 #include "gcode/language/error_rules.h"
 
 namespace gcode {
@@ -122,6 +124,15 @@ core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, doub
     return {};
 }
 
+/// The end of a message about an arc without a centre: what the control may do instead.
+std::string_view straight_instead(const Execution& execution) {
+    constexpr ControlQuestion question = ControlQuestion::lone_arc_is_straight;
+    if (!find_parameter(question, execution.environment.dialect)) return {};
+    return "; with parameter 3403#5 (CIR) = 0 the control goes straight instead, otherwise it "
+           "stops "
+           "with an alarm: state it under [control] in the set-up";
+}
+
 core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, const PlaneAxes& axes,
                                    double* centre) {
     constexpr char offset_letters[] = {'I', 'J', 'K', 0, 0, 0, 'I', 'J', 'K'};
@@ -147,9 +158,9 @@ core::Result<void> centre_of_words(Execution& execution, const SeenArc& arc, con
     if (radius) return centre_from_radius(arc, *radius, length_of(execution, *radius), centre);
     if (words.first || words.second) return centre_from_offsets(execution, arc, words, centre);
     return core::fail(ErrorCode::missing_value,
-                      fmt::format("{} has no centre: it needs {}, {} or {}", arc.code,
+                      fmt::format("{} has no centre: it needs {}, {} or {}{}", arc.code,
                                   offset_letters[axes.first], offset_letters[axes.second],
-                                  execution.dialect.radius_word),
+                                  execution.dialect.radius_word, straight_instead(execution)),
                       arc.where);
 }
 
@@ -249,6 +260,45 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
 
 } // namespace
 
+namespace {
+
+/// Whether an arc with R ends where it starts, on a control that takes it as an arc of 0 degrees.
+///
+/// Source: Fanuc B-63944EN, 4.4, circular interpolation: without a motion for an arc by R whose end
+///         is its start.
+bool vanishes(Execution& execution, const Position& end) {
+    const Word* radius = execution.statement.word('R');
+    if (!radius || !execution.dialect.radius_arc_may_vanish || end != execution.modal().position)
+        return false;
+    execution.warn(radius->span,
+                   fmt::format("{}: this arc ends where it starts and moves nothing: give the "
+                               "centre with I, J, K if a full circle is meant",
+                               written(*radius)));
+    return true;
+}
+
+/// Whether the control goes straight instead of along an arc that has neither a centre nor a
+/// radius.
+bool goes_straight(Execution& execution) {
+    for (const char letter : {'I', 'J', 'K', 'R'})
+        if (execution.statement.word(letter)) return false;
+    return answer_to(execution.state, execution.environment, ControlQuestion::lone_arc_is_straight,
+                     execution.block.line);
+}
+
+core::Result<void> go_straight(Execution& execution, const Position& end) {
+    const Word& mover = moving_word(execution);
+    FEELER_TRY(const double rate,
+               feed_rate(execution, distance_between(execution.modal().position, end)));
+    execution.warn(mover.span, fmt::format("{}: without a centre and a radius the control goes "
+                                           "straight (parameter 3403#5 (CIR) = 0)",
+                                           written(mover)));
+    execution.feed(end, rate);
+    return {};
+}
+
+} // namespace
+
 core::Result<void> move_along_arc(Execution& execution) {
     ModalState& modal = execution.modal();
     const PlaneAxes axes = axes_of(modal.plane);
@@ -268,6 +318,8 @@ core::Result<void> move_along_arc(Execution& execution) {
                           "the tool position",
                           moving_word(execution).span);
     FEELER_TRY(const Position end, target_of(execution));
+    if (vanishes(execution, end)) return {};
+    if (goes_straight(execution)) return go_straight(execution, end);
     FEELER_TRY(const SeenArc arc, flat_arc(execution, axes, end));
     ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
     if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;

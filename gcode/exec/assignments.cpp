@@ -274,7 +274,7 @@ void announce_offsets(const Offsets& before, const ModalState& modal, BlockComma
                                                          modal.offsets.follows_tip});
         result.columns.push_back(1);
     }
-    if (before.work != modal.offsets.work) {
+    if (before.work != modal.offsets.work || before.local != modal.offsets.local) {
         result.commands.emplace_back(SetOffset{modal.offsets});
         result.columns.push_back(1);
     }

@@ -206,9 +206,14 @@ void choose_entry(Execution& execution, bool is_upright) {
     if (execution.dialect.contour_style != ContourStyle::fanuc) return;
     const bool extends = answer_to(execution.state, execution.environment,
                                    ControlQuestion::entry_has_corner, execution.block.line);
+    const auto stated = execution.environment.control.number(ControlQuestion::contour_look_ahead);
+    const auto look_ahead = static_cast<size_t>(stated.value_or(3.0));
     const Contour& now = *execution.state.contour;
-    if (now.extends_ends == extends && now.enters_upright == is_upright) return;
+    if (now.extends_ends == extends && now.enters_upright == is_upright
+        && now.look_ahead == look_ahead)
+        return;
     Contour& contour = execution.state.contour.write();
+    contour.look_ahead = look_ahead;
     contour.extends_ends = extends;
     contour.enters_upright = is_upright;
 }

@@ -35,7 +35,7 @@ struct Execution {
     }
 
     /// Emits a rapid or a feed to `end` and updates the position.
-    void traverse(const Position& end);
+    void traverse(const Position& end, bool bends = false);
     void feed(const Position& end, double rate);
 };
 
@@ -126,7 +126,9 @@ void leave_length_behind(Execution& execution, const std::array<bool, axis_count
 /// Asks whether the control has restored the length offset that such a move cancelled, in the
 /// first block to which it matters.
 core::Result<void> take_length_up(Execution& execution);
-core::Result<void> select_offset(Execution& execution);     // G54 to G59.3
+core::Result<void> select_offset(Execution& execution); // G54 to G59.3
+/// Makes a work offset active. The machine does not move.
+void use_work_offset(Execution& execution, size_t index);
 core::Result<void> set_distance_mode(Execution& execution); // G90 G91 G90.1 G91.1
 core::Result<void> set_retract_mode(Execution& execution);  // G98 G99
 core::Result<void> set_frame(Execution& execution);         // G15 G16 G50 G51 G68 G69
@@ -137,10 +139,11 @@ core::Result<void> call(Execution& execution);              // M96 to M99, M198,
 core::Result<void> write_offset(Execution& execution);               // G10
 core::Result<void> write_tool_entry(Execution& execution, int kind); // G10 L1 L10 L11
 core::Result<void> name_tool(Execution& execution);                  // M61
-void move_to_tool_change(Execution& execution);                      // before the tool is exchanged
-core::Result<void> go_home(Execution& execution);                    // G28 G30
-core::Result<void> check_home(Execution& execution);                 // G27
-core::Result<void> return_from_home(Execution& execution);           // G29
+/// The moves before the tool is exchanged. `exchanges`: another tool is known to be in the spindle.
+void move_to_tool_change(Execution& execution, bool exchanges = false);
+core::Result<void> go_home(Execution& execution);          // G28 G30
+core::Result<void> check_home(Execution& execution);       // G27
+core::Result<void> return_from_home(Execution& execution); // G29
 /// G60: a rapid past the end and back, so that the last part has always the same direction.
 ///
 /// Source: Fanuc 30i user's manual B-63944EN, 4.2 "Single direction positioning"; Haas mill

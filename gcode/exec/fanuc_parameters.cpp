@@ -83,6 +83,19 @@ void use_work_offset(InterpreterState& state) {
     change_offsets(state.modal, offsets);
 }
 
+Value local_offset(const InterpreterState& state, int index) {
+    const auto axis = static_cast<size_t>(index);
+    return shown(state, axis, state.modal.offsets.local[axis]);
+}
+
+/// Without moving the machine, as G52 does.
+void set_local_offset_of(InterpreterState& state, int index, double value) {
+    const auto axis = static_cast<size_t>(index);
+    Offsets offsets = state.modal.offsets;
+    offsets.local[axis] = taken(state, axis, value);
+    change_offsets(state.modal, offsets);
+}
+
 constexpr int stride = 20; // variables per offset
 
 Value external_offset(const InterpreterState& state, int index) {
@@ -208,7 +221,6 @@ constexpr Range common_ranges[] = {
     {5001, 5009, block_end, nullptr},
     {5021, 5029, machine_position, nullptr},
     {5081, 5089, tool_compensation, nullptr},
-    {5201, 5209, external_offset, set_external_offset},
     {5221, 5329, plain_offset, set_plain_offset},
     {7001, 7400, extended_offset, set_extended_offset},
 };
@@ -217,6 +229,7 @@ constexpr Range fanuc_ranges[] = {
     {2001, 2200, tool_part<length_wear>, set_tool_part<length_wear>, Stored::as_wear},
     {2201, 2400, tool_part<length>, set_tool_part<length>, Stored::as_length},
     {5041, 5049, work_position, nullptr},
+    {5201, 5209, external_offset, set_external_offset},
     {7401, 7960, [](const InterpreterState& s, int i) { return extended_offset(s, i + 400); },
      [](InterpreterState& s, int i, double v) { set_extended_offset(s, i + 400, v); }},
     {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>, Stored::as_wear},
@@ -234,6 +247,8 @@ constexpr Range haas_ranges[] = {
     {3026, 3026, tool_in_spindle, nullptr},
     {3027, 3027, spindle_speed, nullptr},
     {5041, 5049, block_end, nullptr}, // the tip: without the tool offset
+    // Haas mill operator's manual 96-8000, system variables: G52 work offset.
+    {5201, 5206, local_offset, set_local_offset_of},
     {8553, 8553, named_tool_part<length>, nullptr},
     {8554, 8554, named_tool_part<length_wear>, nullptr},
     {8555, 8555, named_tool_part<diameter>, nullptr, Stored::as_size},

@@ -64,10 +64,15 @@ core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
     if (!said && !stored)
         return core::fail(ErrorCode::missing_value,
                           "G51 has no scaling factor: add P, or I, J and K; a factor stored in the "
-                          "parameters of the control is not known here (Fanuc: state \"5411\" "
-                          "under [control])",
+                          "parameters of the control is not known here (state \"5411\", or on "
+                          "Haas \"setting 71\", under [control])",
                           entry.word->span);
     if (!said) scaling.factors = core::Vec3(*stored);
+    constexpr ControlQuestion scales = ControlQuestion::scales_z;
+    const bool may_leave_out_z = find_parameter(scales, execution.environment.dialect);
+    if (scaling.factors[2] != 1.0 && may_leave_out_z
+        && !answer_to(execution.state, execution.environment, scales, execution.block.line))
+        scaling.factors[2] = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
         if (scaling.factors[axis] == 1.0) continue;
         FEELER_TRY(scaling.centre[axis], centre_along(execution, entry, static_cast<size_t>(axis)));
@@ -76,14 +81,18 @@ core::Result<void> set_scaling(Execution& execution, const CodeWord& entry) {
     return {};
 }
 
-/// G51.1, and Haas's G101: mirrors the named axes in addition to earlier ones.
-void set_mirror(Execution& execution) {
+/// G51.1, and Haas's G101: mirrors the named axes in addition to earlier ones. G101 mirrors them
+/// about the zero of the work offset, whatever the value of the word.
+///
+/// Source: Haas mill operator's manual 96-8000, G101.
+void set_mirror(Execution& execution, bool is_about_zero) {
     MirrorImage& mirror = execution.modal().transforms.mirror;
     for (size_t axis = 0; axis < 3; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word) continue;
         mirror.axes[axis] = true;
-        mirror.position[static_cast<int>(axis)] = axis_value(execution, axis, *word);
+        mirror.position[static_cast<int>(axis)] =
+            is_about_zero ? 0.0 : axis_value(execution, axis, *word);
     }
 }
 
@@ -107,7 +116,8 @@ core::Result<double> rotation_angle(Execution& execution, const CodeWord& entry)
     if (!word)
         return core::fail(ErrorCode::missing_value,
                           "G68 has no angle: add R; an angle stored in the parameters of the "
-                          "control is not known here (Fanuc: state \"5410\" under [control])",
+                          "control is not known here (state \"5410\", or on Haas "
+                          "\"setting 72\", under [control])",
                           entry.word->span);
     const auto& before = execution.modal().transforms.rotation;
     if (execution.modal().distance == DistanceMode::absolute || !before) return word->value;
@@ -186,7 +196,7 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
         return {};
     case g_code(51, 1):
     case g_code(101):
-        set_mirror(execution);
+        set_mirror(execution, entry.code->number == g_code(101));
         return {};
     case g_code(68):
         return set_rotation(execution, entry);

@@ -124,7 +124,9 @@ core::Result<void> go_home(Execution& execution) {
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (moves[axis] || (turned && axis < 3)) end[axis] = position[axis];
-    execution.traverse(end);
+    // Fanuc B-63944EN, 4.1, positioning (G00): with LRP = 1, too, G53 and the way from the
+    // intermediate point to the reference point are not straight.
+    execution.traverse(end, execution.dialect.machine_move_bends);
     if (entry.code->number == g_code(28) && execution.dialect.home_cancels_length) {
         cancel_length_offset(execution);
         execution.state.rules.length_cancelled = modal.tool.has_value();
@@ -133,9 +135,9 @@ core::Result<void> go_home(Execution& execution) {
     return {};
 }
 
-void move_to_tool_change(Execution& execution) {
+void move_to_tool_change(Execution& execution, bool exchanges) {
     const ToolChangeMotion& motion = execution.environment.tool_change;
-    if (motion.quill_up) {
+    if (motion.quill_up || (exchanges && execution.dialect.change_raises_z)) {
         Position up;
         up[2] = 0.0;
         traverse_in_machine(execution, up);

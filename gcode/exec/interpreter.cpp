@@ -90,6 +90,12 @@ using core::ErrorCode;
 
 static_assert(rule_of_remarks == core::rule_id("program"));
 
+bool has_rotary_word(const Block& block) {
+    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+        return word.letter == 'A' || word.letter == 'B' || word.letter == 'C';
+    });
+}
+
 /// Whether a flow statement may change the call level.
 bool changes_level(FlowKind kind) {
     return kind == FlowKind::call || kind == FlowKind::return_value || kind == FlowKind::end_sub
@@ -111,6 +117,9 @@ struct Interpreter::Scratch {
     const Environment& environment;
     const Dialect& dialect;
     const LanguageFunctions& language = functions_of(dialect.language);
+    // Whether absolute positions of rotary axes need more than adding and comparing.
+    const bool may_roll_over = environment.machine && environment.machine->has_rotary()
+                               && find_parameter(ControlQuestion::rotary_rolls_over, dialect.id);
     Block block{};
     Statement statement{};
     BlockCommands result{};
@@ -357,6 +366,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     block.line = state.next.line;
     block.text = **found;
     if (!language.read_plain(block.text, block.line, dialect, block)) return false;
+    if (may_roll_over && has_rotary_word(block)) return false;
     if (lacks_point(block) && is_open(state, environment, ControlQuestion::point_is_implied))
         return false;
     begin_result(state, {state.next.source, block.line});
@@ -487,9 +497,18 @@ InterpreterState initial_state(const Environment& environment) {
 
 std::optional<Warning> end_warning(const Environment& environment, const InterpreterState& state) {
     const core::SourceSpan where{.line = static_cast<uint32_t>(state.next.line - 1)};
+    if (state.ending == ProgramStatus::main_return && state.passes.size() < most_passes)
+        return Warning{Severity::warning, where,
+                       fmt::format("M99 in a main program starts it again; {} passes were checked, "
+                                   "and further ones do the same as the last",
+                                   state.passes.size() + 1)};
     if (state.ending == ProgramStatus::main_return)
         return Warning{Severity::warning, where,
-                       "M99 in a main program starts it again; one pass was checked"};
+                       fmt::format("M99 in a main program starts it again; {} passes were checked, "
+                                   "and each began in another state",
+                                   most_passes),
+                       core::rule_id("undecided"),
+                       "End the program with M30, or set its variables at its beginning."};
     const bool proper_mark = state.ending == ProgramStatus::tape_mark
                              && dialect(environment.dialect).tape_mark_ends_program;
     if (state.ending == ProgramStatus::text_end
@@ -620,7 +639,9 @@ void begin_modes(ModalState& modal, const Environment& environment) {
     if (const auto tolerance = control.number(ControlQuestion::corner_tolerance))
         modal.path_tolerance = *tolerance;
     modal.distance_said = !find_parameter(ControlQuestion::starts_incremental, environment.dialect);
-    modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect);
+    modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect)
+                      && !may_start_elsewhere(environment);
+    modal.retract_said = !keeps_modes(environment);
     modal.plane_said = !find_parameter(ControlQuestion::starts_in_plane, environment.dialect);
 }
 
@@ -677,11 +698,69 @@ void ask_for_plane(Execution& execution) {
     }
 }
 
+/// Settles whether G91 is still active after its block.
+void ask_for_distance(Execution& execution) {
+    ModalState& modal = execution.modal();
+    const Statement& statement = execution.statement;
+    const bool relies = statement.letters & letter_bits("XYZABCUVWR");
+    if (modal.incremental_stays || !relies || statement.of(ModalGroup::distance)
+        || in_machine_coordinates(execution))
+        return;
+    if (answer_to(execution.state, execution.environment, ControlQuestion::incremental_acts_once,
+                  execution.block.line))
+        modal.distance = DistanceMode::absolute;
+    modal.incremental_stays = true;
+}
+
+/// Settles to which level the first cycle retracts.
+void ask_for_retract(Execution& execution) {
+    ModalState& modal = execution.modal();
+    if (modal.retract_said) return;
+    const CodeWord* cycle = execution.statement.of(ModalGroup::cycle);
+    const bool runs = cycle ? cycle->code->number != g_code(80) : modal.cycle.has_value();
+    const bool is_said = execution.statement.of(ModalGroup::retract);
+    if (!runs && !is_said) return;
+    modal.retract_said = true;
+    if (!is_said
+        && answer_to(execution.state, execution.environment, ControlQuestion::starts_at_r_level,
+                     execution.block.line))
+        modal.retract = RetractMode::r_level;
+}
+
+/// Settles which work offset is active where the program selects none, and whether any is.
+void ask_for_work_offset(Execution& execution) {
+    ModalState& modal = execution.modal();
+    if (modal.work_said) return;
+    const Environment& environment = execution.environment;
+    const bool says_work = execution.statement.of(ModalGroup::work_offset);
+    if (!find_parameter(ControlQuestion::starts_without_work, environment.dialect)) {
+        const CodeWord* action = execution.statement.of(ModalGroup::action);
+        const bool sets = action && action->code->number == g_code(92);
+        if (!says_work && !has_coordinates(execution) && !sets) return;
+        modal.work_said = true;
+        if (!says_work)
+            use_work_offset(execution,
+                            first_work_offset(execution.state, environment, execution.block.line));
+        return;
+    }
+    const bool matters = has_coordinates(execution) && modal.offsets.work != WorkOffset{};
+    if (!matters && !says_work) return;
+    if (!says_work
+        && answer_to(execution.state, environment, ControlQuestion::starts_without_work,
+                     execution.block.line)) {
+        leave_work_offset(modal);
+        execution.emit(SetOffset{modal.offsets});
+    }
+    modal.work_said = true;
+}
+
 } // namespace
 
 void ask_for_first_modes(Execution& execution) {
     ModalState& modal = execution.modal();
     if (!modal.plane_said) ask_for_plane(execution);
+    ask_for_distance(execution);
+    ask_for_retract(execution);
     if (modal.distance_said && modal.work_said) return;
     const Statement& statement = execution.statement;
     const bool relies = has_coordinates(execution);
@@ -694,15 +773,7 @@ void ask_for_first_modes(Execution& execution) {
             modal.distance = DistanceMode::incremental;
         modal.distance_said = true;
     }
-    const bool says_work = statement.of(ModalGroup::work_offset);
-    const bool matters = relies && modal.offsets.work != WorkOffset{};
-    if (!modal.work_said && (matters || says_work)) {
-        if (!says_work && asks(ControlQuestion::starts_without_work)) {
-            leave_work_offset(modal);
-            execution.emit(SetOffset{modal.offsets});
-        }
-        modal.work_said = true;
-    }
+    ask_for_work_offset(execution);
 }
 
 void count_smallest_steps(Block& block, const ModalState& modal, DialectId dialect, double scale) {

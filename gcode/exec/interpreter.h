@@ -167,6 +167,8 @@ struct InterpreterState {
     SharedLanguageState language;
     bool is_iso_mode = false; // Siemens: ISO mode since G291
     Shared<LoopDetector> loops;
+    std::vector<uint64_t>
+        passes; // digests at the ends of passes of a main program that ends in M99
     std::vector<NamedTool> named_tools; // called by names that the set-up lacks
     RuleState rules;
     Shared<Readings> readings; // not restored when a block fails
@@ -202,7 +204,10 @@ private:
     std::unique_ptr<Scratch> scratch_;
 };
 
-/// A warning about the end of the program: no M2 or M30.
+/// How often a main program that M99 starts again is followed.
+inline constexpr size_t most_passes = 8;
+
+/// A warning about the end of the program: no M2 or M30, or M99.
 std::optional<Warning> end_warning(const Environment& environment, const InterpreterState& state);
 
 } // namespace gcode

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/execution.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 
@@ -218,8 +219,13 @@ core::Result<void> set_distance_mode(Execution& execution) {
     const auto mode_of = [](const CodeWord& entry, CodeNumber absolute) {
         return entry.code->number == absolute ? DistanceMode::absolute : DistanceMode::incremental;
     };
-    if (const CodeWord* entry = execution.statement.of(ModalGroup::distance))
-        execution.modal().distance = mode_of(*entry, g_code(90));
+    if (const CodeWord* entry = execution.statement.of(ModalGroup::distance)) {
+        ModalState& modal = execution.modal();
+        modal.distance = mode_of(*entry, g_code(90));
+        modal.incremental_stays =
+            modal.distance == DistanceMode::absolute
+            || !find_parameter(ControlQuestion::incremental_acts_once, execution.dialect.id);
+    }
     if (const CodeWord* entry = execution.statement.of(ModalGroup::arc_distance))
         execution.modal().arc_distance = mode_of(*entry, g_code(90, 1));
     return {};

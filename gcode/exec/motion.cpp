@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/base/units.h"
+#include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -26,10 +28,10 @@ bool moves_by_radius_and_angle(const Execution& execution) {
 
 } // namespace
 
-void Execution::traverse(const Position& end) {
+void Execution::traverse(const Position& end, bool bends) {
     modal().position = end;
     modal().leaves_contour = false;
-    emit(StraightTraverse{end});
+    emit(StraightTraverse{end, bends});
 }
 
 void Execution::feed(const Position& end, double rate) {
@@ -52,6 +54,46 @@ const Word& moving_word(const Execution& execution) {
             return word;
     return execution.block.words.front();
 }
+
+namespace {
+
+constexpr double full_turn = 360.0; // degrees
+
+/// The next angle from `now` on in a direction that is `angle` up to full turns.
+double next_angle(double now, double angle, bool backwards) {
+    const double way = std::fmod(angle - now, full_turn);
+    if (backwards) return now + (way > 0.0 ? way - full_turn : way);
+    return now + (way < 0.0 ? way + full_turn : way);
+}
+
+/// The angle to which a rotary axis turns for an absolute word, which depends on two parameters.
+/// They are asked only where they make a difference.
+///
+/// Source: Fanuc B-63944EN, rotary axis roll-over.
+double rolled_over(const Execution& execution, size_t axis, double value,
+                   const std::optional<double>& now) {
+    constexpr double slack = 1e-9;
+    const core::Machine* machine = execution.modal().offsets.machine;
+    constexpr ControlQuestion rolls = ControlQuestion::rotary_rolls_over;
+    if (!is_rotary(axis) || !now || !machine || !machine->axes[axis].present
+        || machine->axes[axis].shortest_way
+        || !find_parameter(rolls, execution.environment.dialect))
+        return value;
+    const auto asks = [&](ControlQuestion question) {
+        return answer_to(execution.state, execution.environment, question, execution.block.line);
+    };
+    const double way = std::remainder(value - *now, full_turn);
+    const bool is_half = std::abs(std::abs(way) - full_turn / 2.0) < slack;
+    const double by_sign = next_angle(*now, std::abs(value), std::signbit(value));
+    const auto is_value = [&](double angle) { return std::abs(angle - value) < slack; };
+    if (is_value(*now + way) && is_value(by_sign) && !is_half) return value;
+    if (!asks(rolls)) return value;
+    if (asks(ControlQuestion::rotary_follows_sign)) return by_sign;
+    if (!is_half) return *now + way;
+    return *now + (asks(ControlQuestion::half_turn_is_negative) ? -0.5 : 0.5) * full_turn;
+}
+
+} // namespace
 
 double axis_value(const Execution& execution, size_t axis, const Word& word) {
     if (is_rotary(axis)) return word.value;
@@ -193,7 +235,7 @@ core::Result<std::optional<double>> machine_target(const Execution& execution, s
     const bool is_tips = length != 0.0
                          && answer_to(execution.state, execution.environment,
                                       ControlQuestion::machine_moves_tip, execution.block.line);
-    return value + (is_tips ? length : 0.0);
+    return rolled_over(execution, axis, value, from) + (is_tips ? length : 0.0);
 }
 
 } // namespace
@@ -235,7 +277,7 @@ core::Result<Position> target_of(const Execution& execution) {
                         != std::string::npos) {
             FEELER_TRY(target[axis], unwrapped(execution, axis, *word));
         } else if (absolute)
-            target[axis] = value;
+            target[axis] = rolled_over(execution, axis, value, target[axis]);
         else if (target[axis])
             *target[axis] += value + travel_of_offsets(execution, axis);
     }

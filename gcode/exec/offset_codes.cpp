@@ -223,6 +223,13 @@ void change_offsets(Execution& execution, const Offsets& offsets) {
     change_offsets(execution.modal(), offsets);
 }
 
+void use_work_offset(Execution& execution, size_t index) {
+    Offsets offsets = execution.modal().offsets;
+    offsets.active = index;
+    offsets.work = in_effect(*execution.state.tables, index);
+    use(execution, offsets);
+}
+
 core::Result<void> select_offset(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
     if (!entry) return {};
@@ -326,6 +333,22 @@ core::Result<void> set_local_offset(Execution& execution) {
     return {};
 }
 
+namespace {
+
+/// G92 cancels G52 along the axes that it names: what G52 shifts is from now on part of G92.
+///
+/// Source: Fanuc B-63944EN, 7.2.4, local coordinate system; Haas mill operator's manual 96-8000,
+///         G92.
+void take_over_local_offset(const Execution& execution, Offsets& offsets) {
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (!execution.statement.word(axis_letters[axis])) continue;
+        if (offsets.axis[axis]) *offsets.axis[axis] += offsets.local[axis];
+        offsets.local[axis] = 0.0;
+    }
+}
+
+} // namespace
+
 core::Result<void> set_axis_offset(Execution& execution) {
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
@@ -353,6 +376,7 @@ core::Result<void> set_axis_offset(Execution& execution) {
         break;
     default:
         if (auto checked = need_an_axis(execution); !checked) return checked;
+        take_over_local_offset(execution, offsets);
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const Word* word = execution.statement.word(axis_letters[axis]);
             if (!word || stays_as_stated(execution, axis)) continue;

@@ -66,10 +66,10 @@ bool moves_quickly(const InterpreterState& state) {
     const ProgramTransforms& transforms = modal.transforms;
     return is_straight(modal.motion) && !modal.cycle && modal.compensation == Side::none
            && modal.feed_mode == FeedMode::per_minute && !modal.diameter_mode && modal.distance_said
-           && !modal.length_left && (modal.unit_said || state.said_unit) && !transforms.polar
-           && !is_uncertain(modal) && !is_stopped_somewhere(modal) && !transforms.before_rotation
-           && !state.rules.waits() && state.modal_macros.empty() && state.contour->is_idle()
-           && !state.is_iso_mode;
+           && modal.work_said && modal.incremental_stays && !modal.length_left
+           && (modal.unit_said || state.said_unit) && !transforms.polar && !is_uncertain(modal)
+           && !is_stopped_somewhere(modal) && !transforms.before_rotation && !state.rules.waits()
+           && state.modal_macros.empty() && state.contour->is_idle() && !state.is_iso_mode;
 }
 
 bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {

@@ -182,6 +182,53 @@ LengthUnit first_unit(InterpreterState& state, const Environment& environment, u
     return answer_to(state, environment, question, line) ? LengthUnit::inch : LengthUnit::mm;
 }
 
+bool keeps_modes(const Environment& environment) {
+    if (!find_parameter(ControlQuestion::starts_at_r_level, environment.dialect)) return false;
+    const ControlParameter* distance =
+        find_parameter(ControlQuestion::starts_incremental, environment.dialect);
+    const auto restores = environment.control.answer(ControlQuestion::modes_are_initial);
+    return restores ? !*restores : distance && distance->key.empty();
+}
+
+namespace {
+
+/// The work offsets that may be active at the start: G54, and the others that are stated.
+std::vector<size_t> possible_offsets(const Environment& environment) {
+    std::vector<size_t> found = {0};
+    for (size_t index = 1; index < plain_offset_count; ++index)
+        if (environment.work_offsets[index] != AxisValues{}) found.push_back(index);
+    for (const auto& [index, origin] : environment.extended_offsets) found.push_back(index);
+    return found;
+}
+
+std::string offset_code(size_t index) {
+    if (index < 6) return fmt::format("G{}", 54 + index);
+    if (index < plain_offset_count) return fmt::format("G59.{}", index - 5);
+    return fmt::format("G54.1 P{}", index - plain_offset_count + 1);
+}
+
+} // namespace
+
+bool may_start_elsewhere(const Environment& environment) {
+    return keeps_modes(environment) && possible_offsets(environment).size() > 1;
+}
+
+size_t first_work_offset(InterpreterState& state, const Environment& environment, uint32_t line) {
+    const std::vector<size_t> offsets = possible_offsets(environment);
+    const PremiseId id{ControlQuestion::starts_with_offset};
+    if (!environment.control.reports_premises) return offsets[0];
+    if (const OpenPremise* met = find_met(*state.readings, id)) return offsets[met->taken];
+    OpenPremise premise;
+    premise.id = id;
+    premise.line = line;
+    premise.reason = "The work offset that an earlier program left is not known";
+    premise.cure = "Program G54 or another work offset before the first move.";
+    for (const size_t index : offsets)
+        premise.readings.push_back(
+            {fmt::format("{} is active at the start", offset_code(index)), {}});
+    return offsets[take_reading(state, std::move(premise))];
+}
+
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line) {
     // `/` and `/1` are the same switch.

@@ -32,6 +32,18 @@ double current_number(const InterpreterState& state, const Environment& environm
 /// an open premise.
 LengthUnit first_unit(InterpreterState& state, const Environment& environment, uint32_t line);
 
+/// Whether the control starts a program with the modes that an earlier one has left: as stated, or,
+/// where no parameter chooses the first modes, because nothing is stated.
+bool keeps_modes(const Environment& environment);
+
+/// Whether another work offset than G54 may be active at the start: the modes may be those of an
+/// earlier program, and the set-up states several offsets.
+bool may_start_elsewhere(const Environment& environment);
+
+/// The index of the work offset that is active where the program has selected none. An open premise
+/// whose readings are the offsets that the set-up states.
+size_t first_work_offset(InterpreterState& state, const Environment& environment, uint32_t line);
+
 /// Whether blocks with `/`, which is switch 1, or with `/2` to `/9` are skipped.
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line);

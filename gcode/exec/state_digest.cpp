@@ -122,8 +122,9 @@ void add(Digest& digest, const ModalState& modal) {
         add_all(digest, *position);
     add_all(digest, modal.spread);
     digest.add(number_of(int(modal.axis_offset_on) + 2 * int(modal.has_probed)));
-    digest.add(
-        number_of(int(modal.distance_said) + 2 * int(modal.work_said) + 4 * int(modal.plane_said)));
+    digest.add(number_of(int(modal.distance_said) + 2 * int(modal.work_said)
+                         + 4 * int(modal.retract_said) + 8 * int(modal.incremental_stays)
+                         + 16 * int(modal.plane_said)));
     add_all(digest, modal.offset_travel);
     add_all(digest, modal.length_travel);
     digest.add(modal.feed);

@@ -8,6 +8,7 @@
 
 #include "gcode/exec/execution.h"
 #include "gcode/exec/flow.h"
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/canonical.h"
@@ -198,6 +199,23 @@ core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
     return enter_rounds(execution, called.begin, fmt::format("O{}", called.number), called.rounds);
 }
 
+/// M99 in the main program: starts it again, unless a pass has ended in the same state before. All
+/// further passes would be like the one that followed.
+void begin_again(Execution& execution) {
+    InterpreterState& state = execution.state;
+    ProgramLibrary& library = execution.library;
+    state.next = {0, first_line(library.program(0), library.index(0))};
+    state.loops.write() = {};
+    const uint64_t now = digest_of(state);
+    const bool is_known =
+        std::find(state.passes.begin(), state.passes.end(), now) != state.passes.end();
+    if (is_known || state.passes.size() + 1 >= most_passes) {
+        state.ending = ProgramStatus::main_return;
+        if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
+    }
+    if (!is_known) state.passes.push_back(now);
+}
+
 /// M99, in a subprogram or the main program, with or without the block to continue at.
 core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
     InterpreterState& state = execution.state;
@@ -228,8 +246,7 @@ core::Result<void> come_back(Execution& execution, const CodeWord& entry) {
         leave(state);
         announce_modes(execution.result, entry.word->span.column, before, state.modal);
     } else {
-        state.ending = ProgramStatus::main_return;
-        if (execution.dialect.has_o_words) execution.emit(ProgramEnd{});
+        begin_again(execution);
     }
     return {};
 }

@@ -303,10 +303,38 @@ ToolNumber tool_of_name(Execution& execution, std::string_view name, core::Sourc
     return chosen;
 }
 
+namespace {
+
+/// Whether M6 takes the tool of an earlier T, and T of its own block is for the next M6. The
+/// builder of the machine decides it; it matters only where another tool waits.
+bool takes_waiting_tool(Execution& execution, ToolNumber called) {
+    const ModalState& modal = execution.modal();
+    const CodeWord* change = execution.statement.of(ModalGroup::tool_change);
+    if (!change || change->code->number != m_code(6) || !modal.selected_tool
+        || modal.selected_tool == modal.tool || modal.selected_tool == called)
+        return false;
+    return answer_to(execution.state, execution.environment, ControlQuestion::change_takes_waiting,
+                     execution.block.line);
+}
+
+/// Selects the tool that T of a block with M6 calls for the next M6, if it was not selected before.
+core::Result<void> select_waiting(Execution& execution) {
+    const Word* word = execution.statement.word('T');
+    if (!word) return {};
+    FEELER_TRY(const int number, whole_number(*word));
+    if (execution.modal().selected_tool == ToolNumber(number)) return {};
+    execution.modal().selected_tool = ToolNumber(number);
+    execution.emit(SelectTool{ToolNumber(number)});
+    return {};
+}
+
+} // namespace
+
 core::Result<void> select_tool(Execution& execution) {
     const Word* word = execution.statement.word('T');
     if (!word) return {};
     FEELER_TRY(const int number, whole_number(*word));
+    if (takes_waiting_tool(execution, ToolNumber(number))) return {};
     const auto& table = execution.state.tables->lengths;
     if (execution.dialect.tool_entries_by_axes && number != 0 && !table.empty()
         && !length_under(*execution.state.tables, number))
@@ -328,6 +356,7 @@ core::Result<void> change_tool(Execution& execution) {
         return core::fail(ErrorCode::missing_value,
                           "M6 has no tool to change to: no T word has been programmed yet",
                           entry->word->span);
+    const bool exchanges = modal.tool && modal.tool != modal.selected_tool;
     modal.tool = modal.selected_tool;
     // RS274/NGC 3.6.3: the spindle is stopped when the tool change is complete.
     if (modal.spindle != core::SpindleDirection::stopped
@@ -338,10 +367,12 @@ core::Result<void> change_tool(Execution& execution) {
     if (!execution.environment.tool_change.is_stated)
         answer_to(execution.state, execution.environment, ControlQuestion::change_moves,
                   execution.block.line);
-    move_to_tool_change(execution);
+    // Haas mill operator's manual 96-8000, M06: Z goes to machine zero first and stays there. With
+    // the called tool in the spindle already, the control need not move.
+    move_to_tool_change(execution, exchanges);
     const bool empty = *modal.tool == ToolNumber(0);
     execution.emit(ChangeTool{empty ? std::nullopt : modal.tool});
-    return {};
+    return select_waiting(execution);
 }
 
 core::Result<void> set_tool_length(Execution& execution) {

@@ -35,7 +35,9 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     if (!rapid) assume_feed(execution);
     FEELER_TRY(const Position end, target_of(execution));
     if (rapid) {
-        execution.traverse(end);
+        const bool bends =
+            execution.dialect.machine_move_bends && in_machine_coordinates(execution);
+        execution.traverse(end, bends);
         return {};
     }
     const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;
@@ -78,8 +80,19 @@ bool has_motion_words(const Execution& execution) {
     if (statement.has_axis_word()) return true;
     if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
+    if (modal.cycle && execution.dialect.cycles_run_with_axes_or_r && statement.word('R'))
+        return true;
     const bool arc = !modal.cycle && is_arc(modal.motion);
     return arc && (statement.word('I') || statement.word('J') || statement.word('K'));
+}
+
+/// Whether the code of a cycle makes it run in a block without axis words.
+///
+/// Source: Fanuc B-63944EN, 13.1, canned cycle for drilling: a block without X, Y, Z, R or another
+///         axis does not drill.
+bool runs_by_code(const Execution& execution) {
+    return execution.statement.of(ModalGroup::cycle) && execution.modal().cycle
+           && !execution.dialect.cycles_run_with_axes_or_r;
 }
 
 /// Whether a motion code applies to its block only: G5, G5.1, G5.3, G70 to G72.
@@ -231,8 +244,7 @@ core::Result<void> move_as_modes_say(Execution& execution) {
 core::Result<void> move(Execution& execution) {
     if (auto set = set_motion_mode(execution); !set) return set;
     if (auto checked = refuse_lone_arc(execution); !checked) return checked;
-    const bool cycle_words = execution.statement.of(ModalGroup::cycle) && execution.modal().cycle;
-    if (!has_motion_words(execution) && !cycle_words)
+    if (!has_motion_words(execution) && !runs_by_code(execution))
         return refuse_lone_machine_position(execution);
     if (in_machine_coordinates(execution)) return move_to_machine_position(execution);
     if (auto taken = read_polar_words(execution); !taken) return taken;

@@ -66,7 +66,8 @@ bool may_call(const Execution& execution) {
 using enum ModalGroup;
 
 // NISTIR 6556, table 8: the order in which the words of a block take effect, regardless of how they
-// are written.
+// are written. The distance mode comes earlier than there: where a change of the length offset
+// moves Z, it depends on the mode of the block.
 constexpr ExecutionStep execution_steps[] = {
     {check_words},
     {note_assumed_units, 0, 0, lacks_units},
@@ -87,11 +88,11 @@ constexpr ExecutionStep execution_steps[] = {
     {set_units, groups({units})},
     {set_diameter_mode, groups({diameter})},
     {set_cutter_radius, 0, 0, is_compensated},
+    {set_distance_mode, groups({distance, arc_distance})},
     {take_length_up, 0, 0, has_left_length},
     {set_tool_length, groups({tool_length}), letter_bits("H")},
     {select_offset, groups({work_offset})},
     {set_path_mode, groups({path_control})},
-    {set_distance_mode, groups({distance, arc_distance})},
     {set_retract_mode, groups({retract})},
     {set_frame, groups({mirror, scaling, rotation, polar, other})},
     {act, groups({action})},

@@ -20,6 +20,7 @@ namespace gcode {
 struct StraightTraverse {
     Position end;
     bool axes_are_independent = false; // each axis moves on its own, as to a reference point
+    bool bends = false; // each axis runs at its own speed even where other rapids are straight
 
     bool operator==(const StraightTraverse&) const = default;
 };

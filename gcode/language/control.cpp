@@ -196,6 +196,54 @@ constexpr ParameterValue one_way[] = {
     {1, true, "G60 stays active until G0, G1, G2 or G3"},
 };
 
+constexpr ParameterValue retract_modes[] = {
+    {0, false, "G98 is active at the start"},
+    {1, true, "G99 is active at the start"},
+};
+constexpr ParameterValue scaled_z[] = {
+    {1, true, "G51 scales Z, too"},
+    {0, false, "G51 does not scale Z"},
+};
+constexpr ParameterValue incremental_blocks[] = {
+    {0, false, "G91 stays active until G90", "OFF"},
+    {1, true, "G91 acts in its block only", "ON"},
+};
+constexpr ParameterValue rotation_of_haas[] = {
+    {0, false, "R of G68 is absolute, also under G91", "OFF"},
+    {1, true, "under G91, R of G68 is added to the angle before", "ON"},
+};
+constexpr ParameterValue not_mirrored[] = {
+    {0, false, "the axis is not mirrored; a mirror image by a setting is not supported", "OFF"},
+};
+constexpr ParameterValue haas_entry[] = {
+    {0, false, "type A; type B is not supported", "A"},
+};
+constexpr ParameterValue haas_contour[] = {
+    {0, false, "as on Fanuc; YASNAC is not supported", "FANUC"},
+};
+constexpr ParameterValue lone_arcs[] = {
+    {1, false, "G2 and G3 without I, J, K and R are an alarm"},
+    {0, true, "G2 and G3 without I, J, K and R go straight"},
+};
+constexpr ParameterValue tools_of_m6[] = {
+    {1, false, "M6 takes the tool of the T in its block", "block"},
+    {2, true, "M6 takes the tool of an earlier T, and T in its block is for the next M6",
+     "waiting"},
+};
+constexpr ParameterValue roll_over[] = {
+    {0, false, "a rotary axis goes straight from angle to angle, also over several turns"},
+    {1, true, "positions of a rotary axis count within a turn"},
+};
+constexpr ParameterValue rotary_directions[] = {
+    {0, false, "a rotary axis goes the shorter way to a position"},
+    {1, true, "the sign of a position of a rotary axis is the direction in which it turns"},
+};
+constexpr ParameterValue half_turns[] = {
+    {0, false, "half a turn of a rotary axis goes in the positive direction"},
+    {1, true, "half a turn of a rotary axis goes in the negative direction"},
+};
+constexpr ParameterRange of_blocks{3.0, 8.0, "blocks"};
+
 constexpr std::string_view program_g90 = "Program G90 before the first move.";
 // Siemens. Native programs and those in ISO mode run on the same control.
 constexpr ParameterValue siemens_length_change[] = {
@@ -326,6 +374,22 @@ constexpr ControlParameter parameters[] = {
      follow_all,
      "Haas mill operator's manual 96-8000, setting 56",
      "Program G17 before the first arc or cycle."},
+    {starts_at_r_level,
+     fanuc,
+     {},
+     "whether an earlier program left G99",
+     retract_modes,
+     follow_all,
+     "Fanuc B-63950EN, parameters of programs",
+     "Program G98 or G99 before the first cycle."},
+    {starts_at_r_level,
+     haas,
+     {},
+     "whether an earlier program left G99",
+     retract_modes,
+     follow_all,
+     "Haas mill operator's manual 96-8000, setting 56",
+     "Program G98 or G99 before the first cycle."},
     {starts_in_plane, siemens, "MD20150[5]", "MD20150[5] (GCODE_RESET_VALUES)", siemens_plane,
      follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
     {starts_without_work, siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)", siemens_work,
@@ -344,6 +408,19 @@ constexpr ControlParameter parameters[] = {
      follow_all, "Haas mill operator's manual 96-8000, settings"},
     {entry_has_corner, fanuc, "5003#0", "parameter 5003#0 (SUP)", entry_types, follow_all,
      "Fanuc B-63944EN-2, 6.6.2, tool movement in start-up, types A and B"},
+    {contour_look_ahead,
+     fanuc,
+     "19625",
+     "parameter 19625",
+     {},
+     go_on,
+     "Fanuc B-63950EN, parameters of tool compensation",
+     {},
+     of_blocks},
+    {entry_has_corner, haas, "setting 43", "setting 43 (Cutter Comp Type)", haas_entry, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
+    {contour_type_is_yasnac, haas, "setting 58", "setting 58 (Cutter Compensation)", haas_contour,
+     go_on, "Haas mill operator's manual 96-8000, settings"},
     {entry_is_upright, fanuc, "5003#1", "parameter 5003#1 (SUV)", upright_entry, follow_all,
      "Fanuc B-63950EN, parameters of tool compensation"},
 
@@ -414,6 +491,36 @@ constexpr ControlParameter parameters[] = {
      "Fanuc B-63950EN, parameters of scaling",
      {},
      of_factors},
+    {rotation_adds, haas, "setting 73", "setting 73 (G68 Incremental Angle)", rotation_of_haas,
+     follow_all, "Haas mill operator's manual 96-8000, settings"},
+    {rotation_default,
+     haas,
+     "setting 72",
+     "setting 72 (Default G68 Rotation)",
+     {},
+     go_on,
+     "Haas mill operator's manual 96-8000, settings",
+     {},
+     of_angles},
+    {scale_default,
+     haas,
+     "setting 71",
+     "setting 71 (Default G51 Scaling)",
+     {},
+     go_on,
+     "Haas mill operator's manual 96-8000, settings",
+     {},
+     of_factors},
+    {scales_z, fanuc, "5401#0", "parameter 5401#0 (SCL) of Z", scaled_z, follow_all,
+     "Fanuc B-63950EN, parameters of scaling"},
+    {is_mirrored, haas, "setting 45", "setting 45 (Mirror Image X-Axis)", not_mirrored, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
+    {is_mirrored, haas, "setting 46", "setting 46 (Mirror Image Y-Axis)", not_mirrored, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
+    {is_mirrored, haas, "setting 47", "setting 47 (Mirror Image Z-Axis)", not_mirrored, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
+    {is_mirrored, haas, "setting 48", "setting 48 (Mirror Image A-Axis)", not_mirrored, go_on,
+     "Haas mill operator's manual 96-8000, settings"},
     {local_is_work, haas, "setting 33", "setting 33 (Coordinate System)", coordinate_system, assume,
      "Haas mill operator's manual 96-8000, settings"},
 
@@ -465,6 +572,25 @@ constexpr ControlParameter parameters[] = {
      assume,
      "LinuxCNC 2.9, INI configuration, [EMCIO]",
      "Give the ini file with --ini, or state TOOL_CHANGE_POSITION under [control]."},
+    {incremental_acts_once, haas, "setting 29", "setting 29 (G91 Non-modal)", incremental_blocks,
+     follow_all, "Haas mill operator's manual 96-8000, settings"},
+    {lone_arc_is_straight, fanuc, "3403#5", "parameter 3403#5 (CIR)", lone_arcs, go_on,
+     "Fanuc B-63950EN, parameters of programs"},
+    {change_takes_waiting, fanuc, "M6 T", "which tool M6 takes where its block has a T",
+     tools_of_m6, follow_all,
+     "Fanuc B-63944EN, 10, tool function: the manual of the machine builder"},
+    {rotary_rolls_over, fanuc, "1008#0", "parameter 1008#0 (ROA)", roll_over, follow_all,
+     "Fanuc B-63950EN, parameters of coordinates; B-63944EN, rotary axis roll-over"},
+    {rotary_follows_sign, fanuc, "1008#1", "parameter 1008#1 (RAB)", rotary_directions, follow_all,
+     "Fanuc B-63950EN, parameters of coordinates; B-63944EN, rotary axis roll-over"},
+    {half_turn_is_negative,
+     fanuc,
+     {},
+     "which way round a rotary axis makes half a turn",
+     half_turns,
+     follow_all,
+     "Fanuc B-63944EN, rotary axis roll-over: the shorter way",
+     "Program a position less than half a turn away, or an incremental angle."},
     {one_way_is_modal, fanuc, "5431#0", "parameter 5431#0 (MDL)", one_way, assume,
      "Fanuc B-63950EN, parameters of single direction positioning"},
 };

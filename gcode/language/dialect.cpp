@@ -51,6 +51,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .axis_words_serve_one_code = true,
                                       .unused_words_are_errors = true,
                                       .machine_move_is_rapid = false,
+                                      .machine_move_bends = false,
                                       .machine_move_needs_g90 = true,
                                       .machine_move_needs_motion = true,
                                       .length_needs_g43 = true,
@@ -70,6 +71,7 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .pecks_may_shrink = false,
                                       .peck_sign_is_ignored = false,
                                       .scale_without_point_is_thousandths = false,
+                                      .cycles_run_with_axes_or_r = false,
                                       .repeats_with_k = false,
                                       .tape_mark_ends_program = true,
                                       .repeated_codes_are_errors = true,
@@ -114,6 +116,8 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .same_offset_stays = true,
                                       .offset_writes_miss_axis_offset = true,
                                       .surface_speed_needs_s = true,
+                                      .change_raises_z = false,
+                                      .radius_arc_may_vanish = false,
                                       .stores_homes = true,
                                       .has_variables_file = true};
 
@@ -142,6 +146,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .axis_words_serve_one_code = false,
                                    .unused_words_are_errors = false,
                                    .machine_move_is_rapid = true,
+                                   .machine_move_bends = true,
                                    .machine_move_needs_g90 = true,
                                    .machine_move_needs_motion = false,
                                    .length_needs_g43 = true,
@@ -161,6 +166,7 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .pecks_may_shrink = false,
                                    .peck_sign_is_ignored = true,
                                    .scale_without_point_is_thousandths = true,
+                                   .cycles_run_with_axes_or_r = true,
                                    .repeats_with_k = true,
                                    .tape_mark_ends_program = false,
                                    .repeated_codes_are_errors = false,
@@ -205,6 +211,8 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .same_offset_stays = false,
                                    .offset_writes_miss_axis_offset = false,
                                    .surface_speed_needs_s = false,
+                                   .change_raises_z = false,
+                                   .radius_arc_may_vanish = true,
                                    .stores_homes = false,
                                    .has_variables_file = false};
 
@@ -216,13 +224,17 @@ constexpr Dialect haas_dialect = [] {
     entry.contour_style = ContourStyle::rs274;
     entry.arithmetic.angles_have_no_sign = false;
     entry.machine_move_is_rapid = false;
+    entry.machine_move_bends = false;
     entry.machine_move_needs_g90 = false;
     entry.has_older_tool_entries = false;
     entry.last_of_group_counts = false;
     entry.pecks_may_shrink = true;
     entry.g87_is_back_boring = false;
     entry.scale_without_point_is_thousandths = false;
+    entry.cycles_run_with_axes_or_r = false;
     entry.repeats_with_k = false;
+    entry.change_raises_z = true;
+    entry.radius_arc_may_vanish = false;
     entry.repeats_in_program_number = false;
     entry.system_parameters = SystemParameters::haas;
     // Haas mill operator's manual 96-8000, G28.
@@ -277,6 +289,7 @@ constexpr Dialect heidenhain_dialect = [] {
     entry.length_needs_g43 = false;
     entry.arc = heidenhain_arc;
     entry.machine_move_is_rapid = false;
+    entry.machine_move_bends = false;
     entry.machine_move_needs_g90 = false;
     entry.dwell_without_point_is_milliseconds = false;
     entry.decimal_points_matter = false;
@@ -308,6 +321,7 @@ constexpr Dialect siemens_dialect = [] {
     entry.has_older_tool_entries = false;
     entry.last_of_group_counts = false;
     entry.machine_move_is_rapid = false;
+    entry.machine_move_bends = false;
     entry.machine_move_needs_g90 = false;
     entry.lone_h_is_length_offset = false;
     entry.p_selects_more_offsets = false;
@@ -342,6 +356,8 @@ constexpr Dialect siemens_iso = [] {
     entry.id = DialectId::siemens_iso;
     entry.name = "siemens-iso";
     entry.codes = DialectId::siemens_iso;
+    entry.machine_move_bends = false;
+    entry.radius_arc_may_vanish = false;
     entry.arc = siemens_arc;
     return entry;
 }();

@@ -66,6 +66,7 @@ struct Dialect {
     bool axis_words_serve_one_code;   // G0 and G28 in one block are an error
     bool unused_words_are_errors;     // a K word that no code uses
     bool machine_move_is_rapid;       // G53 with any active motion code, also G1
+    bool machine_move_bends;          // G53 and the way home of G28 and G30 are never straight
     bool machine_move_needs_g90;      // G53 with G91 is an error
     bool machine_move_needs_motion;   // G53 in a block without a move is an error
     bool length_needs_g43;            // otherwise a tool change activates the tool's length offset
@@ -85,10 +86,11 @@ struct Dialect {
     bool pecks_may_shrink;     // I, J, K of G73 and G83: first depth, reduction per peck, minimum
     bool peck_sign_is_ignored; // Q-2 pecks as Q2
     bool scale_without_point_is_thousandths; // G51 P2000 doubles
-    bool repeats_with_k;                     // K repeats a canned cycle, as L does
-    bool tape_mark_ends_program;             // a second % ends the program like M2
-    bool repeated_codes_are_errors;          // the same G code twice in a block
-    bool last_of_group_counts;               // of two G codes of a group; otherwise an error
+    bool cycles_run_with_axes_or_r; // a cycle runs in blocks with an axis word or R, and no others
+    bool repeats_with_k;            // K repeats a canned cycle, as L does
+    bool tape_mark_ends_program;    // a second % ends the program like M2
+    bool repeated_codes_are_errors; // the same G code twice in a block
+    bool last_of_group_counts;      // of two G codes of a group; otherwise an error
 
     // language syntax besides words
     Language language;
@@ -131,6 +133,8 @@ struct Dialect {
     bool same_offset_stays;              // G54 while G54 is active does not reload the table
     bool offset_writes_miss_axis_offset; // G10 recomputes the position without G92
     bool surface_speed_needs_s;          // G96 needs S in the same block
+    bool change_raises_z;                // M6 raises Z to machine zero before it exchanges the tool
+    bool radius_arc_may_vanish;          // an arc with R that ends where it starts does not move
     bool stores_homes;       // G28 and G30 go where G28.1 and G30.1 were, also in earlier programs
     bool has_variables_file; // which can be read: LinuxCNC
 };

@@ -34,6 +34,8 @@ enum class ControlQuestion : uint8_t {
     starts_in_plane,     // 17, 18 or 19
     starts_in_yz,        // G19 is active, where that is another parameter
     starts_without_work, // no work offset is active
+    starts_with_offset,  // the work offset that is active; its readings are those of the set-up
+    starts_at_r_level,   // G99 is active
     modes_are_initial,   // a reset or M30 has restored the initial G codes
     // Tool offsets:
     length_follows_plane, // they act along the axis normal to the plane
@@ -42,7 +44,9 @@ enum class ControlQuestion : uint8_t {
     offset_memory,        // what an offset number holds, an OffsetMemory
     radii_are_entered,    // a size in the table of tool offsets is a radius; otherwise a diameter
     entry_has_corner,     // cutter radius compensation begins and ends with a corner
-    entry_is_upright,     // G41, G42 and G40 without a move shift the tool at once
+    contour_look_ahead,   // blocks that are read ahead while it is on
+    contour_type_is_yasnac,
+    entry_is_upright, // G41, G42 and G40 without a move shift the tool at once
     // Cycles:
     drills_normal_to_plane, // otherwise always along Z
     drills_where_defined,   // a block that defines a cycle drills, also without X and Y
@@ -58,13 +62,21 @@ enum class ControlQuestion : uint8_t {
     scale_default,    // of G51 without a factor
     local_is_work,    // G52 is a work offset of its own
     change_moves,     // M6 moves the machine first, where no ini file says it
+    scales_z,         // G51 scales Z, too
+    is_mirrored,      // axes are mirrored by a setting
     // Others:
-    increment_is_finer,   // the least increment is 0.0001 mm instead of 0.001 mm
-    increment_is_coarser, // it is 0.01 mm
-    corner_tolerance,     // how far corners are rounded unless the program states it, mm
-    arc_tolerance,        // allowed difference between the radii of an arc, mm
-    arc_tolerance_inch,   // likewise under G20, inches
-    one_way_is_modal,     // G60 belongs to the group of G0
+    incremental_acts_once, // G91 acts in its block only
+    lone_arc_is_straight,  // G2 and G3 without a centre and a radius; otherwise an alarm
+    change_takes_waiting,  // M6 takes the tool of an earlier T, not that of its own block
+    rotary_rolls_over,     // positions of rotary axes count within a turn
+    rotary_follows_sign,   // if so, the sign of the word is the direction; otherwise the short way
+    half_turn_is_negative, // the short way of half a turn is the negative direction
+    increment_is_finer,    // the least increment is 0.0001 mm instead of 0.001 mm
+    increment_is_coarser,  // it is 0.01 mm
+    corner_tolerance,      // how far corners are rounded unless the program states it, mm
+    arc_tolerance,         // allowed difference between the radii of an arc, mm
+    arc_tolerance_inch,    // likewise under G20, inches
+    one_way_is_modal,      // G60 belongs to the group of G0
     // Siemens:
     machine_moves_tip,    // machine coordinates are those of the tip; otherwise of the gauge line
     length_keeps_axis,    // the tool length stays along Z in each plane

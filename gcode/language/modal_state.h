@@ -243,6 +243,9 @@ struct ModalState {
     DistanceMode distance = DistanceMode::absolute;
     bool distance_said = true; // false: as the control was left, and not asked yet
     bool work_said = true;     // likewise, of the work offset
+    bool retract_said = true;  // likewise, of G98 and G99
+    // False: the next block without G90 and G91 settles whether G91 is still active.
+    bool incremental_stays = true;
     DistanceMode arc_distance = DistanceMode::incremental; // G90.1, G91.1
     FeedMode feed_mode = FeedMode::per_minute;
     RetractMode retract = RetractMode::initial_level;

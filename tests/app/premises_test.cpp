@@ -241,6 +241,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadControl{"[control]\nTOOL_CHANGE_AT_G30 = 1\n", "true or false"},
                     BadControl{"[control]\nTOOL_CHANGE_POS = [0, 0, 0]\n",
                                "did you mean \"TOOL_CHANGE_POSITION\""},
+                    BadControl{"[control]\n\"setting 45\" = \"ON\"\n", "not supported"},
+                    BadControl{"[control]\n\"setting 43\" = \"B\"\n", "type B is not supported"},
                     BadControl{"[control]\npresett = \"fanuc-0i-mf\"\n", "did you mean \"preset\""},
                     BadControl{"[control]\nTOS = 1\n", "did you mean \"5006#6\""},
                     BadControl{"[control]\nSETTING9 = \"MM\"\n", "did you mean \"setting 9\""},

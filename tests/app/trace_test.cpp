@@ -57,6 +57,25 @@ TEST(Trace, GivesNineAxesAndLeavesUncommandedOnesUnknown) {
     EXPECT_EQ(command("straight_feed")["feed"], 200.0);
 }
 
+TEST(Trace, GoesByTheControlOfTheSetUp) {
+    const std::string program = "G21 G90 G17 G54\nT1 M6\nG43 H1 G0 Z100.\nG49\nM30\n";
+    const auto last_z = [&](const std::string& number) {
+        const ScopedFolder folder;
+        SetupWriter setup;
+        setup.program("dialect = \"fanuc\"\nstart = { X = -350, Y = -200, Z = 0 }\n");
+        setup.also("[control]\n\"5006#6\" = " + number + "\n");
+        const Ran ran = feeler({"trace", folder.write("p.nc", program), "--format", "jsonl",
+                                "--setup", folder.write("p.toml", setup.text())});
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        size_t moves = 0;
+        for (const Json& line : json_lines(ran.out))
+            moves += line.is_object() && line["command"] == "straight_traverse";
+        return moves;
+    };
+    EXPECT_EQ(last_z("1"), 1U);
+    EXPECT_EQ(last_z("0"), 2U); // G49 moves Z
+}
+
 TEST(Trace, GivesAnArcItsPlaneCentreAndTurns) {
     const Json arc = command("arc_feed");
     EXPECT_EQ(arc["plane"], "XY");

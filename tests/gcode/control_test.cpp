@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/rule_table.h"
+#include "core/motion/machine.h"
 #include "gcode/language/control.h"
 #include "tests/gcode/programs.h"
 
@@ -109,6 +111,12 @@ constexpr Telling tellings[] = {
     {fanuc, "5410", 30, 60, "G21 G90\nG68 X0 Y0\nG0 X10.\nM30\n"},
     {fanuc, "5400#7", 1, 0, "G21 G90\nG51 X0 Y0 Z0 P2000\nG0 X10.\nM30\n"},
     {fanuc, "5411", 2, 3, "G21 G90\nG51 X0 Y0 Z0\nG0 X10.\nM30\n"},
+    {fanuc, "5401#0", 1, 0, "G21 G90\nG51 X0 Y0 Z0 P2.\nG0 Z10.\nM30\n"},
+    {fanuc, "3403#5", 1, 0, "G21 G90\nG2 X10. Y10. F9\nM30\n"},
+    {haas, "setting 29", 0, 1, "G21 G90\nG0 X5.\nG91 X1.\nX1.\nM30\n"},
+    {haas, "setting 71", 2, 3, "G21 G90\nG51 X0 Y0 Z0\nG0 X10.\nM30\n"},
+    {haas, "setting 72", 30, 60, "G21 G90\nG68 X0 Y0\nG0 X10.\nM30\n"},
+    {haas, "setting 73", 0, 1, "G21 G90\nG68 X0 Y0 R30.\nG91 G68 X0 Y0 R60.\nG90 G0 X9.\nM30\n"},
     {haas, "setting 33", 1, 3, "G21 G90\nG52 X10.\nG0 X1.\nM30\n"},
     {fanuc, "3410", 0.005, 1, "G21 G90\nG2 X10.5 I5. F9\nM30\n"},
     {linuxcnc, "CENTER_ARC_RADIUS_TOLERANCE_MM", 0.01, 1, "G21 G90\nG2 X10.5 I5 F9\nM2\n"},
@@ -131,12 +139,44 @@ TEST_P(TellingProgram, MovesDifferentlyWithAnotherValue) {
 
 INSTANTIATE_TEST_SUITE_P(Control, TellingProgram, testing::ValuesIn(tellings));
 
-// What they change is tested elsewhere: by checks, below, or in siemens_readings_test.cpp.
-const std::set<std::string_view> told_elsewhere = {
-    "3401#0",  "setting 162", "6001#6",  "1401#1",  "setting 335", "3402#6",  "setting 56",
-    "1013#1",  "1013#0",      "5431#0",  "",        "setting 85",  "MD10884", "SD42940",
-    "MD20270", "MD10760",     "MD20382", "SD42440", "SD42442",     "MD22550", "MD20150[17]",
-    "MD20210"};
+// What they change is tested elsewhere: by checks, below, or in siemens_readings_test.cpp; or only
+// one value is supported.
+const std::set<std::string_view> told_elsewhere = {"3401#0",
+                                                   "setting 162",
+                                                   "6001#6",
+                                                   "1401#1",
+                                                   "setting 335",
+                                                   "3402#6",
+                                                   "setting 56",
+                                                   "1013#1",
+                                                   "1013#0",
+                                                   "5431#0",
+                                                   "",
+                                                   "setting 85",
+                                                   "MD10884",
+                                                   "SD42940",
+                                                   "MD20270",
+                                                   "MD10760",
+                                                   "MD20382",
+                                                   "SD42440",
+                                                   "SD42442",
+                                                   "MD22550",
+                                                   "MD20150[17]",
+                                                   "MD20210",
+                                                   "1008#0",
+                                                   "1008#1",
+                                                   "M6 T",
+                                                   "19625",
+                                                   "setting 43",
+                                                   "setting 45",
+                                                   "setting 46",
+                                                   "setting 47",
+                                                   "setting 48",
+                                                   "setting 58",
+                                                   "LINEAR_UNITS",
+                                                   "tool offset memory",
+                                                   "setting 40",
+                                                   "6001#7"};
 
 TEST(Control, EachParameterHasAProgramThatTellsItsValuesApart) {
     for (const ControlParameter& parameter : control_parameters()) {
@@ -342,11 +382,146 @@ TEST(Control, AStatedParameterIsNoPremise) {
               "");
 }
 
+TEST(Control, TheDistanceModeOfABlockCountsForItsLengthOffset) {
+    // The change of the length offset moves Z, whether G91 is in the block or before it.
+    const auto path = [](const char* text) { return path_of(text, fanuc, {{"5006#6", 0}}); };
+    EXPECT_EQ(path("G21 G90\nG0 Z9.\nG91 G43 H1 Z1.\nG90 X5.\nM30\n"),
+              path("G21 G90\nG0 Z9.\nG91\nG43 H1 Z1.\nG90 X5.\nM30\n"));
+    const Environment open = with(fanuc, {});
+    EXPECT_EQ(met("G21 G90\nG43 H1 G0 Z100.\nG91 G28 Z0. G49\nM30\n", open), "5006#6 3 of 2");
+    EXPECT_EQ(met("G21 G90\nG43 H1 G0 Z100.\nG90 G28 Z0. G49\nM30\n", open), "");
+}
+
+TEST(Control, G101MirrorsAboutTheWorkZero) {
+    EXPECT_EQ(path_of("G21 G90\nG101 X50.\nG0 X10.\nM30\n", haas, {}), "r-10,3,0 ");
+    EXPECT_EQ(path_of("G21 G90\nG51.1 X50.\nG0 X10.\nM30\n", haas, {}), "r90,3,0 ");
+}
+
+TEST(Control, G92CancelsG52AlongItsAxes) {
+    constexpr const char* text = "G21 G90\nG52 X80. Y20.\nG0 X0. Y0.\nG92 X0.\nG52 X0. Y0.\n"
+                                 "G0 X0. Y0.\nM30\n";
+    for (const DialectId dialect : {fanuc, haas})
+        EXPECT_EQ(path_of(text, dialect, {}), "r80,23,0 r80,3,0 ");
+}
+
+TEST(Control, VariablesFrom5201AreG52OnHaas) {
+    constexpr const char* text = "G21 G90\n#5201=30.\nG0 X1.\nG52 X0.\nG0 X1.\nM30\n";
+    EXPECT_EQ(path_of(text, haas, {}), "r31,3,0 r1,3,0 ");
+    EXPECT_EQ(path_of(text, fanuc, {}), "r31,3,0 r31,3,0 ");
+}
+
+TEST(Control, RIsAMotionWordOfACycleOnFanuc) {
+    constexpr const char* text = "G21 G90 G99\nG0 Z10.\nG81 Z-5. R2. F9\nR-1.\nX5.\nM30\n";
+    EXPECT_EQ(path_of(text, fanuc, {}),
+              "r0,0,10 r0,0,10 r0,0,2 f0,0,-5 r0,0,2 r0,0,2 r0,0,-1 f0,0,-5 r0,0,-1 r5,0,-1 "
+              "f5,0,-5 r5,0,-1 ");
+    // A cycle code alone does not drill.
+    EXPECT_EQ(path_of("G21 G90 G99\nG0 Z10.\nG81 X1. Z-5. R2. F9\nG82\nM30\n", fanuc, {}),
+              "r0,0,10 r1,0,10 r1,0,2 f1,0,-5 r1,0,2 ");
+}
+
+TEST(Control, AnArcByRadiusToItsStartMovesNothing) {
+    EXPECT_EQ(path_of("G21 G90\nG2 X0. Y0. R5. F9\nG0 X1.\nM30\n", fanuc, {}), "r1,0,0 ");
+    EXPECT_THAT(path_of("G21 G90\nG2 X0. Y0. R5. F9\nM30\n", haas, {}), HasSubstr("error"));
+}
+
 TEST(Control, ModesOfAnEarlierProgramAreNotThoseOfPowerOn) {
     EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(fanuc, {{"3402#3", 0}, {"3402#6", 0}})),
               "3402#3 2 of 2");
     EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(haas, {{"setting 56", 1}})), "");
     EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(haas, {{"setting 56", 0}})), " 2 of 2");
+}
+
+TEST(Control, ACycleBeforeG98AndG99RetractsAsAnEarlierProgramLeftIt) {
+    constexpr const char* drills = "G21 G90\nG0 Z10.\nG81 X1. Z-5. R2. F9\nX2.\nM30\n";
+    EXPECT_EQ(met(drills, with(fanuc, {{"3402#6", 0}})), " 3 of 2");
+    EXPECT_EQ(met(drills, with(haas, {{"setting 28", 1}, {"setting 56", 0}})), " 3 of 2");
+    EXPECT_EQ(met(drills, with(fanuc, {{"3402#6", 1}})), "");
+    EXPECT_EQ(met("G21 G90 G98\nG0 Z10.\nG81 X1. Z-5. R2. F9\nM30\n", with(fanuc, {{"3402#6", 0}})),
+              "");
+}
+
+TEST(Control, AMoveBeforeG54IsInTheOffsetThatAnEarlierProgramLeft) {
+    const auto two = [](DialectId dialect,
+                        std::initializer_list<std::pair<const char*, double>> is) {
+        Environment environment = with(dialect, is);
+        environment.work_offsets[1][2] = -50.0;
+        return environment;
+    };
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(haas, {{"setting 56", 0}})), "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG54 G0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "");
+    EXPECT_EQ(met("G21 G90\nG53 Z0.\nG54 G0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(fanuc, {{"3402#6", 1}})), "");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", with(fanuc, {{"3402#6", 0}})), "");
+}
+
+TEST(Control, AnIncrementalModeMayEndWithItsBlock) {
+    const Environment open = with(haas, {{"setting 56", 1}});
+    EXPECT_EQ(met("G21 G90\nG91 G0 X1.\nM5\nX1.\nX1.\nM30\n", open), "setting 29 4 of 2");
+    EXPECT_EQ(met("G21 G90\nG91 G28 Z0.\nG90 G0 X1.\nM30\n", open), "");
+    EXPECT_EQ(path_of("G21 G90\nG91 G0 X1.\nX5.\nM30\n", haas, {{"setting 29", 1}}),
+              "r1,0,0 r5,0,0 ");
+}
+
+TEST(Control, M6MayTakeTheToolThatWaits) {
+    const auto changes = [](const char* text, double number) {
+        const Ran ran = run_text(text, with(fanuc, {{"M6 T", number}}));
+        std::string tools;
+        for (const BlockCommands& block : ran.run.blocks)
+            for (const CanonicalCommand& command : block.commands)
+                if (const auto* change = std::get_if<ChangeTool>(&command))
+                    tools += std::to_string(core::value_of(*change->tool));
+        return tools;
+    };
+    constexpr const char* waits = "T2\nM6 T1\nM6\nM30\n";
+    EXPECT_EQ(changes(waits, 1), "11");
+    EXPECT_EQ(changes(waits, 2), "21");
+    const Environment open = with(fanuc, {});
+    EXPECT_EQ(met(waits, open), "M6 T 2 of 2");
+    EXPECT_EQ(met("T1 M6\nT2 M6\nM30\n", open), "");
+    EXPECT_EQ(met("T1\nM6\nT2\nT2 M6\nM30\n", open), "");
+}
+
+/// The angles of A after each block that moves.
+std::string angles_of(const std::string& text, Environment environment) {
+    core::Machine machine;
+    for (const size_t axis : {0, 1, 2, 3}) machine.axes[axis].present = true;
+    environment.machine = std::make_shared<const core::Machine>(machine);
+    const Ran ran = run_text(text, environment);
+    std::string angles;
+    for (const BlockCommands& block : ran.run.blocks)
+        for (const CanonicalCommand& command : block.commands)
+            if (const auto* rapid = std::get_if<StraightTraverse>(&command))
+                angles += fmt::format("{:g} ", rapid->end[3].value_or(-999));
+    return angles;
+}
+
+TEST(Control, ARotaryAxisTurnsTheWayOfItsParameters) {
+    constexpr const char* text = "G21 G90\nG0 A30.\nA330.\nA-300.\nA10.\nM30\n";
+    EXPECT_EQ(angles_of(text, with(fanuc, {{"1008#0", 0}})), "30 330 -300 10 ");
+    EXPECT_EQ(angles_of(text, with(fanuc, {{"1008#0", 1}, {"1008#1", 0}})), "30 -30 60 10 ");
+    EXPECT_EQ(angles_of(text, with(fanuc, {{"1008#0", 1}, {"1008#1", 1}})), "30 330 300 370 ");
+    EXPECT_EQ(angles_of("G21 G90\nG0 A180.\nM30\n", with(fanuc, {{"1008#0", 1}, {"1008#1", 0}})),
+              "180 ");
+}
+
+TEST(Control, M99InTheMainProgramStartsItAgainUntilNothingChanges) {
+    EXPECT_EQ(path_of("G21 G90\nG0 X1.\nX2.\nM99\n", fanuc, {}),
+              "r1,0,0 r2,0,0 r1,0,0 r2,0,0 r1,0,0 r2,0,0 ");
+    EXPECT_EQ(path_of("O1\nG21 G90\n#1=#1+1\nIF[#1GT2]GOTO9\nG0 X#1\nM99\nN9 M30\n", fanuc, {}),
+              "r1,0,0 r2,0,0 ");
+    const Ran counts = run_text("G21 G91\nG0 X1.\nM99\n", with(fanuc, {}));
+    const auto warning = end_warning(with(fanuc, {}), counts.run.state);
+    ASSERT_TRUE(warning);
+    EXPECT_EQ(warning->rule, core::rule_id("undecided"));
+}
+
+TEST(Control, AToolChangeRaisesZOnHaas) {
+    EXPECT_EQ(path_of("G21 G90\nT1 M6\nG0 Z-20.\nT2 M6\nG0 X1.\nM30\n", haas, {}),
+              "r0,0,-20 r0,0,0 r1,0,0 ");
+    EXPECT_EQ(path_of("G21 G90\nT1 M6\nG0 Z-20.\nT1 M6\nG0 X1.\nM30\n", haas, {}),
+              "r0,0,-20 r1,0,-20 ");
 }
 
 } // namespace

@@ -119,6 +119,28 @@ TEST(FanucContour, WarnsOfBlocksWithoutAMoveInThePlane) {
     };
     EXPECT_THAT(warned("M8\n"), Not(HasSubstr("blocks without a move")));
     EXPECT_THAT(warned("M8\nZ-1.\n"), HasSubstr("2 blocks without a move in the plane"));
+    EXPECT_THAT(warned("M1\n"), HasSubstr("does not read past the stop"));
+}
+
+/// "X20. Y20. ": the blocks that are in doubt.
+std::string in_doubt(const std::string& text, double look_ahead = 3.0) {
+    Environment environment = known_environment(DialectId::fanuc);
+    environment.control.answers[ControlQuestion::contour_look_ahead] = look_ahead;
+    const Ran ran = run_text(radius_2 + "G1 G41 D1 X10. F9\n" + text + "M30\n", environment);
+    std::string blocks;
+    for (const BlockCommands& block : ran.run.blocks)
+        if (block.path == core::PathCertainty::doubtful) blocks += std::string(block.text) + " ";
+    return blocks;
+}
+
+TEST(FanucContour, IsInDoubtAtACornerThatTheControlDoesNotReadInTime) {
+    EXPECT_EQ(in_doubt("X20.\nZ-1.\nY20.\nY30.\n"), "");
+    EXPECT_EQ(in_doubt("X20.\nZ-1.\nZ-2.\nY20.\nY30.\n"), "X20. Z-1. Z-2. Y20. ");
+    EXPECT_EQ(in_doubt("X20.\nZ-1.\nZ-2.\nY20.\nY30.\n", 4), "");
+    EXPECT_EQ(in_doubt("X20.\nM0\nY20.\nY30.\n", 8), "X20. M0 Y20. ");
+    EXPECT_EQ(in_doubt("X20. M1\nY20.\nY30.\n", 8), "X20. M1 Y20. ");
+    EXPECT_EQ(in_doubt("X20.\nM1\nX30.\nX40.\n"), "") << "no corner";
+    EXPECT_EQ(in_doubt("X20.\nY20. M1\nM5\nX30.\n"), "Y20. M1 M5 X30. ") << "an outside corner";
 }
 
 TEST(FanucContour, RefusesAnotherPlaneAndASkip) {

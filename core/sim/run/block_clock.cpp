@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/motion/path.h"
 #include "core/sim/run/simulator.h"
 
 namespace core {

@@ -332,10 +332,12 @@ void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutMode
     if (!worst || worst->verdict == Verdict::clear) return;
     Machine machine = setup.machine;
     machine.rapid = RapidStyle::straight;
+    Motion unbent = motion;
+    unbent.bends = unbent.axes_are_independent = false;
     CutModel stock = before;
     CheckMemory memory; // the bounds of the run only hold along its own path
     std::vector<TrackedPair> along_the_line;
-    for (const Leg& leg : path_of(motion, machine, chord_error(setup.mesh_size)).legs)
+    for (const Leg& leg : path_of(unbent, machine, chord_error(setup.mesh_size)).legs)
         leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
     worst = deciding_pair(along_the_line);
     only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;

@@ -1,0 +1,17 @@
+%
+O1030 (TURNED - The short way from A30 to A330 brings the clamp under the tool)
+(T1 END MILL D5)
+G17 G21 G40 G49 G80 G90
+T1 M6
+G54 G90 G0 X20. Y0. A30. S6000 M3
+G43 H1 Z100. M8
+G0 Z45.
+G1 Z28. F300.
+G0 Z45.
+G0 X0.
+A330.
+G0 Z100.
+M9
+M5
+M30
+%

@@ -1,0 +1,23 @@
+%
+O1030 (EDGE - If M6 takes the T4 that waits the tool is longer)
+(T1 END MILL D10)
+G17 G21 G40 G49 G80 G90
+G91 G28 Z0.
+G90
+T4
+M6 T1
+G54 G90 G0 X-20. Y50. S6000 M3
+G43 H1 Z60. M8
+G0 Z2.
+G1 Z-5. F300.
+G1 X20. F800.
+G0 Z60.
+M9
+M5
+G91 G28 Z0.
+G49
+G90
+G91 G28 X0. Y0.
+G90
+M30
+%

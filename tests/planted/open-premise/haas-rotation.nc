@@ -1,0 +1,25 @@
+%
+O01030 (TURNED - If R is added to the angle before the tool is in the plate)
+(T1 D=10. - FLAT END MILL)
+G17 G21 G40 G49 G80 G90
+G53 G0 Z0.
+T1 M6
+G54 G90 G0 X-20. Y50. S6000 M3
+G43 H1 Z60. M8
+G90 G68 X0 Y0 R90.
+G91 G68 X0 Y0 R180.
+G90 G0 X0. Y50.
+G0 Z-5.
+G0 Z60.
+G69
+G0 X-20. Y50.
+G0 Z2.
+G1 Z-5. F300.
+G1 X20. F800.
+G0 Z60.
+M9
+M5
+G53 G0 Z0.
+G53 G0 Y0.
+M30
+%

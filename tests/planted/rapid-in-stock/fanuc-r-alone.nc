@@ -1,0 +1,24 @@
+%
+O1030 (HOLES - R alone drills again and moves in rapid to its level)
+(T1 END MILL D10)
+G17 G21 G40 G49 G80 G90
+G91 G28 Z0.
+G90
+T1 M6
+G54 G90 G0 X-20. Y50. S6000 M3
+G43 H1 Z60. M8
+G0 X10. Y10.
+G98 G81 Z-12. R2. F200.
+R-8.
+X90.
+G80
+G0 Z60.
+M9
+M5
+G91 G28 Z0.
+G49
+G90
+G91 G28 X0. Y0.
+G90
+M30
+%
