@@ -209,6 +209,7 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
         if (!tolerances) return fail(*job, tolerances.error(), targets, read);
         run->tolerances = std::make_shared<const Tolerances>(*std::move(tolerances));
     }
+    const bool is_cut_short = options.tolerances && is_interrupted();
     const auto saved = save_results(options, *run, read);
     if (!saved) print_error(saved.error());
     const bool all_written = write_reports(options,
@@ -221,7 +222,7 @@ ExitCode check_one(const CheckOptions& options, const std::vector<ReportTarget>&
                                             read},
                                            targets);
     shown_assumptions = run->all_assumptions();
-    if (!all_written || run->stopped || !saved) return ExitCode::failed;
+    if (!all_written || run->stopped || !saved || is_cut_short) return ExitCode::failed;
     return run->has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 

@@ -472,7 +472,11 @@ core::Result<Tolerances> tolerances_of(const CheckJob& job, const CheckRun& run,
     search_all(study, tasks, workload, goes_on);
     for (size_t i = 0; i < tasks.size(); ++i) {
         Task& task = tasks[i];
-        if (!task.is_done) continue;
+        if (!task.is_done) {
+            tolerances.list.push_back(
+                {.deviation = task.result.deviation, .not_studied = "the study was interrupted"});
+            continue;
+        }
         if (task.result.unknown.empty() && workload.is_exceeded(i)) {
             task.result = {.deviation = task.result.deviation, .not_studied = limit_of(most_work)};
         } else {

@@ -377,7 +377,8 @@ TEST(Control, APremiseIsMetWhereItMatters) {
 }
 
 TEST(Control, AStatedParameterIsNoPremise) {
-    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(fanuc, {{"3402#3", 0}})), "");
+    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(fanuc, {{"3402#3", 0}, {"3402#6", 1}})), "");
+    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(fanuc, {{"3402#3", 0}})), "3402#6 2 of 2");
     EXPECT_EQ(met("G21 G90\nG0 X0.\nG73 X1. Z-5. R2. Q3. F9\nM30\n", with(fanuc, {{"5114", 1.5}})),
               "");
 }
