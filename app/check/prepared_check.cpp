@@ -8,13 +8,11 @@
 #include "app/base/stopwatch.h"
 #include "app/check/check_job.h"
 #include "app/check/tool_mismatch.h"
-#include "app/setup/coverage.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/inference/inferred_stock.h"
 #include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
-#include "core/motion/kinematics.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
 #include "core/sim/clearance.h"
@@ -71,23 +69,6 @@ void settle_corner_tolerances(core::Machine& machine, gcode::DialectId dialect) 
     if (machine.rapid_corner_tolerance) return;
     const bool stops = dialect == DialectId::fanuc || dialect == DialectId::haas;
     machine.rapid_corner_tolerance = stops ? std::optional(0.0) : machine.corner_tolerance;
-}
-
-/// Bodies that a check leaves out because nobody stated how far the tools stick out.
-std::vector<std::string> unknown_reaches(const core::Setup& setup) {
-    const core::Machine& machine = setup.machine;
-    const bool has_bodies = std::any_of(
-        machine.bodies.begin(), machine.bodies.end(),
-        [&](const core::MachineBody& body) { return !is_on_table_side(machine, body.link); });
-    std::vector<std::string> notes;
-    for (const auto& [number, tool] : setup.tools)
-        if (has_bodies && tool.reach_is_assumed)
-            notes.push_back(
-                fmt::format("nobody has stated how far tool {} sticks out, so the "
-                            "spindle and other bodies that move with it are not checked "
-                            "while it is used",
-                            core::value_of(number)));
-    return notes;
 }
 
 core::Error stopped_before(const CheckJob& job) {
@@ -175,8 +156,6 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
             core::in_file(whole.error(), job.setup.empty() ? job.program : job.setup));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
-    for (std::string& note : unknown_reaches(file.setup))
-        run.assumptions.push_back(std::move(note));
     run.coverage = coverage_of(file);
     run.setup = std::move(file.setup);
     settle_corner_tolerances(run.setup.machine, *dialect);
@@ -194,8 +173,10 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     file.environment.limits.is_stopped = {};
     file.environment.control.reports_premises =
         core::severity_of(run.setup, core::rule_id("open-premise")) != core::Severity::off;
+    const auto is_limited = [](const core::MachineAxis& axis) { return axis.min || axis.max; };
+    const auto& axes = run.setup.machine.axes;
     file.environment.control.follows_start = check.stock_is_stated || !run.setup.fixtures.empty()
-                                             || run.coverage->limits == Known::described;
+                                             || std::any_of(axes.begin(), axes.end(), is_limited);
     add_standing_assumptions(run.setup, run);
     run.times.read = reading.seconds();
     return check;

@@ -61,8 +61,12 @@ std::string suggestion(const std::string& key) {
     const std::vector<std::string> keys = known_keys();
     if (std::find(keys.begin(), keys.end(), plain) != keys.end()) return plain;
     const std::string nearest = core::nearest_name(key, keys);
+    const auto without_bit = [](std::string_view name) { return name.substr(0, name.find('#')); };
     const bool has_digit = std::any_of(key.begin(), key.end(), gcode::is_digit);
-    return has_digit || core::edit_distance(key, nearest) > 3 ? std::string() : nearest;
+    const bool is_meant = has_digit
+                              ? without_bit(key) == without_bit(nearest)
+                              : nearest.starts_with(key) || core::edit_distance(key, nearest) <= 3;
+    return is_meant ? nearest : std::string();
 }
 
 template <typename Row>

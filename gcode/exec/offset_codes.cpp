@@ -227,7 +227,7 @@ void use_work_offset(Execution& execution, size_t index) {
     Offsets offsets = execution.modal().offsets;
     offsets.active = index;
     offsets.work = in_effect(*execution.state.tables, index);
-    use(execution, offsets);
+    if (offsets != execution.modal().offsets) use(execution, offsets);
 }
 
 core::Result<void> select_offset(Execution& execution) {

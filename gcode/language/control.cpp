@@ -16,7 +16,7 @@ using enum IfNotStated;
 constexpr DialectId fanuc[] = {DialectId::fanuc};
 constexpr DialectId haas[] = {DialectId::haas};
 constexpr DialectId linuxcnc[] = {DialectId::linuxcnc};
-constexpr DialectId heidenhain[] = {DialectId::heidenhain};
+constexpr DialectId klartext[] = {DialectId::heidenhain};
 constexpr DialectId siemens[] = {DialectId::siemens};
 constexpr DialectId all[] = {DialectId::linuxcnc,   DialectId::fanuc,   DialectId::haas,
                              DialectId::grbl,       DialectId::siemens, DialectId::heidenhain,
@@ -629,7 +629,7 @@ constexpr ControlSetting settings[] = {
     {siemens, "MD30600", "first fixed point (G75), machine coordinates", SettingKind::position,
      [](Environment& to, const SettingValue& value) { to.fixed_point = whole(value); },
      "SINUMERIK 840D sl, Programming Manual Fundamentals, approaching a fixed point (G75)"},
-    {heidenhain, "datum", "the row of the preset table that is the work offset of the set-up",
+    {klartext, "datum", "the row of the preset table that is the work offset of the set-up",
      SettingKind::number,
      [](Environment& to, const SettingValue& value) { to.datum = std::get<double>(value); },
      "Heidenhain TNC 640, cycle programming, datum setting (cycle 247)"},

@@ -277,7 +277,7 @@ constexpr ArcTolerance heidenhain_arc = {.absolute_mm = 0.016,
                                          .limit = 1.0,
                                          .warned_mm = 0.05};
 
-constexpr Dialect heidenhain_dialect = [] {
+constexpr Dialect heidenhain = [] {
     Dialect entry = fanuc_dialect;
     entry.id = DialectId::heidenhain;
     entry.name = "heidenhain";
@@ -362,8 +362,8 @@ constexpr Dialect siemens_iso = [] {
     return entry;
 }();
 
-constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect,      haas_dialect, grbl_dialect,
-                                 siemens_dialect,  heidenhain_dialect, siemens_iso};
+constexpr std::array dialects = {linuxcnc_dialect, fanuc_dialect, haas_dialect, grbl_dialect,
+                                 siemens_dialect,  heidenhain,    siemens_iso};
 
 constexpr auto names_of_dialects = [] {
     std::array<std::string_view, dialects.size()> found;

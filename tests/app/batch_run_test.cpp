@@ -36,8 +36,8 @@ protected:
                          program({"X-20. Y97.5", depth, "G1 X120. F500.", "G0 Z60."}));
         }
         folder.write("wrong.nc", program({"G0 X1.", "G999"}));
-        folder.write("endless.nc",
-                     program({"F500.", "WHILE[#1LT1000000]DO1", "G1 X#1", "#1=#1+0.001", "END1"}));
+        folder.write("endless.nc", program({"F500.", "#1=0", "WHILE[#1LT1000000]DO1", "G1 X#1",
+                                            "#1=#1+0.001", "END1"}));
         asked.settings.max_blocks = 500;
     }
 

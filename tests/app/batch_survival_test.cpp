@@ -122,8 +122,8 @@ TEST_F(BatchSurvival, ReplacesItsOldReportNextToThePrograms) {
 }
 
 TEST_F(BatchSurvival, WritesItsReportsOnASignal) {
-    folder.write("long.nc",
-                 program({"F500.", "WHILE[#1LT1000000]DO1", "G1 X#1", "#1=#1+0.001", "END1"}));
+    folder.write("long.nc", program({"F500.", "#1=0", "WHILE[#1LT1000000]DO1", "G1 X#1",
+                                     "#1=#1+0.001", "END1"}));
     for (const int signal : {SIGTERM, SIGHUP}) {
         RunningProgram running({FEELER_BINARY, "check", folder / "lib/other.nc", folder / "long.nc",
                                 "--jobs", "2", "--format", "json", "-o", folder / "report.json"});
@@ -136,8 +136,8 @@ TEST_F(BatchSurvival, WritesItsReportsOnASignal) {
 }
 
 TEST_F(BatchSurvival, TakesASignalThatComesTwiceAtOnceForOne) {
-    folder.write("long.nc",
-                 program({"F500.", "WHILE[#1LT1000000]DO1", "G1 X#1", "#1=#1+0.001", "END1"}));
+    folder.write("long.nc", program({"F500.", "#1=0", "WHILE[#1LT1000000]DO1", "G1 X#1",
+                                     "#1=#1+0.001", "END1"}));
     for (int i = 0; i < 5; ++i) {
         fs::remove(folder / "report.json");
         RunningProgram running({FEELER_BINARY, "check", folder / "long.nc", folder / "lib/other.nc",
@@ -151,7 +151,8 @@ TEST_F(BatchSurvival, TakesASignalThatComesTwiceAtOnceForOne) {
 }
 
 TEST_F(BatchSurvival, OutlivesItsTerminalUnderNohup) {
-    folder.write("lib/p.nc", program({"F500.", "N10 G1 X#1", "#1=#1+0.01", "IF[#1LT50.]GOTO 10"}));
+    folder.write("lib/p.nc",
+                 program({"F500.", "#1=0", "N10 G1 X#1", "#1=#1+0.01", "IF[#1LT50.]GOTO 10"}));
     RunningProgram running({"/usr/bin/env", "--ignore-signal=HUP", FEELER_BINARY, "check", lib(),
                             "--jobs", "2", "--no-cache", "--format", "json", "-o",
                             folder / "report.json"});

@@ -28,7 +28,7 @@ const std::string near = program({"X-20. Y97.5", "Z-3.", "G1 X120. F500.", "G0 Z
 
 /// A large program that never ends.
 std::string long_program() {
-    std::string text = fine.substr(0, fine.find("M30")) + "N10 #1=#1+0.001\n";
+    std::string text = fine.substr(0, fine.find("M30")) + "#1=0\nN10 #1=#1+0.001\n";
     for (int i = 0; i < 300'000; ++i)
         text += "G1 X" + std::to_string(i % 2 * 90 + 5) + ". Y" + std::to_string(i % 97) + ".\n";
     return text + "GOTO 10\nM30\n";

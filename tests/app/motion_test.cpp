@@ -121,18 +121,20 @@ TEST(OverTravel, OfALoopIsOneFindingForEachLimitThatNamesTheLargestExcess) {
                                        "G0 Y[190.+#1]", "END1", "G0 Y150.", "G0 Y205."}));
     EXPECT_EQ(checked.errors(), "over-travel 10");
     EXPECT_EQ(checked.finding("over-travel").message,
-              "Y goes to 1.000 in machine coordinates, 1.000 mm beyond its limit. 41 blocks go "
-              "beyond it (lines 10, 13), the farthest by 40.000 mm, to 40.000, in line 10.");
+              "Y goes to 1.000 in machine coordinates, 1.000 mm beyond its limit. 42 blocks go "
+              "beyond it (lines 10, 12-13), the farthest by 40.000 mm, to 40.000, in line 10.");
 }
 
 TEST(OverTravel, IsReportedAtBothLimitsOfAnAxis) {
     const Checked checked =
         check(without_cuts(), program({"G0 Y205.", "G0 Y150.", "G0 Y-1000.", "G0 Y203."}));
     EXPECT_EQ(checked.errors(), "over-travel 6, over-travel 8");
-    EXPECT_NE(checked.findings.at(0).message.find("2 blocks go beyond it (lines 6, 9), none of "
+    // The way back from beyond a limit counts, too.
+    EXPECT_NE(checked.findings.at(0).message.find("3 blocks go beyond it (lines 6-7, 9), none of "
                                                   "them farther."),
               std::string::npos);
-    EXPECT_EQ(checked.findings.at(1).message.find("blocks go beyond"), std::string::npos);
+    EXPECT_NE(checked.findings.at(1).message.find("2 blocks go beyond it (lines 8-9)"),
+              std::string::npos);
 }
 
 TEST(FirstMove, FromAnUnknownPositionIsAWarningOnly) {

@@ -23,7 +23,10 @@ std::string five_axes(const std::string& more = "") {
 
 /// A cube of 40 with its centre where the axes A and C intersect; G54 is the centre of its top.
 SetupWriter cube(const std::string& more = "") {
-    return SetupWriter().machine(five_axes(more)).stock("box = [[-20, -20, -40], [20, 20, 0]]");
+    return SetupWriter()
+        .machine(five_axes(more))
+        .stock("box = [[-20, -20, -40], [20, 20, 0]]")
+        .also("[control]\n\"1008#0\" = 0\n");
 }
 
 std::string text(const std::string& blocks) {

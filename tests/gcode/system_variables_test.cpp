@@ -64,7 +64,7 @@ TEST(SystemVariables, OffsetsAreReadAndWritten) {
 }
 
 TEST(SystemVariables, OffsetsTakeEffectAtOnceAndTheMachineStays) {
-    const Ran ran = run_text("G21 G0 X10 Z0\nG43 H3\n#5221=4\n#11003=7\nX10 Z0\nM30");
+    const Ran ran = run_text("G21 G0 X10 Z0\nG43 H3\n#5221=4\n#11003=7\nX10 H3 Z0\nM30");
     ASSERT_FALSE(ran.run.error) << ran.run.error->message;
     Lowering lowering = initial_lowering(known_environment(DialectId::fanuc));
     for (const BlockCommands& block : ran.run.blocks) lower(block, lowering);

@@ -96,7 +96,9 @@ std::string case_of(const ProgramResult& program) {
             xml_text(fmt::format("{}:{}: {}\n{}", error.file, error.line, error.message, errors)));
     } else if (!errors.empty()) {
         text += fmt::format("      <failure message=\"{}: {}\" type=\"{}\">{}</failure>\n",
-                            xml_attribute(headline_of(program)),
+                            program.verdict == core::Verdict::clear
+                                ? xml_attribute(headline_of(program))
+                                : core::name_of(program.verdict),
                             counted(count_of(program, core::Severity::error), "error"),
                             core::name_of(program.verdict), xml_text(errors));
     }

@@ -16,6 +16,7 @@
 #include "app/setup/tools/tool_library.h"
 #include "core/base/rule_table.h"
 #include "core/dbm/solid.h"
+#include "core/motion/kinematics.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/dialect.h"
@@ -316,6 +317,23 @@ void assume_axes(SetupFile& file, const ProgramSurvey& seen) {
                                   : "moves the tool or the work, it is not known which"));
 }
 
+/// Bodies that a check leaves out because nobody stated how far the tools stick out.
+std::vector<std::string> unknown_reaches(const core::Setup& setup) {
+    const core::Machine& machine = setup.machine;
+    const bool has_bodies = std::any_of(
+        machine.bodies.begin(), machine.bodies.end(),
+        [&](const core::MachineBody& body) { return !is_on_table_side(machine, body.link); });
+    std::vector<std::string> notes;
+    for (const auto& [number, tool] : setup.tools)
+        if (has_bodies && tool.reach_is_assumed)
+            notes.push_back(
+                fmt::format("nobody has stated how far tool {} sticks out, so the "
+                            "spindle and other bodies that move with it are not checked "
+                            "while it is used",
+                            core::value_of(number)));
+    return notes;
+}
+
 } // namespace
 
 core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
@@ -380,6 +398,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     for (size_t i = 0; i < tools.size(); ++i)
         file.inferred_tools.insert_or_assign(tools[i].tool.number, notes[i]);
     if (!about_stock.empty()) file.inferred_stock = about_stock.back();
+    for (std::string& note : unknown_reaches(file.setup)) notes.push_back(std::move(note));
     if (!file.not_judged.empty()) notes.clear(); // irrelevant: motions are not checked
     notes.insert(notes.end(), about_stock.begin(), about_stock.end());
     file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());

@@ -116,19 +116,21 @@ class Tapping {
 public:
     void operator()(const ProgramEvent& event, ProgramSurvey& result) {
         if (const auto* spindle = std::get_if<core::SpindleChange>(&event.event)) {
-            const bool turns_back = event.is_cycle && fed_left_in_ == event.line
+            const bool turns_back = event.is_cycle && line_ == event.line && fed_left_
                                     && spindle->direction == core::SpindleDirection::clockwise;
             if (turns_back && event.tool) result.left_taps.insert(*event.tool);
             direction_ = spindle->direction;
         }
         const auto* motion = std::get_if<Motion>(&event.event);
-        if (motion && motion->kind != MotionKind::rapid)
-            fed_left_in_ = direction_ == core::SpindleDirection::counterclockwise ? event.line : 0;
+        if (!motion || motion->kind == MotionKind::rapid || line_ == event.line) return;
+        line_ = event.line;
+        fed_left_ = direction_ == core::SpindleDirection::counterclockwise;
     }
 
 private:
     core::SpindleDirection direction_ = core::SpindleDirection::stopped;
-    uint32_t fed_left_in_ = 0; // line of the last feed, if the spindle turned counterclockwise
+    uint32_t line_ = 0;     // of the last feed
+    bool fed_left_ = false; // the first feed there was with the spindle counterclockwise
 };
 
 void add_work_area(const ProgramEvent& event, const TipTrack& path,
