@@ -173,7 +173,10 @@ bool OtherReadings::is_known(const Crossing& crossing, const RunState& before) {
 }
 
 void OtherReadings::add_fork(Fork fork) {
-    has_too_many_ = has_too_many_ || forks_.size() >= most_readings;
+    if (!has_too_many_ && forks_.size() >= most_readings) {
+        has_too_many_ = true;
+        if (!running_) too_many_from_ = core::value_of(fork.result.block);
+    }
     if (!has_too_many_) forks_.push_back(std::move(fork));
 }
 
@@ -282,7 +285,8 @@ void OtherReadings::forget_from(size_t blocks) {
                   [&](const BentBlock& bent) { return core::value_of(bent.block) >= blocks; });
     visited_.clear();
     stopped_.clear();
-    has_too_many_ = false;
+    if (too_many_from_ && *too_many_from_ >= blocks) too_many_from_.reset();
+    has_too_many_ = too_many_from_.has_value();
 }
 
 ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
@@ -365,6 +369,9 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     std::map<std::string, std::set<std::string>>
         conditions; // harmless ones, by what they depend on
     repeated_ = last.readings->repeated;
+    std::vector<Fork> kept_forks;
+    if (may_go_back) kept_forks = forks_;
+    const std::vector<Assumed> kept_assumed = assumed_;
     const auto report = [&](const ReadingResult& result) {
         core::Finding finding = finding_of(setup, result);
         const auto is_same = [&](const core::Finding& other) {
@@ -403,10 +410,10 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     }
     for (ReadingResult& bent : bent_readings_) add_bent(std::move(bent));
     record.verdict = std::max(record.verdict, worst_bent_);
+    worst_bent_ = core::Verdict::clear;
     bent_readings_.clear();
-    bent_.clear();
     for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
-    assumed_.clear();
+    assumed_ = kept_assumed;
     for (const auto& [reason, places] : conditions) harmless.insert(note_of(reason, places));
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
     if (has_too_many_) {
@@ -415,7 +422,7 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     }
     for (core::Finding& finding : found)
         if (finding.severity != core::Severity::off) record.findings.push_back(std::move(finding));
-    forks_.clear();
+    forks_ = std::move(kept_forks);
     stopped_.clear();
 }
 

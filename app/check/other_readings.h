@@ -36,6 +36,10 @@ class OtherReadings {
 public:
     explicit OtherReadings(const PreparedCheck& check) : check_(check) {}
 
+    /// Whether the program may be run again from the middle after its end, as a debugger does. Then
+    /// the states before the premises are kept.
+    bool may_go_back = false;
+
     /// Notes the premises of the block that the control has just read. `before` is the state before
     /// it, and `blocks` the number of blocks run so far. Returns whether another reading has been
     /// here in the same state.
@@ -121,6 +125,7 @@ private:
     std::vector<ReadingResult> bent_readings_;        // of the others
     core::Verdict worst_bent_ = core::Verdict::clear; // likewise
     bool has_too_many_ = false;
+    std::optional<size_t> too_many_from_; // block of the assumed reading where it was noticed
 };
 
 } // namespace app

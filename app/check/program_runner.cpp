@@ -348,6 +348,8 @@ CheckProgress ProgramRunner::progress() const {
             record_.findings.size()};
 }
 
+void ProgramRunner::keep_readings() { readings_->may_go_back = true; }
+
 void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t findings) {
     assert(!state.lengths.is_open);
     *state_ = state;

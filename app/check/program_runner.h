@@ -75,6 +75,10 @@ public:
     /// The state from which the run continues.
     RunState& mutable_state() { return *state_; }
 
+    /// Prepares for going back after the end: keeps the states from which other readings branch
+    /// off.
+    void keep_readings();
+
     /// Returns to an earlier state of this run: drops the blocks from there on; advance() runs them
     /// again. The first `findings` findings of the run must still be in their original order, and
     /// the state must have no open length mismatch.

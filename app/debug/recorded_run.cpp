@@ -305,7 +305,9 @@ RecordedRun::RecordedRun(PreparedCheck check, size_t memory_budget)
     : check_(std::make_unique<PreparedCheck>(std::move(check))),
       runner_(std::make_unique<ProgramRunner>(*check_)),
       replayer_(std::make_unique<BlockRunner>(*check_)),
-      keyframes_(std::make_unique<Keyframes>(memory_budget)) {}
+      keyframes_(std::make_unique<Keyframes>(memory_budget)) {
+    runner_->keep_readings();
+}
 
 RecordedRun::~RecordedRun() = default;
 
