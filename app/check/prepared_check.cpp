@@ -175,8 +175,11 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
         core::severity_of(run.setup, core::rule_id("open-premise")) != core::Severity::off;
     const auto is_limited = [](const core::MachineAxis& axis) { return axis.min || axis.max; };
     const auto& axes = run.setup.machine.axes;
-    file.environment.control.follows_start = check.stock_is_stated || !run.setup.fixtures.empty()
-                                             || std::any_of(axes.begin(), axes.end(), is_limited);
+    // A program that starts in the middle has the modes of the lines before; a rule compares them.
+    file.environment.control.follows_start =
+        job.start_line.empty()
+        && (check.stock_is_stated || !run.setup.fixtures.empty()
+            || std::any_of(axes.begin(), axes.end(), is_limited));
     add_standing_assumptions(run.setup, run);
     run.times.read = reading.seconds();
     return check;

@@ -77,7 +77,7 @@ TEST(StoredValues, ASizeOfHaasIsADiameterOrARadius) {
     // Left of the contour by the radius: 10 mm from X40, or 20 mm.
     const std::string program =
         fanuc_head
-        + std::string("G10 L12 P1 R20.\nG43 H1 G0 Z100.\nG0 X10. Y150.\nG0 Z5.\n"
+        + std::string("G10 L12 P1 R20.\nG43 H1 G0 Z100.\nG0 X-15. Y150.\nG0 Z5.\n"
                       "G1 G41 D1 X20. F500.\nG1 X20. Y110.\nG1 Y90.\nG1 G40 X0.\nG0 Z100.\nM30\n");
     const std::string open = errors_of("haas", program);
     const std::string diameter =
