@@ -85,19 +85,22 @@ enum class PathCertainty : uint8_t {
     unknown,      // the axes may be anywhere: not measured, and limits are not checked
 };
 
+/// How the axes of a rapid move. straight: they arrive together. dogleg: each at its own speed.
+/// independent: each at a speed that is not known.
+enum class RapidStyle : uint8_t { straight, dogleg, independent };
+
 /// One rapid, feed or arc move. Machine coordinates of the gauge line, not of the tip.
 struct Motion {
     MotionKind kind = MotionKind::rapid;
     AxisPosition from, to;
-    std::optional<ArcPath> arc = {};   // when kind is arc; both ends known then
-    std::optional<TipPath> tip = {};   // when the control follows the tip; both ends known then
-    double feed = 0.0;                 // mm/min along the path; 0 on rapids
-    bool axes_are_independent = false; // of a rapid: each axis moves at a speed that is not known
-    bool stops_at_contact = false;     // a probing move: it ends between its first contact and `to`
+    std::optional<ArcPath> arc = {};      // when kind is arc; both ends known then
+    std::optional<TipPath> tip = {};      // when the control follows the tip; both ends known then
+    double feed = 0.0;                    // mm/min along the path; 0 on rapids
+    std::optional<RapidStyle> style = {}; // of a rapid; empty: that of the machine
+    bool stops_at_contact = false; // a probing move: it ends between its first contact and `to`
     // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far
     // from `to` as they started from `from`.
     AxisSet settles = 0;
-    bool bends = false; // a rapid of which each axis runs at its own speed on every machine
 };
 
 /// The new tool in the spindle; empty for T0, an empty spindle.

@@ -29,9 +29,6 @@ struct MachineAxis {
     bool shortest_way = false;     // rotary: takes the shorter direction to an angle
 };
 
-/// straight: all axes arrive together. dogleg: each axis moves at its own speed.
-enum class RapidStyle : uint8_t { straight, dogleg };
-
 /// A solid part of the machine. Frame: the machine's with all axes at 0.
 struct MachineBody {
     std::string name;

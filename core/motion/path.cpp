@@ -88,12 +88,12 @@ size_t moving_axes(const AxisValues& from, const AxisValues& to) {
 }
 
 void add_dogleg(Path& path, const Machine& machine, const AxisValues& from, const AxisValues& to,
-                bool has_own_speeds) {
+                bool is_independent) {
     const AxisValues times = axis_times(from, to, machine, path);
     const double total = longest_time(times);
     bool only_linear = true;
     for (size_t i = 3; i < axis_count; ++i) only_linear = only_linear && from[i] == to[i];
-    if ((path.assumed_speed || has_own_speeds) && only_linear) {
+    if ((path.assumed_speed || is_independent) && only_linear) {
         path.legs.push_back({.positions = box_corners(from, to),
                              .end = total,
                              .straight = false,
@@ -307,7 +307,7 @@ Leg still_half_way(const Leg& leg) {
 
 bool is_dogleg(const Motion& motion, const Machine& machine) {
     return motion.kind == MotionKind::rapid
-           && (machine.rapid == RapidStyle::dogleg || motion.bends || motion.axes_are_independent);
+           && motion.style.value_or(machine.rapid) != RapidStyle::straight;
 }
 
 Path path_of(const Motion& motion, const Machine& machine, double max_error) {
@@ -324,7 +324,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
                      motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
                                        : 0.0);
     } else if (is_dogleg(motion, machine) && moving_axes(*from, *to) > 1) {
-        add_dogleg(path, machine, *from, *to, motion.axes_are_independent);
+        add_dogleg(path, machine, *from, *to, motion.style == RapidStyle::independent);
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }

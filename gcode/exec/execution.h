@@ -35,7 +35,7 @@ struct Execution {
     }
 
     /// Emits a rapid or a feed to `end` and updates the position.
-    void traverse(const Position& end, bool bends = false);
+    void traverse(const Position& end, std::optional<core::RapidStyle> style = {});
     void feed(const Position& end, double rate);
 };
 

@@ -126,7 +126,9 @@ core::Result<void> go_home(Execution& execution) {
         if (moves[axis] || (turned && axis < 3)) end[axis] = position[axis];
     // Fanuc B-63944EN, 4.1, positioning (G00): with LRP = 1, too, G53 and the way from the
     // intermediate point to the reference point are not straight.
-    execution.traverse(end, execution.dialect.machine_move_bends);
+    execution.traverse(end, execution.dialect.machine_move_bends
+                                ? std::optional(core::RapidStyle::dogleg)
+                                : std::nullopt);
     if (entry.code->number == g_code(28) && execution.dialect.home_cancels_length) {
         cancel_length_offset(execution);
         execution.state.rules.length_cancelled = modal.tool.has_value();

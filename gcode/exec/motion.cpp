@@ -28,10 +28,10 @@ bool moves_by_radius_and_angle(const Execution& execution) {
 
 } // namespace
 
-void Execution::traverse(const Position& end, bool bends) {
+void Execution::traverse(const Position& end, std::optional<core::RapidStyle> style) {
     modal().position = end;
     modal().leaves_contour = false;
-    emit(StraightTraverse{end, bends});
+    emit(StraightTraverse{end, style});
 }
 
 void Execution::feed(const Position& end, double rate) {

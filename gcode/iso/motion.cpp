@@ -37,7 +37,7 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     if (rapid) {
         const bool bends =
             execution.dialect.machine_move_bends && in_machine_coordinates(execution);
-        execution.traverse(end, bends);
+        execution.traverse(end, bends ? std::optional(core::RapidStyle::dogleg) : std::nullopt);
         return {};
     }
     const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;

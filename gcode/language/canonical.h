@@ -19,8 +19,7 @@ namespace gcode {
 /// mm/min; end points in program coordinates of the offsets active at the command.
 struct StraightTraverse {
     Position end;
-    bool axes_are_independent = false; // each axis moves on its own, as to a reference point
-    bool bends = false; // each axis runs at its own speed even where other rapids are straight
+    std::optional<core::RapidStyle> style = {}; // empty: that of the machine
 
     bool operator==(const StraightTraverse&) const = default;
 };

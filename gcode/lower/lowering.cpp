@@ -162,8 +162,7 @@ struct Visitor {
 
     void operator()(const StraightTraverse& command) {
         core::Motion motion = motion_to(command.end, core::MotionKind::rapid, 0.0);
-        motion.axes_are_independent = command.axes_are_independent;
-        motion.bends = command.bends;
+        motion.style = command.style;
         events.emplace_back(motion);
     }
     void operator()(const StraightFeed& command) {

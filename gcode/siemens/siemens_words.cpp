@@ -297,7 +297,7 @@ core::Result<void> go_to_fixed_position(Execution& execution) {
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (names(execution, axis) || (turned && axis < 3)) modal.position[axis] = end[axis];
     execution.column = entry.word->span.column;
-    execution.emit(StraightTraverse{modal.position, true});
+    execution.emit(StraightTraverse{modal.position, core::RapidStyle::independent});
     doubt_rotary_axes(execution);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (names(execution, axis)) forget_travel(execution, axis);

@@ -16,6 +16,27 @@ Position machine_after(std::string_view text, DialectId dialect = DialectId::fan
     return machine_from_program(ran.run.state.modal.offsets, ran.run.state.modal.position);
 }
 
+/// How each rapid of a program runs: as the machine does, as a dog-leg, or with axes that are
+/// independent.
+std::string rapid_styles(std::string_view text, DialectId dialect) {
+    std::string styles;
+    for (const BlockCommands& block : run_text(text, dialect).run.blocks)
+        for (const CanonicalCommand& command : block.commands)
+            if (const auto* rapid = std::get_if<StraightTraverse>(&command))
+                styles += !rapid->style                                 ? "machine "
+                          : *rapid->style == core::RapidStyle::straight ? "straight "
+                          : *rapid->style == core::RapidStyle::dogleg   ? "dogleg "
+                                                                        : "independent ";
+    return styles;
+}
+
+TEST(RapidStyle, WaysInMachineCoordinatesAreDogLegsOnFanucOnly) {
+    const std::string text = "G90 G0 X1. Y2.\nG53 X-5. Y-6.\nG28 X3. Y4.\nM30\n";
+    EXPECT_EQ(rapid_styles(text, DialectId::fanuc), "machine dogleg machine dogleg ");
+    EXPECT_EQ(rapid_styles(text, DialectId::haas), "machine machine machine machine ");
+    EXPECT_EQ(rapid_styles(text, DialectId::linuxcnc), "machine machine machine machine ");
+}
+
 TEST(ExtendedOffsets, AreWrittenByL20AndSelectedByG541OrG54P) {
     EXPECT_EQ(machine_after("G90 G10 L20 P7 X10 Y20\nG54.1 P7\nG0 X1 Y2")[0], 11.0);
     EXPECT_EQ(machine_after("G90 G10 L20 P300 X10 Y20\nG54 P300\nG0 X1 Y2")[1], 22.0);

@@ -264,7 +264,7 @@ TEST(SiemensFixedPoint, IsReachedByEachAxisOnItsOwn) {
     for (const uint32_t line : {2u, 3u}) {
         const auto* move = std::get_if<StraightTraverse>(&block_of_line(ran, line).commands.at(0));
         ASSERT_TRUE(move);
-        EXPECT_TRUE(move->axes_are_independent);
+        EXPECT_EQ(move->style, core::RapidStyle::independent);
     }
 }
 

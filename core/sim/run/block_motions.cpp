@@ -252,9 +252,9 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
     }
     check.finish(pairs);
     note_doubt(check, motion, path);
-    note_worst(motion.kind);
+    const std::vector<size_t> worsened = note_worst(motion.kind);
     result.removed += removed;
-    if (before) check_rapid(motion, path, *before);
+    if (before) check_rapid(motion, path, *before, worsened);
     if (!rapid) check_feed(motion, path, removed);
 }
 
@@ -323,24 +323,27 @@ void BlockRun::follow_path(const Motion& motion, const Path& path) {
     state.rules.has_fed = state.rules.has_fed || motion.kind != MotionKind::rapid;
 }
 
-void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutModel& before) {
+void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutModel& before,
+                           std::span<const size_t> worsened) {
     const bool straight = path.legs.size() == 1 && path.legs[0].straight;
     if (straight && tool())
         return tell(low_retract(
             {setup, *tool(), block.block, path.legs[0], state.mounted_fixtures, before}, pairs));
-    const TrackedPair* worst = deciding_pair(pairs);
-    if (!worst || worst->verdict == Verdict::clear) return;
-    Machine machine = setup.machine;
-    machine.rapid = RapidStyle::straight;
+    if (worsened.empty()) return;
     Motion unbent = motion;
-    unbent.bends = unbent.axes_are_independent = false;
+    unbent.style = RapidStyle::straight;
     CutModel stock = before;
     CheckMemory memory; // the bounds of the run only hold along its own path
     std::vector<TrackedPair> along_the_line;
-    for (const Leg& leg : path_of(unbent, machine, chord_error(setup.mesh_size)).legs)
+    for (const Leg& leg : path_of(unbent, setup.machine, chord_error(setup.mesh_size)).legs)
         leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
-    worst = deciding_pair(along_the_line);
-    only_dog_leg = only_dog_leg || !worst || worst->verdict == Verdict::clear;
+    for (const size_t i : worsened) {
+        const auto is_same = [&](const TrackedPair& pair) {
+            return pair.pair == worst_motions[i].pair && pair.verdict != Verdict::clear;
+        };
+        worst_motions[i].only_dog_leg =
+            std::none_of(along_the_line.begin(), along_the_line.end(), is_same);
+    }
 }
 
 void BlockRun::check_feed(const Motion& motion, const Path& path, double removed) {

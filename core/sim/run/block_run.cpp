@@ -99,21 +99,31 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
     return !motion.arc && std::hypot(way(0), way(1)) <= slack + slope * way(2);
 }
 
-void BlockRun::note_worst(MotionKind kind) {
+/// Notes which pairs the motion that ended just now made worse. Returns their indices in
+/// `worst_motions`.
+std::vector<size_t> BlockRun::note_worst(MotionKind kind) {
+    std::vector<size_t> worsened;
     for (const PairClearance& pair : pairs) {
         if (pair.verdict == Verdict::clear) continue;
         const auto known =
             std::find_if(worst_motions.begin(), worst_motions.end(),
                          [&](const WorstMotion& one) { return one.pair == pair.pair; });
-        if (known == worst_motions.end())
-            worst_motions.push_back({pair.pair, pair.verdict, pair.upper, kind});
-        else if (pair.verdict > known->verdict || pair.upper < known->upper)
-            *known = {pair.pair, pair.verdict, pair.upper, kind};
+        const bool is_new = known == worst_motions.end();
+        if (!is_new && pair.verdict <= known->verdict && pair.upper >= known->upper) continue;
+        worsened.push_back(static_cast<size_t>(known - worst_motions.begin()));
+        const WorstMotion worst{pair.pair, pair.verdict, pair.upper, kind};
+        if (is_new)
+            worst_motions.push_back(worst);
+        else
+            *known = worst;
     }
+    return worsened;
 }
 
 BlockMove BlockRun::move_of(const PairClearance& pair) const {
-    BlockMove move{result.motion, turns, result.duration, only_dog_leg};
+    BlockMove move{result.motion, turns, result.duration};
+    for (const WorstMotion& one : worst_motions)
+        if (one.pair == pair.pair) move.only_dog_leg = one.only_dog_leg;
     if (move.motion != BlockMotion::cycle) return move;
     move.within = block.goes_home  ? MoveWithin::way_home
                   : block.is_cycle ? MoveWithin::cycle
@@ -188,12 +198,14 @@ PairStudy BlockRun::study(const PairClearance& pair) {
     if (pair.verdict == Verdict::collision)
         study.overlap = overlap_of({setup, *tool(), block.block, legs, before.get()}, pair.pair);
     if (!before || !can_shift(block) || turns || legs.size() > most_legs) return study;
-    const bool rapid = move_of(pair).motion == BlockMotion::rapid;
+    const BlockMove move = move_of(pair);
+    const bool rapid = move.motion == BlockMotion::rapid;
     const bool rapid_in_stock = rapid && !pair.pair.fixture;
     study.starts_inside = rapid && overlaps_at_start(pair.pair, *before);
     const bool is_cured_by_shift =
         pair.pair.fixture || pair.verdict == Verdict::violation || rapid_in_stock;
-    if (!is_cured_by_shift || only_dog_leg || (rapid_in_stock && study.starts_inside)) return study;
+    if (!is_cured_by_shift || move.only_dog_leg || (rapid_in_stock && study.starts_inside))
+        return study;
     const BlockTrial trial{setup, block, state, *before, corners_before};
     study.shift = find_shift(trial, pair.pair, shifts_to_try(pair, study, rapid_in_stock),
                              rapid_in_stock ? air_gap : 0.0, state.trials.work);

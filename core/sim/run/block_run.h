@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/run/cure_trial.h"
 #include "core/sim/run/finding_text.h"
@@ -15,6 +18,7 @@ struct WorstMotion {
     Verdict verdict = Verdict::clear;
     double upper = infinity;
     MotionKind kind = MotionKind::rapid;
+    bool only_dog_leg = false; // this rapid would be clear if it were straight
 };
 
 /// A block during its execution.
@@ -33,7 +37,6 @@ struct BlockRun {
     bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
     double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
     double off_path_rapids = 0.0; // likewise of its rapids
-    bool only_dog_leg = false;    // a rapid of this block would be clear if it were straight
     size_t moves_before = state.stock.log.size(); // that cut the stock before the block
     RoundedCorners corners_before = state.corners;
 
@@ -107,13 +110,14 @@ struct BlockRun {
     /// If it is undecided whether the flutes met the stock in a motion: the stock on their way is
     /// no longer certain.
     void note_doubt(LegCheck& check, const Motion& motion, const Path& path);
-    void check_rapid(const Motion& motion, const Path& path, const CutModel& before);
+    void check_rapid(const Motion& motion, const Path& path, const CutModel& before,
+                     std::span<const size_t> worsened);
     void check_feed(const Motion& motion, const Path& path, double removed);
     void move_without_tool(const Motion& motion);
     /// A motion of which it is unknown where it brings the bodies: nothing is measured or cut.
     void move_unmeasured(const Motion& motion, const Path& path);
     void track_centre(const Motion& motion, const Leg& leg);
-    void note_worst(MotionKind kind);
+    std::vector<size_t> note_worst(MotionKind kind);
     /// The motion to name in a finding about the pair.
     BlockMove move_of(const PairClearance& pair) const;
     Finding finding_about(const PairClearance& pair, const PairStudy& study = {}) const;
