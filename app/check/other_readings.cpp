@@ -1,6 +1,7 @@
 #include "app/check/other_readings.h"
 
 #include <algorithm>
+#include <iterator>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -105,16 +106,66 @@ core::Finding open_premise(const core::Setup& setup, std::string message, std::s
     return finding;
 }
 
-core::Finding finding_of(const core::Setup& setup, const ReadingResult& result) {
-    core::Finding finding =
-        open_premise(setup,
-                     fmt::format("{}. Assumed: {}. If {}{}, {}", result.reason, result.assumed,
-                                 fmt::join(result.when, " and "),
-                                 result.effect.empty() ? "" : fmt::format(" ({})", result.effect),
-                                 consequence_of(result)),
-                     result.cure);
-    finding.block = result.block;
+/// The first of several ways in which a premise can be read.
+std::string ways_text(std::vector<std::string> ways) {
+    constexpr size_t most_shown = 3;
+    const size_t more = ways.size() > most_shown ? ways.size() - most_shown : 0;
+    ways.resize(ways.size() - more);
+    return fmt::format("{}{}", fmt::join(ways, ", or if "),
+                       more ? fmt::format(", or in {} more ways", more) : "");
+}
+
+std::string way_of(const ReadingResult& result) {
+    return fmt::to_string(fmt::join(result.when, " and "));
+}
+
+/// Readings that are told in one finding, because only what they read differs.
+struct ToldReadings {
+    std::string begin, end, cure; // of the text, before and after the ways to read the premise
+    core::BlockIndex block{};
+    std::vector<std::string> ways;
+
+    bool begins_and_ends_as(const ToldReadings& other) const {
+        return begin == other.begin && end == other.end && cure == other.cure
+               && block == other.block;
+    }
+};
+
+ToldReadings told(const ReadingResult& result) {
+    const std::string effect =
+        result.effect.empty() ? std::string() : fmt::format(" ({})", result.effect);
+    return {fmt::format("{}. Assumed: {}. If ", result.reason, result.assumed),
+            fmt::format("{}, {}", effect, consequence_of(result)),
+            result.cure,
+            result.block,
+            {way_of(result)}};
+}
+
+core::Finding finding_of(const core::Setup& setup, const ToldReadings& readings) {
+    core::Finding finding = open_premise(
+        setup, readings.begin + ways_text(readings.ways) + readings.end, readings.cure);
+    finding.block = readings.block;
     return finding;
+}
+
+/// A reading that was reported.
+struct ReportedReading {
+    std::set<std::string> when;
+    std::set<FindingKey> errors;
+    core::Verdict verdict;
+};
+
+/// Whether one of the reported readings has all these errors, although less of it differs from the
+/// assumed reading.
+bool is_explained(const std::vector<ReportedReading>& reported, const ReportedReading& reading) {
+    return !reading.errors.empty()
+           && std::any_of(reported.begin(), reported.end(), [&](const ReportedReading& other) {
+                  return other.verdict >= reading.verdict
+                         && std::includes(reading.when.begin(), reading.when.end(),
+                                          other.when.begin(), other.when.end())
+                         && std::includes(other.errors.begin(), other.errors.end(),
+                                          reading.errors.begin(), reading.errors.end());
+              });
 }
 
 /// What the readings that were followed depend on: each reason once, the first ones only.
@@ -290,7 +341,8 @@ void OtherReadings::forget_from(size_t blocks) {
 }
 
 ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
-                                 const std::function<bool()>& goes_on) {
+                                 const std::function<bool()>& goes_on,
+                                 std::set<FindingKey>& new_errors) {
     ReadingResult result = fork.result;
     RunState& state = fork.state;
     std::set<FindingKey> known = errors_of(record);
@@ -347,6 +399,8 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     for (const std::string& condition : state.control.readings->repeated)
         repeated_.insert(condition);
     running_ = nullptr;
+    std::set_difference(errors.begin(), errors.end(), known.begin(), known.end(),
+                        std::inserter(new_errors, new_errors.end()));
     outcome_->errors.insert(errors.begin(), errors.end());
     // Where the control stops with an alarm, nothing moves any more. Other stops are those of the
     // check alone: the control may know the word, or have the subprogram.
@@ -364,20 +418,26 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
                            const std::function<bool()>& goes_on) {
     const core::Setup& setup = check_.run.setup;
     const core::Verdict assumed = record.verdict;
-    std::vector<core::Finding> found;
+    std::vector<ToldReadings> found;
+    std::vector<ReportedReading> reported;
     std::set<std::string> harmless;
     std::map<std::string, std::set<std::string>>
-        conditions; // harmless ones, by what they depend on
+        conditions;                                       // harmless ones, by what they depend on
+    std::map<std::string, std::vector<std::string>> ways; // harmless readings, by what is assumed
     repeated_ = last.readings->repeated;
     std::vector<Fork> kept_forks;
     if (may_go_back) kept_forks = forks_;
     const std::vector<Assumed> kept_assumed = assumed_;
     const auto report = [&](const ReadingResult& result) {
-        core::Finding finding = finding_of(setup, result);
-        const auto is_same = [&](const core::Finding& other) {
-            return other.message == finding.message;
-        };
-        if (std::none_of(found.begin(), found.end(), is_same)) found.push_back(std::move(finding));
+        ToldReadings readings = told(result);
+        const auto same = std::find_if(found.begin(), found.end(), [&](const ToldReadings& other) {
+            return other.begins_and_ends_as(readings);
+        });
+        if (same == found.end())
+            found.push_back(std::move(readings));
+        else if (std::find(same->ways.begin(), same->ways.end(), way_of(result))
+                 == same->ways.end())
+            same->ways.push_back(way_of(result));
         if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
             record.verdict = std::max(record.verdict, core::Verdict::undecided);
     };
@@ -389,21 +449,25 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     if (!bent_.empty()) add_bent(bent_reading(bent_, {}));
     for (size_t i = 0; i < forks_.size(); ++i) {
         const std::shared_ptr<const Outcome> parent = forks_[i].parent;
-        ReadingResult result = run(std::move(forks_[i]), record, goes_on);
+        ReportedReading reading;
+        ReadingResult result = run(std::move(forks_[i]), record, goes_on, reading.errors);
+        reading.when.insert(result.when.begin(), result.when.end());
+        reading.verdict = result.verdict;
         record.verdict = std::max(record.verdict, result.verdict);
         if (decides(result, parent ? std::max(assumed, parent->verdict) : assumed)) {
-            report(result);
+            if (!is_explained(reported, reading)) report(result);
+            reported.push_back(std::move(reading));
         } else if (result.is_condition && !result.avoided) {
             conditions[result.reason].insert(place_of(result.file, result.line));
         } else {
-            harmless.insert(fmt::format(
-                "{}: it is assumed that {}; {} if {}", place_of(result.file, result.line),
-                result.assumed,
+            const std::string effect =
                 result.avoided ? fmt::format("the error in {} ({}) does not occur",
                                              place_of(result.avoided->file, result.avoided->line),
                                              result.avoided->finding.rule)
-                               : "there are no further errors",
-                fmt::join(result.when, " and ")));
+                               : "there are no further errors";
+            ways[fmt::format("{}: it is assumed that {}; {}", place_of(result.file, result.line),
+                             result.assumed, effect)]
+                .push_back(way_of(result));
         }
         record.readings.push_back(std::move(result));
         if (i + 1 == forks_.size()) resume_runs();
@@ -415,12 +479,15 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
     assumed_ = kept_assumed;
     for (const auto& [reason, places] : conditions) harmless.insert(note_of(reason, places));
+    for (const auto& [note, others] : ways) harmless.insert(note + " if " + ways_text(others));
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
+    std::vector<core::Finding> findings;
+    for (const ToldReadings& readings : found) findings.push_back(finding_of(setup, readings));
     if (has_too_many_) {
-        found.push_back(too_many(setup, record.readings));
+        findings.push_back(too_many(setup, record.readings));
         record.verdict = std::max(record.verdict, core::Verdict::undecided);
     }
-    for (core::Finding& finding : found)
+    for (core::Finding& finding : findings)
         if (finding.severity != core::Severity::off) record.findings.push_back(std::move(finding));
     forks_ = std::move(kept_forks);
     stopped_.clear();

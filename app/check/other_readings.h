@@ -108,7 +108,8 @@ private:
     /// The reading in which rapids are dog-legs, in a run to which `when` has led.
     ReadingResult bent_reading(const std::vector<BentBlock>& blocks,
                                std::vector<std::string> when) const;
-    ReadingResult run(Fork fork, const CheckRecord& record, const std::function<bool()>& goes_on);
+    ReadingResult run(Fork fork, const CheckRecord& record, const std::function<bool()>& goes_on,
+                      std::set<FindingKey>& new_errors);
     bool is_known(const Crossing& crossing, const RunState& before);
     void add_fork(Fork fork);
     void resume_runs();

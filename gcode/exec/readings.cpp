@@ -192,9 +192,11 @@ bool keeps_modes(const Environment& environment) {
 
 namespace {
 
-/// The work offsets that may be active at the start: G54, and the others that are stated.
+/// The work offsets that may be active at the start: G54, and the others that are stated. Without a
+/// set-up, all are assumed to be equal.
 std::vector<size_t> possible_offsets(const Environment& environment) {
     std::vector<size_t> found = {0};
+    if (!environment.control.follows_start) return found;
     for (size_t index = 1; index < plain_offset_count; ++index)
         if (environment.work_offsets[index] != AxisValues{}) found.push_back(index);
     for (const auto& [index, origin] : environment.extended_offsets) found.push_back(index);

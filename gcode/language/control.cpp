@@ -392,8 +392,8 @@ constexpr ControlParameter parameters[] = {
      "Program G98 or G99 before the first cycle."},
     {starts_in_plane, siemens, "MD20150[5]", "MD20150[5] (GCODE_RESET_VALUES)", siemens_plane,
      follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
-    {starts_without_work, siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)", siemens_work,
-     follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 8"},
+    {starts_without_work, any_siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)",
+     siemens_work, follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 8"},
 
     {length_follows_plane, fanuc, "5001#1", "parameter 5001#1 (TLB)", length_of_plane, follow_all,
      "Fanuc B-63943EN-1, 12.5.2, tool length compensation A, B and C"},
