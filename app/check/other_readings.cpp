@@ -121,6 +121,7 @@ std::string way_of(const ReadingResult& result) {
 
 /// Readings that are told in one finding, because only what they read differs.
 struct ToldReadings {
+    std::string place;
     std::string begin, end, cure; // of the text, before and after the ways to read the premise
     core::BlockIndex block{};
     std::vector<std::string> ways;
@@ -134,17 +135,22 @@ struct ToldReadings {
 ToldReadings told(const ReadingResult& result) {
     const std::string effect =
         result.effect.empty() ? std::string() : fmt::format(" ({})", result.effect);
-    return {fmt::format("{}. Assumed: {}. If ", result.reason, result.assumed),
+    return {place_of(result.file, result.line),
+            fmt::format("{}. Assumed: {}. If ", result.reason, result.assumed),
             fmt::format("{}, {}", effect, consequence_of(result)),
             result.cure,
             result.block,
             {way_of(result)}};
 }
 
-core::Finding finding_of(const core::Setup& setup, const ToldReadings& readings) {
+/// The finding for readings. Where the check stopped in their block, it is not recorded.
+core::Finding finding_of(const core::Setup& setup, const CheckRecord& record,
+                         const ToldReadings& readings) {
+    const bool is_recorded = core::value_of(readings.block) < record.blocks.size();
+    const std::string text = readings.begin + ways_text(readings.ways) + readings.end;
     core::Finding finding = open_premise(
-        setup, readings.begin + ways_text(readings.ways) + readings.end, readings.cure);
-    finding.block = readings.block;
+        setup, is_recorded ? text : fmt::format("In {}: {}", readings.place, text), readings.cure);
+    if (is_recorded) finding.block = readings.block;
     return finding;
 }
 
@@ -417,7 +423,9 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
 void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& last,
                            const std::function<bool()>& goes_on) {
     const core::Setup& setup = check_.run.setup;
-    const core::Verdict assumed = record.verdict;
+    // What a program does after the block in which the check stopped is not known.
+    const core::Verdict assumed =
+        record.stopped ? std::max(record.verdict, core::Verdict::undecided) : record.verdict;
     std::vector<ToldReadings> found;
     std::vector<ReportedReading> reported;
     std::set<std::string> harmless;
@@ -482,7 +490,8 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     for (const auto& [note, others] : ways) harmless.insert(note + " if " + ways_text(others));
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
     std::vector<core::Finding> findings;
-    for (const ToldReadings& readings : found) findings.push_back(finding_of(setup, readings));
+    for (const ToldReadings& readings : found)
+        findings.push_back(finding_of(setup, record, readings));
     if (has_too_many_) {
         findings.push_back(too_many(setup, record.readings));
         record.verdict = std::max(record.verdict, core::Verdict::undecided);

@@ -260,7 +260,10 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     }
     const bool rapid = motion.kind == core::MotionKind::rapid;
     // A permit is needed before the next motion is known, so whole rapids count as rounded.
-    at.off_motion = rapid ? std::max(at.corners.rapids.deviation, at.corners.mixed.deviation)
+    // Where they keep their speed, the device would refuse most of them: that is left out.
+    const double between_rapids =
+        at.corners.rapids.keeps_speed() ? 0.0 : at.corners.rapids.deviation;
+    at.off_motion = rapid ? std::max(between_rapids, at.corners.mixed.deviation)
                           : at.corners.of_feed(motion.arc.has_value());
     // A spindle of unknown content counts as empty until the program feeds.
     if (!at.tool && !(!at.called && (at.tool_known || rapid))) {

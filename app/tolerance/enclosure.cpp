@@ -61,17 +61,20 @@ less_certain(const std::vector<core::CutterSweep>& sweeps, double by) {
 
 /// How far a control may leave the path at a corner with this limit, mm. Next to an arc, that is as
 /// far as the rounding reaches.
-double deviation_at(const core::CornerLimit& limit) {
+double deviation_at(const core::CornerLimit& limit, const std::vector<core::Leg>& legs) {
     const bool is_along = limit.rounds() && limit.distance < core::infinity;
-    return is_along ? std::max(limit.deviation, limit.distance) : limit.deviation;
+    return is_along ? std::max(limit.deviation, limit.distance) : core::deviation_of(limit, legs);
 }
 
 /// How far a motion may leave its path at its two corners, mm; that of feeds with each other is not
 /// included.
-double corner_deviation(const core::RoundedCorners& corners, const core::Motion& motion) {
-    const double mixed = std::max(deviation_at(corners.mixed), deviation_at(corners.last.mixed));
+double corner_deviation(const core::RoundedCorners& corners, const core::Motion& motion,
+                        const std::vector<core::Leg>& legs) {
+    const double mixed =
+        std::max(deviation_at(corners.mixed, legs), deviation_at(corners.last.mixed, legs));
     if (motion.kind != core::MotionKind::rapid) return mixed;
-    return std::max({mixed, corners.rapids.deviation, corners.last.rapids.deviation});
+    return std::max({mixed, core::deviation_of(corners.rapids, legs),
+                     core::deviation_of(corners.last.rapids, legs)});
 }
 
 /// The part of a path in which a control may round the corner at its end, or at its start: at most
@@ -408,7 +411,7 @@ std::optional<LimitingPair> Enclosure::judge_hull(Run& run, size_t event,
     core::RoundedCorners& corners = run.state.corners;
     const bool is_feed = motion.kind != core::MotionKind::rapid;
     const double off_path =
-        std::max(is_feed ? corners.of_feed(false) : 0.0, corner_deviation(corners, motion));
+        std::max(is_feed ? corners.of_feed(false) : 0.0, corner_deviation(corners, motion, {*leg}));
     corners.last = {}; // the whole motion counts as rounded
     corners.last.kind = motion.kind;
     corners.last.rapids = corners.rapids;
@@ -466,7 +469,7 @@ std::optional<LimitingPair> Enclosure::judge_corner(Run& run, size_t event,
     // From an unknown start, the whole region is checked.
     if (legs.empty() || !legs.front().start_known) return std::nullopt;
     // At the corner between a rapid and a cut, the flutes may already, or still, cut.
-    return judge_legs(run, event, near_corner(legs, limit, !exact), deviation_at(limit),
+    return judge_legs(run, event, near_corner(legs, limit, !exact), deviation_at(limit, legs),
                       rapid != was_rapid);
 }
 
@@ -502,8 +505,12 @@ std::optional<LimitingPair> Enclosure::judge(Run& run, size_t event) const {
         if (!tool.cuts_at_centre || core::only_drills(tool.shape)) return unknown;
     }
     if (!exact) {
-        const double doubt = doubt_of(event, run.frame, run.range)
-                             + (motion ? corner_deviation(run.state.corners, *motion) : 0.0);
+        double doubt = doubt_of(event, run.frame, run.range);
+        if (motion)
+            doubt += corner_deviation(
+                run.state.corners, *motion,
+                core::path_of(*motion, run.exact.machine, core::chord_error(run.exact.mesh_size))
+                    .legs);
         const auto known = run.doubtful.find(doubt);
         setup = known != run.doubtful.end()
                     ? &known->second

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "core/motion/machine.h"
 
 namespace core {
 namespace {
@@ -35,12 +38,6 @@ double length_of(const Leg& leg) {
         longest = std::max(longest, std::sqrt(squared));
     }
     return longest;
-}
-
-double length_of(std::span<const Leg> legs) {
-    double length = 0.0;
-    for (const Leg& leg : legs) length += length_of(leg);
-    return length;
 }
 
 bool turns(const Leg& leg) {
@@ -88,29 +85,70 @@ Leg hull_of(const std::vector<Leg>& legs) {
 
 } // namespace
 
+double length_of(std::span<const Leg> legs) {
+    double length = 0.0;
+    for (const Leg& leg : legs) length += length_of(leg);
+    return length;
+}
+
+bool states_dynamics(const Machine& machine) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = machine.axes[i];
+        if (axis.present && !is_rotary(i) && !(axis.rapid && axis.acceleration)) return false;
+    }
+    return true;
+}
+
 double rounding_reach(double deviation, double turn) {
     return 4.0 * deviation / std::sin(0.5 * turn);
 }
 
+namespace {
+
+/// The greatest speed on straight legs, mm/s.
+double speed_on(std::span<const Leg> legs) {
+    double speed = 0.0;
+    for (const Leg& leg : legs)
+        if (leg.end > leg.begin) speed = std::max(speed, length_of(leg) / (leg.end - leg.begin));
+    return speed;
+}
+
+} // namespace
+
+CornerReach reach_at_speed(std::span<const Leg> before, std::span<const Leg> after,
+                           const Machine& machine) {
+    CornerReach reach{0.5 * length_of(before), 0.5 * length_of(after)};
+    const std::optional<double> turn =
+        before.empty() || after.empty() ? std::nullopt : turn_between(before.back(), after.front());
+    if (!states_dynamics(machine) || !turn) return reach;
+    double least = infinity;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (machine.axes[i].present && !is_rotary(i))
+            least = std::min(least, *machine.axes[i].acceleration);
+    const double of_circle = 2.0 / std::numbers::sqrt3 * std::tan(0.5 * *turn);
+    const auto at_speed = [&](double speed) {
+        return speed * speed / least * std::max(1.0, of_circle);
+    };
+    return {std::min(reach.before, at_speed(speed_on(before))),
+            std::min(reach.after, at_speed(speed_on(after)))};
+}
+
 std::optional<CornerRegion> corner_region(std::span<const Leg> before, std::span<const Leg> after,
-                                          double deviation, double distance) {
+                                          double deviation, const CornerReach& reach) {
     constexpr double straight_on = 1e-6; // radians: the rounding stays within 1e-6 of the length
     if (!(deviation > 0.0) || before.empty() || after.empty()) return std::nullopt;
     const double length_before = length_of(before), length_after = length_of(after);
     if (!(length_before > 0.0 && length_after > 0.0)) return std::nullopt;
     const std::optional<double> turn = turn_between(before.back(), after.front());
     if (turn && *turn < straight_on) return std::nullopt;
-    double reach = distance;
-    double reach_before = length_before, reach_after = length_after;
-    if (reach == infinity) {
-        reach = turn ? rounding_reach(deviation, *turn) : infinity;
-        reach_before *= 0.5;
-        reach_after *= 0.5;
-    }
+    const double most = turn ? rounding_reach(deviation, *turn) : infinity;
+    const auto reach_on = [&](double length, double stated) {
+        return stated < infinity ? std::min(stated, length) : std::min(most, 0.5 * length);
+    };
     CornerRegion region;
-    append_within(before, std::min(reach, reach_before), true, region.along);
+    append_within(before, reach_on(length_before, reach.before), true, region.along);
     std::reverse(region.along.begin(), region.along.end());
-    append_within(after, std::min(reach, reach_after), false, region.along);
+    append_within(after, reach_on(length_after, reach.after), false, region.along);
     if (std::none_of(region.along.begin(), region.along.end(), turns))
         region.hull = hull_of(region.along);
     return region;

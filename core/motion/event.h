@@ -138,6 +138,7 @@ struct PathModeChange {
         0.0; // feeds this close to a line may be joined into it, mm; adds to `tolerance`
     std::optional<double> distance = {}; // of the path at which such a corner is rounded, mm
     std::optional<double> rapid_tolerance = {}, rapid_distance = {}; // of corners between rapids
+    bool rapids_keep_speed = false; // corners between rapids are rounded as far as speeds demand
     bool between_kinds = false; // rounds corners between a rapid and a feed by the smaller distance
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/motion/corner.h"
 #include "core/motion/path.h"
 #include "core/sim/setup.h"
 
@@ -169,10 +170,17 @@ void change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
     corners.by_arc = corners.by + change.joining;
     corners.rapids =
         limit_of(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
+    const bool keeps_speed = change.rapids_keep_speed && !machine.rapid_corner_tolerance;
+    if (keeps_speed && states_dynamics(machine)) corners.rapids = {.deviation = infinity};
     if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
     corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
-    corners.unknown_rapids =
-        !is_stated(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
+    corners.unknown_rapids = !corners.rapids.keeps_speed()
+                             && !is_stated(change.rapid_tolerance, change.rapid_distance,
+                                           machine.rapid_corner_tolerance);
+}
+
+double deviation_of(const CornerLimit& limit, const std::vector<Leg>& legs) {
+    return limit.keeps_speed() ? 0.5 * length_of(legs) : limit.deviation;
 }
 
 void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {

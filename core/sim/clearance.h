@@ -113,7 +113,13 @@ struct CornerLimit {
     double distance = infinity; // at most this far before and after the corner, mm along the path
 
     bool rounds() const { return deviation > 0.0; }
+
+    /// Whether a corner is rounded as far as speeds and accelerations make it (`reach_at_speed`).
+    bool keeps_speed() const { return deviation == infinity; }
 };
+
+/// How far a rapid with these legs may be off its path at a corner, mm.
+double deviation_of(const CornerLimit& limit, const std::vector<Leg>& legs);
 
 /// A motion that ends at a corner.
 struct CornerStart {
@@ -140,7 +146,7 @@ struct RoundedCorners {
     double of_cuts = 0.0;        // largest of all feeds that cut: the stock's own uncertainty
     double mode_of_cuts = 0.0;   // largest `by` of all modes in which feeds cut
     bool unknown = false;        // the control may round feeds by an unknown amount
-    CornerLimit rapids;          // between rapids
+    CornerLimit rapids;          // between rapids; see `keeps_speed`
     bool unknown_rapids = false; // the control may round rapids by an unknown amount
     CornerLimit mixed;           // between a rapid and a feed
     CornerStart last;

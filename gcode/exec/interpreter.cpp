@@ -638,6 +638,8 @@ void begin_modes(ModalState& modal, const Environment& environment) {
         modal.plane = Plane::yz;
     if (const auto tolerance = control.number(ControlQuestion::corner_tolerance))
         modal.path_tolerance = *tolerance;
+    // emccanon.cc: it starts as if G64 without P had been programmed.
+    modal.corner_tolerances.rapids_keep_speed = environment.dialect == DialectId::linuxcnc;
     modal.distance_said = !find_parameter(ControlQuestion::starts_incremental, environment.dialect);
     modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect)
                       && !may_start_elsewhere(environment);

@@ -253,8 +253,9 @@ void set_blending(Execution& execution, bool rounds) {
         modal.path_tolerance = modal.naive_tolerance = length_of(execution, *word);
     if (const Word* word = execution.statement.word('Q'))
         modal.naive_tolerance = length_of(execution, *word);
-    if (modal.path_tolerance > 0.0 && execution.dialect.id == DialectId::linuxcnc)
-        modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
+    if (execution.dialect.id != DialectId::linuxcnc) return;
+    modal.corner_tolerances.rapids_keep_speed = modal.path_tolerance == 0.0;
+    if (modal.path_tolerance > 0.0) modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
 }
 
 /// G187 of Haas: E states how far corners may be rounded, until G187 without it, which restores

@@ -110,6 +110,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
           modal.fastest_speed, modal.speed, modal.length_sign, modal.cycle_dwell})
         digest.add(value);
     const CornerTolerances& corners = modal.corner_tolerances;
+    digest.add(uint64_t{corners.rapids_keep_speed});
     for (const auto& value : {corners.distance, corners.rapid_tolerance, corners.rapid_distance})
         digest.add(value);
     digest.add(uint64_t{corners.between_kinds});

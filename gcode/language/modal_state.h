@@ -226,6 +226,7 @@ struct CornerTolerances {
     std::optional<double> rapid_tolerance; // between rapids, from the path
     std::optional<double> rapid_distance;  // between rapids, before and after the corner
     bool between_kinds = false;            // corners between a rapid and a feed are rounded, too
+    bool rapids_keep_speed = false; // those between rapids as far as speeds demand, if not stated
 
     bool operator==(const CornerTolerances&) const = default;
 };

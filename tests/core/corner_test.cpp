@@ -1,8 +1,10 @@
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "core/motion/corner.h"
+#include "core/motion/machine.h"
 #include "tests/support/blended_corner.h"
 
 namespace core {
@@ -24,7 +26,7 @@ Leg leg(const Vec3& from, const Vec3& to) {
 
 std::optional<CornerRegion> region_of(const StraightCorner& path, const Limit& limit) {
     const std::vector<Leg> before = {leg(path.a, path.corner)}, after = {leg(path.corner, path.b)};
-    return corner_region(before, after, limit.deviation, limit.distance);
+    return corner_region(before, after, limit.deviation, {limit.distance, limit.distance});
 }
 
 Vec3 point(const AxisValues& values) { return {values[0], values[1], values[2]}; }
@@ -136,6 +138,58 @@ TEST(CornerRegion, ContainsCirclesWithinATolerance) {
         ASSERT_TRUE(region);
         for (const Vec3& p : positions) EXPECT_LE(outside(p, *region), 1e-6);
     }
+}
+
+/// A machine whose linear axes all have this acceleration.
+Machine machine_with(std::optional<double> acceleration) {
+    Machine machine;
+    for (size_t i = 0; i < 3; ++i) {
+        machine.axes[i].acceleration = acceleration;
+        machine.axes[i].rapid = 12000.0;
+    }
+    return machine;
+}
+
+TEST(CornerRegion, ContainsMachinesThatKeepTheirSpeed) {
+    RandomCorners random;
+    int below_half = 0, at_half = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const StraightCorner path = random.next();
+        const double acceleration = random.between(300.0, 5000.0);
+        const double speed = random.between(5.0, 300.0);
+        const Vec3 in = path.corner - path.a, out = path.b - path.corner;
+        Leg first = leg(path.a, path.corner), second = leg(path.corner, path.b);
+        first.end = glm::length(in) / speed;
+        second.end = glm::length(out) / speed;
+        const std::vector<Leg> before = {first}, after = {second};
+        const CornerReach reach = reach_at_speed(before, after, machine_with(acceleration));
+        const auto region = corner_region(before, after, infinity, reach);
+        ASSERT_TRUE(region);
+        // The planner keeps half of the acceleration for the other motion.
+        std::vector<Vec3> positions = blended(path, 0.5 * acceleration, speed, infinity);
+        // Or it follows a circle that needs sqrt(3)/2 of the acceleration.
+        const double turn = std::acos(glm::dot(in, out) / (glm::length(in) * glm::length(out)));
+        const double half = 0.5 * std::min(glm::length(in), glm::length(out));
+        const double on_circle =
+            speed * speed / (0.5 * std::sqrt(3.0) * acceleration) * std::tan(0.5 * turn);
+        for (const Vec3& p : on_a_circle(path, std::min(on_circle, half))) positions.push_back(p);
+        for (const Vec3& p : positions) EXPECT_LE(outside(p, *region), 1e-6);
+        EXPECT_LE(reach.before, 0.5 * glm::length(in) + 1e-9);
+        EXPECT_LE(reach.after, 0.5 * glm::length(out) + 1e-9);
+        const bool is_short = reach.before < 0.4 * glm::length(in);
+        below_half += is_short;
+        at_half += !is_short;
+    }
+    EXPECT_GT(below_half, 300) << "accelerations limit some";
+    EXPECT_GT(at_half, 300) << "the length of the moves limits others";
+}
+
+TEST(CornerRegion, ReachesToTheMiddleIfAccelerationsAreNotKnown) {
+    const std::vector<Leg> before = {leg({0, 0, 0}, {10, 0, 0})},
+                           after = {leg({10, 0, 0}, {10, 8, 0})};
+    const CornerReach reach = reach_at_speed(before, after, machine_with(std::nullopt));
+    EXPECT_EQ(reach.before, 5.0);
+    EXPECT_EQ(reach.after, 4.0);
 }
 
 TEST(CornerRegion, EndsAtTheLimits) {

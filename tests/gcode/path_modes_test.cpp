@@ -37,6 +37,8 @@ TEST(PathMode, OfLinuxcncRoundsRapidsAsFeeds) {
     const auto unlimited = mode_of("G21\nG64 P0.1\nG64\n", DialectId::linuxcnc);
     EXPECT_EQ(unlimited.tolerance, std::nullopt);
     EXPECT_EQ(unlimited.rapid_tolerance, std::nullopt);
+    EXPECT_TRUE(unlimited.rapids_keep_speed);
+    EXPECT_FALSE(mode.rapids_keep_speed);
 }
 
 TEST(PathMode, OfSiemensHasTheDistancesOfG641) {

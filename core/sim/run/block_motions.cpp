@@ -178,7 +178,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     check_limits(motion, before);
     if (motion.from != state.position || !is_certain) forget_bounds();
     if (motion.from != state.position) state.corners.last = {};
-    round_corners(motion);
+    round_corners(motion, path);
     state.memory.off_path = off_path + state.corners.of_cuts;
     doubt_assumed_start(motion);
     state.position = motion.to;

@@ -134,7 +134,7 @@ struct BlockRun {
     void forget_bounds();
     /// `before`: how far the machine may be from the start of the motion.
     void check_limits(const Motion& motion, const AxisSpread& before);
-    void round_corners(const Motion& motion);
+    void round_corners(const Motion& motion, const Path& path);
     /// The legs of a motion from everywhere where the machine may be; advances `state.spread`.
     Path take_path(const Motion& motion);
     /// Follows a probing move until its flutes make contact, which is its purpose, and checks the

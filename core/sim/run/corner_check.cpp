@@ -39,7 +39,7 @@ struct CornerCheck {
 
 } // namespace
 
-void BlockRun::round_corners(const Motion& motion) {
+void BlockRun::round_corners(const Motion& motion, const Path& path) {
     RoundedCorners& corners = state.corners;
     const bool rapid = motion.kind == MotionKind::rapid;
     const std::optional<MotionKind>& last = corners.last.kind;
@@ -48,8 +48,9 @@ void BlockRun::round_corners(const Motion& motion) {
         state.assumptions.insert("the control does not round corners where neither the program nor "
                                  "`corner_tolerance` of the machine gives a tolerance");
     if (rapid) {
-        off_path_rapids = std::max({off_path_rapids, corners.rapids.deviation,
-                                    corners.mixed.deviation, corners.last.rapids.deviation});
+        off_path_rapids =
+            std::max({off_path_rapids, deviation_of(corners.rapids, path.legs),
+                      corners.mixed.deviation, deviation_of(corners.last.rapids, path.legs)});
         return;
     }
     const double by = corners.of_feed(motion.arc.has_value());
@@ -68,18 +69,27 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
     if (!rapid && !was) return; // the whole feed counts as rounded
     const CornerLimit& limit = rapid && was ? last.rapids : last.mixed;
-    auto region = corner_region(last.legs, path.legs, limit.deviation, limit.distance);
+    const CornerReach reach = limit.keeps_speed()
+                                  ? reach_at_speed(last.legs, path.legs, setup.machine)
+                                  : CornerReach{limit.distance, limit.distance};
+    // The curve is within a triangle that begins and ends at the reach.
+    const double most = limit.keeps_speed() ? std::min(reach.before, reach.after) : limit.deviation;
+    auto region = corner_region(last.legs, path.legs, most, reach);
     if (!region) return;
-    state.assumptions.insert(fmt::format(
-        "corners between rapids may be rounded by up to {:g} mm; clearances include this",
-        limit.deviation));
+    state.assumptions.insert(
+        limit.keeps_speed()
+            ? "corners between rapids are rounded as far as the speeds and accelerations of the "
+              "machine make it (G64 without P); clearances include this"
+            : fmt::format("corners between rapids may be rounded by up to {:g} mm; clearances "
+                          "include this",
+                          limit.deviation));
     if (region->hull.positions.empty()) {
         state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
         return;
     }
     const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
     const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
-    const double deviation = bends && limit.distance < infinity ? limit.distance : limit.deviation;
+    const double deviation = bends && limit.distance < infinity ? limit.distance : most;
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
     memory.off_path = deviation + state.corners.of_cuts;
