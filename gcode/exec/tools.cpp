@@ -71,7 +71,8 @@ void use_offset(Execution& execution, std::optional<OffsetNumber> number, const 
     const AxisValues old = modal.offsets.tool;
     change_offsets(execution, offsets);
     modal.length_number = number;
-    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
+    execution.emit(UseToolLengthOffset{number, offset, follows_tip,
+                                       lacks_length(*execution.state.tables, number)});
     if (!moves) return;
     // The programmed position stays, so the machine moves: with the axes of this block, or alone.
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -226,7 +227,8 @@ void reload_length(Execution& execution) {
         if (offsets.tool[axis] != 0.0 && offsets.tool[2] == 0.0) along = axis;
     offsets.tool = offset_under(execution, number, modal.length_sign * length, along);
     change_offsets(execution, offsets);
-    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, offsets.follows_tip});
+    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, offsets.follows_tip,
+                                       lacks_length(*execution.state.tables, modal.length_number)});
 }
 
 bool changes_length_alone(const Execution& execution) {

@@ -65,7 +65,8 @@ void BlockRun::execute_motion(const FixtureChange& change) {
     state.memory.cuts.erase(change.fixture); // another fixture may be there now
     const Path path = path_of({.from = state.position, .to = state.position}, state.spread,
                               state.spread, setup.machine, 0.0);
-    if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
+    if (block.judgement || !change.is_there || spindle_is_lost() || path.legs.empty()
+        || !path.legs[0].start_known)
         return;
     check_rest(path);
 }
