@@ -247,7 +247,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
         if (setup.needs_only_verdict && !std::all_of(pairs.begin(), pairs.end(), is_clear)) break;
         track_centre(motion, leg);
         removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
-        legs.push_back({leg, result.duration, use(motion)});
+        legs.push_back({leg, result.duration, use(motion), rapid});
         if (use(motion) == FluteUse::cutting && leg.straight && !state.rules.length_in_doubt)
             note_reach(state.rules.reaches,
                        {setup, *tool(), block.block, leg, state.mounted_fixtures,

@@ -86,8 +86,9 @@ private:
             std::shared_ptr<const CutModel> after = now;
             if (cuts) after = cut_along(timed.leg, *now);
             // Flutes that cut meet the stock as intended.
-            if (!(cuts && body_->kind == PartKind::flutes) && !add_pieces(timed.leg, now, after, 6))
-                return false;
+            const bool is_intended = cuts && body_->kind == PartKind::flutes;
+            const bool counts = !is_intended && (timed.is_rapid || !query_.only_rapids);
+            if (counts && !add_pieces(timed.leg, now, after, 6)) return false;
             now = after;
         }
         return true;
@@ -120,8 +121,25 @@ private:
                                                     query_.setup.stock_mount, middle.positions[0])
                                       .rotation;
         if (is_apart(piece, Vec3(0.0), Form::shrunk)) return true;
+        const bool cuts = before != after;
+        if (!pair_.fixture && !cuts && is_clear(leg, *before)) return true;
         pieces_.push_back(std::move(piece));
         return pieces_.size() <= most_pieces;
+    }
+
+    /// Whether the check finds the pair clear on a leg on which nothing is cut. It measures finer
+    /// than is_apart: a drill that leaves its hole is clear.
+    bool is_clear(const Leg& leg, const CutModel& stock) const {
+        std::vector<TrackedPair> pairs;
+        CheckMemory memory;
+        Statistics statistics;
+        const std::vector<bool> no_fixtures(query_.setup.fixtures.size(), false);
+        LegCheck(query_.setup, query_.tool, FluteUse::not_cutting, query_.block, no_fixtures,
+                 memory, statistics)
+            .pass(leg, 0.0, stock, pairs);
+        return std::none_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
+            return pair.pair == pair_ && pair.verdict != Verdict::clear;
+        });
     }
 
     /// The body as it is, or shrunk by what counts as contact.
