@@ -131,9 +131,11 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     execution.modal().length_sign = sign;
     const core::SourceSpan where = word.span;
     if (!number) {
-        execution.warn(where, fmt::format("{} has no H word, and no tool is in the spindle to take "
-                                          "it from: no length offset is applied",
-                                          written(word)));
+        execution.warn(where, fmt::format("{} has no H word, and {}: no length offset is applied",
+                                          written(word),
+                                          execution.dialect.bare_length_offset_is_tool
+                                              ? "no tool is in the spindle to take it from"
+                                              : "no length offset is active whose H would stay"));
         use_offset(execution, std::nullopt, {}, follows_tip);
         return {};
     }
