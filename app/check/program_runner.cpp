@@ -305,12 +305,31 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     }
 }
 
+namespace {
+
+/// The first block in which the program uses a value that only the machine knows. From there on,
+/// feeds may be elsewhere.
+std::optional<core::BlockIndex> first_unknown_value(const CheckRecord& record) {
+    std::optional<core::BlockIndex> first;
+    for (const core::Finding& finding : record.findings)
+        if (finding.rule == core::rule_id("unknown-value") && finding.block
+            && (!first || *finding.block < *first))
+            first = finding.block;
+    return first;
+}
+
+} // namespace
+
 void ProgramRunner::compare_with_stock() {
     const core::Setup& setup = runner_->setup();
     const core::Aabb& stock = state_->machine.stock.outer_box;
+    const auto first = first_unknown_value(record_);
     std::vector<core::Finding> offsets = implausible_offsets(state_->offsets, setup, stock);
+    std::erase_if(offsets, [&](const core::Finding& finding) {
+        return first && finding.block && *finding.block >= *first;
+    });
     const bool ran_whole = !record_.stopped && !is_partial_;
-    if (ran_whole)
+    if (ran_whole && !first)
         if (auto nothing = nothing_cut(state_->offsets, setup, stock, !offsets.empty()))
             record_.findings.push_back(*std::move(nothing));
     for (core::Finding& finding : offsets) record_.findings.push_back(std::move(finding));
