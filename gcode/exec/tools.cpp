@@ -437,6 +437,28 @@ void leave_length_behind(Execution& execution, const std::array<bool, axis_count
     execution.state.rules.length_cancelled = modal.tool.has_value();
 }
 
+namespace {
+
+/// Whether the length offset that a move to machine coordinates cancelled counts again in this
+/// block. The same parameter decides when a length counts that G10 writes, of which its own words
+/// speak.
+bool length_returns(Execution& execution) {
+    constexpr ControlQuestion question = ControlQuestion::length_is_reloaded;
+    InterpreterState& state = execution.state;
+    const bool is_new = is_open(state, execution.environment, question);
+    const bool returns = answer_to(state, execution.environment, question, execution.block.line);
+    if (!is_new) return returns;
+    constexpr std::string_view effects[] = {
+        "the length offset that G28, G30 or G53 cancelled counts from the next G43, G44 or H",
+        "the length offset that G28, G30 or G53 cancelled counts from the next block"};
+    std::vector<Reading>& readings = state.readings.write().met.back().readings;
+    for (size_t i = 0; i < std::min(readings.size(), std::size(effects)); ++i)
+        readings[i].effect = effects[i];
+    return returns;
+}
+
+} // namespace
+
 core::Result<void> take_length_up(Execution& execution) {
     ModalState& modal = execution.modal();
     const bool is_new =
@@ -448,10 +470,7 @@ core::Result<void> take_length_up(Execution& execution) {
         execution.statement.word('Z') && !in_machine_coordinates(execution) && !goes_home;
     if (!is_new && !is_in_work) return {};
     const auto number = std::exchange(modal.length_left, std::nullopt);
-    if (is_new
-        || !answer_to(execution.state, execution.environment, ControlQuestion::length_is_reloaded,
-                      execution.block.line))
-        return {};
+    if (is_new || !length_returns(execution)) return {};
     modal.length_number = number;
     reload_length(execution);
     execution.state.rules.length_cancelled = false;

@@ -100,6 +100,17 @@ TEST(StoredValues, ALengthThatG28CancelsMayComeBack) {
     EXPECT_TRUE(is_low(""));
     EXPECT_TRUE(is_low("[control]\n\"5001#6\" = 0\n"));
     EXPECT_FALSE(is_low("[control]\n\"5001#6\" = 1\n"));
+    // If it comes back, Z350 is above the limit. The parameter also decides on G10, which is not
+    // meant here.
+    const std::string high = fanuc_head
+                             + std::string("G43 H1 G0 Z100.\nG0 X50. Y50.\nG91 G28 Z0.\nG90\n"
+                                           "G0 Z350.\nM30\n");
+    const std::string message = check(plate("fanuc"), high).finding("open-premise").message;
+    EXPECT_NE(message.find("(the length offset that G28, G30 or G53 cancelled counts from the next "
+                           "block)"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(message.find("G10"), std::string::npos) << message;
     // Nothing is asked where the program selects the offset again, or moves no Z.
     const std::string again = fanuc_head
                               + std::string("G43 H1 G0 Z100.\nG91 G28 Z0.\nG90\nG0 X50. Y50.\n"
