@@ -14,7 +14,6 @@
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
-#include "gcode/exec/following.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/text/source.h"
 
