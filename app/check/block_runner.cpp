@@ -9,11 +9,11 @@
 
 #include "app/check/block_events.h"
 #include "app/check/dog_legs.h"
+#include "app/check/over_travel.h"
 #include "app/check/prepared_check.h"
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
-#include "gcode/exec/following.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/text/source.h"
 
@@ -170,6 +170,8 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
     }
     step.checked.result = core::run_block(*setup_, of_block, state.machine);
     if (bent) step.as_dog_legs = worse_than(step.checked.result, *bent);
+    cure_machine_moves(step.checked.result.findings, block, check_.file.environment,
+                       lowering.offsets);
     add_warnings(block, state, step.findings);
     for (core::Finding& finding : step.checked.result.findings) step.findings.push_back(finding);
     if (path < core::PathCertainty::pose_unknown)

@@ -70,15 +70,17 @@ ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult
     return {.lower = least_clearance(setup, result)};
 }
 
-const CheckedBlock* nearest_block(const CheckRun& run) {
-    const CheckedBlock* nearest = nullptr;
-    const auto margin = [](const CheckedBlock& block) {
-        return block.result.pairs[*block.result.deciding].margin();
+const CheckedBlock* tightest_block(const CheckRun& run) {
+    const CheckedBlock* tightest = nullptr;
+    const auto is_tighter = [](const CheckedBlock& block, const CheckedBlock& than) {
+        const core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+        const core::PairClearance& other = than.result.pairs[*than.result.deciding];
+        return pair.verdict != other.verdict ? pair.verdict > other.verdict
+                                             : pair.margin() < other.margin();
     };
     for (const CheckedBlock& block : run.blocks)
-        if (block.result.deciding && (!nearest || margin(block) < margin(*nearest)))
-            nearest = &block;
-    return nearest;
+        if (block.result.deciding && (!tightest || is_tighter(block, *tightest))) tightest = &block;
+    return tightest;
 }
 
 void find_setup_next_to(CheckJob& job) {

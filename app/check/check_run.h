@@ -141,7 +141,8 @@ double least_clearance(const core::Setup& setup, const core::BlockResult& result
 /// pairs.
 ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult& result);
 
-/// The block whose deciding pair has the least margin; null if no pair decides any block.
-const CheckedBlock* nearest_block(const CheckRun& run);
+/// The block whose deciding pair has the worst verdict, and of those the least margin; null if no
+/// pair decides any block.
+const CheckedBlock* tightest_block(const CheckRun& run);
 
 } // namespace app

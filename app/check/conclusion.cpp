@@ -21,6 +21,8 @@
 #include "core/sim/run/finding_text.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/verdict.h"
+#include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -295,6 +297,17 @@ std::vector<Step> steps_of(const gcode::Program& program, gcode::Environment env
     return steps;
 }
 
+/// Whether the check has followed the reading in which blocks with `/` are skipped, to its end.
+bool other_position_was_checked(const CheckRecord& record, const gcode::Environment& environment) {
+    const gcode::ControlParameter* parameter =
+        gcode::find_parameter(gcode::ControlQuestion::blocks_are_deleted, environment.dialect);
+    if (!parameter) return false;
+    const std::string reason = gcode::premise_of(*parameter, environment).reason;
+    return std::any_of(
+        record.readings.begin(), record.readings.end(),
+        [&](const ReadingResult& reading) { return reading.reason == reason && !reading.stopped; });
+}
+
 } // namespace
 
 void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
@@ -314,11 +327,17 @@ void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
         note->cure.clear();
         return;
     }
-    note->severity = core::severity_of(input.setup, note->rule);
+    const uint32_t line = here != off.end() ? here->line : there->line;
     note->message =
         fmt::format("blocks with '/' are run here; with block delete on at the machine, "
                     "the path is different from line {} on",
-                    here != off.end() ? here->line : there->line);
+                    line);
+    if (other_position_was_checked(record, environment)) {
+        note->message += "; both positions of the switch were checked";
+        note->cure.clear();
+        return;
+    }
+    note->severity = core::severity_of(input.setup, note->rule);
 }
 
 namespace {

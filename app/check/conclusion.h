@@ -49,7 +49,8 @@ std::vector<AllowedRule> allowed_rules(std::string_view line);
 void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comments_count);
 
 /// If the record has a note about blocks with `/`, checks whether the path differs when block
-/// delete is on. If so, raises the note to the severity of its rule.
+/// delete is on. If so, and the other readings of the record do not include that position of the
+/// switch, raises the note to the severity of its rule.
 void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
                                  const gcode::Program& program,
                                  const gcode::Environment& environment);

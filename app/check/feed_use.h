@@ -21,6 +21,16 @@ struct Offsets;
 
 namespace app {
 
+/// A tool whose length in the control is not its true length.
+struct LengthError {
+    core::ToolNumber tool{};
+    std::optional<core::OffsetNumber> number; // of the length offset; empty: it has none
+    double counted = 0.0, length = 0.0;       // in the control, and true, mm
+
+    /// How much higher the tip is than the control counts, mm; negative: lower.
+    double higher() const { return counted - length; }
+};
+
 /// Where the feeds of a program in one work offset are, relative to the stock.
 struct OffsetUse {
     // The first feed of all, and those above, below and beside the stock.
@@ -28,15 +38,19 @@ struct OffsetUse {
     double total = 0.0;              // travel of all feeds, mm
     double way = 0.0;                // of this, within the stock's outline in XY
     double above = 0.0, below = 0.0; // of this, above and below the stock
-    double beside = 0.0;             // of `total`, with the flutes beside the outline
+    // Of `above` and `below`, where the tip would not be if the control had its true length.
+    double above_by_length = 0.0, below_by_length = 0.0;
+    std::optional<LengthError> length_error; // of the first of these feeds
+    double beside = 0.0;                     // of `total`, with the flutes beside the outline
     double lowest = core::infinity,
            highest = -core::infinity;        // Z of the feeds above or below, from the datum, mm
-    double highest_bottom = -core::infinity; // the highest of the lowest points of these feeds
+    double highest_bottom = -core::infinity; // the highest of the lowest points of these feeds,
+                                             // frame of the stock
     double under = core::infinity; // least distance of feeds below the stock from its bottom
     double gap = core::infinity;   // lower bound of the distance of the flutes to the stock and to
                                    // expendable fixtures, mm
     core::Aabb feeds;              // box of the tip on all feeds, frame of the stock
-    core::Vec3 datum = core::Vec3(0.0); // zero of the program, frame of the stock
+    core::Vec3 datum = core::Vec3(0.0); // zero of the work offset, frame of the stock
     bool is_parallel = true;            // false: the program's axes are turned against the stock's
     bool rapids_through = false;        // a rapid crosses the stock's height range, not upwards
     bool is_upright = true;             // false: the tool was tilted
@@ -52,8 +66,9 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
 
 /// The findings `offset-implausible`: work offsets in which nearly all feeds are beside the stock,
 /// above it, or below it by more than cutting through needs or together with rapids at its height.
-/// The datum was probably set elsewhere. If the program cuts the stock in another work offset, the
-/// one beside it may belong to a second workpiece, and the finding is a note.
+/// The datum was probably set elsewhere; or the tool's length in the control is wrong, if the cuts
+/// would be at the stock with the true one. If the program cuts the stock in another work offset,
+/// the one beside it may belong to a second workpiece, and the finding is a note.
 std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const core::Setup& setup,
                                                const core::Aabb& stock);
 

@@ -118,9 +118,21 @@ double gap_to_work(const core::Setup& setup, const core::Aabb& flutes, const cor
     return gap;
 }
 
-/// The datum of the program at the end of a motion.
+/// The length of a tool in the control, and its true length. Equal if the length acts along another
+/// axis than Z or the tool is tilted.
+LengthError length_of(const core::ToolAssembly& tool, const gcode::Offsets& offsets,
+                      const core::SimulatorState& state, const ToolTrack& track) {
+    const bool is_along_z = offsets.tool[0] == 0.0 && offsets.tool[1] == 0.0 && track.upright;
+    return {.tool = tool.description.number,
+            .number = state.length_offset.number,
+            .counted = is_along_z ? offsets.tool[2] : tool.length,
+            .length = tool.length};
+}
+
+/// The datum of the work offset at the end of a motion. `higher`: how much higher the tip is than
+/// the control counts.
 void note_datum(OffsetUse& use, const gcode::Offsets& offsets, const core::Motion& motion,
-                const ToolTrack& track) {
+                const ToolTrack& track, double higher) {
     const gcode::Position from = gcode::program_from_machine(offsets, motion.from);
     const gcode::Position to = gcode::program_from_machine(offsets, motion.to);
     core::Vec3 first(0.0), last(0.0);
@@ -129,10 +141,11 @@ void note_datum(OffsetUse& use, const gcode::Offsets& offsets, const core::Motio
         first[axis] = from[i].value_or(0.0);
         last[axis] = to[i].value_or(0.0);
     }
-    use.datum = track.tips.back() - last;
+    const core::Vec3 up(0.0, 0.0, higher);
+    use.datum = track.tips.back() - last - up;
     constexpr double rounding = 1e-3;
     use.is_parallel =
-        use.is_parallel && glm::distance(track.tips.front() - first, use.datum) < rounding;
+        use.is_parallel && glm::distance(track.tips.front() - first - up, use.datum) < rounding;
 }
 
 void add_feed(OffsetUse& use, const core::Setup& setup, const ToolTrack& track,
@@ -150,22 +163,66 @@ void add_feed(OffsetUse& use, const core::Setup& setup, const ToolTrack& track,
 
 /// Adds a feed within the stock's outline to those above or below the stock.
 void add_height(OffsetUse& use, const ToolTrack& track, const core::Aabb& stock,
-                core::BlockIndex block) {
-    const double length = track.length();
+                core::BlockIndex block, const LengthError& error) {
+    const double length = track.length(), higher = error.higher();
     use.way += length;
+    bool is_by_length = false;
     if (track.low() >= stock.max.z - slack) {
         use.above += length;
         if (!use.above_block) use.above_block = block;
+        is_by_length = track.low() - higher < stock.max.z - slack;
+        if (is_by_length) use.above_by_length += length;
     } else if (track.high() <= stock.min.z + slack) {
         use.below += length;
         use.under = std::min(use.under, stock.min.z - track.high());
         if (!use.below_block) use.below_block = block;
+        is_by_length = track.high() - higher > stock.min.z + slack;
+        if (is_by_length) use.below_by_length += length;
     } else {
         return;
     }
-    use.lowest = std::min(use.lowest, track.low() - use.datum.z);
-    use.highest = std::max(use.highest, track.high() - use.datum.z);
-    use.highest_bottom = std::max(use.highest_bottom, track.low() - use.datum.z);
+    if (is_by_length && !use.length_error) use.length_error = error;
+    const double zero = use.datum.z + higher;
+    use.lowest = std::min(use.lowest, track.low() - zero);
+    use.highest = std::max(use.highest, track.high() - zero);
+    use.highest_bottom = std::max(use.highest_bottom, track.low());
+}
+
+/// Whether a part of the feeds within the stock's outline is nearly all of them.
+bool is_nearly_all(const OffsetUse& use, double part) {
+    return use.way > 0.0 && part >= nearly_all * use.way;
+}
+
+/// The wrong length because of which the feeds are above or below the stock; null if that is not
+/// the cause.
+const LengthError* length_cause(const OffsetUse& use) {
+    const bool is_above =
+        is_nearly_all(use, use.above) && !is_nearly_all(use, use.above - use.above_by_length);
+    const bool is_below =
+        is_nearly_all(use, use.below) && !is_nearly_all(use, use.below - use.below_by_length);
+    return is_above || is_below ? &*use.length_error : nullptr;
+}
+
+/// "The control counts with a length of 150.000 mm (H3) for tool 1, which is 100.000 mm long: its
+/// tip is 50.000 mm higher than programmed".
+std::string length_text(const LengthError& error) {
+    const int tool = core::value_of(error.tool);
+    const bool is_of_other = error.number && core::value_of(*error.number) != tool;
+    return fmt::format(
+        "The control counts with a length of {:.3f} mm{} for tool {}, which is {:.3f} mm long: its "
+        "tip is {:.3f} mm {} than programmed",
+        error.counted,
+        is_of_other ? fmt::format(" (H{})", core::value_of(*error.number)) : std::string(), tool,
+        error.length, std::abs(error.higher()), error.higher() > 0.0 ? "higher" : "lower");
+}
+
+std::string cure_of(const LengthError& error) {
+    const int tool = core::value_of(error.tool);
+    if (error.number && core::value_of(*error.number) != tool)
+        return fmt::format("Use H{}, or correct its length.", tool);
+    return fmt::format("Correct the length of tool {} in the control; if it is right there, "
+                       "correct the tool in the set-up.",
+                       tool);
 }
 
 /// "X0.000 to X10.000, Y..." of those axes in which the boxes are apart, or of all.
@@ -206,12 +263,18 @@ core::Finding height_finding(const core::Setup& setup, size_t index, const Offse
                              const core::Aabb& stock, bool above) {
     core::Finding finding = new_finding(setup, core::rule_id("offset-implausible"),
                                         above ? use.above_block : use.below_block);
+    const std::string where =
+        above ? "all cuts are above the stock" : "the cuts are below the stock";
+    if (const LengthError* error = length_cause(use)) {
+        finding.message = fmt::format("{}, and {}.", length_text(*error), where);
+        finding.cure = cure_of(*error);
+        return finding;
+    }
     const std::string name = name_of_offset(index);
     finding.message = fmt::format(
         "In {} the program feeds between Z{:.3f} and Z{:.3f}, but the stock is between "
         "Z{:.3f} and Z{:.3f}: {}.",
-        name, use.lowest, use.highest, stock.min.z - use.datum.z, stock.max.z - use.datum.z,
-        above ? "all cuts are above the stock" : "the cuts are below the stock");
+        name, use.lowest, use.highest, stock.min.z - use.datum.z, stock.max.z - use.datum.z, where);
     finding.cure = fmt::format("Check whether the program's zero is at the top or the bottom of "
                                "the stock, and set Z of {} there.",
                                name);
@@ -234,6 +297,13 @@ core::Finding beside_finding(const core::Setup& setup, size_t index, const Offse
     return finding;
 }
 
+bool feeds(const core::BlockEvents& block) {
+    return std::any_of(block.events.begin(), block.events.end(), [](const core::Event& event) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        return motion && motion->kind != core::MotionKind::rapid;
+    });
+}
+
 bool is_beside(const OffsetUse& use) { return use.beside >= nearly_all * use.total; }
 
 } // namespace
@@ -242,6 +312,10 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
                    const core::BlockEvents& block, const core::SimulatorState& state) {
     const auto tool = state.tool ? setup.tools.find(*state.tool) : setup.tools.end();
     if (tool == setup.tools.end()) return;
+    if (state.length_offset.is_assumed) {
+        if (feeds(block)) uses[offsets.active].gap = 0.0; // it may cut the stock
+        return;
+    }
     const core::Aabb& stock = state.stock.outer_box;
     for (const core::Event& event : block.events) {
         const auto* motion = std::get_if<core::Motion>(&event);
@@ -263,9 +337,10 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
             continue;
         }
         if (!cuts) continue;
-        note_datum(use, offsets, *motion, *track);
+        const LengthError error = length_of(tool->second, offsets, state, *track);
+        note_datum(use, offsets, *motion, *track, error.higher());
         add_feed(use, setup, *track, stock, block.block);
-        if (crosses) add_height(use, *track, stock, block.block);
+        if (crosses) add_height(use, *track, stock, block.block, error);
     }
 }
 
@@ -282,11 +357,11 @@ std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const cor
             findings.push_back(beside_finding(setup, index, use, stock, some_cut));
             continue;
         }
-        if (!use.is_upright || use.way <= 0.0) continue;
-        const bool above = use.above >= nearly_all * use.way
-                           && use.highest_bottom > stock.max.z - use.datum.z + in_the_air;
+        if (!use.is_upright) continue;
+        const bool above =
+            is_nearly_all(use, use.above) && use.highest_bottom > stock.max.z + in_the_air;
         const bool below =
-            use.below >= nearly_all * use.way && (use.rapids_through || use.under > cut_through);
+            is_nearly_all(use, use.below) && (use.rapids_through || use.under > cut_through);
         if (above || below) findings.push_back(height_finding(setup, index, use, stock, above));
     }
     std::erase_if(findings, [](const core::Finding& finding) {
@@ -319,6 +394,10 @@ std::optional<core::Finding> nothing_cut(const OffsetUses& uses, const core::Set
         is_located ? "" : "; " + places_text(name_of_offset(main->first), main->second, stock));
     finding.cure = "Check the work offset, the tool lengths and the position of the stock: one of "
                    "them is probably wrong.";
+    if (const LengthError* error = length_cause(main->second)) {
+        if (!is_located) finding.message += fmt::format(" {}.", length_text(*error));
+        finding.cure = cure_of(*error);
+    }
     return finding;
 }
 

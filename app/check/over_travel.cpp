@@ -8,6 +8,9 @@
 
 #include "app/base/text.h"
 #include "app/check/check_run.h"
+#include "gcode/language/canonical.h"
+#include "gcode/language/control.h"
+#include "gcode/language/environment.h"
 
 namespace app {
 namespace {
@@ -85,6 +88,40 @@ void combine_over_travels(CheckRecord& record, CheckReport& report) {
         (is_combined ? report.combined_findings : kept).push_back(std::move(record.findings[i]));
     }
     record.findings = std::move(kept);
+}
+
+namespace {
+
+/// Cure of a move to machine coordinates that goes beyond a limit of an axis.
+std::string cure_of_machine_move(size_t axis, const gcode::Environment& environment,
+                                 const gcode::Offsets& offsets) {
+    constexpr gcode::ControlQuestion question = gcode::ControlQuestion::machine_moves_tip;
+    const char letter = core::axis_letters[axis];
+    const auto answer = environment.control.answer(question);
+    const gcode::ControlParameter* parameter = gcode::find_parameter(question, environment.dialect);
+    if (!parameter || offsets.tool[axis] == 0.0 || !answer.value_or(true))
+        return fmt::format("Change the {} of this block: it is a machine coordinate, so neither "
+                           "the work offset nor the position of the work has an effect on it.",
+                           letter);
+    const std::string cure =
+        fmt::format("Add D0 to this block: a tool length is active, so it moves the tip of the "
+                    "tool to this {}, and the machine farther.",
+                    letter);
+    if (answer) return cure;
+    return fmt::format(
+        "{} If the control moves the gauge line there, state \"{}\" = 1 under [control] "
+        "in the set-up.",
+        cure, parameter->key);
+}
+
+} // namespace
+
+void cure_machine_moves(std::vector<core::Finding>& findings, const gcode::BlockCommands& block,
+                        const gcode::Environment& environment, const gcode::Offsets& offsets) {
+    if (!block.in_machine) return;
+    for (core::Finding& finding : findings)
+        if (finding.over_travel)
+            finding.cure = cure_of_machine_move(finding.over_travel->axis, environment, offsets);
 }
 
 } // namespace app

@@ -41,6 +41,8 @@ public:
 
 private:
     void apply_length();
+    /// Gives G43 without H, at which the mismatch begins, the length of the tool.
+    void give_number(const gcode::BlockCommands& block);
 
     const core::Setup& setup_;
     bool speed_by_hand_;
@@ -80,10 +82,26 @@ void CorrectedRun::apply_length() {
     gcode::change_offsets(control_.modal, corrected);
 }
 
+void CorrectedRun::give_number(const gcode::BlockCommands& block) {
+    if (mismatch_.number || block.block != mismatch_.first || !machine_.tool) return;
+    const bool sets_none =
+        std::ranges::any_of(block.commands, [](const gcode::CanonicalCommand& command) {
+            const auto* length = std::get_if<gcode::UseToolLengthOffset>(&command);
+            return length && !length->number;
+        });
+    if (!sets_none) return;
+    const core::OffsetNumber number{core::value_of(*machine_.tool)};
+    gcode::LengthOffset& entry = control_.tables.write().lengths[number];
+    entry.length = mismatch_.length;
+    entry.wear = 0.0;
+    control_.modal.length_number = number;
+}
+
 void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& setup) {
     is_lost_ = is_lost_ || &setup != &setup_;
     if (is_lost_) return;
     apply_length();
+    give_number(real);
     const auto next = interpreter_.next(control_);
     is_lost_ = !next || !*next || (*next)->block != real.block || (*next)->line != real.line
                || (*next)->file != real.file;
@@ -287,12 +305,31 @@ void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     }
 }
 
+namespace {
+
+/// The first block in which the program uses a value that only the machine knows. From there on,
+/// feeds may be elsewhere.
+std::optional<core::BlockIndex> first_unknown_value(const CheckRecord& record) {
+    std::optional<core::BlockIndex> first;
+    for (const core::Finding& finding : record.findings)
+        if (finding.rule == core::rule_id("unknown-value") && finding.block
+            && (!first || *finding.block < *first))
+            first = finding.block;
+    return first;
+}
+
+} // namespace
+
 void ProgramRunner::compare_with_stock() {
     const core::Setup& setup = runner_->setup();
     const core::Aabb& stock = state_->machine.stock.outer_box;
+    const auto first = first_unknown_value(record_);
     std::vector<core::Finding> offsets = implausible_offsets(state_->offsets, setup, stock);
+    std::erase_if(offsets, [&](const core::Finding& finding) {
+        return first && finding.block && *finding.block >= *first;
+    });
     const bool ran_whole = !record_.stopped && !is_partial_;
-    if (ran_whole)
+    if (ran_whole && !first)
         if (auto nothing = nothing_cut(state_->offsets, setup, stock, !offsets.empty()))
             record_.findings.push_back(*std::move(nothing));
     for (core::Finding& finding : offsets) record_.findings.push_back(std::move(finding));

@@ -79,6 +79,8 @@ void add(StateDigest& digest, const core::SimulatorState& machine) {
     digest.add(static_cast<uint64_t>(machine.spindle.direction));
     digest.add(machine.spindle.speed);
     digest.add(machine.length_offset.length);
+    digest.add(uint64_t(machine.length_offset.is_assumed));
+    digest.add(uint64_t(machine.height_is_assumed));
     digest.add(machine.time);
     add(digest, machine.corners);
 }

@@ -108,7 +108,10 @@ core::Result<void> change(const LengthOffsetOverride& change, core::Setup& setup
     if (!is_on) return {};
     const gcode::Offsets offsets = with_length(modal, before, change.length);
     core::LengthOffsetChange& counted = state.machine.length_offset;
-    if (counted.number == change.number) counted.length += change.length - before;
+    if (counted.number == change.number) {
+        counted.length += change.length - before;
+        counted.is_assumed = false;
+    }
     use(offsets, state);
     track_changed_length(state.lengths, setup, state.machine);
     return {};

@@ -122,7 +122,8 @@ struct Dwell {
 /// The new length that the control adds along Z; `number` is empty after G49.
 struct LengthOffsetChange {
     std::optional<OffsetNumber> number;
-    double length = 0.0; // mm
+    double length = 0.0;     // mm
+    bool is_assumed = false; // nobody states the length under this number
 };
 
 /// How corners are passed. exact_stop: every motion ends at rest (G61.1). exact_path: the path is

@@ -66,7 +66,9 @@ std::string left_over(const ModalState& modal, bool at_end) {
     add(transforms.rotation.has_value(), "rotation (G68)");
     add(transforms.mirror.axes != MirrorImage{}.axes, "a mirror image");
     add(transforms.tilt.has_value(), "a tilted plane (G68.2)");
-    add(at_end && modal.offsets.axis != zero_position, "an axis offset (G92)");
+    // A work offset that a program sets at an unknown position makes this offset unknown, too.
+    add(at_end && modal.axis_offset_on && modal.offsets.axis != zero_position,
+        "an axis offset (G92)");
     return found;
 }
 
@@ -78,13 +80,20 @@ void check_tool_change(Execution& execution, const ModalState& before) {
     const bool has_tool = modal.tool && core::value_of(*modal.tool) != 0;
     memory.lacks_length =
         has_tool && execution.dialect.length_needs_g43 && !modal.length_is_tools();
-    memory.length_cancelled = false;
+    memory.g43_lacks_h = memory.length_cancelled = false;
     memory.increments_stay =
         before.distance == DistanceMode::incremental && modal.distance == DistanceMode::incremental;
     if (const std::string on = left_over(before, false); !on.empty())
         advise(execution, entry->word->span, core::rule_id("state-left-over"),
                fmt::format("{}: still active at this tool change: {}", written(*entry->word), on),
                "Cancel it before the tool change.");
+}
+
+/// Whether a code turns on a length offset, but no H says which.
+bool names_no_length(const Execution& execution, CodeNumber code) {
+    const bool takes_number =
+        code == g_code(43) || code == g_code(44) || code == g_code(43, 4) || code == g_code(43, 5);
+    return takes_number && !execution.modal().length_number;
 }
 
 void check_length_codes(Execution& execution) {
@@ -95,6 +104,11 @@ void check_length_codes(Execution& execution) {
     memory.length_cancelled = cancels && !memory.lacks_length && execution.dialect.length_needs_g43
                               && execution.modal().tool.has_value();
     if (!cancels) memory.lacks_length = false;
+    memory.g43_lacks_h = names_no_length(execution, entry->code->number);
+    if (memory.g43_lacks_h) {
+        const auto& tool = execution.modal().tool;
+        memory.lacks_length = tool && core::value_of(*tool) != 0;
+    }
 }
 
 /// The first Z move in work coordinates shows whether the program handles the tool length.
@@ -108,7 +122,9 @@ void check_length(Execution& execution, const ModalState& before) {
     if (execution.statement.of(ModalGroup::tool_change) && !execution.statement.word('Z')) return;
     const int tool = modal.tool ? core::value_of(*modal.tool) : 0;
     const SourceSpan where = moving_word(execution).span;
-    const std::string cure = fmt::format("Add G43 H{} before the first Z move.", tool);
+    const std::string cure = memory.g43_lacks_h
+                                 ? fmt::format("Add H{} to the block with G43 or G44.", tool)
+                                 : fmt::format("Add G43 H{} before the first Z move.", tool);
     if (memory.lacks_length && modal.length_sign != 0.0 && modal.length_number)
         advise(execution, where, core::rule_id("missing-length-offset"),
                fmt::format("tool {} is in the spindle, but H{}, the length offset of another tool, "
@@ -117,9 +133,9 @@ void check_length(Execution& execution, const ModalState& before) {
                cure);
     else if (memory.lacks_length)
         advise(execution, where, core::rule_id("missing-length-offset"),
-               fmt::format("tool {} moves in Z without a length offset: Z refers to the gauge "
+               fmt::format("tool {} moves in Z without a length offset{}: Z refers to the gauge "
                            "line, not to the tip",
-                           tool),
+                           tool, memory.g43_lacks_h ? ", because G43 or G44 has no H" : ""),
                cure);
     else if (before.position[2] && modal.position[2] < before.position[2])
         advise(execution, where, core::rule_id("length-offset-cancelled"),

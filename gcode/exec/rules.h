@@ -11,6 +11,7 @@ struct ModalState;
 /// not influence how the program continues.
 struct RuleState {
     bool lacks_length = false;     // a tool was changed in, without a length offset since
+    bool g43_lacks_h = false;      // the last G43 or G44 found no length offset to apply
     bool length_cancelled = false; // G49 with a tool in the spindle, without a length offset since
     bool offset_is_fresh = true;   // no motion yet with the active work offset
     bool increments_stay = false;  // G91 was active at the tool change

@@ -71,7 +71,8 @@ void use_offset(Execution& execution, std::optional<OffsetNumber> number, const 
     const AxisValues old = modal.offsets.tool;
     change_offsets(execution, offsets);
     modal.length_number = number;
-    execution.emit(UseToolLengthOffset{number, offset, follows_tip});
+    execution.emit(UseToolLengthOffset{number, offset, follows_tip,
+                                       lacks_length(*execution.state.tables, number)});
     if (!moves) return;
     // The programmed position stays, so the machine moves: with the axes of this block, or alone.
     for (size_t axis = 0; axis < axis_count; ++axis)
@@ -130,9 +131,11 @@ core::Result<void> use_table_length(Execution& execution, const Word& word, doub
     execution.modal().length_sign = sign;
     const core::SourceSpan where = word.span;
     if (!number) {
-        execution.warn(where, fmt::format("{} has no H word, and no tool is in the spindle to take "
-                                          "it from: no length offset is applied",
-                                          written(word)));
+        execution.warn(where, fmt::format("{} has no H word, and {}: no length offset is applied",
+                                          written(word),
+                                          execution.dialect.bare_length_offset_is_tool
+                                              ? "no tool is in the spindle to take it from"
+                                              : "no length offset is active whose H would stay"));
         use_offset(execution, std::nullopt, {}, follows_tip);
         return {};
     }
@@ -226,7 +229,8 @@ void reload_length(Execution& execution) {
         if (offsets.tool[axis] != 0.0 && offsets.tool[2] == 0.0) along = axis;
     offsets.tool = offset_under(execution, number, modal.length_sign * length, along);
     change_offsets(execution, offsets);
-    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, offsets.follows_tip});
+    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, offsets.follows_tip,
+                                       lacks_length(*execution.state.tables, modal.length_number)});
 }
 
 bool changes_length_alone(const Execution& execution) {
@@ -433,6 +437,28 @@ void leave_length_behind(Execution& execution, const std::array<bool, axis_count
     execution.state.rules.length_cancelled = modal.tool.has_value();
 }
 
+namespace {
+
+/// Whether the length offset that a move to machine coordinates cancelled counts again in this
+/// block. The same parameter decides when a length counts that G10 writes, of which its own words
+/// speak.
+bool length_returns(Execution& execution) {
+    constexpr ControlQuestion question = ControlQuestion::length_is_reloaded;
+    InterpreterState& state = execution.state;
+    const bool is_new = is_open(state, execution.environment, question);
+    const bool returns = answer_to(state, execution.environment, question, execution.block.line);
+    if (!is_new) return returns;
+    constexpr std::string_view effects[] = {
+        "the length offset that G28, G30 or G53 cancelled counts from the next G43, G44 or H",
+        "the length offset that G28, G30 or G53 cancelled counts from the next block"};
+    std::vector<Reading>& readings = state.readings.write().met.back().readings;
+    for (size_t i = 0; i < std::min(readings.size(), std::size(effects)); ++i)
+        readings[i].effect = effects[i];
+    return returns;
+}
+
+} // namespace
+
 core::Result<void> take_length_up(Execution& execution) {
     ModalState& modal = execution.modal();
     const bool is_new =
@@ -444,10 +470,7 @@ core::Result<void> take_length_up(Execution& execution) {
         execution.statement.word('Z') && !in_machine_coordinates(execution) && !goes_home;
     if (!is_new && !is_in_work) return {};
     const auto number = std::exchange(modal.length_left, std::nullopt);
-    if (is_new
-        || !answer_to(execution.state, execution.environment, ControlQuestion::length_is_reloaded,
-                      execution.block.line))
-        return {};
+    if (is_new || !length_returns(execution)) return {};
     modal.length_number = number;
     reload_length(execution);
     execution.state.rules.length_cancelled = false;

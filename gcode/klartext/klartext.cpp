@@ -272,7 +272,9 @@ void use_length(Execution& execution, int number) {
     offsets.tool[normal] = length.value_or(0.0) + (longer ? length_of(execution, *longer) : 0.0);
     change_offsets(execution, offsets);
     execution.modal().length_number = OffsetNumber(number);
-    execution.emit(UseToolLengthOffset{OffsetNumber(number), offsets.tool, offsets.follows_tip});
+    execution.emit(
+        UseToolLengthOffset{OffsetNumber(number), offsets.tool, offsets.follows_tip,
+                            lacks_length(*execution.state.tables, OffsetNumber(number))});
     std::optional<double> radius = radius_of(execution, number);
     if (radius && wider) *radius += length_of(execution, *wider);
     const LengthUnit unit = execution.modal().unit;

@@ -102,6 +102,7 @@ struct UseToolLengthOffset {
     std::optional<core::OffsetNumber> number; // empty: G49, or a length without a number (G43.1)
     AxisValues offset;                        // mm and degrees; the length is along Z
     bool follows_tip = false;                 // G43.4, G43.5
+    bool is_assumed = false;                  // nobody states the length under this number
 
     bool operator==(const UseToolLengthOffset&) const = default;
 };

@@ -19,6 +19,10 @@ std::optional<double> length_under(const Tables& tables, int number) {
     return std::nullopt;
 }
 
+bool lacks_length(const Tables& tables, std::optional<core::OffsetNumber> number) {
+    return number && value_of(*number) != 0 && !length_under(tables, value_of(*number));
+}
+
 std::optional<double> diameter_under(const Tables& tables, int number) {
     const auto entry = tables.lengths.find(core::OffsetNumber(number));
     if (entry != tables.lengths.end() && entry->second.diameter != 0.0)

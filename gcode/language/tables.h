@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/base/ids.h"
@@ -39,6 +40,9 @@ WorkOffset& writable_work_offset(Tables& tables, size_t index);
 /// The length for an H number: from the table, else of the tool with that number; empty if neither
 /// exists.
 std::optional<double> length_under(const Tables& tables, int number);
+
+/// Whether an offset has a number under which nobody states a length.
+bool lacks_length(const Tables& tables, std::optional<core::OffsetNumber> number);
 
 /// The diameter for a D number: from the table, else of the tool with that number; empty if neither
 /// exists.

@@ -212,7 +212,8 @@ struct Visitor {
     void operator()(const UseToolLengthOffset& command) {
         lowering.offsets.tool = command.offset;
         lowering.offsets.follows_tip = command.follows_tip;
-        events.emplace_back(core::LengthOffsetChange{command.number, command.offset[2]});
+        events.emplace_back(
+            core::LengthOffsetChange{command.number, command.offset[2], command.is_assumed});
     }
     void operator()(const SetOffset& command) { lowering.offsets = command.offsets; }
     void operator()(const SelectTool&) {}

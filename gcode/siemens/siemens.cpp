@@ -445,7 +445,8 @@ void use_length(Execution& execution, core::SourceSpan where) {
     if (offsets == modal.offsets && modal.length_number == number) return;
     change_siemens_offsets(execution, offsets, modal.length_travel);
     modal.length_number = number;
-    execution.emit(UseToolLengthOffset{number, offsets.tool, offsets.follows_tip});
+    execution.emit(UseToolLengthOffset{number, offsets.tool, offsets.follows_tip,
+                                       lacks_length(*execution.state.tables, number)});
 }
 
 void change(Execution& execution, core::SourceSpan where) {

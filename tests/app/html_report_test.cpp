@@ -174,7 +174,7 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
 TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {
     CheckRun run = clamped_plate();
     run.findings.clear();
-    const CheckedBlock* nearest = nearest_block(run);
+    const CheckedBlock* nearest = tightest_block(run);
     ASSERT_NE(nearest, nullptr);
     const size_t at = core::value_of(nearest->block);
     core::BlockResult& result = run.blocks[at].result;
@@ -206,7 +206,7 @@ TEST(HtmlReport, ShowsTheTightestBlockWhereNothingWasFound) {
     EXPECT_THAT(page, HasSubstr("No findings."));
     EXPECT_EQ(count_of(page, "<article"), 1U);
     EXPECT_THAT(page, HasSubstr(fmt::format("data-block=\"{}\"",
-                                            core::value_of(nearest_block(run)->block))));
+                                            core::value_of(tightest_block(run)->block))));
 }
 
 TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {

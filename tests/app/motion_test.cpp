@@ -114,6 +114,30 @@ TEST(OverTravel, IsFoundAHairBeyondTheLimitAndNotAtIt) {
     EXPECT_EQ(check(setup, program({"G0 Y200.001"})).errors(), "over-travel 6");
 }
 
+TEST(OverTravel, OfAMachineMoveIsNotCuredByAnotherOffset) {
+    const auto cure = [](const Checked& checked) { return checked.finding("over-travel").cure; };
+    EXPECT_EQ(cure(check(without_cuts(), program({"G53 G0 Z10."}))),
+              "Change the Z of this block: it is a machine coordinate, so neither the work offset "
+              "nor the position of the work has an effect on it.");
+    const auto siemens = [&](const std::string& move, const std::string& control) {
+        return cure(check(without_cuts()
+                              .program("dialect = \"siemens\"\n"
+                                       "start = { X = -350, Y = -200, Z = 0 }\n")
+                              .also("[control]\n" + control),
+                          "G17 G71 G90 G94 G40\nT1\nM6\nD1\nS6000 M3\nG54 G0 X50 Y50\nZ60\n" + move
+                              + "\nM30\n"));
+    };
+    const std::string tip = "Add D0 to this block: a tool length is active, so it moves the tip of "
+                            "the tool to this Z, and the machine farther.";
+    EXPECT_EQ(siemens("SUPA G0 Z0", ""),
+              tip
+                  + " If the control moves the gauge line there, state \"MD10760\" = 1 under "
+                    "[control] in the set-up.");
+    EXPECT_EQ(siemens("SUPA G0 Z0", "MD10760 = 0\n"), tip);
+    EXPECT_EQ(siemens("SUPA G0 Z5", "MD10760 = 1\n").substr(0, 12), "Change the Z");
+    EXPECT_EQ(siemens("SUPA G0 Z5 D0", "").substr(0, 12), "Change the Z");
+}
+
 TEST(OverTravel, OfALoopIsOneFindingForEachLimitThatNamesTheLargestExcess) {
     // Y200 of the work is the limit: from the 11th pass on the loop is beyond it, at last by 40.
     const Checked checked =

@@ -114,6 +114,48 @@ TEST(OffsetImplausible, GivesHeightsOfTheMotionAndNotOfTheBlockReadAhead) {
     EXPECT_NE(message.find("between Z-30.000 and Z0.000"), std::string::npos) << message;
 }
 
+/// A slot in the plate, with a tool of 95 mm.
+Checked slot(const SetupWriter& setup, const std::string& before = "") {
+    return check(
+        setup, program({before, "G0 X20. Y50.", "Z2.", "G1 Z-5. F300.", "X80. F800.", "G0 Z60."}));
+}
+
+TEST(OffsetImplausible, NamesTheLengthIfThatIsTheCause) {
+    const Checked wrong =
+        slot(SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 145\n"));
+    const FindingLine finding = wrong.finding("offset-implausible");
+    EXPECT_EQ(finding.message, "The control counts with a length of 145.000 mm for tool 1, which "
+                               "is 95.000 mm long: its tip is 50.000 mm higher than programmed, "
+                               "and all cuts are above the stock.");
+    EXPECT_EQ(finding.cure, "Correct the length of tool 1 in the control; if it is right there, "
+                            "correct the tool in the set-up.");
+    EXPECT_EQ(wrong.finding("nothing-cut").cure, finding.cure);
+    const SetupWriter two = SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 95\n"
+                                                  "[[length_offset]]\nnumber = 3\nlength = 145\n");
+    const FindingLine other = slot(two, "G43 H3 Z60.").finding("offset-implausible");
+    EXPECT_NE(other.message.find("145.000 mm (H3) for tool 1"), std::string::npos) << other.message;
+    EXPECT_EQ(other.cure, "Use H1, or correct its length.");
+}
+
+TEST(OffsetImplausible, NamesTheWorkOffsetIfTheLengthIsNotTheCause) {
+    // 50 mm too high by the work offset, and 2 mm by the length.
+    const Checked wrong = slot(
+        SetupWriter().lengths("[[length_offset]]\nnumber = 1\nlength = 97\n"), "G10 L2 P1 Z-370.");
+    const FindingLine finding = wrong.finding("offset-implausible");
+    EXPECT_NE(finding.message.find("In G54 the program feeds between Z-5.000 and Z2.000, but the "
+                                   "stock is between Z-80.000 and Z-50.000"),
+              std::string::npos)
+        << finding.message;
+}
+
+TEST(OffsetImplausible, IsNotReportedWhereTheOffsetIsUnknown) {
+    const Checked unknown = slot(SetupWriter(), "G10 L2 P1 Z[-370.+#500]");
+    EXPECT_EQ(unknown.errors(), "unknown-value 6");
+    EXPECT_EQ(count_of(unknown, "offset-implausible"), 0);
+    EXPECT_EQ(count_of(unknown, "nothing-cut"), 0);
+    EXPECT_GT(count_of(slot(SetupWriter(), "G10 L2 P1 Z-370."), "nothing-cut"), 0);
+}
+
 TEST(ToolMismatch, IsAWarningIfTheToolInTheSetupIsTheLargerOne) {
     const auto with = [](const std::string& comment) {
         return check(SetupWriter(), "(" + comment + ")\n"

@@ -43,6 +43,21 @@ TEST(Premises, AStatedParameterDecides) {
     EXPECT_EQ(moves.find("open-premise"), std::string::npos) << moves;
 }
 
+TEST(Premises, BlockDeleteIsANoteWhereBothPositionsWereChecked) {
+    const std::string program = head + std::string("G0 X50. Y50.\n/G0 Z60.\nG0 Z90.\nM30\n");
+    const FindingLine both = check(plate("fanuc"), program).finding("block-delete");
+    EXPECT_EQ(both.severity, "note");
+    EXPECT_EQ(both.cure, "");
+    EXPECT_NE(both.message.find("different from line 7 on; both positions of the switch were "
+                                "checked"),
+              std::string::npos)
+        << both.message;
+    const FindingLine one =
+        check(plate("fanuc"), program, {"--block-delete", "off"}).finding("block-delete");
+    EXPECT_EQ(one.severity, "warning");
+    EXPECT_NE(one.cure.find("--block-delete on"), std::string::npos) << one.cure;
+}
+
 TEST(Premises, ALengthThatNobodyStatedIsNotZero) {
     // The control's length of the tool is not known: with TOS = 0, G49 moves Z by it.
     const std::string program = "%\nO1\n" + lone_g49() + "%\n";

@@ -1,5 +1,6 @@
 // What a program takes from the memory of the control: offsets, reference points, units.
 
+#include <algorithm>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -99,6 +100,17 @@ TEST(StoredValues, ALengthThatG28CancelsMayComeBack) {
     EXPECT_TRUE(is_low(""));
     EXPECT_TRUE(is_low("[control]\n\"5001#6\" = 0\n"));
     EXPECT_FALSE(is_low("[control]\n\"5001#6\" = 1\n"));
+    // If it comes back, Z350 is above the limit. The parameter also decides on G10, which is not
+    // meant here.
+    const std::string high = fanuc_head
+                             + std::string("G43 H1 G0 Z100.\nG0 X50. Y50.\nG91 G28 Z0.\nG90\n"
+                                           "G0 Z350.\nM30\n");
+    const std::string message = check(plate("fanuc"), high).finding("open-premise").message;
+    EXPECT_NE(message.find("(the length offset that G28, G30 or G53 cancelled counts from the next "
+                           "block)"),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(message.find("G10"), std::string::npos) << message;
     // Nothing is asked where the program selects the offset again, or moves no Z.
     const std::string again = fanuc_head
                               + std::string("G43 H1 G0 Z100.\nG91 G28 Z0.\nG90\nG0 X50. Y50.\n"
@@ -282,6 +294,35 @@ TEST(StoredValues, TheSpindleIsNotCheckedAboveAToolThatNobodyDescribed) {
                              "flute_length = 20\nstick_out = 22\n";
     const Checked described = check_files(file, folder.write("t.toml", nose + tool));
     EXPECT_NE(described.errors(), "");
+}
+
+/// Tool 7, which is not described, drills on a Siemens control; the tool table may have its length.
+Checked drilled_by_tool_7(const std::string& table) {
+    const SetupWriter setup =
+        SetupWriter()
+            .program("dialect = \"siemens\"\nstart = { X = -350, Y = -200, Z = 0 }\n")
+            .lengths(table)
+            .also("[[machine.body]]\nname = \"nose\"\naxis = \"Z\"\n"
+                  "cylinder = { radius = 40, height = 50, axis = \"Z\" }\n");
+    return check(setup, "G17 G71 G90 G94 G40\nT7\nM6\nD1\nS2500 M3\nG54 G0 X50 Y50\nZ30\n"
+                        "G1 Z-10 F150\nG0 Z30\nSUPA G0 Z0 D0\nM30\n");
+}
+
+bool tells_of_the_nose(const Checked& checked) {
+    return std::ranges::any_of(checked.findings, [](const FindingLine& finding) {
+        return finding.message.find("nose") != std::string::npos;
+    });
+}
+
+TEST(StoredValues, TheNoseIsNotCheckedAboveAToolOfUnknownLength) {
+    const Checked unknown = drilled_by_tool_7("");
+    EXPECT_FALSE(tells_of_the_nose(unknown));
+    EXPECT_EQ(unknown.verdict, "undecided");
+    // With its length in the tool table, it is known where the nose is.
+    EXPECT_TRUE(
+        tells_of_the_nose(drilled_by_tool_7("[[length_offset]]\nnumber = 7\nlength = 5\n")));
+    EXPECT_FALSE(
+        tells_of_the_nose(drilled_by_tool_7("[[length_offset]]\nnumber = 7\nlength = 95\n")));
 }
 
 TEST(StoredValues, ATapIsLeftHandIfTheSpindleTurnsSo) {

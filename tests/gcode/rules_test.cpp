@@ -10,8 +10,11 @@
 namespace gcode {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// A mill with two tools in its table; G54 is set up, G55 is not.
 Environment shop(DialectId dialect) {
@@ -45,6 +48,15 @@ TEST(Rules, RequireALengthOffsetBeforeTheFirstMotionInZ) {
     EXPECT_THAT(rules_of(program("T1 M6\nG0 X0 Y0\nG0 Z5.\nG0 Z2.\n")),
                 ElementsAre("missing-length-offset@4"));
     EXPECT_THAT(rules_of(program("T1 M6\nG0 X0 Y0\nG43 H1 Z5.\nG0 Z2.\n")), IsEmpty());
+}
+
+TEST(Rules, RequireAnHWithG43) {
+    EXPECT_THAT(rules_of(program("T1 M6\nG0 X0 Y0\nG43 Z5.\nG0 Z2.\n")),
+                ElementsAre("missing-length-offset@4"));
+    EXPECT_THAT(rules_of(program("T1 M6\nG43\nG0 X0 Y0\nG0 Z5.\n")),
+                ElementsAre("missing-length-offset@5"));
+    EXPECT_THAT(rules_of(program("T1 M6\nG43 H1 Z5.\nG43 Z2.\n")), IsEmpty());
+    EXPECT_THAT(rules_of(program("T1 M6\nG43 Z5.\n"), DialectId::linuxcnc), IsEmpty());
 }
 
 TEST(Rules, RequireTheLengthOffsetOfTheNewTool) {
@@ -105,6 +117,15 @@ TEST(Rules, SeeWhatIsStillOnAtAToolChangeAndAtTheEnd) {
                 ElementsAre("state-left-over@3"));
     EXPECT_THAT(rules_of(program("G68 X0 Y0 R30.\n")), ElementsAre("state-left-over@3"));
     EXPECT_THAT(rules_of(program("G68 X0 Y0 R30.\nG69\nT1 M6\n")), IsEmpty());
+}
+
+TEST(Rules, TakeAWorkOffsetSetByAProbeForNoAxisOffset) {
+    const auto after = [](const std::string& set) {
+        return rules_of("G21 G90 G54\nG0 X0 Y0 Z5\nG38.2 Z-5 F100\n" + set + "\nM2\n",
+                        DialectId::linuxcnc);
+    };
+    EXPECT_THAT(after("G10 L20 P1 Z0"), Not(Contains(HasSubstr("state-left-over"))));
+    EXPECT_THAT(after("G92 Z0"), Contains("state-left-over@5"));
 }
 
 TEST(Rules, SeeUnitsChangeBetweenMotions) {

@@ -43,6 +43,20 @@ TEST(MissingLength, IsOneFindingWithAllThatComesOfIt) {
     EXPECT_EQ(check(SetupWriter(), passes("G43 H1")).errors(), "");
 }
 
+TEST(MissingLength, OfAG43WithoutHIsOneFinding) {
+    const Checked checked = check(SetupWriter(), passes("G43"));
+    EXPECT_EQ(checked.errors(), "missing-length-offset 5");
+    const FindingLine missing = checked.finding("missing-length-offset");
+    EXPECT_THAT(missing.message, HasSubstr("because G43 or G44 has no H"));
+    EXPECT_THAT(missing.message,
+                HasSubstr("95.000 mm lower than intended and collides with the stock"));
+    EXPECT_THAT(missing.message, HasSubstr("from line 5 to line 17"));
+    EXPECT_THAT(missing.cure, HasSubstr("Add H1"));
+    EXPECT_THAT(checked.finding("program").message, Not(HasSubstr("in the spindle")));
+    // The H of the offset that is on stays.
+    EXPECT_EQ(check(SetupWriter(), passes("G43 H1 Z60.\nG0 G43")).errors(), "");
+}
+
 TEST(MissingLength, EndsWhereTheLengthIsCalled) {
     // The clamp is too close with the right length as well.
     const SetupWriter setup =

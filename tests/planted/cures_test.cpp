@@ -111,6 +111,27 @@ TEST(Cure, OfARapidThroughAClampIsTheSmallestShiftThatClearsTheBlock) {
     EXPECT_NE(finding.message.find("towards Y-."), std::string::npos) << finding.message;
 }
 
+TEST(Cure, OfACycleThatBeginsInTheStockTellsHowDeepItsRapidIs) {
+    const SetupWriter setup =
+        SetupWriter().also_tool("number = 2\nshape = \"drill\"\ndiameter = 8\nflute_length = 40\n"
+                                "shank = [[8, 8, 20]]\nholder = [[32, 32, 60]]\n");
+    const FindingLine finding =
+        check(setup, "O1\nG21 G17 G90 G40 G80 G54\nT2 M6\nS3000 M3\nG0 X50. Y50.\nG43 H2 Z60.\n"
+                     "G98 G83 Z-20. R-3. Q4. F150.\nG80\nM30\n")
+            .finding("rapid-in-stock");
+    EXPECT_EQ(finding.line, 7);
+    EXPECT_NEAR(number_after(finding.message, " to "), 3.0, 0.4) << finding.message;
+    EXPECT_EQ(finding.cure, "Raise the plane from which the cycle feeds and to which it retracts.");
+}
+
+TEST(Cure, OfAShiftIntoTheWallNamesTheShift) {
+    const FindingLine finding =
+        check(SetupWriter(), program({"G0 X50. Y50.", "G98 G76 Z-10. R2. Q3. F100.", "G80"}))
+            .finding("rapid-in-stock");
+    EXPECT_NE(finding.cure.find("the amount and the direction of the shift"), std::string::npos)
+        << finding.cure;
+}
+
 TEST(Cure, OfARapidThroughTheStockIsAHeightThatWasTried) {
     const auto across = [](double z) {
         return check(SetupWriter(),

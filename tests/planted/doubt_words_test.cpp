@@ -77,5 +77,15 @@ TEST(TextReport, WrapsTheTightestBlock) {
     EXPECT_THAT(behind, HasSubstr("\n             "));
 }
 
+TEST(TextReport, NamesTheBlockWithTheWorstVerdictAsTheTightest) {
+    // The cut in line 8 is in contact as intended; the rapid in line 11 is not.
+    const test_support::ScopedFolder folder;
+    const auto ran = feeler({"check",
+                             folder.write("p.nc", program({"G0 X50. Y50.", "Z2.", "G1 Z-2. F300.",
+                                                           "G0 Z60.", "X20.", "Z-1.", "Z60."})),
+                             "--setup", folder.write("s.toml", SetupWriter().text())});
+    EXPECT_THAT(ran.out, HasSubstr("  tightest   line 11: flutes / stock, 0.000 mm"));
+}
+
 } // namespace
 } // namespace app_test

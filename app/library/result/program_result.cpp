@@ -49,7 +49,7 @@ StoredFinding stored(const core::Finding& finding, const CheckRun& run, FileByte
 }
 
 std::optional<Tightest> tightest_of(const CheckRun& run) {
-    const CheckedBlock* nearest = nearest_block(run);
+    const CheckedBlock* nearest = tightest_block(run);
     if (!nearest) return {};
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
     Tightest tightest{.block = core::value_of(nearest->block),

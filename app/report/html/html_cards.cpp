@@ -104,9 +104,9 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
     return card + location_list(run, group) + "</article>\n";
 }
 
-/// Card of the block with the least margin, for a program without findings.
+/// Card of the tightest block, for a program without findings.
 std::string tightest_card(const CheckRun& run, const ReportViews& views) {
-    const CheckedBlock* nearest = nearest_block(run);
+    const CheckedBlock* nearest = tightest_block(run);
     if (!nearest) return "";
     const size_t block = core::value_of(nearest->block);
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
@@ -136,7 +136,7 @@ std::vector<size_t> blocks_of_cards(const CheckRun& run) {
     std::vector<size_t> blocks;
     for (const FindingGroup& group : finding_groups(run))
         if (!group.stretches.empty()) add_new(blocks, group.stretches[group.worst].worst);
-    const CheckedBlock* nearest = nearest_block(run);
+    const CheckedBlock* nearest = tightest_block(run);
     if (blocks.empty() && nearest) blocks.push_back(core::value_of(nearest->block));
     return blocks;
 }

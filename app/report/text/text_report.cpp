@@ -188,7 +188,7 @@ std::string summary_text(const CheckRun& run, const TextOptions& options) {
     text += fmt::format("  findings   {}\n", counts_text(run));
     text += fmt::format("  blocks     {}, {} with motion; dialect {}\n", run.blocks.size(), moving,
                         gcode::dialect(run.dialect).name);
-    if (const CheckedBlock* block = nearest_block(run)) {
+    if (const CheckedBlock* block = tightest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
         const std::string tightest = fmt::format(
             "line {}: {} / {}, {} mm (minimum {} mm)", block->line,

@@ -52,7 +52,7 @@ void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
     }
     for (size_t i = 0; i < axis_count; ++i) {
         const MachineAxis& axis = setup.machine.axes[i];
-        if (!axis.present) continue;
+        if (!axis.present || (i == 2 && spindle_is_lost())) continue;
         const double below = axis.min.value_or(-infinity) - range.min[i];
         const double above = range.max[i] - axis.max.value_or(infinity);
         if (below > resolution) tell(over_travel({i, false, range.min[i], below}, before.none()));
@@ -146,7 +146,7 @@ void BlockRun::doubt_assumed_start(const Motion& motion) {
         state.is_assumed[i] = motion.from[i] == motion.to[i];
         if (state.is_assumed[i]) from_anywhere.to[i].reset(); // it stays where it is
     }
-    const bool is_tool_there = tool() || !setup.machine.bodies.empty();
+    const bool is_tool_there = tool() || (!setup.machine.bodies.empty() && !spindle_is_lost());
     if (!is_doubtful || !is_tool_there || state.reported_unknown_start) return;
     if (is_clear_from_anywhere(from_anywhere)) return;
     state.reported_unknown_start = true;
@@ -183,8 +183,10 @@ void BlockRun::execute_motion(const Motion& motion) {
     doubt_assumed_start(motion);
     state.position = motion.to;
     if (!tool()) move_without_tool(motion);
-    if (!tool() && setup.machine.bodies.empty()) {
-        // No body moves.
+    const bool is_lost = spindle_is_lost();
+    if (is_lost) forget_bounds();
+    if (!tool() && (setup.machine.bodies.empty() || is_lost)) {
+        // No body moves of which it is known where it is.
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else if (block.judgement) {
@@ -197,7 +199,9 @@ void BlockRun::execute_motion(const Motion& motion) {
     }
     if (!is_certain) forget_bounds();
     note_corner(state.corners, motion, path);
-    if (motion.stops_at_contact) state.corners.last = {};
+    if (motion.stops_at_contact || is_lost) state.corners.last = {};
+    if (state.length_offset.is_assumed || motion.from[2] != motion.to[2])
+        state.height_is_assumed = state.length_offset.is_assumed;
     result.duration += path.duration;
 }
 
@@ -243,7 +247,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
         if (setup.needs_only_verdict && !std::all_of(pairs.begin(), pairs.end(), is_clear)) break;
         track_centre(motion, leg);
         removed += check_leg(check, leg, use(motion) == FluteUse::cutting);
-        legs.push_back({leg, result.duration, use(motion)});
+        legs.push_back({leg, result.duration, use(motion), rapid});
         if (use(motion) == FluteUse::cutting && leg.straight && !state.rules.length_in_doubt)
             note_reach(state.rules.reaches,
                        {setup, *tool(), block.block, leg, state.mounted_fixtures,

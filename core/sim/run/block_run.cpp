@@ -65,7 +65,8 @@ void BlockRun::execute_motion(const FixtureChange& change) {
     state.memory.cuts.erase(change.fixture); // another fixture may be there now
     const Path path = path_of({.from = state.position, .to = state.position}, state.spread,
                               state.spread, setup.machine, 0.0);
-    if (block.judgement || !change.is_there || path.legs.empty() || !path.legs[0].start_known)
+    if (block.judgement || !change.is_there || spindle_is_lost() || path.legs.empty()
+        || !path.legs[0].start_known)
         return;
     check_rest(path);
 }
@@ -120,6 +121,28 @@ std::vector<size_t> BlockRun::note_worst(MotionKind kind) {
     return worsened;
 }
 
+namespace {
+
+/// Whether a cycle moves sideways at rapid below the height at which it begins to feed, as those of
+/// boring do to lift the cutting edge off the wall.
+bool shifts_in_the_hole(std::span<const Event> events) {
+    double top = -infinity; // of the feeds
+    for (const Event& event : events)
+        if (const auto* motion = std::get_if<Motion>(&event);
+            motion && motion->kind != MotionKind::rapid)
+            for (const auto& end : {motion->from[2], motion->to[2]})
+                top = std::max(top, end.value_or(-infinity));
+    return std::any_of(events.begin(), events.end(), [&](const Event& event) {
+        const auto* motion = std::get_if<Motion>(&event);
+        if (!motion || motion->kind != MotionKind::rapid) return false;
+        const bool goes_across =
+            motion->from[0] != motion->to[0] || motion->from[1] != motion->to[1];
+        return goes_across && motion->from[2].value_or(infinity) < top - resolution;
+    });
+}
+
+} // namespace
+
 BlockMove BlockRun::move_of(const PairClearance& pair) const {
     BlockMove move{result.motion, turns, result.duration};
     for (const WorstMotion& one : worst_motions)
@@ -128,6 +151,7 @@ BlockMove BlockRun::move_of(const PairClearance& pair) const {
     move.within = block.goes_home  ? MoveWithin::way_home
                   : block.is_cycle ? MoveWithin::cycle
                                    : MoveWithin::block;
+    move.shifts = move.within == MoveWithin::cycle && shifts_in_the_hole(block.events);
     for (const WorstMotion& one : worst_motions)
         if (one.pair == pair.pair && one.kind == MotionKind::rapid)
             move.motion = BlockMotion::rapid;
@@ -195,11 +219,12 @@ PairStudy BlockRun::study(const PairClearance& pair) {
     PairStudy study;
     if (!may_study(pair)) return study;
     const auto before = stock_after(setup, state, moves_before);
-    if (pair.verdict == Verdict::collision)
-        study.overlap = overlap_of({setup, *tool(), block.block, legs, before.get()}, pair.pair);
-    if (!before || !can_shift(block) || turns || legs.size() > most_legs) return study;
     const BlockMove move = move_of(pair);
     const bool rapid = move.motion == BlockMotion::rapid;
+    if (pair.verdict == Verdict::collision)
+        study.overlap =
+            overlap_of({setup, *tool(), block.block, legs, before.get(), rapid}, pair.pair);
+    if (!before || !can_shift(block) || turns || legs.size() > most_legs) return study;
     const bool rapid_in_stock = rapid && !pair.pair.fixture;
     study.starts_inside = rapid && overlaps_at_start(pair.pair, *before);
     const bool is_cured_by_shift =

@@ -67,6 +67,12 @@ struct BlockRun {
         if (finding->severity != Severity::off) result.findings.push_back(*std::move(finding));
     }
 
+    /// Whether nobody knows how high the spindle is: its tool is not described, and Z rests on a
+    /// length that nobody states.
+    bool spindle_is_lost() const {
+        return state.tool && !tool() && (state.length_offset.is_assumed || state.height_is_assumed);
+    }
+
     /// The check for the legs of a motion, with the current tool, if any.
     LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;

@@ -66,10 +66,11 @@ std::string cure_of_rapid(const PairStudy& study, const BlockMove& move, const s
                            "begins.",
                            part, part == name_of(PartKind::flutes) ? "are" : "is", body);
     if (move.within == MoveWithin::cycle)
-        return "Raise the plane from which the cycle feeds and to which it retracts. If this is "
-               "the "
-               "shift of G76 or G87, check its amount Q, its direction and the diameter of the "
-               "tool.";
+        return fmt::format(
+            "Raise the plane from which the cycle feeds and to which it retracts{}.",
+            move.shifts ? "; if its shift meets the wall, check the amount and the direction of "
+                          "the shift and the diameter of the tool"
+                        : "");
     if (study.shift)
         return fmt::format("Rapid at least {} higher ({}), or feed through the material.",
                            amount_text(*study.shift), kept_text(*study.shift, body));

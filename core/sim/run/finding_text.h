@@ -19,6 +19,7 @@ struct BlockMove {
     double duration = 0.0;     // seconds
     bool only_dog_leg = false; // the rapid would be clear if it were straight
     MoveWithin within = MoveWithin::nothing;
+    bool shifts = false; // a cycle that shifts the tool sideways in the hole, such as G76
 };
 
 /// When in a block something happens, after a fraction of its duration.

@@ -75,19 +75,32 @@ private:
                              : query_.setup.stock_mount;
     }
 
+    /// The stock before and after a leg.
+    struct LegStock {
+        std::shared_ptr<const CutModel> before, after;
+        // Before it, but without what the flutes have run into, as the check goes on.
+        std::shared_ptr<const CutModel> left;
+    };
+
     /// Collects the pieces in which the bodies may overlap. False: the path is not known well
     /// enough.
     bool collect() {
         std::shared_ptr<const CutModel> now;
         if (query_.stock) now = std::make_shared<CutModel>(*query_.stock);
+        std::shared_ptr<const CutModel> left = now;
         for (const TimedLeg& timed : query_.legs) {
             if (!timed.leg.straight || timed.leg.positions.empty()) return false;
             const bool cuts = !pair_.fixture && timed.use == FluteUse::cutting;
             std::shared_ptr<const CutModel> after = now;
             if (cuts) after = cut_along(timed.leg, *now);
             // Flutes that cut meet the stock as intended.
-            if (!(cuts && body_->kind == PartKind::flutes) && !add_pieces(timed.leg, now, after, 6))
-                return false;
+            const bool is_intended = cuts && body_->kind == PartKind::flutes;
+            const bool counts = !is_intended && (timed.is_rapid || !query_.only_rapids);
+            const size_t known = pieces_.size();
+            if (counts && !add_pieces(timed.leg, {now, after, left}, 6)) return false;
+            const bool is_crash = !pair_.fixture && !cuts && body_->kind == PartKind::flutes
+                                  && pieces_.size() > known;
+            if (cuts || is_crash) left = cuts && left == now ? after : cut_along(timed.leg, *left);
             now = after;
         }
         return true;
@@ -104,24 +117,40 @@ private:
         return after;
     }
 
-    bool add_pieces(const Leg& leg, const std::shared_ptr<const CutModel>& before,
-                    const std::shared_ptr<const CutModel>& after, int halvings) {
+    bool add_pieces(const Leg& leg, const LegStock& stock, int halvings) {
         constexpr double sharp = 0.01; // mm, error of a turning body
         const RelativeLeg relative =
             relative_leg(query_.setup.machine, target(), body_->mover, leg);
         const bool is_vague = relative.turns && relative.error > sharp;
         if (is_vague && halvings > 0 && leg.positions.size() == 2)
-            return add_pieces(stretch(leg, 0.0, 0.5), before, after, halvings - 1)
-                   && add_pieces(stretch(leg, 0.5, 1.0), before, after, halvings - 1);
+            return add_pieces(stretch(leg, 0.0, 0.5), stock, halvings - 1)
+                   && add_pieces(stretch(leg, 0.5, 1.0), stock, halvings - 1);
         if (relative.error == infinity || relative.positions.size() > 2) return false;
-        Piece piece{.leg = relative, .before = before, .after = after};
+        Piece piece{.leg = relative, .before = stock.before, .after = stock.after};
         const Leg middle = leg.positions.size() == 2 ? still_half_way(leg) : leg;
         piece.target_from_stock = target_from_mover(query_.setup.machine, target(),
                                                     query_.setup.stock_mount, middle.positions[0])
                                       .rotation;
         if (is_apart(piece, Vec3(0.0), Form::shrunk)) return true;
+        const bool cuts = stock.before != stock.after;
+        if (!pair_.fixture && !cuts && is_clear(leg, *stock.left)) return true;
         pieces_.push_back(std::move(piece));
         return pieces_.size() <= most_pieces;
+    }
+
+    /// Whether the check finds the pair clear on a leg on which nothing is cut. It knows what
+    /// is_apart does not: flutes that leave their own cut are clear.
+    bool is_clear(const Leg& leg, const CutModel& stock) const {
+        std::vector<TrackedPair> pairs;
+        CheckMemory memory;
+        Statistics statistics;
+        const std::vector<bool> no_fixtures(query_.setup.fixtures.size(), false);
+        LegCheck(query_.setup, query_.tool, FluteUse::not_cutting, query_.block, no_fixtures,
+                 memory, statistics)
+            .pass(leg, 0.0, stock, pairs);
+        return std::none_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
+            return pair.pair == pair_ && pair.verdict != Verdict::clear;
+        });
     }
 
     /// The body as it is, or shrunk by what counts as contact.

@@ -40,8 +40,9 @@ struct SimulatorState {
     std::vector<bool> mounted_fixtures; // whether each fixture of the set-up is mounted
     SpindleChange spindle;
     LengthOffsetChange length_offset;
-    PieceTracker pieces;  // of the stock
-    CentreTracker centre; // of a tool that does not cut at its centre
+    bool height_is_assumed = false; // Z was reached by a length that nobody states
+    PieceTracker pieces;            // of the stock
+    CentreTracker centre;           // of a tool that does not cut at its centre
     RunRules rules;
     double time = 0.0; // seconds since the program's start, without accelerations
     Statistics statistics;
