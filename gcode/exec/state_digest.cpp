@@ -86,6 +86,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
     for (const int mode : {int(modal.unit),
                            int(modal.unit_said),
                            modal.motion ? int(*modal.motion) : -1,
+                           int(modal.motion_cancelled),
                            int(modal.plane),
                            int(modal.distance),
                            int(modal.arc_distance),

@@ -8,6 +8,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
+#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 
 namespace gcode {
@@ -107,6 +108,7 @@ void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     if (active == MotionCode::spline_control_point && motion != active)
         state.spline.write().gathering = {};
     active = motion;
+    state.modal.motion_cancelled = !motion;
 }
 
 /// Resets the words of the active cycle for another cycle, keeping the initial level.
@@ -230,6 +232,7 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     if (is_straight(modal.motion))
         return move_straight(execution, modal.motion == MotionCode::rapid);
     if (is_arc(modal.motion)) {
+        if (auto checked = check_end_of_arc(execution); !checked) return checked;
         assume_feed(execution);
         return move_along_arc(execution);
     }

@@ -7,6 +7,7 @@
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/rules.h"
+#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 #include "gcode/iso/plain_words.h"
 #include "gcode/language/flow_index.h"
@@ -70,6 +71,7 @@ using enum ModalGroup;
 // moves Z, it depends on the mode of the block.
 constexpr ExecutionStep execution_steps[] = {
     {check_words},
+    {check_axis_commands, 0, 0, has_axis_commands},
     {note_assumed_units, 0, 0, lacks_units},
     {say_message, 0, 0, has_comments},
     {set_feed_mode, groups({feed_mode})},
