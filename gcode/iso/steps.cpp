@@ -99,6 +99,7 @@ constexpr ExecutionStep execution_steps[] = {
     {set_frame, groups({mirror, scaling, rotation, polar, other})},
     {act, groups({action})},
     {move},
+    {clear_offset_after_move, groups({action})},
     {ask_for_corner, 0, corner_bit},
     {stop, groups({stopping})},
     {call, 0, 0, may_call},
@@ -198,14 +199,23 @@ core::Result<void> act(Execution& execution) {
         return store_home(execution);
     case g_code(52):
         return set_local_offset(execution);
-    case g_code(92):
     case g_code(92, 1):
+        return execution.dialect.clears_offset_after_move ? core::Result<void>{}
+                                                          : set_axis_offset(execution);
+    case g_code(92):
     case g_code(92, 2):
     case g_code(92, 3):
         return set_axis_offset(execution);
     default:
         return {}; // G4 and G53 have steps of their own
     }
+}
+
+core::Result<void> clear_offset_after_move(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    const bool clears = entry && entry->code->number == g_code(92, 1);
+    if (!clears || !execution.dialect.clears_offset_after_move) return {};
+    return set_axis_offset(execution);
 }
 
 } // namespace gcode
