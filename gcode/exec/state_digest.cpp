@@ -210,7 +210,8 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
                          + 8 * int(state.ending) + 64 * int(state.said_time)
                          + 128 * int(state.points.present) + 256 * int(state.points.missing)
-                         + 512 * int(state.points.said) + 1024 * int(state.is_iso_mode)));
+                         + 512 * int(state.points.said) + 1024 * int(state.is_iso_mode)
+                         + 2048 * int(state.after_end)));
     for (const Frame& frame : state.frames) add(digest, frame);
     for (const ModalMacro& macro : state.modal_macros) {
         digest.add(macro.name);
