@@ -1,6 +1,7 @@
 #include "gcode/exec/interpreter.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,7 +38,7 @@ struct BeforeBlock {
     uint32_t next_block;
     bool tape_open, said_unit, said_home;
     ProgramStatus ending;
-    bool said_time;
+    bool after_end, said_time;
     DecimalPoints points;
     RuleState rules;
     Shared<Tables> tables;
@@ -180,7 +181,7 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
             return tl::unexpected(std::move(parsed).error());
         const bool inside = state.frames.size() > 1;
         if (block.tape_mark && inside && !dialect.has_o_words) return false;
-        if (block.tape_mark && state.next.source == 0
+        if (block.tape_mark && state.next.source == 0 && !dialect.runs_on_after_end
             && (state.tape_open || state.next_block > 0)) {
             state.ending = ProgramStatus::tape_mark;
             return false;
@@ -225,7 +226,8 @@ core::Result<bool> Interpreter::Scratch::end_of_text(InterpreterState& state) {
             fmt::format("subprogram {} ends here without {}: the control stops with an alarm",
                         state.frames.back().name, dialect.has_o_words ? "endsub or M99" : "M99"),
             {.line = state.next.line - 1});
-    if (state.ending == ProgramStatus::running) state.ending = ProgramStatus::text_end;
+    if (state.ending == ProgramStatus::running)
+        state.ending = state.after_end ? ProgramStatus::program_end : ProgramStatus::text_end;
     return false;
 }
 
@@ -316,6 +318,13 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     const ProgramLine here{state.next.source, block.line};
     begin_result(state, here);
     if (returns) announce_modes(result, 1, before.modal, state.modal);
+    if (std::exchange(state.after_end, false))
+        result.warnings.push_back(
+            {Severity::warning,
+             {.line = block.line, .column = 1},
+             "the program goes on after its end: Grbl runs this block and the "
+             "next ones, too, after G1, G17, G90, G94, G54, M5 and M9; some "
+             "senders stop"});
     if (state.next_block >= environment.limits.blocks)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("the program was stopped after {} blocks; if it really is "
@@ -531,6 +540,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.said_unit = state.said_unit;
     before.said_home = state.said_home;
     before.ending = state.ending;
+    before.after_end = state.after_end;
     before.said_time = state.said_time;
     before.points = state.points;
     before.rules = state.rules;
@@ -549,6 +559,7 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.said_unit = before.said_unit;
     state.said_home = before.said_home;
     state.ending = before.ending;
+    state.after_end = before.after_end;
     state.said_time = before.said_time;
     state.points = before.points;
     state.rules = before.rules;

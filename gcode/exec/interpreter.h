@@ -157,6 +157,7 @@ struct InterpreterState {
     bool said_time = false; // the warning about an unknown time was issued
     DecimalPoints points;
     ProgramStatus ending = ProgramStatus::running;
+    bool after_end = false; // the last block was M2 or M30, on a control that runs on
     std::vector<Frame> frames = std::vector<Frame>(1); // the first is the main program
     std::vector<ModalMacro> modal_macros;              // G66, in the order programmed
     LocalParameters said{}; // Fanuc: the last values of words, by argument number

@@ -207,6 +207,29 @@ core::Result<void> probe(Execution& execution) {
     return {};
 }
 
+namespace {
+
+/// M2 and M30 where the control then runs the lines after them: sets back some of the modes.
+///
+/// Source: Grbl 1.1, gcode.c, gc_execute_line, step 21.
+void set_modes_back(Execution& execution, const core::SourceSpan where) {
+    use_work_offset(execution, 0);
+    ModalState& modal = execution.modal();
+    const ModalState before = modal;
+    modal.motion = MotionCode::straight;
+    modal.motion_cancelled = false;
+    modal.plane = Plane::xy;
+    modal.distance = DistanceMode::absolute;
+    if (modal.feed_mode != FeedMode::per_minute) modal.feed.reset();
+    modal.feed_mode = FeedMode::per_minute;
+    modal.spindle = core::SpindleDirection::stopped;
+    modal.mist = modal.flood = false;
+    announce_modes(execution.result, where.column, before, modal);
+    execution.state.after_end = true;
+}
+
+} // namespace
+
 core::Result<void> stop(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::stopping);
     if (!entry) return {};
@@ -216,8 +239,11 @@ core::Result<void> stop(Execution& execution) {
         break;
     case m_code(2):
     case m_code(30):
-        execution.state.ending = ProgramStatus::program_end;
         execution.emit(ProgramEnd{});
+        if (execution.dialect.runs_on_after_end)
+            set_modes_back(execution, entry->word->span);
+        else
+            execution.state.ending = ProgramStatus::program_end;
         break;
     default:
         execution.emit(ProgramStop{});

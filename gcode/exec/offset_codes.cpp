@@ -357,13 +357,14 @@ core::Result<void> set_axis_offset(Execution& execution) {
                           "G92 cannot be used while scaling, mirroring or rotation is on: cancel "
                           "it with G50, G50.1 or G69 first",
                           execution.statement.of(ModalGroup::action)->word->span);
-    const CodeNumber code = execution.statement.of(ModalGroup::action)->code->number;
+    const Code& action = *execution.statement.of(ModalGroup::action)->code;
+    const CodeNumber code = action.number;
     modal.axis_offset_on = code == g_code(92) || code == g_code(92, 3);
     switch (code) {
     case g_code(92, 1):
         // On Fanuc, axis words choose the axes. They are zero, and nothing moves.
         for (size_t axis = 0; axis < axis_count; ++axis)
-            if (!execution.statement.has_axis_word()
+            if (!action.uses_axes() || !execution.statement.has_axis_word()
                 || execution.statement.word(axis_letters[axis]))
                 offsets.axis[axis] = modal.suspended_axis[axis] = 0.0;
         modal.axis_offset_on = offsets.axis != zero_position;

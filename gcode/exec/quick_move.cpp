@@ -69,7 +69,8 @@ bool moves_quickly(const InterpreterState& state) {
            && modal.work_said && modal.incremental_stays && !modal.length_left
            && (modal.unit_said || state.said_unit) && !transforms.polar && !is_uncertain(modal)
            && !is_stopped_somewhere(modal) && !transforms.before_rotation && !state.rules.waits()
-           && state.modal_macros.empty() && state.contour->is_idle() && !state.is_iso_mode;
+           && state.modal_macros.empty() && state.contour->is_idle() && !state.is_iso_mode
+           && !state.after_end;
 }
 
 bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {

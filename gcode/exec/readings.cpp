@@ -233,6 +233,7 @@ size_t first_work_offset(InterpreterState& state, const Environment& environment
 
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line) {
+    if (!dialect(environment.dialect).has_block_delete) return false;
     // `/` and `/1` are the same switch.
     const uint32_t which = number > 1 ? static_cast<uint32_t>(number) : 0;
     return environment.block_delete

@@ -242,6 +242,13 @@ void check_block_delete(Execution& execution) {
     const bool switched = execution.block.block_delete || execution.block.words_before_slash;
     if (!switched || memory.said_block_delete) return;
     memory.said_block_delete = true;
+    if (!execution.dialect.has_block_delete) {
+        if (execution.environment.block_delete)
+            execution.warn({.line = execution.block.line, .column = 1},
+                           "block delete has no effect: the control does not have it and runs the "
+                           "blocks with '/'");
+        return;
+    }
     advise(
         execution, {.line = execution.block.line, .column = 1}, core::rule_id("block-delete"),
         "blocks with '/' are run here; with block delete on at the machine, the path is different",

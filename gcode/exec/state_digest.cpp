@@ -86,6 +86,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
     for (const int mode : {int(modal.unit),
                            int(modal.unit_said),
                            modal.motion ? int(*modal.motion) : -1,
+                           int(modal.motion_cancelled),
                            int(modal.plane),
                            int(modal.distance),
                            int(modal.arc_distance),
@@ -209,7 +210,8 @@ uint64_t digest_of(const InterpreterState& state) {
     digest.add(number_of(int(state.tape_open) + 2 * int(state.said_unit) + 4 * int(state.said_home)
                          + 8 * int(state.ending) + 64 * int(state.said_time)
                          + 128 * int(state.points.present) + 256 * int(state.points.missing)
-                         + 512 * int(state.points.said) + 1024 * int(state.is_iso_mode)));
+                         + 512 * int(state.points.said) + 1024 * int(state.is_iso_mode)
+                         + 2048 * int(state.after_end)));
     for (const Frame& frame : state.frames) add(digest, frame);
     for (const ModalMacro& macro : state.modal_macros) {
         digest.add(macro.name);

@@ -13,14 +13,21 @@ namespace {
 
 using core::ErrorCode;
 
-/// A code of the block that cannot be combined with this one. G80 can be combined with any motion.
+/// Whether a code, which is not a motion, is in the modal group of the motions.
+bool joins_motions(const Code& code, const Dialect& dialect) {
+    return code.is_cycle() || (code.group == ModalGroup::cycle && dialect.has_axis_commands);
+}
+
+/// A code of the block that cannot be combined with this one. G80 can be combined with any motion,
+/// except where it is one itself.
 const CodeWord* rival_of(const Statement& statement, const Code& code, const Dialect& dialect) {
     if (code.group == ModalGroup::other) return nullptr;
     if (const CodeWord* same = statement.of(code.group)) return same;
     if (!dialect.cycles_are_motions) return nullptr;
     const CodeWord* cycle = statement.of(ModalGroup::cycle);
-    if (code.group == ModalGroup::motion && cycle && cycle->code->is_cycle()) return cycle;
-    return code.is_cycle() ? statement.of(ModalGroup::motion) : nullptr;
+    if (code.group == ModalGroup::motion && cycle && joins_motions(*cycle->code, dialect))
+        return cycle;
+    return joins_motions(code, dialect) ? statement.of(ModalGroup::motion) : nullptr;
 }
 
 /// Whether this word calls a subprogram, jumps or returns on some control that reads ISO words.

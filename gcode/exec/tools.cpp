@@ -400,9 +400,13 @@ core::Result<void> set_tool_length(Execution& execution) {
     case g_code(43, 1):
         modal.length_sign = 0.0;
         return use_given_offset(execution);
-    default:
+    default: // G49
         cancel_length_offset(execution);
-        return {}; // G49
+        if (entry->code->uses_axes() && execution.statement.has_axis_word())
+            execution.warn(entry->word->span,
+                           fmt::format("{} takes the axis words of this block, and nothing moves",
+                                       written(*entry->word)));
+        return {};
     }
 }
 

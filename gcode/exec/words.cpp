@@ -80,11 +80,12 @@ bool is_used(const Execution& execution, char letter) {
 core::Result<void> check_word(Execution& execution, const Word& word) {
     if (is_used(execution, word.letter)) return {};
     const bool exponent = word.letter == 'E'; // of a number, most likely
-    const std::string message =
-        fmt::format("{}: no code in this block uses this word{}", written(word),
-                    exponent ? "; write an exponent such as 1E3 as a plain number; the extruder "
-                               "axis of a 3D printer is not supported"
-                             : "");
+    const std::string message = fmt::format(
+        "{}: no code in this block uses this word{}", written(word),
+        exponent ? "; write an exponent such as 1E3 as a plain number; the extruder axis of a 3D "
+                   "printer is not supported"
+        : execution.dialect.has_axis_commands ? "; Grbl does not run this line (error 36)"
+                                              : "");
     if (exponent || execution.dialect.unused_words_are_errors)
         return core::fail(ErrorCode::syntax, message, word.span);
     execution.warn(word.span, message);

@@ -27,5 +27,7 @@ core::Result<void> execute_iso(Execution& execution, const ModalState& before);
 
 core::Result<void> act(Execution& execution);  // G10 G28 G30 G52 G92
 core::Result<void> move(Execution& execution); // G0 to G3, G73 to G89, with G53
+/// G92.1 where the move of its block still has the offset.
+core::Result<void> clear_offset_after_move(Execution& execution);
 
 } // namespace gcode

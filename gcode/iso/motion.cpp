@@ -8,6 +8,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
+#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 
 namespace gcode {
@@ -72,11 +73,21 @@ core::Result<void> refuse_lone_arc(const Execution& execution) {
                       motion->word->span);
 }
 
+/// Whether a motion code of the block uses the axis words that another code takes: they are the
+/// tool offset of G43.1 and the end of the move, both.
+///
+/// Source: rs274 of LinuxCNC 2.9, which takes `G43.1 Z3 G0 X5` as an offset of X5 Z3 and a rapid
+///         to X5 Z3.
+bool shares_axes(const CodeWord& taker, const Statement& statement) {
+    return taker.code->number == g_code(43, 1) && statement.of(ModalGroup::motion);
+}
+
 /// Whether the block has words that make the active motion code move.
 bool has_motion_words(const Execution& execution) {
     const Statement& statement = execution.statement;
     if (!statement.has_axis_word() && stands_alone(execution)) return true;
-    if (statement.axis_word_owner()) return false;
+    const CodeWord* taker = statement.axis_word_owner();
+    if (taker && !shares_axes(*taker, statement)) return false;
     if (statement.has_axis_word()) return true;
     if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
@@ -107,6 +118,7 @@ void set_motion(InterpreterState& state, std::optional<MotionCode> motion) {
     if (active == MotionCode::spline_control_point && motion != active)
         state.spline.write().gathering = {};
     active = motion;
+    state.modal.motion_cancelled = !motion;
 }
 
 /// Resets the words of the active cycle for another cycle, keeping the initial level.
@@ -131,13 +143,19 @@ core::Result<void> set_motion_mode(Execution& execution) {
     const CodeWord* motion = statement.of(ModalGroup::motion);
     const CodeWord* mover = cycle && cycle->code->uses_axes() ? cycle : motion;
     const bool homes = taker && taker->code->number != g_code(4)
-                       && (statement.has_axis_word() || wants_axes_alone(*taker));
+                       && (statement.has_axis_word() || wants_axes_alone(*taker))
+                       && !(mover == motion && shares_axes(*taker, statement));
     if (mover && homes && execution.dialect.axis_words_serve_one_code)
         return core::fail(
             ErrorCode::syntax,
             fmt::format("{} and {} both use the axis words of this block: split it into two blocks",
                         written(*taker->word), written(*mover->word)),
             mover->word->span);
+    if (mover && taker && statement.has_axis_word() && shares_axes(*taker, statement))
+        execution.warn(taker->word->span,
+                       fmt::format("{}: each axis word of this block is a tool offset, and the end "
+                                   "of the move of {}, too: use two blocks",
+                                   written(*taker->word), written(*mover->word)));
     if (motion && !acts_once(motion->code->number)) {
         set_motion(execution.state, motion_of(motion->code->number));
         modal.cycle.reset();
@@ -230,6 +248,7 @@ core::Result<void> move_as_modes_say(Execution& execution) {
     if (is_straight(modal.motion))
         return move_straight(execution, modal.motion == MotionCode::rapid);
     if (is_arc(modal.motion)) {
+        if (auto checked = check_end_of_arc(execution); !checked) return checked;
         assume_feed(execution);
         return move_along_arc(execution);
     }

@@ -42,12 +42,34 @@ core::Error missing_number(const Lexer& lexer, size_t begin) {
             fmt::format("'{}' must be followed by a number", lexer.line[begin])};
 }
 
+/// The position of the first character of a line that is too long; empty if none is. Blanks,
+/// slashes and comments do not count.
+///
+/// Source: Grbl 1.1, protocol.c, protocol_main_loop; LINE_BUFFER_SIZE is 80, with the final NUL.
+std::optional<size_t> first_surplus(std::string_view text, size_t longest) {
+    size_t count = 0;
+    bool in_comment = false;
+    for (size_t at = 0; at < text.size() && (in_comment || text[at] != ';'); ++at) {
+        const char c = text[at];
+        if (in_comment) {
+            in_comment = c != ')';
+        } else if (c == '(') {
+            in_comment = true;
+        } else if (c != '/' && static_cast<unsigned char>(c) > ' ') {
+            if (++count > longest) return at;
+        }
+    }
+    return std::nullopt;
+}
+
 bool calls_macro(double code) { return code == 65.0 || code == 66.0 || code == 66.1; }
 
 class LineParser {
 public:
     LineParser(std::string_view text, uint32_t line, const Dialect& dialect, Block& block)
-        : lexer_{.line = text, .line_number = line}, dialect_(dialect), block_(block) {}
+        : lexer_{.line = text, .line_number = line, .comments_nest = dialect.comments_nest},
+          dialect_(dialect),
+          block_(block) {}
 
     core::Result<void> parse() {
         while (!block_.tape_mark) {
@@ -55,10 +77,23 @@ public:
             if (c == '\0') break;
             if (auto done = item(c); !done) return done;
         }
+        if (auto checked = check_length(); !checked) return checked;
         return check_flow();
     }
 
 private:
+    core::Result<void> check_length() const {
+        if (dialect_.longest_line == 0 || block_.tape_mark) return {};
+        const auto at = first_surplus(lexer_.line, dialect_.longest_line);
+        if (!at) return {};
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("'{}' is one character too many: Grbl takes {} besides blanks "
+                        "and comments and does not run a longer line (error 11)",
+                        lexer_.line.substr(*at, 1), dialect_.longest_line),
+            lexer_.span(*at, *at + 1));
+    }
+
     /// A jump or loop must be alone in its block, except for a block number; assignments follow
     /// THEN.
     core::Result<void> check_flow() const {
@@ -99,10 +134,14 @@ private:
     }
 
     /// `/` comes first, or right after the N word; on some controls also before the words to be
-    /// skipped. `/10` is not a block delete.
+    /// skipped. `/10` is not a block delete. Where there is none, a `/` is passed over.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
         int number = 1;
+        if (!dialect_.has_block_delete) {
+            block_.block_delete = number;
+            return {};
+        }
         if (lexer_.at < lexer_.line.size() && lexer_.line[lexer_.at] >= '1'
             && lexer_.line[lexer_.at] <= '9')
             number = lexer_.line[lexer_.at++] - '0';
@@ -121,8 +160,11 @@ private:
         return {};
     }
 
-    /// Text after a tape mark on its line is the name that some controls put there.
+    /// Text after a tape mark on its line is the name that some controls put there. Where the mark
+    /// has no effect, a block number may be before it: the control does not run the line.
     core::Result<void> tape_mark() {
+        const bool numbered = block_.words.size() == 1 && block_.words[0].letter == 'N';
+        if (numbered && dialect_.runs_on_after_end) block_.words.clear();
         if (!block_.words.empty())
             return core::fail(ErrorCode::syntax, "'%' must be at the start of the line",
                               lexer_.span(lexer_.at, lexer_.at + 1));
@@ -141,6 +183,7 @@ private:
 
     core::Result<void> assignment() {
         const size_t begin = lexer_.at++;
+        if (!dialect_.has_parameters) return refuse_parameters(begin, 1);
         Assignment entry;
         if (lexer_.peek() == '<') {
             FEELER_TRY(std::string name, parse_name(lexer_));
@@ -165,6 +208,15 @@ private:
         entry.span = lexer_.span_from(begin);
         block_.assignments.push_back(entry);
         return {};
+    }
+
+    tl::unexpected<core::Error> refuse_parameters(size_t begin, int error) const {
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("'{}': Grbl has no parameters and no expressions, and does not "
+                        "run this line (error {})",
+                        lexer_.written_from(begin), error),
+            lexer_.span_from(begin));
     }
 
     core::Result<Expression> value_as_expression() {
@@ -250,6 +302,13 @@ private:
         entry.value = plain.value;
         entry.has_point = plain.has_point;
         entry.span = lexer_.span_from(begin);
+        if (entry.expression && !dialect_.has_parameters) return refuse_parameters(begin, 2);
+        if (dialect_.refused_letters.find(letter) != std::string_view::npos)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{}: Grbl has no word {} and does not run this line "
+                                          "(error 20)",
+                                          lexer_.written_from(begin), letter),
+                              entry.span);
         return add(entry);
     }
 

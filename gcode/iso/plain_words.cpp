@@ -14,15 +14,17 @@ uint32_t repeatable_letters(const Dialect& dialect) {
     return dialect.offset_words_may_repeat ? codes | offsets : codes;
 }
 
-/// O words are flow statements, and words after a macro call are arguments.
+/// O words are flow statements, words after a macro call are arguments, and some are refused.
 bool needs_full_parser(char letter, double value, const Dialect& dialect) {
-    if (letter == 'O') return true;
+    if (letter == 'O' || dialect.refused_letters.find(letter) != std::string_view::npos)
+        return true;
     return letter == 'G' && dialect.has_fanuc_flow && value >= 65.0 && value < 67.0;
 }
 
 } // namespace
 
 bool read_plain_words(std::string_view text, uint32_t line, const Dialect& dialect, Block& block) {
+    if (dialect.longest_line != 0 && text.size() > dialect.longest_line) return false;
     const uint32_t repeatable = repeatable_letters(dialect);
     uint32_t seen = 0;
     size_t at = 0;

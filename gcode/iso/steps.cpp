@@ -7,6 +7,7 @@
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/rules.h"
+#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 #include "gcode/iso/plain_words.h"
 #include "gcode/language/flow_index.h"
@@ -70,6 +71,7 @@ using enum ModalGroup;
 // moves Z, it depends on the mode of the block.
 constexpr ExecutionStep execution_steps[] = {
     {check_words},
+    {check_axis_commands, 0, 0, has_axis_commands},
     {note_assumed_units, 0, 0, lacks_units},
     {say_message, 0, 0, has_comments},
     {set_feed_mode, groups({feed_mode})},
@@ -97,6 +99,7 @@ constexpr ExecutionStep execution_steps[] = {
     {set_frame, groups({mirror, scaling, rotation, polar, other})},
     {act, groups({action})},
     {move},
+    {clear_offset_after_move, groups({action})},
     {ask_for_corner, 0, corner_bit},
     {stop, groups({stopping})},
     {call, 0, 0, may_call},
@@ -196,14 +199,23 @@ core::Result<void> act(Execution& execution) {
         return store_home(execution);
     case g_code(52):
         return set_local_offset(execution);
-    case g_code(92):
     case g_code(92, 1):
+        return execution.dialect.clears_offset_after_move ? core::Result<void>{}
+                                                          : set_axis_offset(execution);
+    case g_code(92):
     case g_code(92, 2):
     case g_code(92, 3):
         return set_axis_offset(execution);
     default:
         return {}; // G4 and G53 have steps of their own
     }
+}
+
+core::Result<void> clear_offset_after_move(Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::action);
+    const bool clears = entry && entry->code->number == g_code(92, 1);
+    if (!clears || !execution.dialect.clears_offset_after_move) return {};
+    return set_axis_offset(execution);
 }
 
 } // namespace gcode

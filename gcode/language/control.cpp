@@ -18,9 +18,9 @@ constexpr DialectId haas[] = {DialectId::haas};
 constexpr DialectId linuxcnc[] = {DialectId::linuxcnc};
 constexpr DialectId klartext[] = {DialectId::heidenhain};
 constexpr DialectId siemens[] = {DialectId::siemens};
-constexpr DialectId all[] = {DialectId::linuxcnc,   DialectId::fanuc,   DialectId::haas,
-                             DialectId::grbl,       DialectId::siemens, DialectId::heidenhain,
-                             DialectId::siemens_iso};
+constexpr DialectId with_block_delete[] = {DialectId::linuxcnc,   DialectId::fanuc,
+                                           DialectId::haas,       DialectId::siemens,
+                                           DialectId::heidenhain, DialectId::siemens_iso};
 
 // The first value of each parameter is the one assumed if nothing is stated.
 
@@ -328,7 +328,7 @@ constexpr ControlParameter parameters[] = {
      {},
      of_corners},
     {blocks_are_deleted,
-     all,
+     with_block_delete,
      {},
      "the switch for block delete",
      block_delete,

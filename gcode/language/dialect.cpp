@@ -74,8 +74,11 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .cycles_run_with_axes_or_r = false,
                                       .repeats_with_k = false,
                                       .tape_mark_ends_program = true,
+                                      .runs_on_after_end = false,
                                       .repeated_codes_are_errors = true,
                                       .last_of_group_counts = false,
+                                      .has_axis_commands = false,
+                                      .clears_offset_after_move = false,
                                       .language = Language::words,
                                       .iso_mode = {},
                                       .expressions = ExpressionSyntax::rs274,
@@ -90,6 +93,11 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .has_o_words = true,
                                       .has_fanuc_flow = false,
                                       .deletes_within_blocks = false,
+                                      .has_block_delete = true,
+                                      .comments_nest = true,
+                                      .has_parameters = true,
+                                      .refused_letters = "",
+                                      .longest_line = 0,
                                       .has_corner_words = false,
                                       .has_polar_words = true,
                                       .offset_words_may_repeat = false,
@@ -169,8 +177,11 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .cycles_run_with_axes_or_r = true,
                                    .repeats_with_k = true,
                                    .tape_mark_ends_program = false,
+                                   .runs_on_after_end = false,
                                    .repeated_codes_are_errors = false,
                                    .last_of_group_counts = true,
+                                   .has_axis_commands = false,
+                                   .clears_offset_after_move = false,
                                    .language = Language::words,
                                    .iso_mode = {},
                                    .expressions = ExpressionSyntax::fanuc,
@@ -185,6 +196,11 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .has_o_words = false,
                                    .has_fanuc_flow = true,
                                    .deletes_within_blocks = true,
+                                   .has_block_delete = true,
+                                   .comments_nest = true,
+                                   .has_parameters = true,
+                                   .refused_letters = "",
+                                   .longest_line = 0,
                                    .has_corner_words = true,
                                    .has_polar_words = false,
                                    .offset_words_may_repeat = true,
@@ -267,6 +283,19 @@ constexpr Dialect grbl_dialect = [] {
     entry.feed_mode_clears_feed = false;
     entry.has_polar_words = false;
     entry.has_variables_file = false;
+    // gcode.c, step 21; protocol.c passes % on to the parser, which refuses it
+    entry.runs_on_after_end = true;
+    entry.tape_mark_ends_program = false;
+    entry.has_axis_commands = true;
+    entry.clears_offset_after_move = true; // targets are computed in step 3, G92.1 acts in step 4
+    entry.machine_move_needs_g90 = false;
+    // protocol.c, protocol_main_loop
+    entry.has_block_delete = false;
+    entry.comments_nest = false;
+    entry.longest_line = 79;
+    // E is refused, too, with a hint of what it may mean
+    entry.has_parameters = false;
+    entry.refused_letters = "ABCDHOQUVW";
     return entry;
 }();
 

@@ -89,8 +89,12 @@ struct Dialect {
     bool cycles_run_with_axes_or_r; // a cycle runs in blocks with an axis word or R, and no others
     bool repeats_with_k;            // K repeats a canned cycle, as L does
     bool tape_mark_ends_program;    // a second % ends the program like M2
+    bool runs_on_after_end;         // M2 and M30 only set modes back, and a % does nothing
     bool repeated_codes_are_errors; // the same G code twice in a block
     bool last_of_group_counts;      // of two G codes of a group; otherwise an error
+    bool has_axis_commands; // G0-G3, G10, G28, G30, G38, G43.1, G49, G92: a block has at most one;
+                            // G80 is in the group of G0, and axis words after it are an error
+    bool clears_offset_after_move; // a move in the block of G92.1 still has the offset of G92
 
     // language syntax besides words
     Language language;
@@ -102,14 +106,19 @@ struct Dialect {
     bool contour_breaks_are_errors;  // G28, G53 and similar between G41 and G40
     ContourCodes contour_codes;      // which codes these are
     ContourStyle contour_style;
-    bool radius_number_stays;              // G41 without D uses the last D, D0 cancels
-    bool has_active_comments;              // (MSG, ...) and (DEBUG, ...)
-    bool has_o_words;                      // o<name> sub, if, while ...
-    bool has_fanuc_flow;                   // IF[] GOTO, WHILE[] DO, M98 P, G65
-    bool deletes_within_blocks;            // X1 /Y2 leaves out Y2
-    bool has_corner_words;                 // ,R and ,C
-    bool has_polar_words;                  // @ and ^
-    bool offset_words_may_repeat;          // I, J and K, as arguments of a macro
+    bool radius_number_stays;         // G41 without D uses the last D, D0 cancels
+    bool has_active_comments;         // (MSG, ...) and (DEBUG, ...)
+    bool has_o_words;                 // o<name> sub, if, while ...
+    bool has_fanuc_flow;              // IF[] GOTO, WHILE[] DO, M98 P, G65
+    bool deletes_within_blocks;       // X1 /Y2 leaves out Y2
+    bool has_block_delete;            // otherwise a / has no effect, wherever it is
+    bool comments_nest;               // otherwise a comment ends at the first ), or with its line
+    bool has_parameters;              // #5, and values in brackets
+    std::string_view refused_letters; // of words that make the control refuse their line
+    size_t longest_line;              // characters besides blanks and comments; 0: no limit
+    bool has_corner_words;            // ,R and ,C
+    bool has_polar_words;             // @ and ^
+    bool offset_words_may_repeat;     // I, J and K, as arguments of a macro
     bool brackets_optional_in_assignments; // #1=#2+1
     bool unset_is_vacant;                  // an unset parameter is vacant; otherwise 0
     bool feed_mode_clears_feed; // G94 and G95 clear the feed rate, even if the mode does not change

@@ -1,5 +1,6 @@
 #include "gcode/language/lexer.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -139,6 +140,11 @@ core::Result<Number> Lexer::number() {
 
 core::Result<Comment> Lexer::bracket_comment() {
     const size_t begin = at;
+    if (!comments_nest) {
+        const size_t end = std::min(line.find(')', begin), line.size());
+        at = std::min(end + 1, line.size());
+        return Comment{line.substr(begin + 1, end - begin - 1), span_from(begin)};
+    }
     int depth = 0;
     for (; at < line.size(); ++at) {
         depth += (line[at] == '(') - (line[at] == ')');

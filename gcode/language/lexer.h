@@ -41,6 +41,7 @@ struct Lexer {
     bool blanks_end_numbers = false; // Klartext and Siemens
     bool comma_is_point = false;     // Klartext: a comma may be the decimal point
     bool has_exponents = false;      // Siemens: 1.5EX-3
+    bool comments_nest = true;       // otherwise a comment ends at the first ) or with its line
 
     /// The next character that is not blank, without consuming it; NUL at the end.
     char peek() {
@@ -79,9 +80,10 @@ struct Lexer {
     core::Result<Number> number();
     tl::unexpected<core::Error> bad_exponent(size_t begin) const;
 
-    /// Reads the comment in brackets that begins here and ends at the matching bracket.
+    /// Reads the comment in brackets that begins here and ends at the matching bracket; where
+    /// comments do not nest, at the first closing bracket or with the line.
     ///
-    /// Errors: syntax when it is not closed on the line.
+    /// Errors: syntax when comments nest and it is not closed on the line.
     core::Result<Comment> bracket_comment();
 
     /// Reads the rest of the line after the current character as a comment.

@@ -239,6 +239,7 @@ struct ModalState {
     LengthUnit unit = LengthUnit::mm;
     bool unit_said = false;
     std::optional<MotionCode> motion;
+    bool motion_cancelled = false;    // `motion` is empty because of G80
     std::optional<CannedCycle> cycle; // if present, takes the axis words
     Plane plane = Plane::xy;
     DistanceMode distance = DistanceMode::absolute;

@@ -279,6 +279,7 @@ struct Habits {
     bool has_tape_mark = false;
     bool changes_tools = false;
     bool has_expressions = false;
+    bool has_refused_words = false; // Grbl would not run their lines
 };
 
 void remember(size_t& first, bool seen, uint32_t line) {
@@ -287,12 +288,15 @@ void remember(size_t& first, bool seen, uint32_t line) {
 
 void observe(const Block& block, Habits& habits) {
     habits.has_tape_mark |= block.tape_mark;
-    bool homes = false, length = false, offset_number = false, moves = false;
+    bool homes = false, length = false, offset_number = false, moves = false, cancels = false;
+    const std::string_view refused = dialect(DialectId::grbl).refused_letters;
     for (const Word& word : block.words) {
         const bool g = word.letter == 'G' && !word.expression;
         homes |= g && (word.value == 28.0 || word.value == 30.0);
         length |= g && word.value == 43.0;
         moves |= g && word.value <= 3.0;
+        cancels |= g && (word.value == 49.0 || word.value == 80.0);
+        habits.has_refused_words |= refused.find(word.letter) != std::string_view::npos;
         offset_number |= word.letter == 'H';
         habits.changes_tools |= word.letter == 'T' || (word.letter == 'M' && word.value == 6.0);
         for (size_t i = 0; g && i < candidates.size(); ++i) {
@@ -303,6 +307,7 @@ void observe(const Block& block, Habits& habits) {
     }
     remember(habits.first_length_offset, length && offset_number, block.line);
     remember(habits.first_crowd, homes && moves, block.line);
+    habits.has_refused_words |= moves && cancels;
 }
 
 /// For a program of an unsupported control: the dialect that has most of its codes.
@@ -336,7 +341,8 @@ Recognition judge(const Habits& habits) {
     if (habits.first_length_offset)
         return found(DialectId::fanuc, habits.first_length_offset, "has G43 with H");
     const bool grbl_knows_all = habits.first_unknown.back() == 0;
-    if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark || !grbl_knows_all)
+    if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark
+        || habits.has_refused_words || !grbl_knows_all)
         return {DialectId::linuxcnc, "nothing in the program is specific to one control"};
     return {DialectId::grbl,
             "the program has no tools, no expressions, no % marks and only codes of Grbl"};

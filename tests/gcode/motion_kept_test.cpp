@@ -175,7 +175,7 @@ TEST(MotionKept, BesideEveryCodeOfHaas) {
 TEST(MotionKept, BesideEveryCodeOfGrbl) {
     const std::string before = "G21 G90 F100 S1000 M3\nG1 X1 Y2 Z3\n";
     expect_reasons(dropping_codes(DialectId::grbl, before, words_of_codes),
-                   both(of_every_iso_dialect, {{"G43.1", "the words are a tool offset"}}));
+                   both(of_every_iso_dialect, {{"G49", "takes the words and does not move"}}));
 }
 
 TEST(MotionKept, BesideEveryCodeOfSiemens) {

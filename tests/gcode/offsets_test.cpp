@@ -189,6 +189,23 @@ TEST(LengthOffset, G431GivesItInTheBlock) {
               "use_tool_length_offset length=2 x=1\nstraight_traverse x=0 y=0 z=-2\n");
 }
 
+TEST(LengthOffset, G431SharesItsWordsWithAMotionCodeOfItsBlock) {
+    const std::string head = "G21 G90\nG0 X1 Y1 Z50\n";
+    const std::string block = "G43.1 Z3 G0 X5\nG0 Z10";
+    EXPECT_THAT(trace(head + block, DialectId::linuxcnc),
+                HasSubstr("use_tool_length_offset length=3 x=5\n"
+                          "straight_traverse x=5 y=1 z=3\n"
+                          "straight_traverse x=5 y=1 z=10\n"));
+    EXPECT_THAT(trace(head + "G91 G0 X5 G43.1 Z3\nX6", DialectId::linuxcnc),
+                HasSubstr("straight_traverse x=1 y=1 z=50\nstraight_traverse x=7 y=1 z=50\n"));
+    EXPECT_THAT(trace(head + "G0 X5 G43.1 Z3 G53", DialectId::linuxcnc),
+                HasSubstr("straight_traverse x=0 y=1 z=0\n"));
+    EXPECT_THAT(warnings_of(head + block, DialectId::linuxcnc),
+                HasSubstr("each axis word of this block is a tool offset"));
+    EXPECT_THAT(trace(head + "G1 X2 F100\nG43.1 X7 Z3\nG0 Z10", DialectId::linuxcnc),
+                HasSubstr("length=3 x=7\nstraight_traverse x=-5 y=1 z=10\n"));
+}
+
 TEST(Homing, GoesThroughTheIntermediatePoint) {
     EXPECT_EQ(in_shop("G28 Z450"), "straight_traverse x=350 y=200 z=450\n"
                                    "straight_traverse x=350 y=200 z=420\n");

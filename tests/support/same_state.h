@@ -19,9 +19,10 @@ inline bool continue_alike(const Contour& a, const Contour& b) {
 inline bool continue_alike(const InterpreterState& a, const InterpreterState& b) {
     const auto deciding = [](const InterpreterState& state) {
         return std::tie(state.modal, state.next, state.next_block, state.tape_open, state.said_unit,
-                        state.said_home, state.said_time, state.points, state.ending, state.frames,
-                        state.modal_macros, state.said, state.parameters, state.tables,
-                        state.spline, state.language, state.is_iso_mode);
+                        state.said_home, state.said_time, state.points, state.ending,
+                        state.after_end, state.frames, state.modal_macros, state.said,
+                        state.parameters, state.tables, state.spline, state.language,
+                        state.is_iso_mode);
     };
     return deciding(a) == deciding(b) && continue_alike(*a.contour, *b.contour);
 }
