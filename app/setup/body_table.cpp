@@ -259,7 +259,7 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
         if (body.link == core::LinkId::base || core::is_on_table_side(setup.machine, body.link))
             setup.fixtures.push_back({.name = body.name,
                                       .body = body.body,
-                                      .mount = {body.link, {}},
+                                      .mount = {body.link, body.place},
                                       .is_machine = true});
     }
 }

@@ -501,6 +501,50 @@ void read_assumed(TableReader& root, SetupFile& file) {
     file.infers_start = file.assumed.contains("start");
 }
 
+/// How far the gauge line is above the point that the control takes for it while each tool is in
+/// the spindle: what the length in the control lacks of the true length, mm. Empty: not the same
+/// with all tools.
+std::optional<double> gauge_shift(const core::Setup& setup) {
+    constexpr double same = 1e-6; // mm
+    std::optional<double> shift;
+    for (const auto& [number, tool] : setup.tools) {
+        core::ToolDescription untouched = tool.description;
+        untouched.touched_off.reset();
+        const auto whole = core::assemble(untouched);
+        const double lacks = whole ? whole->length - tool.length : 0.0;
+        if (shift && std::abs(*shift - lacks) > same) return std::nullopt;
+        shift = lacks;
+    }
+    return shift.value_or(0.0);
+}
+
+/// Places the machine's bodies relative to the work, which was touched off with the tools: with the
+/// length that the control uses, the work would be too high.
+void place_machine_bodies(BodyContext& context) {
+    SetupFile& file = context.file;
+    core::Machine& machine = file.setup.machine;
+    const auto shift = gauge_shift(file.setup);
+    if (shift == 0.0) return;
+    const bool has_bodies = !machine.bodies.empty();
+    if (!shift || machine.has_rotary()) {
+        machine.bodies.clear();
+        if (has_bodies)
+            file.assumptions.push_back(
+                "the length of the tools in the control is not the true one (touched_off), so "
+                "where the work is on the machine is not known: machine bodies are not checked");
+        return;
+    }
+    const core::Transform up = core::translation({0.0, 0.0, *shift});
+    for (core::MachineBody& body : machine.bodies) body.place = up;
+    context.frames.machine_from["machine"] = up;
+    if (has_bodies)
+        file.assumptions.push_back(fmt::format(
+            "the tools are {0} mm {1} than the control knows (touched_off), so the work is {0} mm "
+            "{2} on the machine than its work offset says",
+            core::number_text(std::abs(*shift), 3), *shift > 0.0 ? "longer" : "shorter",
+            *shift > 0.0 ? "lower" : "higher"));
+}
+
 void read_root(TableReader& root, const toml::table& text, BodyContext& context,
                const ProgramSettings& over, std::optional<core::Error>& error) {
     SetupFile& file = context.file;
@@ -543,6 +587,7 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
     file.infers_tools = setup.tools.empty() && file.library.empty() && file.tool_table.empty();
     for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
         read_length_offset(table, file);
+    place_machine_bodies(context);
     read_bodies(root, context);
     read_allowances(root, setup);
     check_allowance_names(root, setup);

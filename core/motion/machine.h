@@ -34,6 +34,7 @@ struct MachineBody {
     std::string name;
     ExactBody body;
     LinkId link = LinkId::base; // the link that carries the body
+    Transform place = {};       // moves it from where the machine describes it
 };
 
 /// A machine: linear and rotary axes from the base to the spindle and from the base to the table.

@@ -35,7 +35,7 @@ MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, siz
     return {.kind = nose ? PartKind::nose : PartKind::machine,
             .carried = index,
             .body = &body.body,
-            .mover = {{body.link, {}},
+            .mover = {{body.link, body.place},
                       box.center(),
                       0.5 * glm::length(box.size()),
                       0.0,

@@ -1,0 +1,13 @@
+(EDGE AND FOOT OF THE RISER - 101 below the top of the plate is 1 below the table)
+G90 G17 G21 G54 G94
+M3 S5000
+G0 Z30
+G0 X90 Y-20
+G0 Z-3
+G1 X-40 F500
+G0 Z30
+G0 X90 Y20
+G1 Z-101 F500
+G0 Z30
+M5
+M2
