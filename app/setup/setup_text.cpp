@@ -87,6 +87,7 @@ std::string tool_table(const core::ToolDescription& tool) {
         text += "spindle = \"counterclockwise\"\n";
     if (!tool.cuts_at_centre)
         text += "cuts_at_centre = false\n" + key("centre_diameter", 2.0 * tool.centre_radius);
+    if (tool.single_point) text += "single_point = true\n";
     return text;
 }
 

@@ -78,6 +78,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     read_shape(table, tool);
     tool.shank = read_steps(table, "shank");
     read_touched_off(table, tool);
+    tool.single_point = table.boolean("single_point").value_or(false);
     read_holder(table, context, tool);
     const auto spindle = table.word("spindle", {"clockwise", "counterclockwise"});
     tool.cuts = spindle == "counterclockwise" ? core::SpindleDirection::counterclockwise

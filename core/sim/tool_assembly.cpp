@@ -469,6 +469,28 @@ const char* name_of(PartKind kind) {
     }
 }
 
+namespace {
+
+/// A boring bar without its edge: a cylinder as wide as the shank takes the place of the flutes.
+Result<ToolAssembly> without_edge(const ToolAssembly& tool) {
+    const ToolDescription& description = tool.description;
+    const double bar = description.neck_diameter.value_or(
+        description.shank.empty() ? description.diameter
+                                  : description.shank.front().lower_diameter);
+    if (bar >= description.diameter)
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("tool {}: a boring bar (single_point) is thinner than its diameter "
+                                "above the edge: state shank_diameter or shank",
+                                value_of(description.number)));
+    ToolAssembly edgeless = tool;
+    RevolvedProfile& flutes = edgeless.parts[0].profile;
+    const Aabb box = bounds(flutes);
+    flutes.elements = {ProfileElement{box.min.z, 0.5 * bar, box.max.z, 0.5 * bar, 0.0}};
+    return edgeless;
+}
+
+} // namespace
+
 Result<ToolAssembly> assemble(const ToolDescription& description) {
     FEELER_TRY(ToolHead head, tool_head(description));
     ToolAssembly tool{.description = description, .parts = {}, .length = 0.0};
@@ -494,6 +516,9 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
     if (description.touched_off) tool.length = *description.touched_off;
     if (tool.description.diameter == 0.0)
         tool.description.diameter = 2.0 * bounds(tool.parts[0].profile).max.x;
+    if (!description.single_point) return tool;
+    FEELER_TRY(ToolAssembly edgeless, without_edge(tool));
+    tool.oriented = std::make_shared<const ToolAssembly>(std::move(edgeless));
     return tool;
 }
 

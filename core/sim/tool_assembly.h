@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,9 @@ struct ToolAssembly {
     double length = 0.0;         // gauge length, mm; if touched off, the length in the control
     // Nobody stated how far it sticks out, so where the spindle is, is not known.
     bool reach_is_assumed = false;
+    // A boring bar whose spindle stands in the direction in which a cycle moves its edge off the
+    // wall: the bar alone counts.
+    std::shared_ptr<const ToolAssembly> oriented = {};
     // For checks that must hold for a range of tools (docs/decisions/tolerances.md):
     std::optional<RevolvedProfile> certain_flutes = {}; // cut instead of the flutes
     Play holder_play = {}; // of the holder and the spindle against the tip, along Z

@@ -92,6 +92,7 @@ struct ToolDescription {
     SpindleDirection cuts = SpindleDirection::clockwise;
     bool cuts_at_centre = true;
     double centre_radius = 0.0; // it does not cut within this radius when it plunges
+    bool single_point = false;  // a boring bar: it cuts on one side of its axis
 };
 
 /// A set of shapes.

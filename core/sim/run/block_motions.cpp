@@ -176,7 +176,9 @@ void BlockRun::execute_motion(const Motion& motion) {
     if (block.path >= PathCertainty::pose_unknown) return move_unmeasured(motion, path);
     for (size_t i = 3; i < 6; ++i) turns = turns || motion.from[i] != motion.to[i];
     check_limits(motion, before);
-    if (motion.from != state.position || !is_certain) forget_bounds();
+    // The shape of a boring bar changes with the state of its spindle.
+    const bool is_bar = tool() && tool()->oriented;
+    if (motion.from != state.position || !is_certain || is_bar) forget_bounds();
     if (motion.from != state.position) state.corners.last = {};
     round_corners(motion, path);
     state.memory.off_path = off_path + state.corners.of_cuts;

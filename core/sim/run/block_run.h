@@ -76,9 +76,15 @@ struct BlockRun {
     /// The check for the legs of a motion, with the current tool, if any.
     LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
-        return {setup,           tool() ? *tool() : nothing, use,
-                block.block,     state.mounted_fixtures,     memory,
-                state.statistics};
+        const ToolAssembly* held = tool();
+        if (held && is_oriented(*held)) held = held->oriented.get();
+        return {setup,  held ? *held : nothing, use, block.block, state.mounted_fixtures,
+                memory, state.statistics};
+    }
+    /// Whether a cycle has stopped the spindle of a boring bar, to move its edge off the wall.
+    bool is_oriented(const ToolAssembly& held) const {
+        return held.oriented && block.is_cycle
+               && state.spindle.direction == SpindleDirection::stopped;
     }
     LegCheck leg_check(FluteUse use) { return leg_check(use, state.memory); }
 
