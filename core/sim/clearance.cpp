@@ -171,7 +171,7 @@ void change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
     corners.rapids =
         limit_of(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
     const bool keeps_speed = change.rapids_keep_speed && !machine.rapid_corner_tolerance;
-    if (keeps_speed && states_dynamics(machine)) corners.rapids = {.deviation = infinity};
+    if (keeps_speed) corners.rapids = {.deviation = infinity};
     if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
     corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
     corners.unknown_rapids = !corners.rapids.keeps_speed()

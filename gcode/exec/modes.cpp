@@ -254,7 +254,8 @@ void set_blending(Execution& execution, bool rounds) {
     if (const Word* word = execution.statement.word('Q'))
         modal.naive_tolerance = length_of(execution, *word);
     if (execution.dialect.id != DialectId::linuxcnc) return;
-    modal.corner_tolerances.rapids_keep_speed = modal.path_tolerance == 0.0;
+    modal.corner_tolerances.rapids_keep_speed =
+        modal.path_tolerance == 0.0 && execution.environment.control.follows_start;
     if (modal.path_tolerance > 0.0) modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
 }
 

@@ -11,8 +11,8 @@ namespace {
 using testing::HasSubstr;
 
 /// The last path mode of a program, as the machine gets it.
-core::PathModeChange mode_of(std::string_view text, DialectId dialect) {
-    const Ran ran = run_text(text, dialect);
+core::PathModeChange mode_of(std::string_view text, const Environment& environment) {
+    const Ran ran = run_text(text, environment);
     EXPECT_FALSE(ran.run.error) << (ran.run.error ? ran.run.error->message : "");
     core::PathModeChange last;
     Lowering lowering;
@@ -21,6 +21,10 @@ core::PathModeChange mode_of(std::string_view text, DialectId dialect) {
             if (std::holds_alternative<SetPathMode>(command))
                 last = std::get<core::PathModeChange>(lowering.lower(command).at(0));
     return last;
+}
+
+core::PathModeChange mode_of(std::string_view text, DialectId dialect) {
+    return mode_of(text, known_environment(dialect));
 }
 
 core::PathModeChange siemens_mode(std::string_view text) {
@@ -37,8 +41,12 @@ TEST(PathMode, OfLinuxcncRoundsRapidsAsFeeds) {
     const auto unlimited = mode_of("G21\nG64 P0.1\nG64\n", DialectId::linuxcnc);
     EXPECT_EQ(unlimited.tolerance, std::nullopt);
     EXPECT_EQ(unlimited.rapid_tolerance, std::nullopt);
-    EXPECT_TRUE(unlimited.rapids_keep_speed);
-    EXPECT_FALSE(mode.rapids_keep_speed);
+    EXPECT_FALSE(unlimited.rapids_keep_speed) << "there is nothing to meet";
+    Environment described = known_environment(DialectId::linuxcnc);
+    described.control.follows_start = true;
+    EXPECT_TRUE(mode_of("G21\nG64 P0.1\nG64\n", described).rapids_keep_speed);
+    EXPECT_FALSE(mode_of("G21\nG64\nG64 P0.1\n", described).rapids_keep_speed);
+    EXPECT_FALSE(mode_of("G21\nG61\n", described).rapids_keep_speed);
 }
 
 TEST(PathMode, OfSiemensHasTheDistancesOfG641) {

@@ -78,8 +78,12 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     if (!region) return;
     state.assumptions.insert(
         limit.keeps_speed()
-            ? "corners between rapids are rounded as far as the speeds and accelerations of the "
-              "machine make it (G64 without P); clearances include this"
+            ? fmt::format("corners between rapids are rounded as far as {} (G64 without P); "
+                          "clearances include this",
+                          states_dynamics(setup.machine)
+                              ? "the speeds and accelerations of the machine make it"
+                              : "to the middle of the moves, because speeds and accelerations of "
+                                "the axes are not stated")
             : fmt::format("corners between rapids may be rounded by up to {:g} mm; clearances "
                           "include this",
                           limit.deviation));

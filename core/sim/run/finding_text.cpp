@@ -4,6 +4,7 @@
 
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
+#include "core/motion/corner.h"
 #include "core/sim/run/cure_trial.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
@@ -85,6 +86,12 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
         path_deviation(pair.pair, rapid ? corners.rapids.deviation : corners.by, corners);
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
     // upper - lower. A pair that was only found near a corner has no upper bound.
+    if (rapid && corners.rapids.keeps_speed())
+        return fmt::format("The control rounds corners between rapids as far as their speeds and "
+                           "accelerations make it: program G64 P0.02 or G61{}.",
+                           states_dynamics(setup.machine)
+                               ? ""
+                               : ", or state `rapid` and `acceleration` of the axes");
     if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower))
         return fmt::format("The control may round corners by {:g} mm: use a smaller tolerance or "
                            "exact stops; if that does not decide it, increase the clearance.",
