@@ -101,7 +101,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     const gcode::LengthUnit unit = unit_of_program(program, unit_at_start(file.environment));
     const auto mills = [&](ToolNumber number) {
         const auto found = seen.mills.find(number);
-        return found == seen.mills.end() || found->second;
+        return found == seen.mills.end() ? std::nullopt : std::optional(found->second);
     };
     std::vector<FoundTool> missing;
     std::vector<ToolNumber> wanted = seen.tools;
@@ -234,11 +234,12 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
 
 /// Assumes what an operator does by hand when running such a program.
 void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
-    if (!seen.turns_spindle) {
+    const bool cuts = !seen.mills.empty();
+    if (!seen.turns_spindle && cuts) {
         file.setup.spindle_at_start = core::SpindleDirection::clockwise;
         file.assumptions.push_back(
             "the program never starts the spindle: it is switched on by hand");
-    } else if (!seen.states_speed) {
+    } else if (seen.turns_spindle && !seen.states_speed) {
         file.speed_by_hand = true;
         file.assumptions.push_back("the program has no spindle speed: it is set by hand");
     }
@@ -460,14 +461,16 @@ core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode:
     return offered;
 }
 
-FoundTool unknown_tool(ToolNumber number, bool mills, gcode::LengthUnit unit) {
+FoundTool unknown_tool(ToolNumber number, std::optional<bool> mills, gcode::LengthUnit unit) {
     FoundTool guess;
     guess.tool.number = number;
-    guess.tool.shape = mills ? core::ToolShape::flat : core::ToolShape::drill;
+    guess.tool.shape = mills.value_or(true) ? core::ToolShape::flat : core::ToolShape::drill;
     guess.tool.diameter = usual_diameter(unit);
     guess.has_shape = true;
     guess.source = fmt::format("its use alone: it {}, and nothing describes it",
-                               mills ? "cuts sideways" : "only moves up and down");
+                               !mills   ? "cuts nothing"
+                               : *mills ? "cuts sideways"
+                                        : "only moves up and down");
     return guess;
 }
 

@@ -57,8 +57,8 @@ struct SuggestedTools {
 /// Errors: those of the tool table's file.
 core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode::Program& program);
 
-/// A tool of which only the use is known. `mills`: it cuts sideways.
-FoundTool unknown_tool(core::ToolNumber number, bool mills, gcode::LengthUnit unit);
+/// A tool of which only the use is known. `mills`: it cuts sideways; empty: it cuts nothing.
+FoundTool unknown_tool(core::ToolNumber number, std::optional<bool> mills, gcode::LengthUnit unit);
 
 /// Adds a tool to the set-up, completed with usual sizes. In a bare set-up the tool counts as
 /// touched off with `control_length`.

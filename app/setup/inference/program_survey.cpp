@@ -111,6 +111,11 @@ bool sets_active_offset(const ProgramEvent& event, const gcode::Environment& env
            && event.offsets.work.origin != environment.work_offset(active);
 }
 
+/// Whether a motion is a feed that may cut. A probing move does not.
+bool is_cut(const Motion& motion) {
+    return motion.kind != MotionKind::rapid && !motion.stops_at_contact;
+}
+
 /// Tells taps by a spindle that turns back at the bottom of the hole.
 class Tapping {
 public:
@@ -122,7 +127,7 @@ public:
             direction_ = spindle->direction;
         }
         const auto* motion = std::get_if<Motion>(&event.event);
-        if (!motion || motion->kind == MotionKind::rapid || line_ == event.line) return;
+        if (!motion || !is_cut(*motion) || line_ == event.line) return;
         line_ = event.line;
         fed_left_ = direction_ == core::SpindleDirection::counterclockwise;
     }
@@ -195,7 +200,7 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         }
         if (!path) return;
         if (displaced.empty()) travel.note(motion->kind == MotionKind::rapid, *path);
-        if (motion->kind == MotionKind::rapid) return;
+        if (!is_cut(*motion)) return;
         const core::ToolNumber tool = event.tool.value_or(core::ToolNumber{0});
         bool& mills = result.mills[tool];
         mills = mills || path->sideways;
@@ -208,7 +213,7 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
     const auto survey_cuts = [&] {
         visit_events(program, environment, [&](const ProgramEvent& event) {
             const auto* motion = std::get_if<Motion>(&event.event);
-            if (!motion || motion->kind == MotionKind::rapid) return;
+            if (!motion || !is_cut(*motion)) return;
             if (offset && event.offsets.active != *offset) return;
             if (!displaced_axes(*motion, event.offsets).empty()) return;
             const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
