@@ -289,12 +289,15 @@ void remember(size_t& first, bool seen, uint32_t line) {
 void observe(const Block& block, Habits& habits) {
     habits.has_tape_mark |= block.tape_mark;
     bool homes = false, length = false, offset_number = false, moves = false, cancels = false;
+    bool arcs = false, names_axis = false;
     const std::string_view refused = dialect(DialectId::grbl).refused_letters;
     for (const Word& word : block.words) {
         const bool g = word.letter == 'G' && !word.expression;
         homes |= g && (word.value == 28.0 || word.value == 30.0);
         length |= g && word.value == 43.0;
         moves |= g && word.value <= 3.0;
+        arcs |= g && (word.value == 2.0 || word.value == 3.0);
+        names_axis |= word.letter >= 'X' && word.letter <= 'Z';
         cancels |= g && (word.value == 49.0 || word.value == 80.0);
         habits.has_refused_words |= refused.find(word.letter) != std::string_view::npos;
         offset_number |= word.letter == 'H';
@@ -307,7 +310,7 @@ void observe(const Block& block, Habits& habits) {
     }
     remember(habits.first_length_offset, length && offset_number, block.line);
     remember(habits.first_crowd, homes && moves, block.line);
-    habits.has_refused_words |= moves && cancels;
+    habits.has_refused_words |= (moves && cancels) || (arcs && !names_axis);
 }
 
 /// For a program of an unsupported control: the dialect that has most of its codes.
