@@ -191,9 +191,11 @@ core::Result<int> repeats_of(const Execution& execution) {
 /// Moves to the next hole, then down to R.
 void approach(Drilling& hole, const Position& target) {
     Execution& execution = hole.execution;
-    const bool climbs = execution.dialect.g98_cycle_starts_high
-                        && execution.modal().retract == RetractMode::initial_level;
     Position over = execution.modal().position;
+    // LinuxCNC goes to the next hole at its level if that is above R, otherwise at the initial one.
+    const bool is_above = over[hole.normal] && *over[hole.normal] > hole.r;
+    const bool climbs = execution.dialect.g98_cycle_starts_high && !is_above
+                        && execution.modal().retract == RetractMode::initial_level;
     over[hole.first] = target[hole.first];
     over[hole.second] = target[hole.second];
     const bool only_climbs = execution.dialect.cycles_are_rs274 && over[hole.normal];

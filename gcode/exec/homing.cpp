@@ -7,6 +7,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/probing.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -50,11 +51,32 @@ Position stored_home(Execution& execution, bool is_first, core::SourceSpan where
     return home;
 }
 
+/// The second reference point, which the machine builder or the operator has chosen.
+Position second_home(Execution& execution, core::SourceSpan where, const std::string& mover) {
+    Position home = execution.modal().second_home;
+    if (!(home[0] && home[1] && home[2])) {
+        std::string cure = "Retract with G53 G0 Z0 instead.";
+        for (const char* key : {"1241", "second home"})
+            if (find_setting(key, execution.dialect.id))
+                cure = fmt::format("State \"{}\" under [control] in the set-up.", key);
+        execution.result.warnings.push_back(
+            {Severity::warning, where,
+             fmt::format("{} goes to the second reference point, which only the machine knows",
+                         mover),
+             core::rule_id("unknown-value"), std::move(cure)});
+    }
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (!home[axis]) home[axis] = 0.0;
+    return home;
+}
+
 /// The reference point of G28 or G30 on this control.
 Position reference_point(Execution& execution, bool is_first, core::SourceSpan where,
                          const std::string& mover) {
     if (execution.dialect.stores_homes && execution.environment.control.reports_premises)
         return stored_home(execution, is_first, where, mover);
+    if (!is_first && execution.environment.control.follows_start)
+        return second_home(execution, where, mover);
     return known_home(execution, is_first ? execution.modal().home : execution.modal().second_home,
                       where, mover);
 }

@@ -318,7 +318,10 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     const ProgramLine here{state.next.source, block.line};
     begin_result(state, here);
     if (returns) announce_modes(result, 1, before.modal, state.modal);
-    if (std::exchange(state.after_end, false))
+    const bool names_axis =
+        std::any_of(block.words.begin(), block.words.end(),
+                    [](const Word& word) { return word.letter >= 'X' && word.letter <= 'Z'; });
+    if (names_axis && std::exchange(state.after_end, false))
         result.warnings.push_back(
             {Severity::warning,
              {.line = block.line, .column = 1},
@@ -650,11 +653,15 @@ void begin_modes(ModalState& modal, const Environment& environment) {
     if (const auto tolerance = control.number(ControlQuestion::corner_tolerance))
         modal.path_tolerance = *tolerance;
     // emccanon.cc: it starts as if G64 without P had been programmed.
-    modal.corner_tolerances.rapids_keep_speed = environment.dialect == DialectId::linuxcnc;
-    modal.distance_said = !find_parameter(ControlQuestion::starts_incremental, environment.dialect);
+    modal.corner_tolerances.rapids_keep_speed =
+        environment.dialect == DialectId::linuxcnc && control.follows_start;
+    const ControlParameter* distance =
+        find_parameter(ControlQuestion::starts_incremental, environment.dialect);
+    // Without a description of anything that could be hit, what an earlier program left is ignored.
+    modal.distance_said = !distance || (distance->key.empty() && !control.follows_start);
     modal.work_said = !find_parameter(ControlQuestion::starts_without_work, environment.dialect)
                       && !may_start_elsewhere(environment);
-    modal.retract_said = !keeps_modes(environment);
+    modal.retract_said = !(control.follows_start && may_keep_modes(environment));
     modal.plane_said = !find_parameter(ControlQuestion::starts_in_plane, environment.dialect);
 }
 
@@ -734,10 +741,18 @@ void ask_for_retract(Execution& execution) {
     const bool is_said = execution.statement.of(ModalGroup::retract);
     if (!runs && !is_said) return;
     modal.retract_said = true;
-    if (!is_said
-        && answer_to(execution.state, execution.environment, ControlQuestion::starts_at_r_level,
-                     execution.block.line))
+    const Environment& environment = execution.environment;
+    const uint32_t line = execution.block.line;
+    if (!is_said && starts_with_left_modes(execution.state, environment, line)
+        && answer_to(execution.state, environment, ControlQuestion::starts_at_r_level, line))
         modal.retract = RetractMode::r_level;
+}
+
+/// Whether the axis words of a block are distances, on which no work offset acts.
+bool is_incremental(const Execution& execution) {
+    const CodeWord* distance = execution.statement.of(ModalGroup::distance);
+    return distance ? distance->code->number == g_code(91)
+                    : execution.modal().distance == DistanceMode::incremental;
 }
 
 /// Settles which work offset is active where the program selects none, and whether any is.
@@ -749,9 +764,11 @@ void ask_for_work_offset(Execution& execution) {
     if (!find_parameter(ControlQuestion::starts_without_work, environment.dialect)) {
         const CodeWord* action = execution.statement.of(ModalGroup::action);
         const bool sets = action && action->code->number == g_code(92);
-        if (!says_work && !has_coordinates(execution) && !sets) return;
+        const bool relies = has_coordinates(execution) && !is_incremental(execution);
+        if (!says_work && !relies && !sets) return;
         modal.work_said = true;
-        if (!says_work)
+        if (!says_work
+            && starts_with_left_modes(execution.state, environment, execution.block.line))
             use_work_offset(execution,
                             first_work_offset(execution.state, environment, execution.block.line));
         return;

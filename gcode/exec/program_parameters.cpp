@@ -212,8 +212,11 @@ void ProgramParameters::note_read(int number, bool is_local) const {
 /// Those of a macro are its arguments or vacant; those of the main program may be left over.
 Knowledge ProgramParameters::knowledge_of_locals() const {
     constexpr ControlQuestion question = ControlQuestion::locals_are_kept;
-    const bool may_be_kept = find_parameter(question, environment_.dialect)
-                             && environment_.control.answer(question) != false;
+    // LinuxCNC keeps them from program to program.
+    const bool is_rs274 = dialect_.system_parameters == SystemParameters::rs274;
+    const bool may_be_kept = is_rs274
+                             || (find_parameter(question, environment_.dialect)
+                                 && environment_.control.answer(question) != false);
     return may_be_kept && &locals() == &state_.frames.front() ? Knowledge::unknown_until_set
                                                               : Knowledge::known;
 }

@@ -183,11 +183,25 @@ LengthUnit first_unit(InterpreterState& state, const Environment& environment, u
 }
 
 bool keeps_modes(const Environment& environment) {
-    if (!find_parameter(ControlQuestion::starts_at_r_level, environment.dialect)) return false;
     const ControlParameter* distance =
         find_parameter(ControlQuestion::starts_incremental, environment.dialect);
     const auto restores = environment.control.answer(ControlQuestion::modes_are_initial);
     return restores ? !*restores : distance && distance->key.empty();
+}
+
+bool may_keep_modes(const Environment& environment) {
+    constexpr ControlQuestion restores = ControlQuestion::modes_are_initial;
+    const bool is_open = environment.control.reports_premises && environment.control.follows_start
+                         && !environment.control.number(restores)
+                         && find_parameter(restores, environment.dialect);
+    return is_open || keeps_modes(environment);
+}
+
+bool starts_with_left_modes(InterpreterState& state, const Environment& environment,
+                            uint32_t line) {
+    if (keeps_modes(environment)) return true;
+    return may_keep_modes(environment)
+           && number_for(state, environment, ControlQuestion::modes_are_initial, line) == 0.0;
 }
 
 namespace {
@@ -212,7 +226,7 @@ std::string offset_code(size_t index) {
 } // namespace
 
 bool may_start_elsewhere(const Environment& environment) {
-    return keeps_modes(environment) && possible_offsets(environment).size() > 1;
+    return may_keep_modes(environment) && possible_offsets(environment).size() > 1;
 }
 
 size_t first_work_offset(InterpreterState& state, const Environment& environment, uint32_t line) {

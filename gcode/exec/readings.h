@@ -36,6 +36,13 @@ LengthUnit first_unit(InterpreterState& state, const Environment& environment, u
 /// where no parameter chooses the first modes, because nothing is stated.
 bool keeps_modes(const Environment& environment);
 
+/// As keeps_modes, where it is not stated, either.
+bool may_keep_modes(const Environment& environment);
+
+/// Whether the modes of an earlier program are active at the start. Where it is not stated, this
+/// meets the premise.
+bool starts_with_left_modes(InterpreterState& state, const Environment& environment, uint32_t line);
+
 /// Whether another work offset than G54 may be active at the start: the modes may be those of an
 /// earlier program, and the set-up states several offsets.
 bool may_start_elsewhere(const Environment& environment);

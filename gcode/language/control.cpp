@@ -16,6 +16,7 @@ using enum IfNotStated;
 constexpr DialectId fanuc[] = {DialectId::fanuc};
 constexpr DialectId haas[] = {DialectId::haas};
 constexpr DialectId linuxcnc[] = {DialectId::linuxcnc};
+constexpr DialectId rs274[] = {DialectId::linuxcnc, DialectId::grbl};
 constexpr DialectId klartext[] = {DialectId::heidenhain};
 constexpr DialectId siemens[] = {DialectId::siemens};
 constexpr DialectId with_block_delete[] = {DialectId::linuxcnc,   DialectId::fanuc,
@@ -390,6 +391,30 @@ constexpr ControlParameter parameters[] = {
      follow_all,
      "Haas mill operator's manual 96-8000, setting 56",
      "Program G98 or G99 before the first cycle."},
+    {starts_incremental,
+     rs274,
+     {},
+     "whether G91 was left active",
+     distance_modes,
+     follow_all,
+     "LinuxCNC 2.9, G codes; Grbl 1.1, gcode.c: MDI, jogging or a stopped program leaves it",
+     program_g90},
+    {starts_in_plane,
+     rs274,
+     {},
+     "whether G18 was left active",
+     zx_plane,
+     follow_all,
+     "LinuxCNC 2.9, G codes; Grbl 1.1, gcode.c: MDI or a stopped program leaves it",
+     "Program G17 before the first arc or cycle."},
+    {starts_at_r_level,
+     linuxcnc,
+     {},
+     "whether G99 was left active",
+     retract_modes,
+     follow_all,
+     "LinuxCNC 2.9, interp_convert.cc: M2 and M30 do not reset it",
+     "Program G98 or G99 before the first cycle."},
     {starts_in_plane, siemens, "MD20150[5]", "MD20150[5] (GCODE_RESET_VALUES)", siemens_plane,
      follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 6"},
     {starts_without_work, any_siemens, "MD20150[7]", "MD20150[7] (GCODE_RESET_VALUES)",
@@ -620,6 +645,9 @@ constexpr ControlSetting settings[] = {
      SettingKind::position,
      [](Environment& to, const SettingValue& value) { to.one_way_approach = whole(value); },
      "Fanuc B-63944EN, 4.2, single direction positioning (G60)"},
+    {haas, "second home", "second home position (G30), machine coordinates", SettingKind::position,
+     [](Environment& to, const SettingValue& value) { to.second_home = whole(value); },
+     "Haas mill operator's manual, NGC, settings 268 to 270"},
     {haas, "setting 35", "G60 offset: the distance past the target before G60 turns back",
      SettingKind::number,
      [](Environment& to, const SettingValue& value) {

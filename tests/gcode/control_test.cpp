@@ -78,7 +78,7 @@ struct Telling {
 };
 
 constexpr DialectId fanuc = DialectId::fanuc, haas = DialectId::haas, siemens = DialectId::siemens,
-                    linuxcnc = DialectId::linuxcnc;
+                    linuxcnc = DialectId::linuxcnc, grbl = DialectId::grbl;
 
 constexpr const char* outside_entry = "G21 G90\nG1 G42 D1 X10. F9\nX0. Y10.\nG40 X0\nM30\n";
 
@@ -426,35 +426,75 @@ TEST(Control, AnArcByRadiusToItsStartMovesNothing) {
     EXPECT_THAT(path_of("G21 G90\nG2 X0. Y0. R5. F9\nM30\n", haas, {}), HasSubstr("error"));
 }
 
+/// With something described that could be hit.
+Environment described(Environment environment) {
+    environment.control.follows_start = true;
+    return environment;
+}
+
 TEST(Control, ModesOfAnEarlierProgramAreNotThoseOfPowerOn) {
     EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(fanuc, {{"3402#3", 0}, {"3402#6", 0}})),
               "3402#3 2 of 2");
     EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(haas, {{"setting 56", 1}})), "");
-    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(haas, {{"setting 56", 0}})), " 2 of 2");
+    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", described(with(haas, {{"setting 56", 0}}))), " 2 of 2");
+    EXPECT_EQ(met("G21\nG0 X1.\nM30\n", with(haas, {{"setting 56", 0}})), "");
 }
 
 TEST(Control, ACycleBeforeG98AndG99RetractsAsAnEarlierProgramLeftIt) {
-    constexpr const char* drills = "G21 G90\nG0 Z10.\nG81 X1. Z-5. R2. F9\nX2.\nM30\n";
-    EXPECT_EQ(met(drills, with(fanuc, {{"3402#6", 0}})), " 3 of 2");
-    EXPECT_EQ(met(drills, with(haas, {{"setting 28", 1}, {"setting 56", 0}})), " 3 of 2");
-    EXPECT_EQ(met(drills, with(fanuc, {{"3402#6", 1}})), "");
-    EXPECT_EQ(met("G21 G90 G98\nG0 Z10.\nG81 X1. Z-5. R2. F9\nM30\n", with(fanuc, {{"3402#6", 0}})),
-              "");
+    constexpr const char* drills = "G21 G90 G17\nG0 Z10.\nG81 X1. Z-5. R2. F9\nX2.\nM30\n";
+    const auto given = [](DialectId dialect,
+                          std::initializer_list<std::pair<const char*, double>> stated) {
+        return described(with(dialect, stated));
+    };
+    EXPECT_EQ(met(drills, given(fanuc, {{"3402#6", 0}})), " 3 of 2");
+    EXPECT_EQ(met(drills, given(fanuc, {})), "3402#6 3 of 2");
+    EXPECT_EQ(met(drills, given(haas, {{"setting 28", 1}, {"setting 56", 0}})), " 3 of 2");
+    EXPECT_EQ(met(drills, given(fanuc, {{"3402#6", 1}})), "");
+    EXPECT_EQ(
+        met("G21 G90 G17 G98\nG0 Z10.\nG81 X1. Z-5. R2. F9\nM30\n", given(fanuc, {{"3402#6", 0}})),
+        "");
 }
 
 TEST(Control, AMoveBeforeG54IsInTheOffsetThatAnEarlierProgramLeft) {
     const auto two = [](DialectId dialect,
                         std::initializer_list<std::pair<const char*, double>> is) {
-        Environment environment = with(dialect, is);
+        Environment environment = described(with(dialect, is));
         environment.work_offsets[1][2] = -50.0;
         return environment;
     };
     EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "? 2 of 2");
     EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(haas, {{"setting 56", 0}})), "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(fanuc, {})), "3402#6 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(linuxcnc, {})), "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(grbl, {})), "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\nG54 G0 X1.\nM30\n", two(grbl, {})), "");
     EXPECT_EQ(met("G21 G90\nG54 G0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "");
     EXPECT_EQ(met("G21 G90\nG53 Z0.\nG54 G0 X1.\nM30\n", two(fanuc, {{"3402#6", 0}})), "");
     EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", two(fanuc, {{"3402#6", 1}})), "");
     EXPECT_EQ(met("G21 G90\nG0 X1.\nM30\n", with(fanuc, {{"3402#6", 0}})), "");
+}
+
+TEST(Control, MdiMayLeaveOtherModes) {
+    for (const DialectId dialect : {linuxcnc, grbl}) {
+        EXPECT_EQ(met("G21 G17\nG0 X1\nM30\n", described(with(dialect, {}))), " 2 of 2");
+        EXPECT_EQ(met("G21 G17\nG0 X1\nM30\n", with(dialect, {})), "");
+        EXPECT_EQ(met("G21 G17 G90\nG0 X1\nM30\n", described(with(dialect, {}))), "");
+        EXPECT_EQ(met("G21 G90\nG0 X0 Y0\nG2 X2 I1 F9\nM30\n", described(with(dialect, {}))),
+                  " 3 of 2");
+    }
+    constexpr const char* drills = "G21 G17 G90\nG0 Z10\nM3 S9\nG81 X1 Z-5 R2 F9\nM2\n";
+    EXPECT_EQ(met(drills, described(with(linuxcnc, {}))), " 4 of 2");
+    EXPECT_EQ(met(drills, with(linuxcnc, {})), "");
+}
+
+TEST(Control, VariablesOfTheMainProgramAreKeptOnLinuxcnc) {
+    EXPECT_EQ(met("G21 G90\no1 if [#5 GT 0]\nG0 X1\no1 endif\nM2\n", with(linuxcnc, {})),
+              "? 2 of 2");
+    EXPECT_EQ(met("G21 G90\n#5=0\no1 if [#5 GT 0]\nG0 X1\no1 endif\nM2\n", with(linuxcnc, {})), "");
+    EXPECT_EQ(met("o2 sub\no1 if [#5 GT 0]\nG0 X1\no1 endif\no2 endsub\nG21 G90\no2 call [1]\n"
+                  "M2\n",
+                  with(linuxcnc, {})),
+              "");
 }
 
 TEST(Control, AnIncrementalModeMayEndWithItsBlock) {

@@ -1,0 +1,20 @@
+%
+O1032 (EDGE - The second reference point is that of the machine builder)
+(T1 END MILL D10)
+G17 G21 G40 G49 G80
+G91 G28 Z0.
+G90
+T1 M6
+G54 G98 G90 G0 X-20. Y50. S6000 M3
+G43 H1 Z60. M8
+G0 Z2.
+G1 Z-5. F300.
+G1 X20. F800.
+G0 Z2.
+G91 G30 X0. Y0.
+G28 Z0.
+G90
+M9
+M5
+M30
+%
