@@ -219,8 +219,16 @@ hwsim::Stop CoprocessorCheck::collect_answers(PushedBlock& block) {
 }
 
 Result<void> CoprocessorCheck::query_event(const core::Event& event, At& at, PushedBlock& block) {
-    if (const auto* motion = std::get_if<core::Motion>(&event))
-        return query_motion(*motion, at, block);
+    if (const auto* motion = std::get_if<core::Motion>(&event)) {
+        const core::ToolAssembly* held = at.tool;
+        // A cycle has stopped the spindle of a boring bar, to move its edge off the wall.
+        const bool is_oriented = held && held->oriented && at.is_cycle
+                                 && at.spindle.direction == core::SpindleDirection::stopped;
+        if (is_oriented) at.tool = held->oriented.get();
+        auto queried = query_motion(*motion, at, block);
+        at.tool = held;
+        return queried;
+    }
     if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
     if (const auto* change = std::get_if<core::PathModeChange>(&event))
         change_mode(at.corners, *change, setup_->machine);

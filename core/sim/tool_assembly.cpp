@@ -474,9 +474,10 @@ namespace {
 /// A boring bar without its edge: a cylinder as wide as the shank takes the place of the flutes.
 Result<ToolAssembly> without_edge(const ToolAssembly& tool) {
     const ToolDescription& description = tool.description;
-    const double bar = description.neck_diameter.value_or(
-        description.shank.empty() ? description.diameter
-                                  : description.shank.front().lower_diameter);
+    const double above = description.shank.empty()
+                             ? description.shank_diameter.value_or(description.diameter)
+                             : description.shank.front().lower_diameter;
+    const double bar = description.neck_diameter.value_or(above);
     if (bar >= description.diameter)
         return fail(ErrorCode::invalid_value,
                     fmt::format("tool {}: a boring bar (single_point) is thinner than its diameter "

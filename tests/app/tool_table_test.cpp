@@ -128,6 +128,8 @@ TEST(ToolTable, ListsItsAssumptions) {
                         "tool 4 has no pitch"));
     expect_refused(flat + "centre_diameter = 3\n", "cuts_at_centre = false");
     expect_refused(flat + "cuts_at_centre = false\ncentre_diameter = 10\n", "below diameter");
+    expect_refused(flat + "single_point = true\n", "state shank_diameter or shank");
+    EXPECT_FALSE(assumes(flat + "single_point = true\nshank_diameter = 6\n", "of its axis"));
 }
 
 TEST(ToolTable, GivesTheControlLengthWearAndDiameter) {
