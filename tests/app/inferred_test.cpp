@@ -104,6 +104,15 @@ TEST(InferredSetup, DoesNotFailOnAProgramThatCutsNothing) {
     EXPECT_TRUE(run.assumes("the program cuts nothing"));
 }
 
+TEST(InferredSetup, DoesNotTakeAProbingMoveForACut) {
+    const Inferred run = infer("G21 G90 G17 G54 G64 P0.02\nT10 M6\nG0 X0 Y0\nG43 H10 Z30\n"
+                               "G38.2 Z-5 F100\nG0 Z30\nM2\n",
+                               {"--dialect", "linuxcnc"}, "p.ngc");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(run.assumes("it cuts nothing"));
+    EXPECT_FALSE(run.assumes("switched on by hand"));
+}
+
 TEST(InferredSetup, IsWrittenAsAFileThatMeansTheSame) {
     const std::string first_words = "G21 G90\nM3\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F100\nX20\nG0 Z5\n";
     for (const std::string& program :

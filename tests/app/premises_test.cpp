@@ -80,6 +80,14 @@ TEST(Premises, AReadingThatTheCheckCannotFinishIsUndecided) {
     EXPECT_EQ(errors_with(alarm, "[control]\n\"5006#6\" = 1\n"), "");
 }
 
+TEST(Premises, TheCheckMayStopInTheBlockOfAPremise) {
+    // X10 is 10 mm or 0.010 mm, and G999 does not exist.
+    const Checked stopped = check(plate("fanuc"), head + std::string("G0 Y50.\nG999 X10\nM30\n"));
+    EXPECT_EQ(stopped.status, 2);
+    EXPECT_EQ(stopped.verdict, "undecided");
+    EXPECT_EQ(stopped.errors(), "") << "every reading stops there";
+}
+
 TEST(Premises, EachBlockDeleteSwitchIsOneOfItsOwn) {
     const auto errors = [](const std::string& up, const std::string& across) {
         return errors_with(head + std::string("G0 X50. Y50.\nG0 Z5.\n") + up + " G0 Z60.\n" + across
