@@ -28,11 +28,18 @@ Position known_home(Execution& execution, Position home, core::SourceSpan where,
     return home;
 }
 
+/// A position with the axes beyond X, Y and Z at 0 where it does not state them.
+Position with_others_at_zero(Position position) {
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (!position[axis]) position[axis] = 0.0;
+    return position;
+}
+
 /// The position that G28.1 or G30.1 has stored: that of G28 or G30. Unknown unless the set-up or
 /// the program states it.
 Position stored_home(Execution& execution, bool is_first, core::SourceSpan where,
                      const std::string& mover) {
-    Position home = is_first ? execution.modal().home : execution.modal().second_home;
+    const Position& home = is_first ? execution.modal().home : execution.modal().second_home;
     if (!(home[0] && home[1] && home[2])) {
         std::string_view place = is_first ? "`home` of the axes" : "the second reference point";
         if (execution.dialect.has_variables_file)
@@ -46,14 +53,12 @@ Position stored_home(Execution& execution, bool is_first, core::SourceSpan where
              core::rule_id("unknown-value"),
              fmt::format("Retract with G53 G0 Z0 instead, or state {} in the set-up.", place)});
     }
-    for (size_t axis = 3; axis < axis_count; ++axis)
-        if (!home[axis]) home[axis] = 0.0;
-    return home;
+    return with_others_at_zero(home);
 }
 
 /// The second reference point, which the machine builder or the operator has chosen.
 Position second_home(Execution& execution, core::SourceSpan where, const std::string& mover) {
-    Position home = execution.modal().second_home;
+    const Position& home = execution.modal().second_home;
     if (!(home[0] && home[1] && home[2])) {
         std::string cure = "Retract with G53 G0 Z0 instead.";
         for (const char* key : {"1241", "second home"})
@@ -65,9 +70,7 @@ Position second_home(Execution& execution, core::SourceSpan where, const std::st
                          mover),
              core::rule_id("unknown-value"), std::move(cure)});
     }
-    for (size_t axis = 3; axis < axis_count; ++axis)
-        if (!home[axis]) home[axis] = 0.0;
-    return home;
+    return with_others_at_zero(home);
 }
 
 /// The reference point of G28 or G30 on this control.

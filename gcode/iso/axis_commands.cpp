@@ -1,6 +1,6 @@
-#include "gcode/iso/axis_commands.h"
-
 #include <fmt/format.h>
+
+#include "gcode/iso/iso.h"
 
 namespace gcode {
 namespace {

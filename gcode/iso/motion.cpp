@@ -8,7 +8,6 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
-#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 
 namespace gcode {

@@ -7,7 +7,6 @@
 #include "gcode/cycles/cycles.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/rules.h"
-#include "gcode/iso/axis_commands.h"
 #include "gcode/iso/iso.h"
 #include "gcode/iso/plain_words.h"
 #include "gcode/language/flow_index.h"

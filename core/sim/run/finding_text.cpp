@@ -84,14 +84,14 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
     const bool rapid = move.motion == BlockMotion::rapid;
     const double off =
         path_deviation(pair.pair, rapid ? corners.rapids.deviation : corners.by, corners);
-    // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
-    // upper - lower. A pair that was only found near a corner has no upper bound.
     if (rapid && corners.rapids.keeps_speed())
         return fmt::format("The control rounds corners between rapids as far as their speeds and "
                            "accelerations make it: program G64 P0.02 or G61{}.",
                            states_dynamics(setup.machine)
                                ? ""
                                : ", or state `rapid` and `acceleration` of the axes");
+    // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
+    // upper - lower. A pair that was only found near a corner has no upper bound.
     if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower))
         return fmt::format("The control may round corners by {:g} mm: use a smaller tolerance or "
                            "exact stops; if that does not decide it, increase the clearance.",
