@@ -110,6 +110,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.tool_at_start, over.tool_at_start);
     replace(settings.spindle_at_start, over.spindle_at_start);
     replace(settings.values, over.values);
+    replace(settings.named_values, over.named_values);
     replace(settings.speed_by_hand, over.speed_by_hand);
     replace(settings.measured_offsets_are_stated, over.measured_offsets_are_stated);
     return settings;
@@ -135,6 +136,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
             !*settings.counts_smallest_steps;
     }
     environment.control.values = settings.values;
+    environment.control.named_values = settings.named_values;
     environment.measured_offsets_are_stated = settings.measured_offsets_are_stated.value_or(false);
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
         replace(environment.start[axis], settings.start[axis]);
@@ -217,15 +219,29 @@ std::optional<int> variable_number(std::string_view name) {
     return number;
 }
 
-void read_values(TableReader& table, std::map<int, double>& values) {
+/// The name of a global variable of LinuxCNC, such as #<_depth>, without `#<>`; empty for others.
+std::string global_name(const std::string& name) {
+    const bool is_global = name.starts_with("#<_") && name.ends_with('>');
+    return is_global ? core::lower_case(name.substr(2, name.size() - 3)) : "";
+}
+
+void read_values(TableReader& table, ProgramSettings& settings) {
     for (const std::string& name : table.keys()) {
+        const std::string global = global_name(name);
+        if (!global.empty() && table.is_text(name.c_str())) {
+            if (table.word(name.c_str(), {"unset"})) settings.named_values[global];
+            continue;
+        }
         const auto value = table.number(name.c_str());
         const auto number = variable_number(name);
-        if (!number)
-            table.refuse(name.c_str(),
-                         "is not the name of a variable, such as \"#500\", R5 or Q12");
+        if (!number && global.empty())
+            table.refuse(
+                name.c_str(),
+                "is not the name of a variable, such as \"#500\", R5, Q12 or \"#<_name>\"");
+        else if (value && number)
+            settings.values[*number] = *value;
         else if (value)
-            values[*number] = *value;
+            settings.named_values[global] = *value;
     }
     table.finish();
 }
@@ -256,8 +272,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
         if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
         settings.max_blocks = static_cast<uint64_t>(*blocks);
     }
-    if (auto values = table.table("values", "[program.values]"))
-        read_values(*values, settings.values);
+    if (auto values = table.table("values", "[program.values]")) read_values(*values, settings);
     settings.speed_by_hand = table.boolean("speed_by_hand");
     if (table.word("measured_offsets", {"as stated"})) settings.measured_offsets_are_stated = true;
     if (const auto tool = table.integer("tool_at_start"))

@@ -38,6 +38,7 @@ struct ProgramSettings {
     std::optional<core::ToolNumber> tool_at_start;
     std::optional<core::SpindleDirection> spindle_at_start;
     std::map<int, double> values; // of variables that only the machine knows, by number
+    std::map<std::string, std::optional<double>, std::less<>> named_values; // as in ControlSettings
     std::optional<bool> measured_offsets_are_stated; // what probing sets is in the set-up
     std::optional<bool> speed_by_hand; // the spindle turns although the program has no S
 };

@@ -114,15 +114,30 @@ core::Result<Value> ProgramParameters::named(std::string_view name, core::Source
     const NamedValues& all = named_values(name);
     const auto found = all.find(name);
     if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
+    if (found == all.end() && may_be_left(name)) return Value{0.0};
     if (found == all.end())
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("#<{}> is used before it is set", name), where);
     return Value{found->second};
 }
 
+/// Whether the program asked if a variable exists that only an earlier program can have set. In the
+/// reading in which it does, its value is unknown.
+bool ProgramParameters::may_be_left(std::string_view name) const {
+    const auto& marked = state_.parameters->unpredictable_names();
+    return is_global(name) && marked.find(name) != marked.end();
+}
+
 bool ProgramParameters::exists(std::string_view name) const {
     const NamedValues& all = named_values(name);
-    return all.find(name) != all.end() || system_parameter(state_, environment_, name).has_value();
+    if (all.find(name) != all.end() || system_parameter(state_, environment_, name)) return true;
+    const auto& stated = environment_.control.named_values;
+    if (!environment_.control.reports_premises || !is_global(name)
+        || stated.find(name) != stated.end())
+        return false;
+    note_unpredictable(shown_name(name), true);
+    if (!may_be_left(name)) state_.parameters.write().mark(name, true);
+    return false;
 }
 
 core::Result<void> ProgramParameters::set_numbered(double number, Value value,
@@ -294,6 +309,9 @@ void load_parameters(InterpreterState& state, const Environment& environment) {
         else if (knowledge_of(environment, number) == Knowledge::unknown_until_set)
             state.parameters.write().set_numbered(
                 stored_number(number, dialect(environment.dialect)), value);
+    if (dialect(environment.dialect).names_are_declared) return;
+    for (const auto& [name, value] : environment.control.named_values)
+        if (value) state.parameters.write().set_named(name, value);
 }
 
 namespace {

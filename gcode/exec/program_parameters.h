@@ -62,6 +62,7 @@ private:
     Frame& locals();
     const Frame& locals() const;
     bool is_global(std::string_view name) const;
+    bool may_be_left(std::string_view name) const;
     tl::unexpected<core::Error> undeclared(std::string_view name, core::SourceSpan where) const;
     const NamedValues& named_values(std::string_view name) const;
 

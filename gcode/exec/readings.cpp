@@ -320,18 +320,22 @@ bool outcome_of(InterpreterState& state, const OpenCondition& condition) {
     return outcome;
 }
 
+/// Only an earlier program can have set a global variable of LinuxCNC that the program asks for.
+std::string how_to_state(const std::string& name) {
+    return fmt::format("State the value of {}{} under [program.values] in the set-up.", name,
+                       name.starts_with("#<_") ? ", or \"unset\"," : "");
+}
+
 } // namespace
 
 bool outcome_of(const ProgramParameters& parameters, const Block& block, bool computed) {
     const auto& reads = parameters.unpredictable_reads();
     if (reads.empty()) return computed;
-    return outcome_of(
-        parameters.state(),
-        {block,
-         fmt::format("The condition depends on {}, which the program does not set",
-                     fmt::join(reads, " and ")),
-         fmt::format("State the value of {} under [program.values] in the set-up.", reads.front()),
-         computed, parameters.reads_vary()});
+    return outcome_of(parameters.state(),
+                      {block,
+                       fmt::format("The condition depends on {}, which the program does not set",
+                                   fmt::join(reads, " and ")),
+                       how_to_state(reads.front()), computed, parameters.reads_vary()});
 }
 
 bool outcome_of_input(InterpreterState& state, const Environment& environment, const Block& block,
@@ -360,8 +364,7 @@ void report_unknown(const ProgramParameters& parameters, BlockCommands& result,
                  "{} depends on {}, which only the machine knows here: the program does not "
                  "set it before",
                  what, name),
-             core::rule_id("unknown-value"),
-             fmt::format("State the value of {} under [program.values] in the set-up.", name)});
+             core::rule_id("unknown-value"), how_to_state(name)});
     }
 }
 

@@ -107,6 +107,9 @@ struct ControlSettings {
     bool follows_start = false;
     /// Values of variables that the program cannot know, by number: inputs, results of probing.
     std::map<int, double> values{};
+    /// Values of global variables that an earlier program may have left, by name without `#<>`, in
+    /// lower case; empty: not set.
+    std::map<std::string, std::optional<double>, std::less<>> named_values{};
 
     std::optional<double> number(ControlQuestion question) const {
         const auto found = answers.find(question);

@@ -43,10 +43,12 @@ KeyJson settings_json(const ProgramSettings& settings) {
     // This does not compile after a member was added: add it to the key below.
     const auto& [dialect, block_delete, start, machine_unit, units_at_start, max_blocks,
                  counts_smallest_steps, ini, parameters, tool_table, search_path, machine_codes,
-                 tool_at_start, spindle_at_start, values, measured_offsets_are_stated,
+                 tool_at_start, spindle_at_start, values, named_values, measured_offsets_are_stated,
                  speed_by_hand] = settings;
     KeyJson variables = KeyJson::array();
     for (const auto& [number, value] : values) variables.push_back({number, value});
+    for (const auto& [name, value] : named_values)
+        variables.push_back({name, optional_json(value)});
     KeyJson positions = KeyJson::array(), folders = KeyJson::array();
     for (const auto& position : start) positions.push_back(optional_json(position));
     for (const std::string& folder : search_path) folders.push_back(path_json(folder));
