@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/dbm/cutter.h"
 #include "core/dbm/solid.h"
 #include "core/distance/outer_model.h"
@@ -45,7 +46,7 @@ core::ColumnFunction columns_of_turned(const core::RevolvedProfile& profile,
     return [profile,
             turn = core::CutterSweep{.orientation = orientation}](int, const core::Square& square) {
         const double reach =
-            0.5 * std::hypot(square.x1 - square.x0, square.y1 - square.y0) + safety;
+            0.5 * core::hypot(square.x1 - square.x0, square.y1 - square.y0) + safety;
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
         core::IntervalList matter;
         for (core::ProfileElement element : profile.elements) {
@@ -169,7 +170,7 @@ core::Result<std::vector<Record>> cylinders_round(const CubeCover& cubes,
     core::Vec3 half(0.0); // of the box around a rotated cube
     for (int i = 0; i < 3; ++i) half += 0.5 * cubes.side * glm::abs(orientation[i]);
     const double radius =
-        std::min(std::hypot(half.x, half.y), 0.5 * std::numbers::sqrt3 * cubes.side) + safety;
+        std::min(core::hypot(half.x, half.y), 0.5 * std::numbers::sqrt3 * cubes.side) + safety;
     std::vector<Record> records;
     for (const core::Vec3& centre : cubes.centres) {
         const core::Vec3 at = orientation * centre;

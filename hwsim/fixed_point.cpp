@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+
 namespace hwsim {
 namespace {
 
@@ -37,7 +39,7 @@ core::Result<uint32_t> threshold(double distance, double sample_step) {
     if (!(distance >= 0.0) || !(sample_step >= 0.0))
         return core::fail(core::ErrorCode::invalid_value,
                           "a minimum distance and a step along a segment must be 0 or more");
-    FEELER_TRY(const int32_t steps, fixed(std::hypot(distance, 0.5 * sample_step), Rounding::up));
+    FEELER_TRY(const int32_t steps, fixed(core::hypot(distance, 0.5 * sample_step), Rounding::up));
     return static_cast<uint32_t>(steps);
 }
 

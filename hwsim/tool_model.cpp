@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "hwsim/memory_line.h"
 
 namespace hwsim {
@@ -14,7 +15,7 @@ using core::ProfileElement;
 class Outline {
 public:
     explicit Outline(const ProfileElement& e) : e_(e) {
-        const double length = std::hypot(e.r1 - e.r0, e.z1 - e.z0);
+        const double length = core::hypot(e.r1 - e.r0, e.z1 - e.z0);
         if (length > 0.0) normal_ = {(e.z1 - e.z0) / length, (e.r0 - e.r1) / length};
         borders_ = {bottom(), e.z0, e.z0 + e.margin * normal_[1], e.z1 + e.margin * normal_[1],
                     e.z1,     top()};
@@ -36,7 +37,7 @@ public:
     double outside(double r, double z) const {
         const double z_in = std::clamp(z, e_.z0, e_.z1);
         const double r_in = radius_of_core(z_in);
-        double apart = std::hypot(std::max(r - r_in, 0.0), z - z_in);
+        double apart = core::hypot(std::max(r - r_in, 0.0), z - z_in);
         // The nearest point may be on the slope instead of straight sideways or below.
         const double along_r = e_.r1 - e_.r0, along_z = e_.z1 - e_.z0;
         const double square = along_r * along_r + along_z * along_z;
@@ -44,10 +45,10 @@ public:
             const double t =
                 std::clamp(((r - e_.r0) * along_r + (z - e_.z0) * along_z) / square, 0.0, 1.0);
             const double on_r = e_.r0 + t * along_r, on_z = e_.z0 + t * along_z;
-            apart = std::min(apart, std::hypot(r - on_r, z - on_z));
+            apart = std::min(apart, core::hypot(r - on_r, z - on_z));
         }
         for (const auto& [rim, height] : {std::pair{e_.r0, e_.z0}, {e_.r1, e_.z1}})
-            apart = std::min(apart, std::hypot(std::max(r - rim, 0.0), z - height));
+            apart = std::min(apart, core::hypot(std::max(r - rim, 0.0), z - height));
         return std::max(apart - e_.margin, 0.0);
     }
 

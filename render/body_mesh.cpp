@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/math.h"
 #include "core/dbm/solid.h"
 #include "core/geom/mesh.h"
 #include "core/geom/profile.h"
@@ -18,7 +19,7 @@ using core::Vec3;
 
 /// Chords of a circle that stay within `sag` of it; a multiple of 4, so that quarters are exact.
 int chords_of(double radius, double sag) {
-    const double angle = std::acos(std::clamp(1.0 - sag / std::max(radius, sag), -1.0, 1.0));
+    const double angle = core::acos(std::clamp(1.0 - sag / std::max(radius, sag), -1.0, 1.0));
     const int quarter =
         static_cast<int>(std::ceil(0.25 * std::numbers::pi / std::max(angle, 1e-3)));
     return 4 * std::clamp(quarter, 6, 32);
@@ -35,7 +36,7 @@ struct Rings {
         const int count = at.r > 0.0 ? chords : 1;
         for (int i = 0; i < count; ++i) {
             const double angle = 2.0 * std::numbers::pi * i / chords;
-            mesh.vertices.emplace_back(at.r * std::cos(angle), at.r * std::sin(angle), at.z);
+            mesh.vertices.emplace_back(at.r * core::cos(angle), at.r * core::sin(angle), at.z);
         }
         return first;
     }
@@ -73,7 +74,7 @@ core::Mesh directions(int divisions) {
     for (int i = 0; i <= divisions; ++i) {
         const double angle = std::numbers::pi * i / divisions;
         const bool pole = i == 0 || i == divisions;
-        outline.push_back({pole ? 0.0 : std::sin(angle), -std::cos(angle)});
+        outline.push_back({pole ? 0.0 : core::sin(angle), -core::cos(angle)});
     }
     return revolved(outline, 0.003);
 }
@@ -105,7 +106,7 @@ std::vector<uint32_t> face_through(const std::vector<Vec3>& points, const Vec3& 
     for (const uint32_t i : on) middle += points[i] / static_cast<double>(on.size());
     const Vec3 x = glm::normalize(points[on[0]] - middle), y = glm::cross(normal, x);
     const auto angle = [&](uint32_t i) {
-        return std::atan2(glm::dot(points[i] - middle, y), glm::dot(points[i] - middle, x));
+        return core::atan2(glm::dot(points[i] - middle, y), glm::dot(points[i] - middle, x));
     };
     std::sort(on.begin(), on.end(), [&](uint32_t a, uint32_t b) { return angle(a) < angle(b); });
     return on;
@@ -222,21 +223,21 @@ struct Arc {
 
 void add_arc(Outline& outline, const Arc& arc, double sag) {
     const double step =
-        2.0 * std::acos(std::clamp(1.0 - sag / std::max(arc.radius, sag), 0.0, 1.0));
+        2.0 * core::acos(std::clamp(1.0 - sag / std::max(arc.radius, sag), 0.0, 1.0));
     const double turn = arc.to - arc.from;
     const int chords =
         std::max(1, static_cast<int>(std::ceil(turn / std::clamp(step, 0.03, 0.25))));
     for (int i = 0; i <= chords; ++i) {
         const double angle = arc.from + turn * i / chords;
-        outline.push_back({std::max(0.0, arc.r + arc.radius * std::cos(angle)),
-                           arc.z + arc.radius * std::sin(angle)});
+        outline.push_back({std::max(0.0, arc.r + arc.radius * core::cos(angle)),
+                           arc.z + arc.radius * core::sin(angle)});
     }
 }
 
 /// The outline of one piece without the flat faces at its ends; heights do not decrease.
 Outline outline_of(const core::ProfileElement& e, double sag) {
     if (e.margin <= 0.0) return {{e.r0, e.z0}, {e.r1, e.z1}};
-    const double flank = std::atan2(-(e.r1 - e.r0), e.z1 - e.z0);
+    const double flank = core::atan2(-(e.r1 - e.r0), e.z1 - e.z0);
     Outline outline;
     add_arc(outline, {e.r0, e.z0, e.margin, -0.5 * std::numbers::pi, flank}, sag);
     add_arc(outline, {e.r1, e.z1, e.margin, flank, 0.5 * std::numbers::pi}, sag);
@@ -298,7 +299,7 @@ void add(Outline& outline, const OutlinePoint& p) {
         const OutlinePoint &a = outline[outline.size() - 2], &b = outline.back();
         const double cross = (b.r - a.r) * (p.z - a.z) - (b.z - a.z) * (p.r - a.r);
         const double along = (b.r - a.r) * (p.r - b.r) + (b.z - a.z) * (p.z - b.z);
-        if (std::abs(cross) > tiny * std::hypot(p.r - a.r, p.z - a.z) || along < 0.0) break;
+        if (std::abs(cross) > tiny * core::hypot(p.r - a.r, p.z - a.z) || along < 0.0) break;
         outline.pop_back();
     }
     outline.push_back(p);

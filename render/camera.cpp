@@ -6,6 +6,8 @@
 
 #include <glm/gtc/matrix_access.hpp>
 
+#include "core/base/math.h"
+
 namespace render {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double pi = std::numbers::pi;
 /// Limits of the zoom: a thousandth of a millimetre and a kilometre.
 constexpr double least_distance = 0.05, most_distance = 1e6;
 
-double half_angle_tangent(const Camera& camera) { return std::tan(0.5 * camera.view_angle); }
+double half_angle_tangent(const Camera& camera) { return core::tan(0.5 * camera.view_angle); }
 
 /// Half the height of the picture at the target, mm.
 double half_height(const Camera& camera) { return camera.distance * half_angle_tangent(camera); }
@@ -35,8 +37,8 @@ double wrapped(double angle) { return std::remainder(angle, 2.0 * pi); }
 } // namespace
 
 CameraAxes axes(const Camera& camera) {
-    const double cy = std::cos(camera.yaw), sy = std::sin(camera.yaw);
-    const double cp = std::cos(camera.pitch), sp = std::sin(camera.pitch);
+    const double cy = core::cos(camera.yaw), sy = core::sin(camera.yaw);
+    const double cp = core::cos(camera.pitch), sp = core::sin(camera.pitch);
     return {{-sy, cy, 0.0}, {-sp * cy, -sp * sy, cp}, {cp * cy, cp * sy, sp}};
 }
 
@@ -151,7 +153,7 @@ Camera seen_from(const Camera& camera, StandardView view) {
     struct Angles {
         double yaw, pitch;
     };
-    static const std::array<Angles, 7> angles = {{{-0.25 * pi, std::atan(std::sqrt(0.5))},
+    static const std::array<Angles, 7> angles = {{{-0.25 * pi, core::atan(std::sqrt(0.5))},
                                                   {-0.5 * pi, 0.5 * pi},
                                                   {-0.5 * pi, 0.0},
                                                   {0.0, 0.0},

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/dbm/dual_cell.h"
 #include "render/triangle_mesh.h"
 
@@ -249,7 +250,7 @@ Piece& BrickContour::piece_at(size_t cell, uint8_t edge) {
 /// The vertex of a piece for a quad: its normal is the mean of those in the piece within the crease
 /// angle of the quad's own.
 uint32_t BrickContour::corner(Piece& piece, const CrossedEdge& edge_of_quad, uint8_t tint) {
-    static const double limit = std::cos(crease_angle);
+    static const double limit = core::cos(crease_angle);
     Vec3 sum = edge_of_quad.plane.normal;
     if (!piece.flat) {
         sum = Vec3(0.0);
@@ -318,7 +319,7 @@ void BrickContour::add_quads() {
 /// A feature line from the piece of a cell to that of the previous one along the axis, if the
 /// surface bends at the face between them.
 void BrickContour::add_crease(size_t axis, size_t cell) {
-    static const double limit = std::cos(crease_angle);
+    static const double limit = core::cos(crease_angle);
     const size_t other = cell - step_of(axis);
     if (room_.cells[other] == nowhere) return;
     const core::DualCell& dual = core::dual_cell(room_.corners[cell]);

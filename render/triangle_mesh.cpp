@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/math.h"
+
 namespace render {
 namespace {
 
@@ -46,7 +48,7 @@ double angle_at(const core::Mesh& mesh, const Corner& at) {
     const Vec3 p = mesh.vertices[at.vertex];
     const Vec3 a = mesh.vertices[t[(at.corner + 1) % 3]] - p;
     const Vec3 b = mesh.vertices[t[(at.corner + 2) % 3]] - p;
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    return core::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// The mean of the normals around a corner that belong to the same smooth region.
@@ -112,7 +114,7 @@ Vec3 unpacked_normal(const MeshVertex& vertex) {
 
 TriangleMesh shaded(const core::Mesh& mesh, double crease) {
     TriangleMesh made;
-    const double limit = std::cos(crease);
+    const double limit = core::cos(crease);
     const Faces faces = faces_of(mesh);
     made.triangles.resize(mesh.triangles.size());
     for (size_t v = 0; v < mesh.vertices.size(); ++v) {

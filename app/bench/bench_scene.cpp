@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/base/stopwatch.h"
+#include "core/base/math.h"
 #include "core/dbm/mesh_scan.h"
 
 namespace app {
@@ -163,7 +164,7 @@ core::IntervalList across_ring(double outer, double inner, double aside) {
 } // namespace
 
 core::IntervalList line_of(const Torus& torus, int axis, double u, double v) {
-    if (axis == 2) return symmetric(half_chord(torus.tube, std::hypot(u, v) - torus.ring));
+    if (axis == 2) return symmetric(half_chord(torus.tube, core::hypot(u, v) - torus.ring));
     const double aside = axis == 0 ? u : v, height = axis == 0 ? v : u;
     const double half = half_chord(torus.tube, height);
     if (half == 0.0) return {};
@@ -173,7 +174,7 @@ core::IntervalList line_of(const Torus& torus, int axis, double u, double v) {
 core::IntervalList line_of(const Cup& cup, int axis, double u, double v) {
     const double top = 0.5 * cup.height, floor = top - cup.depth;
     if (axis == 2) {
-        const double from_axis = std::hypot(u, v);
+        const double from_axis = core::hypot(u, v);
         if (from_axis >= cup.radius) return {};
         return core::IntervalList(core::Interval{-top, from_axis < cup.bore ? floor : top});
     }

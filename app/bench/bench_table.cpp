@@ -6,6 +6,7 @@
 #include <ctime>
 #include <numeric>
 
+#include "core/base/math.h"
 #include "core/distance/distance_engine.h"
 
 namespace app {
@@ -79,12 +80,12 @@ BenchAverages mean_of(const std::vector<BenchRow>& rows, double mesh_size) {
         mean.point_tests += static_cast<double>(row.paper.point_tests);
         mean.paper_seconds += row.paper.seconds;
         mean.fast_seconds += row.fast.seconds;
-        log_ratio += std::log(row.ratio());
+        log_ratio += core::log(row.ratio());
     }
     for (double* sum : {&mean.error_percent, &mean.sphere_tests, &mean.point_tests,
                         &mean.paper_seconds, &mean.fast_seconds})
         *sum /= count;
-    mean.ratio = std::exp(log_ratio / count);
+    mean.ratio = core::exp(log_ratio / count);
     return mean;
 }
 

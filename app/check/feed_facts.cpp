@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/check/feed_use.h"
+#include "core/base/math.h"
 #include "core/motion/event.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
@@ -33,8 +34,8 @@ double length_of(const core::Motion& motion, const core::AxisValues& by) {
     double radius = 0.0;
     for (size_t i = 0; i < 3; ++i)
         if (i != normal)
-            radius = std::hypot(radius, *motion.from[i] - motion.arc->centre[static_cast<int>(i)]);
-    return std::hypot(radius * motion.arc->angle, by[normal]);
+            radius = core::hypot(radius, *motion.from[i] - motion.arc->centre[static_cast<int>(i)]);
+    return core::hypot(radius * motion.arc->angle, by[normal]);
 }
 
 /// The fastest feed along a straight line that the rapid speeds of the axes allow, mm/min; empty if
@@ -100,7 +101,7 @@ void note_feeds(FeedFacts& facts, const core::Setup& setup, const gcode::ModalSt
         const double length = counts ? length_of(*motion, *by) : 0.0;
         if (length <= 0.0) continue;
         note_speeds(facts, setup, *motion, *by, block.block);
-        if (std::hypot((*by)[0], (*by)[1]) > 0.0 || motion->arc)
+        if (core::hypot((*by)[0], (*by)[1]) > 0.0 || motion->arc)
             facts.sideways = std::max(facts.sideways, motion->feed);
         constexpr double by_hand = 1.0; // rev/min, stands for any speed
         if (state.spindle.speed <= by_hand) continue;

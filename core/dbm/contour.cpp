@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/math.h"
 #include "core/dbm/cut_model.h"
 #include "core/geom/triangle_distance.h"
 
@@ -78,11 +79,11 @@ struct Facing {
 };
 
 Facing facing(const ProfileElement& e, const Vec3& p) {
-    const double r = std::hypot(p.x, p.y);
+    const double r = core::hypot(p.x, p.y);
     const Vec3 radial = r > 0.0 ? Vec3(p.x / r, p.y / r, 0.0) : Vec3(1.0, 0.0, 0.0);
     if (e.margin > 0.0) {
         const double beyond = std::max(0.0, r - std::max(e.r0, e.r1)), rise = p.z - e.z0;
-        const double away = std::hypot(beyond, rise);
+        const double away = core::hypot(beyond, rise);
         const Vec3 out = beyond * radial + Vec3(0.0, 0.0, rise);
         return {away - e.margin, away > 0.0 ? out / away : Vec3(0.0, 0.0, 1.0)};
     }

@@ -1,5 +1,6 @@
 #include "core/dbm/covered_path.h"
 
+#include "core/base/math.h"
 #include "core/dbm/cut_model.h"
 
 namespace core {
@@ -54,7 +55,7 @@ bool covers(const Move& move, const Vec3& p) {
     const double length = by.x * by.x + by.y * by.y;
     const double along = (p.x - q.x) * by.x + (p.y - q.y) * by.y;
     const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
-    return std::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= move.near;
+    return core::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= move.near;
 }
 
 /// A search among the candidate moves.

@@ -1,5 +1,6 @@
 #include "core/dbm/cutter.h"
 
+#include "core/base/math.h"
 #include "core/dbm/solid.h"
 
 namespace core {
@@ -9,7 +10,7 @@ namespace {
 Aabb tilted_bounds(const ProfileElement& e, const Vec3& up) {
     // A circle about the axis extends along X by its radius times the sine of the angle between the
     // axis and X.
-    const Vec3 lean(std::hypot(up.y, up.z), std::hypot(up.z, up.x), std::hypot(up.x, up.y));
+    const Vec3 lean(core::hypot(up.y, up.z), core::hypot(up.z, up.x), core::hypot(up.x, up.y));
     Aabb box;
     for (const auto& [z, r] : {std::pair(e.z0, e.r0), std::pair(e.z1, e.r1)})
         box.extend(Aabb{z * up - r * lean, z * up + r * lean});

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+
 namespace core {
 namespace {
 
@@ -29,7 +31,7 @@ double lines_for(const Aabb& bounds, double spacing) {
 double fitting_spacing(const Aabb& bounds, double spacing, double memory_limit) {
     double wider = spacing;
     while (memory_estimate(bounds, wider) > memory_limit && wider < 1e9) wider *= 1.05;
-    const double unit = std::pow(10.0, std::floor(std::log10(wider)) - 1.0);
+    const double unit = core::pow(10.0, std::floor(core::log10(wider)) - 1.0);
     return std::ceil(wider / unit) * unit;
 }
 

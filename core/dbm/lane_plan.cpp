@@ -1,5 +1,6 @@
 #include "core/dbm/lane_plan.h"
 
+#include "core/base/math.h"
 #include "core/dbm/scan_lines.h"
 
 namespace core {
@@ -111,7 +112,7 @@ ElementLanes element_lanes(const CutterSweep& sweep, int axis, const ProfileElem
 bool is_sloped(const CutterSweep& sweep) {
     constexpr double least_part = 1e-6;
     const Vec3 by = sweep.to - sweep.from;
-    return std::abs(by.z) > least_part && std::hypot(by.x, by.y) > least_part;
+    return std::abs(by.z) > least_part && core::hypot(by.x, by.y) > least_part;
 }
 
 bool is_ball(const ProfileElement& e) { return e.margin > 0.0 && e.r0 == 0.0 && e.r1 == 0.0; }

@@ -1,5 +1,6 @@
 #include "core/dbm/solid.h"
 
+#include "core/base/math.h"
 #include "core/dbm/mesh_scan.h"
 #include "core/geom/triangle_bvh.h"
 
@@ -35,7 +36,7 @@ IntervalList line_of_cylinder(const SolidCylinder& c, int axis, double u, double
     p[v_axis(axis)] = v;
     const Vec3 d = p - c.base;
     if (axis == c.axis) {
-        const double away = std::hypot(d[u_axis(axis)], d[v_axis(axis)]);
+        const double away = core::hypot(d[u_axis(axis)], d[v_axis(axis)]);
         if (away >= c.radius) return {};
         return IntervalList({c.base[axis], c.base[axis] + c.height});
     }
@@ -54,7 +55,7 @@ double outside(double x, double lower, double upper) {
 IntervalList column_of_cylinder(const SolidCylinder& c, const Square& s) {
     const double x = outside(c.base.x, s.x0, s.x1), y = outside(c.base.y, s.y0, s.y1);
     if (c.axis == 2) {
-        if (std::hypot(x, y) > c.radius) return {};
+        if (core::hypot(x, y) > c.radius) return {};
         return IntervalList({c.base.z, c.base.z + c.height});
     }
     const Aabb box = bounds_of(c);

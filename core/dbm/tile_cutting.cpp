@@ -2,6 +2,8 @@
 
 #include <thread>
 
+#include "core/base/math.h"
+
 namespace core {
 namespace {
 
@@ -423,7 +425,7 @@ double reach_back(const ProfileElement& e, const Vec3& by, bool bottom_open, boo
         // The flank's normal is (cos, sin, -slope): it faces the motion where its cosine is at
         // least slope * by.z / length.
         const double slope = (e.r1 - e.r0) / (e.z1 - e.z0);
-        back = widest * std::clamp(-slope * by.z / std::hypot(by.x, by.y), 0.0, 1.0);
+        back = widest * std::clamp(-slope * by.z / core::hypot(by.x, by.y), 0.0, 1.0);
     }
     if (by.z < 0.0 && bottom_open) back = std::max(back, e.r0);
     if (by.z > 0.0 && top_open) back = std::max(back, e.r1);
@@ -466,7 +468,7 @@ double reach(const FrontDisc& disc, double along, double across) {
 Aabb front_bounds(const CutterSweep& sweep, double top) {
     Aabb front = bounds(sweep);
     const Vec3 by = sweep.to - sweep.from;
-    const double length = std::hypot(by.x, by.y);
+    const double length = core::hypot(by.x, by.y);
     if (!is_upright(sweep.orientation) || sweep.cutter->path_error > 0.0 || length <= margin)
         return front;
     const FrontDisc disc = front_disc(sweep, top);

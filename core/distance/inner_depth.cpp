@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/dbm/dbm.h"
 #include "core/dbm/solid.h"
 #include "core/geom/profile.h"
@@ -46,11 +47,11 @@ double depth_below_faces(const ConvexShape& hull, const Vec3& point) {
 /// Depth inside an upright truncated cone without its margin; negative outside.
 double depth_in_cone(const ProfileElement& cone, const Vec3& p) {
     const double height = cone.z1 - cone.z0, out = cone.r1 - cone.r0;
-    const double side = std::hypot(height, out);
+    const double side = core::hypot(height, out);
     if (height <= 0.0) return -infinity;
     const double radius = cone.r0 + out * (p.z - cone.z0) / height;
     return std::min(
-        {p.z - cone.z0, cone.z1 - p.z, (radius - std::hypot(p.x, p.y)) * height / side});
+        {p.z - cone.z0, cone.z1 - p.z, (radius - core::hypot(p.x, p.y)) * height / side});
 }
 
 double depth_in_core(const ConvexShape& shape, const Vec3& local) {

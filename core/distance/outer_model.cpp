@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/base/math.h"
 #include "core/dbm/solid.h"
 #include "core/distance/rounding.h"
 #include "core/geom/profile.h"
@@ -73,7 +74,7 @@ double half_chord(double radius, double across) {
 /// A piece gets thinner away from its axis, so its heights at the point of the rectangle nearest to
 /// the axis contain those at all other points.
 IntervalList column_along_axis(const ProfileElement& e, const Square& s) {
-    const double r = std::hypot(outside(s.x0, s.x1), outside(s.y0, s.y1));
+    const double r = core::hypot(outside(s.x0, s.x1), outside(s.y0, s.y1));
     const double disc = std::max(e.r0, e.r1);
     if (r > disc + e.margin) return {};
     if (e.margin > 0.0) {

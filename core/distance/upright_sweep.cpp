@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
+
 namespace core {
 namespace {
 
@@ -182,7 +184,7 @@ namespace {
 ProfileElement cylinder_round(std::span<const Vec3> points, double margin) {
     ProfileElement element{.z0 = infinity, .z1 = -infinity, .margin = margin};
     for (const Vec3& point : points) {
-        element.r0 = std::max(element.r0, std::hypot(point.x, point.y));
+        element.r0 = std::max(element.r0, core::hypot(point.x, point.y));
         element.z0 = std::min(element.z0, point.z);
         element.z1 = std::max(element.z1, point.z);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/base/math.h"
 #include "core/geom/mesh.h"
 
 namespace core {
@@ -89,10 +90,10 @@ std::optional<ProfileElement> upper_collar(const ProfileElement& e, const Profil
 bool continues_round(const ProfileElement& round, const ProfileElement& cone) {
     constexpr double rounding = 1e-11; // mm; points computed by sine and cosine match no better
     const double out = cone.r0 - round.r0, up = cone.z0 - round.z0;
-    const double along = std::hypot(cone.r1 - cone.r0, cone.z1 - cone.z0);
+    const double along = core::hypot(cone.r1 - cone.r0, cone.z1 - cone.z0);
     const double turned = out * (cone.r1 - cone.r0) + up * (cone.z1 - cone.z0);
     return cone.margin == 0.0 && cone.z1 >= round.z0 + round.margin && out > 0.0
-           && std::abs(std::hypot(out, up) - round.margin) <= rounding
+           && std::abs(core::hypot(out, up) - round.margin) <= rounding
            && std::abs(turned) <= rounding * along;
 }
 
@@ -221,7 +222,7 @@ std::vector<double> levels_of(const Mesh& mesh) {
 
 double radius_on(const Vec3& a, const Vec3& b, double z) {
     const Vec3 p = a + (z - a.z) / (b.z - a.z) * (b - a);
-    return std::hypot(p.x, p.y);
+    return core::hypot(p.x, p.y);
 }
 
 /// Widens a slice for an edge. The distance from the axis is convex along the edge, so its values
@@ -241,7 +242,7 @@ void widen(ProfileElement& slice, const Vec3& a, const Vec3& b) {
         low.z < slice.z0 ? low + (slice.z0 - low.z) / (high.z - low.z) * (high - low) : low;
     const Vec3 to =
         high.z > slice.z1 ? low + (slice.z1 - low.z) / (high.z - low.z) * (high - low) : high;
-    const double r = std::max(std::hypot(from.x, from.y), std::hypot(to.x, to.y));
+    const double r = std::max(core::hypot(from.x, from.y), core::hypot(to.x, to.y));
     slice.r0 = std::max(slice.r0, r);
     slice.r1 = std::max(slice.r1, r);
 }

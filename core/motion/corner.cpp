@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/motion/machine.h"
 
 namespace core {
@@ -53,7 +54,7 @@ std::optional<double> turn_between(const Leg& before, const Leg& after) {
     const AxisValues from = travel_of(before), to = travel_of(after);
     const double lengths = std::sqrt(dot(from, from) * dot(to, to));
     if (!(lengths > 0.0)) return std::nullopt;
-    return std::acos(std::clamp(dot(from, to) / lengths, -1.0, 1.0));
+    return core::acos(std::clamp(dot(from, to) / lengths, -1.0, 1.0));
 }
 
 /// Appends the legs within `reach` of the start of a path, or of its end; a leg with unknown
@@ -100,7 +101,7 @@ bool states_dynamics(const Machine& machine) {
 }
 
 double rounding_reach(double deviation, double turn) {
-    return 4.0 * deviation / std::sin(0.5 * turn);
+    return 4.0 * deviation / core::sin(0.5 * turn);
 }
 
 namespace {
@@ -125,7 +126,7 @@ CornerReach reach_at_speed(std::span<const Leg> before, std::span<const Leg> aft
     for (size_t i = 0; i < axis_count; ++i)
         if (machine.axes[i].present && !is_rotary(i))
             least = std::min(least, *machine.axes[i].acceleration);
-    const double of_circle = 2.0 / std::numbers::sqrt3 * std::tan(0.5 * *turn);
+    const double of_circle = 2.0 / std::numbers::sqrt3 * core::tan(0.5 * *turn);
     const auto at_speed = [&](double speed) {
         return speed * speed / least * std::max(1.0, of_circle);
     };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/motion/machine.h"
 #include "core/motion/path.h"
@@ -85,7 +86,7 @@ std::vector<DirectionJoint> direction_joints(const Machine& machine) {
 
 /// The angles t with a cos t + b sin t = c, degrees; empty if there is none.
 std::vector<double> angles_with(double a, double b, double c) {
-    const double size = std::hypot(a, b);
+    const double size = core::hypot(a, b);
     if (size < 1e-12 || std::abs(c) > size * (1.0 + 1e-9)) return {};
     const double middle = angle_of(b, a);
     const double ratio = std::clamp(c / size, -1.0, 1.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
@@ -124,14 +125,14 @@ AxisValues on_arc(const Motion& motion, const AxisValues& from, const AxisValues
     const auto b = static_cast<size_t>((arc.normal + 2) % 3);
     const double centre[2] = {arc.centre[(arc.normal + 1) % 3], arc.centre[(arc.normal + 2) % 3]};
     const double u = from[a] - centre[0], v = from[b] - centre[1];
-    const double end_radius = std::hypot(to[a] - centre[0], to[b] - centre[1]);
-    const double radius = std::hypot(u, v);
+    const double end_radius = core::hypot(to[a] - centre[0], to[b] - centre[1]);
+    const double radius = core::hypot(u, v);
     // A small difference of the radii is spread evenly over the angle, as controls do.
     const double scale = radius > 0.0 ? 1.0 + fraction * (end_radius / radius - 1.0) : 1.0;
     const double angle = fraction * arc.angle;
     AxisValues p = between(from, to, fraction);
-    p[a] = centre[0] + scale * (u * std::cos(angle) - v * std::sin(angle));
-    p[b] = centre[1] + scale * (u * std::sin(angle) + v * std::cos(angle));
+    p[a] = centre[0] + scale * (u * core::cos(angle) - v * core::sin(angle));
+    p[b] = centre[1] + scale * (u * core::sin(angle) + v * core::cos(angle));
     return p;
 }
 
@@ -140,8 +141,8 @@ std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
                                     const AxisValues& to) {
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
     const auto radius = [&](const AxisValues& position) {
-        return std::hypot(position[static_cast<size_t>(a)] - arc.centre[a],
-                          position[static_cast<size_t>(b)] - arc.centre[b]);
+        return core::hypot(position[static_cast<size_t>(a)] - arc.centre[a],
+                           position[static_cast<size_t>(b)] - arc.centre[b]);
     };
     return {radius(from), radius(to)};
 }
@@ -154,7 +155,7 @@ std::pair<double, double> arc_radii(const ArcPath& arc, const AxisValues& from,
 double bend(const ArcPath& arc, const AxisValues& from, const AxisValues& to) {
     const auto [first, last] = arc_radii(arc, from, to);
     const double drift = arc.angle != 0.0 ? 2.0 * (last - first) / arc.angle : 0.0;
-    return 0.125 * std::hypot(std::max(first, last), drift);
+    return 0.125 * core::hypot(std::max(first, last), drift);
 }
 
 /// The greatest number of chords of an arc; enough for a circle with a radius of some kilometres.
@@ -165,7 +166,7 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     const ArcPath& arc = *motion.arc;
     const auto [first_radius, last_radius] = arc_radii(arc, from, to);
     const double radius = std::max(first_radius, last_radius);
-    const double widest = radius > max_error ? 2.0 * std::acos(1.0 - 0.5 * max_error / radius)
+    const double widest = radius > max_error ? 2.0 * core::acos(1.0 - 0.5 * max_error / radius)
                                              : std::numbers::pi / 2.0;
     // If the radius changes fast, that chord would be too long.
     const double most = std::sqrt(max_error / std::max(bend(arc, from, to), 1e-12));
@@ -177,7 +178,7 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
         needed > count ? 1.01 * max_error * (needed / count) * (needed / count) : max_error;
     const auto normal = static_cast<size_t>(arc.normal);
     const double rise = to[normal] - from[normal];
-    const double length = std::hypot(radius * arc.angle, rise);
+    const double length = core::hypot(radius * arc.angle, rise);
     path.duration = motion.feed > 0.0 ? length / motion.feed * seconds_per_minute : 0.0;
     const auto whole = std::make_shared<const Motion>(motion);
     AxisValues here = from;
@@ -450,8 +451,8 @@ AxisRange axis_range(const Motion& motion, const Machine& machine, double max_er
     if (!motion.arc) return range;
     const ArcPath& arc = *motion.arc;
     const int a = (arc.normal + 1) % 3, b = (arc.normal + 2) % 3;
-    const double start = std::atan2(from[static_cast<size_t>(b)] - arc.centre[b],
-                                    from[static_cast<size_t>(a)] - arc.centre[a]);
+    const double start = core::atan2(from[static_cast<size_t>(b)] - arc.centre[b],
+                                     from[static_cast<size_t>(a)] - arc.centre[a]);
     // The extremes of the two axes are at multiples of a quarter turn.
     const double quarter = std::numbers::pi / 2.0;
     const double first = std::min(start, start + arc.angle), last = first + std::abs(arc.angle);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
@@ -205,11 +206,11 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) 
     if (!motion.from[a] || !motion.from[b]) return std::nullopt;
     const double u = *motion.from[a] - arc.centre[static_cast<int>(a)];
     const double v = *motion.from[b] - arc.centre[static_cast<int>(b)];
-    const double radius = std::hypot(u, v);
-    const double drift = std::hypot(u + by[a], v + by[b]) - radius;
+    const double radius = core::hypot(u, v);
+    const double drift = core::hypot(u + by[a], v + by[b]) - radius;
     const double widest = std::max(radius, radius + drift);
     const double turn = std::abs(arc.angle);
-    const double length = std::hypot(widest * turn, by[static_cast<size_t>(arc.normal)]);
+    const double length = core::hypot(widest * turn, by[static_cast<size_t>(arc.normal)]);
     if (!(length > 0.0) || !(radius > 0.0)) return std::nullopt;
     PathMotion path = along_line(by, length);
     const double first = angle_of(v, u), second = first + arc.angle;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/base/math.h"
 #include "core/motion/corner.h"
 #include "core/motion/path.h"
 #include "core/sim/setup.h"
@@ -106,7 +107,7 @@ double contact_shrink(const Allowance& allowance, const RevolvedProfile& part) {
     for (const ProfileElement& e : part.elements) {
         const double height = e.z1 - e.z0, out = e.r1 - e.r0;
         if (e.margin > 0.0 || height <= 0.0 || out <= 0.0) continue;
-        const double side = std::hypot(height, out);
+        const double side = core::hypot(height, out);
         if (e.r0 < depth * side / height) shrink = std::min(shrink, depth * out / side);
     }
     return std::min({std::max(shrink, std::min(depth, least)), depth, 0.25 * widest});

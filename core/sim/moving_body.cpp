@@ -1,5 +1,6 @@
 #include "core/sim/moving_body.h"
 
+#include "core/base/math.h"
 #include "core/distance/upright_sweep.h"
 #include "core/motion/machine.h"
 #include "core/sim/setup.h"
@@ -18,7 +19,7 @@ Play play_of(PartKind kind, const ToolAssembly& tool) {
 MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolPart& part) {
     const Aabb box = bounds(part.profile);
     const Vec3 centre(0.0, 0.0, box.center().z);
-    const double reach = std::hypot(box.max.x, 0.5 * box.size().z);
+    const double reach = core::hypot(box.max.x, 0.5 * box.size().z);
     return {.kind = part.kind,
             .profile = &part.profile,
             .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})},

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/sim/tool_description.h"
 
@@ -21,7 +22,7 @@ struct Rounding {
 
     /// Point of the edge at an angle from straight down, as z and r.
     ProfileElement at(double angle) const {
-        const double r = disc + corner * std::sin(angle), z = corner * (1.0 - std::cos(angle));
+        const double r = disc + corner * core::sin(angle), z = corner * (1.0 - core::cos(angle));
         return {z, r, z, r, 0.0};
     }
     ProfileElement whole() const { return {corner, disc, corner, disc, corner}; }
@@ -29,7 +30,7 @@ struct Rounding {
 
 /// Approximates the rounding between two angles by cones, none of them outside it.
 void add_cones(RevolvedProfile& profile, const Rounding& round, double from, double to) {
-    const double step = 2.0 * std::acos(std::max(0.0, 1.0 - rounding_sag / round.corner));
+    const double step = 2.0 * core::acos(std::max(0.0, 1.0 - rounding_sag / round.corner));
     const int cones = std::max(4, static_cast<int>(std::ceil((to - from) / step)));
     profile.form_error = rounding_sag;
     ProfileElement below = round.at(from);
@@ -104,7 +105,7 @@ Result<ToolHead> bull(const ToolDescription& tool) {
 /// A point or flank from the tip out to the full radius, then a cylinder. A corner radius at the
 /// tip is tangent to the flank.
 Result<ToolHead> coned(const ToolDescription& tool, double tip, double from_axis) {
-    const double r = 0.5 * tool.diameter, steep = std::tan(from_axis);
+    const double r = 0.5 * tool.diameter, steep = core::tan(from_axis);
     const double corner = tool.corner_radius.value_or(0.0);
     const Rounding round{tip - corner, corner};
     const double angle = right_angle - from_axis;
@@ -176,7 +177,7 @@ Result<ToolHead> dovetail(const ToolDescription& tool) {
                                 "between 0 and 90");
     const double r = 0.5 * tool.diameter, height = tool.flute_length;
     const double corner = tool.corner_radius.value_or(0.0),
-                 steep = std::tan(radians_of(*tool.angle_deg));
+                 steep = core::tan(radians_of(*tool.angle_deg));
     if (!(corner >= 0.0 && corner < r && 2.0 * corner <= height))
         return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
                                             "flute_length {:g} and below half the diameter",
@@ -216,10 +217,10 @@ Result<ToolHead> lollipop(const ToolDescription& tool) {
         if (flutes > ball_end)
             head.above_flutes.elements.push_back(upright(ball_end, flutes, neck));
     } else {
-        const double end = std::acos(std::clamp(1.0 - flutes / r, -1.0, 1.0));
+        const double end = core::acos(std::clamp(1.0 - flutes / r, -1.0, 1.0));
         add_cones(head.flutes, round, 0.0, right_angle);
         if (end > right_angle) add_cones(head.flutes, round, right_angle, end);
-        add_cones(head.above_flutes, round, end, std::numbers::pi - std::asin(neck / r));
+        add_cones(head.above_flutes, round, end, std::numbers::pi - core::asin(neck / r));
     }
     return head;
 }
@@ -254,7 +255,7 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
         return tool_error(tool, fmt::format("teeth = {}: flute_length {:g} has room for 1 to {}",
                                             rows, tool.flute_length, std::min(most, too_many)));
     const double crest = 0.5 * tool.diameter;
-    const double root = crest - 0.3125 * pitch / std::tan(radians_of(0.5 * angle));
+    const double root = crest - 0.3125 * pitch / core::tan(radians_of(0.5 * angle));
     if (!(root > 0.0))
         return tool_error(
             tool, fmt::format("pitch {:g} is too large for diameter {:g}", pitch, tool.diameter));

@@ -5,12 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/text.h"
 
 namespace core {
 namespace {
 
-double units_in_one(int digits) { return std::pow(10.0, digits); }
+double units_in_one(int digits) { return core::pow(10.0, digits); }
 
 /// Difference that is ignored, in units of the last digit.
 double nothing(int digits) { return std::min(5e-4, 0.5 * resolution * units_in_one(digits)); }
@@ -73,7 +74,7 @@ std::string at_most(double upper, int digits) {
 
 std::string at_most_figures(double upper, int figures) {
     if (!(upper > 0.0)) return "0";
-    const int before = static_cast<int>(std::floor(std::log10(upper))) + 1; // decimal point
+    const int before = static_cast<int>(std::floor(core::log10(upper))) + 1; // decimal point
     return without_trailing_zeros(at_most(upper, std::max(figures - before, 0)));
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/math.h"
+
 namespace gcode {
 
 double turned_angle(const FlatArc& arc, FlatPoint start, FlatPoint end) {
@@ -56,7 +58,7 @@ double fraction_of(const CornerSide& side, FlatPoint at) {
     const int turn = side.arc->turns > 0 ? 1 : -1;
     const auto angle_to = [&](FlatPoint to) {
         const FlatPoint a = side.start - side.arc->centre, b = to - side.arc->centre;
-        const double angle = turn * std::atan2(cross(a, b), dot(a, b));
+        const double angle = turn * core::atan2(cross(a, b), dot(a, b));
         return angle < -fuzz ? angle + 2.0 * std::numbers::pi : angle;
     };
     const double whole = angle_to(side.end);
@@ -145,7 +147,7 @@ bool has_length(const CornerSide& side) { return side.arc || length(side.end - s
 
 double bend_between(const CornerSide& first, const CornerSide& second) {
     const FlatPoint in = heading_at(first, first.end), out = heading_at(second, second.start);
-    return std::abs(std::atan2(cross(in, out), dot(in, out)));
+    return std::abs(core::atan2(cross(in, out), dot(in, out)));
 }
 
 CornerCut cut_corner(const CornerSide& first, const CornerSide& second, CornerKind kind,

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/base/math.h"
+
 namespace gcode {
 
 /// A point or a displacement in the working plane, mm along its first and second axis.
@@ -19,7 +21,7 @@ constexpr FlatPoint operator-(FlatPoint a, FlatPoint b) { return {a.u - b.u, a.v
 constexpr FlatPoint operator*(double factor, FlatPoint a) { return {factor * a.u, factor * a.v}; }
 constexpr double dot(FlatPoint a, FlatPoint b) { return a.u * b.u + a.v * b.v; }
 constexpr double cross(FlatPoint a, FlatPoint b) { return a.u * b.v - a.v * b.u; }
-inline double length(FlatPoint a) { return std::hypot(a.u, a.v); }
+inline double length(FlatPoint a) { return core::hypot(a.u, a.v); }
 inline FlatPoint direction(FlatPoint a) { return (1.0 / length(a)) * a; }
 
 /// The displacement turned 90 degrees counterclockwise.
@@ -108,8 +110,8 @@ inline double arc_angle(const double (&start)[2], const double (&end)[2], const 
                         int turns) {
     constexpr double full_turn = 2.0 * std::numbers::pi;
     constexpr double fuzz = 1e-6;
-    const double start_angle = std::atan2(start[1] - centre[1], start[0] - centre[0]);
-    const double end_angle = std::atan2(end[1] - centre[1], end[0] - centre[0]);
+    const double start_angle = core::atan2(start[1] - centre[1], start[0] - centre[0]);
+    const double end_angle = core::atan2(end[1] - centre[1], end[0] - centre[0]);
     const double sign = turns < 0 ? -1.0 : 1.0;
     double angle = sign * (end_angle - start_angle);
     if (angle < 0.0) angle += full_turn;

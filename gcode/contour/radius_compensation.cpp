@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+
 namespace gcode {
 namespace {
 
@@ -58,7 +60,7 @@ enum class Bend { inside, straight_on, outside };
 Bend bend_of(const RadiusCompensation& compensation, const Corner& corner,
              const ContourMove& move) {
     const double to_left =
-        std::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
+        core::atan2(cross(corner.arriving, corner.leaving), dot(corner.arriving, corner.leaving));
     const double to_tool = compensation.side == ContourSide::left ? to_left : -to_left;
     if (std::abs(to_tool) > std::numbers::pi - slight_bend) {
         // The contour reverses. Between an arc that the tool passes on the outside and whatever is
@@ -82,7 +84,7 @@ std::optional<FlatPoint> touching_both(const RadiusCompensation& compensation, c
         const auto crossings =
             cross_circles(before->centre, radius_before, move.arc->centre, radius);
         if (!crossings) return {};
-        const bool reversing = dot(corner.arriving, corner.leaving) < -std::cos(slight_bend);
+        const bool reversing = dot(corner.arriving, corner.leaving) < -core::cos(slight_bend);
         const double side =
             reversing ? dot(crossings->second - crossings->first, corner.arriving)
                       : cross(move.arc->centre - before->centre, corner.at - before->centre);
@@ -291,7 +293,7 @@ core::Result<CompensatedMoves> pass_in_arc(RadiusCompensation& compensation, con
 core::Result<CompensatedMoves> pass_at_intersection(RadiusCompensation& compensation,
                                                     const Corner& corner, const ContourMove& move) {
     const double cosine = dot(corner.arriving, corner.leaving);
-    if (std::acos(std::clamp(cosine, -1.0, 1.0)) > compensation.outside.limit)
+    if (core::acos(std::clamp(cosine, -1.0, 1.0)) > compensation.outside.limit)
         return pass_in_arc(compensation, corner, move);
     const double beyond = compensation.radius * std::sqrt((1.0 - cosine) / (1.0 + cosine));
     const FlatPoint out = corner.tool_arriving + beyond * corner.arriving;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/result.h"
 #include "gcode/contour/spline.h"
 #include "gcode/cycles/cycles.h"
@@ -61,7 +62,7 @@ core::Result<void> check_plane_spline(const Execution& execution) {
 double length_of_chords(SplinePoint from, const std::vector<SplinePoint>& ends) {
     double length = 0.0;
     for (const SplinePoint end : ends) {
-        length += std::hypot(end.x - from.x, end.y - from.y);
+        length += core::hypot(end.x - from.x, end.y - from.y);
         from = end;
     }
     return length;
@@ -173,7 +174,7 @@ double distance_from_chord(SplinePoint place, SplinePoint from, SplinePoint to) 
     const double along =
         squared > 0.0 ? ((place.x - from.x) * x + (place.y - from.y) * y) / squared : 0.0;
     const double share = std::fmin(std::fmax(along, 0.0), 1.0);
-    return std::hypot(place.x - from.x - share * x, place.y - from.y - share * y);
+    return core::hypot(place.x - from.x - share * x, place.y - from.y - share * y);
 }
 
 /// The curve between two knots in equal steps of its parameter.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+
 namespace gcode {
 namespace {
 
@@ -45,7 +47,7 @@ core::Result<void> check(const ThreadingWords& words) {
     if (words.spring_passes < -1 || words.tapered_ends < 0)
         return wrong(ErrorCode::invalid_value, fmt::format("G76: {} must not be negative",
                                                            words.tapered_ends < 0 ? 'L' : 'H'));
-    if (std::abs(std::cos(words.compound_angle)) < 1e-9)
+    if (std::abs(core::cos(words.compound_angle)) < 1e-9)
         return wrong(ErrorCode::invalid_value, "G76: the compound angle Q must not be 90 degrees");
     return {};
 }
@@ -60,12 +62,12 @@ ThreadPath thread_from_words(TurningPoint start, TurningPoint end, const Threadi
     thread.depth = *words.k;
     thread.pitch = *words.pitch;
     thread.ramp = *words.pitch;
-    thread.slope = std::tan(words.compound_angle);
+    thread.slope = core::tan(words.compound_angle);
     if (words.taper_length > 0.0) {
         if (words.tapered_ends & 1) thread.entry = words.taper_length;
         if (words.tapered_ends & 2) thread.exit = words.taper_length;
         // Along the taper, Z must advance by the pitch with each revolution.
-        thread.ramp *= std::hypot(words.taper_length, thread.depth) / words.taper_length;
+        thread.ramp *= core::hypot(words.taper_length, thread.depth) / words.taper_length;
     }
     return thread;
 }
@@ -99,7 +101,7 @@ core::Result<std::vector<ThreadingMove>> threading_moves(TurningPoint start, Tur
     std::vector<ThreadingMove> moves;
     int passes = 1;
     for (double depth = *words.j; depth < thread.depth;
-         depth = *words.j * std::pow(++passes, power)) {
+         depth = *words.j * core::pow(++passes, power)) {
         if (passes > greatest_thread_passes) break;
         add_pass(moves, thread, depth);
     }

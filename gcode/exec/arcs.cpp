@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/contour/flat_path.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/frame_codes.h"
@@ -27,8 +28,8 @@ struct SeenArc {
 constexpr double reach_tolerance = 0.00127;
 
 core::Result<void> check_radii(Execution& execution, const SeenArc& arc, const double* centre) {
-    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
-    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    const double to_start = core::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = core::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
     if (to_start < reach_tolerance || to_end < reach_tolerance)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: the arc has no radius: its centre is on its {}",
@@ -69,8 +70,8 @@ bool fits_as_coordinates(const Execution& execution, const SeenArc& arc, const C
     if (!words.first || !words.second) return false;
     const double centre[2] = {length_of(execution, *words.first),
                               length_of(execution, *words.second)};
-    const double to_start = std::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
-    const double to_end = std::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
+    const double to_start = core::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    const double to_end = core::hypot(arc.end[0] - centre[0], arc.end[1] - centre[1]);
     return to_start > reach_tolerance && std::abs(to_start - to_end) < reach_tolerance;
 }
 
@@ -102,7 +103,7 @@ core::Result<void> centre_from_offsets(Execution& execution, const SeenArc& arc,
 core::Result<void> centre_from_radius(const SeenArc& arc, const Word& word, double radius,
                                       double* centre) {
     const double chord[2] = {arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]};
-    const double half = 0.5 * std::hypot(chord[0], chord[1]);
+    const double half = 0.5 * core::hypot(chord[0], chord[1]);
     if (half == 0.0)
         return core::fail(
             ErrorCode::invalid_value,
@@ -237,19 +238,19 @@ core::Result<void> move_along_scaled_arc(Execution& execution, const PlaneAxes& 
                                           "control moves along an arc of radius {:.6g} mm",
                                           arc.code, axis_letters[axes.first], scale[0],
                                           axis_letters[axes.second], scale[1], std::abs(size)));
-    const double step = 2.0 * std::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
+    const double step = 2.0 * core::acos(std::max(0.0, 1.0 - chord_tolerance / std::abs(size)));
     constexpr double most_chords = 1e6;
     if (!(std::abs(angle) <= most_chords * step))
         return core::fail(wrong_arc, fmt::format("{}: a radius of {:.6g} mm is too large for G51",
                                                  arc.code, std::abs(size)));
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(angle) / step)));
-    const double from = std::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
+    const double from = core::atan2(arc.start[1] - centre[1], arc.start[0] - centre[0]);
     const Position start = execution.modal().position;
     for (int chord = 1; chord < chords; ++chord) {
         const double fraction = double(chord) / chords, at = from + fraction * angle;
         Position position = end;
-        along(position, axes.first) = (centre[0] + std::abs(size) * std::cos(at)) / scale[0];
-        along(position, axes.second) = (centre[1] + std::abs(size) * std::sin(at)) / scale[1];
+        along(position, axes.first) = (centre[0] + std::abs(size) * core::cos(at)) / scale[0];
+        along(position, axes.second) = (centre[1] + std::abs(size) * core::sin(at)) / scale[1];
         if (const size_t axis = axes.normal; start[axis] && end[axis])
             along(position, axis) = *start[axis] + fraction * (*end[axis] - *start[axis]);
         execution.feed(position, rate);
@@ -329,10 +330,10 @@ core::Result<void> move_along_arc(Execution& execution) {
     if (modal.position[normal] && end[normal]) rise = *end[normal] - *modal.position[normal];
     if (modal.position[normal] == end[normal]) rise = 0.0;
     const double radius =
-        std::hypot(arc.start[0] - command.centre[0], arc.start[1] - command.centre[1]);
+        core::hypot(arc.start[0] - command.centre[0], arc.start[1] - command.centre[1]);
     const double angle = arc_angle(arc.start, arc.end, command.centre, command.turns);
     std::optional<double> path;
-    if (rise) path = std::hypot(radius * angle, *rise);
+    if (rise) path = core::hypot(radius * angle, *rise);
     FEELER_TRY(command.feed, feed_rate(execution, path));
     modal.position = end;
     execution.emit(command);

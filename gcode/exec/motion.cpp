@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
@@ -135,9 +136,9 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
                 "{}: this is relative to the current position, which is unknown; give both @ and ^",
                 written(first)),
             first.span);
-    double radius = needs_position ? std::hypot(*target[0], *target[1]) : 0.0;
+    double radius = needs_position ? core::hypot(*target[0], *target[1]) : 0.0;
     double angle =
-        needs_position ? std::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
+        needs_position ? core::atan2(*target[1], *target[0]) / core::radians_per_degree : 0.0;
     if (!statement.polar_angle && radius < 1e-9)
         return core::fail(
             ErrorCode::missing_value,
@@ -146,8 +147,8 @@ core::Result<void> place_polar(const Execution& execution, Position& target) {
     if (statement.polar_radius)
         radius = length_of(execution, *statement.polar_radius) + (incremental ? radius : 0.0);
     if (statement.polar_angle) angle = statement.polar_angle->value + (incremental ? angle : 0.0);
-    target[0] = radius * std::cos(angle * core::radians_per_degree);
-    target[1] = radius * std::sin(angle * core::radians_per_degree);
+    target[0] = radius * core::cos(angle * core::radians_per_degree);
+    target[1] = radius * core::sin(angle * core::radians_per_degree);
     return {};
 }
 

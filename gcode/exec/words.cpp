@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/readings.h"
@@ -195,8 +196,8 @@ core::Result<void> place_by_angle(const Execution& execution, Position& target) 
             refusal(*angle, ErrorCode::missing_value,
                     "the start position of the line is unknown: move there first"));
     const double radians = core::radians_of(angle->value);
-    const double along = first ? std::cos(radians) : std::sin(radians);
-    const double across = first ? std::sin(radians) : std::cos(radians);
+    const double along = first ? core::cos(radians) : core::sin(radians);
+    const double across = first ? core::sin(radians) : core::cos(radians);
     const double way = *target[given] - *modal.position[given];
     if (std::abs(along) < 1e-9)
         return tl::unexpected(refusal(*angle, ErrorCode::invalid_value,

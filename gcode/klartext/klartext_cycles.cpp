@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/exec/program_parameters.h"
@@ -525,8 +526,8 @@ core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
         if (step == 0.0 && count > 1.0) step = sweep / (full ? count : count - 1.0);
         for (int i = 0; i < static_cast<int>(count); ++i) {
             const double angle = (plain(245) + i * step) * core::radians_per_degree;
-            positions.push_back({length(216) + 0.5 * length(244) * std::cos(angle),
-                                 length(217) + 0.5 * length(244) * std::sin(angle)});
+            positions.push_back({length(216) + 0.5 * length(244) * core::cos(angle),
+                                 length(217) + 0.5 * length(244) * core::sin(angle)});
         }
         return positions;
     }
@@ -540,8 +541,8 @@ core::Result<std::vector<PlanePoint>> positions_of(const Execution& execution) {
             // Every other row is drilled backwards.
             const int column = row % 2 == 0 ? i : static_cast<int>(columns) - 1 - i;
             const double along = column * length(237), across = row * length(238);
-            positions.push_back({length(225) + along * std::cos(turn) - across * std::sin(turn),
-                                 length(226) + along * std::sin(turn) + across * std::cos(turn)});
+            positions.push_back({length(225) + along * core::cos(turn) - across * core::sin(turn),
+                                 length(226) + along * core::sin(turn) + across * core::cos(turn)});
         }
     return positions;
 }

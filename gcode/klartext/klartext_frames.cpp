@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/klartext/klartext.h"
 
@@ -23,9 +24,9 @@ core::Mat3 turned(double angle_deg, const PlaneAxes& axes) {
     const double angle = core::radians_of(angle_deg);
     const auto first = static_cast<int>(axes.first), second = static_cast<int>(axes.second);
     core::Mat3 linear(1.0);
-    linear[first][first] = linear[second][second] = std::cos(angle);
-    linear[first][second] = std::sin(angle); // by columns
-    linear[second][first] = -std::sin(angle);
+    linear[first][first] = linear[second][second] = core::cos(angle);
+    linear[first][second] = core::sin(angle); // by columns
+    linear[second][first] = -core::sin(angle);
     return linear;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/contour/flat_path.h"
 #include "gcode/klartext/klartext.h"
@@ -74,14 +75,14 @@ core::Result<Position> polar_target(Execution& execution, double* turned_deg) {
     if (relative(radius_word) || relative(angle_word)) {
         FEELER_TRY(const PlanePoint from, known_point(execution, base_of(execution)));
         const double along = from[0] - pole[0], across = from[1] - pole[1];
-        if (relative(radius_word)) radius = std::hypot(along, across);
-        if (relative(angle_word)) angle = std::atan2(across, along) * core::degrees_per_radian;
+        if (relative(radius_word)) radius = core::hypot(along, across);
+        if (relative(angle_word)) angle = core::atan2(across, along) * core::degrees_per_radian;
     }
     if (radius_word) radius += length_of(execution, *radius_word);
     if (angle_word) angle += angle_word->value;
     if (turned_deg && angle_word && relative(angle_word)) *turned_deg = angle_word->value;
-    target[axes.first] = pole[0] + radius * std::cos(angle / core::degrees_per_radian);
-    target[axes.second] = pole[1] + radius * std::sin(angle / core::degrees_per_radian);
+    target[axes.first] = pole[0] + radius * core::cos(angle / core::degrees_per_radian);
+    target[axes.second] = pole[1] + radius * core::sin(angle / core::degrees_per_radian);
     return target;
 }
 
@@ -101,8 +102,8 @@ tl::unexpected<core::Error> refuse_arc(const Execution& execution, std::string_v
 /// Checks that the radii at start and end of an arc differ by no more than the control allows.
 core::Result<void> check_radii(Execution& execution, const PlanePoint& start, const PlanePoint& end,
                                const PlanePoint& centre) {
-    const double to_start = std::hypot(start[0] - centre[0], start[1] - centre[1]);
-    const double to_end = std::hypot(end[0] - centre[0], end[1] - centre[1]);
+    const double to_start = core::hypot(start[0] - centre[0], start[1] - centre[1]);
+    const double to_end = core::hypot(end[0] - centre[0], end[1] - centre[1]);
     if (to_start < shortest)
         return refuse_arc(execution, "the arc has no radius: its centre is its start point");
     const double difference = std::abs(to_start - to_end);
@@ -150,7 +151,7 @@ core::Result<PathElement> of_radius(Execution& execution) {
     if (!word) return refuse_statement(execution, "the radius R is missing");
     const double radius = length_of(execution, *word);
     const double chord[2] = {end[0] - start[0], end[1] - start[1]};
-    const double half = 0.5 * std::hypot(chord[0], chord[1]);
+    const double half = 0.5 * core::hypot(chord[0], chord[1]);
     if (half < shortest)
         return refuse_statement(
             execution,
@@ -236,7 +237,7 @@ void remember_direction(Execution& execution, const Position& start, const PathE
     else
         way = {-contour.turn * (*end[axes.second] - contour.centre[1]),
                contour.turn * (*end[axes.first] - contour.centre[0])};
-    const double length = std::hypot(way[0], way[1]);
+    const double length = core::hypot(way[0], way[1]);
     if (length > shortest) klartext.direction = PlanePoint{way[0] / length, way[1] / length};
 }
 

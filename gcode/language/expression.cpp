@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 
 namespace gcode {
@@ -36,14 +37,14 @@ double sine_of_degrees(double angle) {
     const double turned = std::remainder(angle, 360.0);
     if (turned == 0.0 || std::abs(turned) == 180.0) return 0.0;
     if (std::abs(turned) == 90.0) return turned > 0.0 ? 1.0 : -1.0;
-    return std::sin(angle / core::degrees_per_radian);
+    return core::sin(angle / core::degrees_per_radian);
 }
 
 double cosine_of_degrees(double angle) {
     const double turned = std::abs(std::remainder(angle, 360.0));
     if (turned == 90.0) return 0.0;
     if (turned == 0.0 || turned == 180.0) return turned == 0.0 ? 1.0 : -1.0;
-    return std::cos(angle / core::degrees_per_radian);
+    return core::cos(angle / core::degrees_per_radian);
 }
 
 /// Why an operation cannot be computed; empty if it can.
@@ -95,19 +96,19 @@ double of_one(Operation operation, double a) {
     case Operation::absolute:
         return std::abs(a);
     case Operation::arc_cosine:
-        return std::acos(a) * core::degrees_per_radian;
+        return core::acos(a) * core::degrees_per_radian;
     case Operation::arc_sine:
-        return std::asin(a) * core::degrees_per_radian;
+        return core::asin(a) * core::degrees_per_radian;
     case Operation::cosine:
         return cosine_of_degrees(a);
     case Operation::exponential:
-        return std::exp(a);
+        return core::exp(a);
     case Operation::fix:
         return std::floor(a);
     case Operation::fup:
         return std::ceil(a);
     case Operation::logarithm:
-        return std::log(a);
+        return core::log(a);
     case Operation::round:
         return std::round(a);
     case Operation::sine:
@@ -121,7 +122,7 @@ double of_one(Operation operation, double a) {
     case Operation::to_decimal_code:
         return recode(a, 10, 16);
     case Operation::decimal_logarithm:
-        return std::log10(a);
+        return core::log10(a);
     case Operation::sign:
         return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
     case Operation::fraction:
@@ -135,7 +136,7 @@ double of_one(Operation operation, double a) {
     case Operation::away_from_zero:
         return std::copysign(std::ceil(std::abs(a)), a);
     case Operation::arc_tangent_of_one:
-        return std::atan(a) * core::degrees_per_radian;
+        return core::atan(a) * core::degrees_per_radian;
     default:
         return truth(a == 0.0); // truth_not
     }
@@ -151,11 +152,11 @@ double of_bits(Operation operation, double a, double b) {
 double of_two(Operation operation, double a, double b, double equality) {
     switch (operation) {
     case Operation::arc_tangent:
-        return std::atan2(a, b) * core::degrees_per_radian;
+        return core::atan2(a, b) * core::degrees_per_radian;
     case Operation::hypotenuse:
-        return std::hypot(a, b);
+        return core::hypot(a, b);
     case Operation::power:
-        return std::pow(a, b);
+        return core::pow(a, b);
     case Operation::multiply:
         return a * b;
     case Operation::divide:

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+
 namespace gcode {
 namespace {
 
@@ -77,7 +79,7 @@ bool take_exponent(std::string_view line, size_t& at, Number& number) {
     for (; next < line.size() && is_digit(line[next]) && exponent < 1000; ++next)
         exponent = exponent * 10 + (line[next] - '0');
     if (next == digits || exponent > 300) return false;
-    number.value *= std::pow(10.0, negative ? -exponent : exponent);
+    number.value *= core::pow(10.0, negative ? -exponent : exponent);
     at = next;
     return true;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
@@ -30,8 +31,8 @@ void map(const core::Mat3& linear, Position& position) {
 core::Mat3 turned_about_z(double degrees) {
     const double angle = core::radians_of(degrees);
     core::Mat3 turn(1.0);
-    turn[0][0] = turn[1][1] = std::cos(angle);
-    turn[0][1] = std::sin(angle);
+    turn[0][0] = turn[1][1] = core::cos(angle);
+    turn[0][1] = core::sin(angle);
     turn[1][0] = -turn[0][1];
     return turn;
 }
@@ -194,7 +195,7 @@ Direction direction_of(double degrees) {
         return exact[static_cast<size_t>(turn)];
     }
     const double angle = core::radians_of(degrees);
-    return {std::cos(angle), std::sin(angle)};
+    return {core::cos(angle), core::sin(angle)};
 }
 
 /// Appends a linear map with fixed point `kept` to a frame.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/contour/flat_path.h"
@@ -73,9 +74,9 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
     const double angle = angle_of(command, from);
     const double u = *from[axes.first] - command.centre[0];
     const double v = *from[axes.second] - command.centre[1];
-    const double radius = std::hypot(u, v);
-    const double end_radius = std::hypot(*command.end[axes.first] - command.centre[0],
-                                         *command.end[axes.second] - command.centre[1]);
+    const double radius = core::hypot(u, v);
+    const double end_radius = core::hypot(*command.end[axes.first] - command.centre[0],
+                                          *command.end[axes.second] - command.centre[1]);
     const double step = std::sqrt(8.0 * chord_error / std::max({radius, end_radius, chord_error}));
     const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
     std::vector<Position> ends;
@@ -88,9 +89,9 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
             if (from[axis] && position[axis])
                 *position[axis] = *from[axis] + fraction * (*command.end[axis] - *from[axis]);
         position[axes.first] =
-            command.centre[0] + reach * (u * std::cos(turn) - v * std::sin(turn));
+            command.centre[0] + reach * (u * core::cos(turn) - v * core::sin(turn));
         position[axes.second] =
-            command.centre[1] + reach * (u * std::sin(turn) + v * std::cos(turn));
+            command.centre[1] + reach * (u * core::sin(turn) + v * core::cos(turn));
         ends.push_back(position);
     }
     ends.push_back(command.end);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/siemens/siemens.h"
 
 namespace gcode {
@@ -28,7 +29,7 @@ public:
     /// A digit of a mode parameter, counted from the right.
     int digit(size_t index, int digit_index) const {
         return static_cast<int>(
-            std::fmod(std::floor(std::abs(plain(index)) / std::pow(10.0, digit_index)), 10.0));
+            std::fmod(std::floor(std::abs(plain(index)) / core::pow(10.0, digit_index)), 10.0));
     }
 
 private:

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/language/error_rules.h"
@@ -216,13 +217,13 @@ std::vector<HolePosition> positions_of(const Execution& execution, bool row,
         const double angle = (row ? given[2] : given[3] + i * step) * core::radians_per_degree;
         const double reach = row ? mm(given[3]) + i * mm(given[4]) : mm(given[2]);
         positions.push_back(
-            {mm(given[0]) + reach * std::cos(angle), mm(given[1]) + reach * std::sin(angle)});
+            {mm(given[0]) + reach * core::cos(angle), mm(given[1]) + reach * core::sin(angle)});
     }
     const PlaneAxes axes = axes_of(execution.modal().plane);
     const auto &x = execution.modal().position[axes.first],
                &y = execution.modal().position[axes.second];
     const auto far = [&](const HolePosition& position) {
-        return std::hypot(position.first - *x, position.second - *y);
+        return core::hypot(position.first - *x, position.second - *y);
     };
     if (row && x && y && far(positions.back()) < far(positions.front()))
         std::reverse(positions.begin(), positions.end());

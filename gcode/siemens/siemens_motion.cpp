@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/contour/flat_path.h"
 #include "gcode/iso/iso.h"
@@ -48,8 +49,8 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
     FEELER_TRY(const Point to, plane_point(execution, end));
     const double start_point[2] = {from[0], from[1]}, end_point[2] = {to[0], to[1]};
     const double centre_point[2] = {centre[0], centre[1]};
-    const double radius = std::hypot(from[0] - centre[0], from[1] - centre[1]);
-    const double end_radius = std::hypot(to[0] - centre[0], to[1] - centre[1]);
+    const double radius = core::hypot(from[0] - centre[0], from[1] - centre[1]);
+    const double end_radius = core::hypot(to[0] - centre[0], to[1] - centre[1]);
     const ArcTolerance& allowed = execution.dialect.arc;
     if (radius < 1e-9
         || std::abs(radius - end_radius) > std::max(allowed.absolute_mm, allowed.relative * radius))
@@ -62,7 +63,7 @@ core::Result<void> go_along_arc(Execution& execution, const Position& end, const
     const double angle = arc_angle(start_point, end_point, centre_point, turns);
     std::optional<double> path;
     const auto &rise_from = modal.position[axes.normal], &rise_to = end[axes.normal];
-    if (rise_from && rise_to) path = std::hypot(radius * angle, *rise_to - *rise_from);
+    if (rise_from && rise_to) path = core::hypot(radius * angle, *rise_to - *rise_from);
     FEELER_TRY(const double feed, feed_rate(execution, path));
     modal.position = end;
     modal.leaves_contour = false;
@@ -105,9 +106,9 @@ core::Result<Position> polar_target(Execution& execution) {
         && execution.modal().position[axes.second]) {
         const double along = *execution.modal().position[axes.first] - siemens.pole[0];
         const double across = *execution.modal().position[axes.second] - siemens.pole[1];
-        if (!siemens.radius) siemens.radius = std::hypot(along, across);
+        if (!siemens.radius) siemens.radius = core::hypot(along, across);
         if (!siemens.angle_deg)
-            siemens.angle_deg = std::atan2(across, along) * core::degrees_per_radian;
+            siemens.angle_deg = core::atan2(across, along) * core::degrees_per_radian;
     }
     take(statement.polar_radius, siemens.radius, to_mm(1.0, execution.modal().unit));
     take(statement.polar_angle, siemens.angle_deg, 1.0);
@@ -124,9 +125,11 @@ core::Result<Position> polar_target(Execution& execution) {
         without,           execution.state,       execution.result,  execution.column};
     FEELER_TRY(Position target, target_of(shared));
     target[axes.first] =
-        siemens.pole[0] + *siemens.radius * std::cos(*siemens.angle_deg / core::degrees_per_radian);
+        siemens.pole[0]
+        + *siemens.radius * core::cos(*siemens.angle_deg / core::degrees_per_radian);
     target[axes.second] =
-        siemens.pole[1] + *siemens.radius * std::sin(*siemens.angle_deg / core::degrees_per_radian);
+        siemens.pole[1]
+        + *siemens.radius * core::sin(*siemens.angle_deg / core::degrees_per_radian);
     return target;
 }
 
@@ -229,16 +232,16 @@ core::Result<void> move_by_angle(Execution& execution, const Word& opening) {
                             + (is_absolute(words[i]->addressing) ? 0.0 : from[i]);
         const double along = from[0] - centre[0], across = from[1] - centre[1];
         const double turn = sign * angle;
-        end[axes.first] = centre[0] + along * std::cos(turn) - across * std::sin(turn);
-        end[axes.second] = centre[1] + along * std::sin(turn) + across * std::cos(turn);
+        end[axes.first] = centre[0] + along * core::cos(turn) - across * core::sin(turn);
+        end[axes.second] = centre[1] + along * core::sin(turn) + across * core::cos(turn);
         return go_along_arc(execution, end, centre, static_cast<int>(sign));
     }
     FEELER_TRY(const Point to, plane_point(execution, end));
     const double chord[2] = {to[0] - from[0], to[1] - from[1]};
-    if (std::hypot(chord[0], chord[1]) < 1e-9)
+    if (core::hypot(chord[0], chord[1]) < 1e-9)
         return refuse(execution,
                       "an arc with AR= needs an end point different from its start, or a centre");
-    const double height = sign / (2.0 * std::tan(angle / 2.0));
+    const double height = sign / (2.0 * core::tan(angle / 2.0));
     const Point centre = {0.5 * (from[0] + to[0]) - height * chord[1],
                           0.5 * (from[1] + to[1]) + height * chord[0]};
     return go_along_arc(execution, end, centre, static_cast<int>(sign));
@@ -294,7 +297,7 @@ void remember_direction(Execution& execution, const Position& start) {
             way = {-turn * (*end[axes.second] - arc->centre[1]),
                    turn * (*end[axes.first] - arc->centre[0])};
         }
-        const double length = std::hypot(way[0], way[1]);
+        const double length = core::hypot(way[0], way[1]);
         if (length > 1e-9) direction = {way[0] / length, way[1] / length};
     }
 }
@@ -427,8 +430,8 @@ core::Result<void> set_pole(Execution& execution) {
     if (execution.statement.polar_radius && execution.statement.polar_angle) {
         const double radius = length_of(execution, *execution.statement.polar_radius);
         const double angle = execution.statement.polar_angle->value / core::degrees_per_radian;
-        pole[0] += radius * std::cos(angle);
-        pole[1] += radius * std::sin(angle);
+        pole[0] += radius * core::cos(angle);
+        pole[1] += radius * core::sin(angle);
     }
     siemens.pole = pole;
     siemens.radius.reset();

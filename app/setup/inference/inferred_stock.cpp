@@ -12,6 +12,7 @@
 
 #include "app/setup/inference/program_survey.h"
 #include "app/setup/tools/program_tools.h"
+#include "core/base/math.h"
 #include "core/base/text.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
@@ -166,7 +167,7 @@ public:
     void cut(const TipTrack& track, double radius) {
         for (size_t i = 1; i < track.positions.size(); ++i) {
             const Vec3 from = track.positions[i - 1], way = track.positions[i] - from;
-            const long steps = 1 + static_cast<long>(std::hypot(way.x, way.y) / cell_);
+            const long steps = 1 + static_cast<long>(core::hypot(way.x, way.y) / cell_);
             for (long step = 0; step <= steps; ++step)
                 cut(from + way * (static_cast<double>(step) / static_cast<double>(steps)), radius);
         }
@@ -199,8 +200,8 @@ private:
         };
         for (long row = first(y - reach); row <= last(y + reach, rows_); ++row)
             for (long column = first(x - reach); column <= last(x + reach, columns_); ++column)
-                if (std::hypot(static_cast<double>(column) + 0.5 - x,
-                               static_cast<double>(row) + 0.5 - y)
+                if (core::hypot(static_cast<double>(column) + 0.5 - x,
+                                static_cast<double>(row) + 0.5 - y)
                     <= reach)
                     call(static_cast<size_t>(row * columns_ + column));
     }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/program_tools.h"
+#include "core/base/math.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/interpreter.h"
@@ -272,8 +273,8 @@ void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
     for (int i = 1; i < count; ++i) {
         const double fraction = static_cast<double>(i) / count, angle = fraction * arc.angle;
         Vec3 p(0.0);
-        p[u] = arc.centre[u] + du * std::cos(angle) - dv * std::sin(angle);
-        p[v] = arc.centre[v] + du * std::sin(angle) + dv * std::cos(angle);
+        p[u] = arc.centre[u] + du * core::cos(angle) - dv * core::sin(angle);
+        p[v] = arc.centre[v] + du * core::sin(angle) + dv * core::cos(angle);
         p[w] = from[w] + fraction * (to[w] - from[w]);
         positions.push_back(p);
     }
@@ -305,7 +306,7 @@ std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length
         p.z -= tool_length;
         track.sideways =
             track.sideways
-            || std::hypot(p.x - track.positions[0].x, p.y - track.positions[0].y) > sideways_from;
+            || core::hypot(p.x - track.positions[0].x, p.y - track.positions[0].y) > sideways_from;
     }
     return track;
 }

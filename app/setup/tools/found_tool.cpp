@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/base/math.h"
 #include "core/base/units.h"
 
 namespace app {
@@ -114,7 +115,7 @@ constexpr ShapeName of_fusion[] = {
 } // namespace shape_names
 
 double cone_height(const ToolDescription& tool, double angle_deg) {
-    return 0.5 * (tool.diameter - tool.tip_diameter) / std::tan(core::radians_of(angle_deg));
+    return 0.5 * (tool.diameter - tool.tip_diameter) / core::tan(core::radians_of(angle_deg));
 }
 
 /// Completes the sizes that belong to the shape; drops impossible combinations.
@@ -149,7 +150,7 @@ double usual_flutes(const ToolDescription& tool) {
     case ToolShape::tslot:
         return 0.25 * d;
     case ToolShape::dovetail: // at most to half the radius, so that a neck remains
-        return 0.25 * d / std::tan(core::radians_of(*tool.angle_deg));
+        return 0.25 * d / core::tan(core::radians_of(*tool.angle_deg));
     case ToolShape::taper:
         return std::max(std::min(flutes_of_mill * d, longest_flutes_of_mill),
                         cone_height(tool, *tool.angle_deg));

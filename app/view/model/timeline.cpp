@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/base/math.h"
+
 namespace app::viewer {
 namespace {
 
@@ -64,7 +66,8 @@ std::vector<TimelineCell> columns(const MinimumTree& tree, const TimelineRange& 
 
 double slack_height(double seconds) {
     if (!(seconds > least_slack)) return 0.0;
-    return std::min(std::log10(seconds / least_slack) / std::log10(most_slack / least_slack), 1.0);
+    return std::min(core::log10(seconds / least_slack) / core::log10(most_slack / least_slack),
+                    1.0);
 }
 
 std::vector<ToolBand> tool_bands(const std::vector<BlockRow>& rows) {

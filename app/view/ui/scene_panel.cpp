@@ -9,6 +9,7 @@
 #include "app/view/model/scene_of.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/math.h"
 #include "render/picking.h"
 #include "render/renderer.h"
 
@@ -275,7 +276,7 @@ void ScenePanel::State::take_mouse(Frame& frame, const Area& area, const render:
     if (io.MouseWheel != 0.0F) {
         const auto surface = render::pick(scene_, model.camera, size, at).surface();
         model.camera =
-            render::zoomed(model.camera, size, at, std::pow(0.85, io.MouseWheel),
+            render::zoomed(model.camera, size, at, core::pow(0.85, io.MouseWheel),
                            surface ? std::optional<core::Vec3>(surface->point) : std::nullopt);
     }
     const ImVec2 dragged = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);

@@ -11,6 +11,7 @@
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panel.h"
 #include "app/view/ui/panels.h"
+#include "core/base/math.h"
 
 namespace app::viewer {
 
@@ -238,7 +239,7 @@ void take_mouse(Frame& frame, const Area& area, bool& scrubbing) {
     if (!is_hovered) return;
     if (io.MouseWheel != 0.0F) {
         model.range = io.KeyShift ? moved(model.range, blocks, -0.1 * io.MouseWheel)
-                                  : zoomed(model.range, blocks, at, std::pow(0.8, io.MouseWheel));
+                                  : zoomed(model.range, blocks, at, core::pow(0.8, io.MouseWheel));
         model.follows_timeline = model.range == whole(blocks);
     }
     if (ImGui::IsMouseDragging(ImGuiMouseButton_Middle))

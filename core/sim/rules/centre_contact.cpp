@@ -1,3 +1,4 @@
+#include "core/base/math.h"
 #include "core/distance/stock_distance.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
@@ -20,7 +21,7 @@ struct Circle {
     double radius = 0.0;
 };
 
-double distance_xy(const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance_xy(const Vec3& a, const Vec3& b) { return core::hypot(a.x - b.x, a.y - b.y); }
 
 /// Smallest circle around the positions; its radius is at most a few percent too large.
 Circle circle_round(const std::vector<Vec3>& positions) {
@@ -79,7 +80,7 @@ void take_up(CentreTracker& tracker, const Mat3& orientation, const Vec3& from, 
 /// Number of positions to check on a leg.
 int sample_count(const Vec3& by, const ToolDescription& tool) {
     const double steps =
-        std::max(-by.z / centre_recess(tool), std::hypot(by.x, by.y) / tool.centre_radius);
+        std::max(-by.z / centre_recess(tool), core::hypot(by.x, by.y) / tool.centre_radius);
     return 1 + static_cast<int>(8.0 * std::min(steps, 1e5));
 }
 

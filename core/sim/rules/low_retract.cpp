@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/rules/rules.h"
@@ -137,7 +138,7 @@ bool goes_across(const Leg& leg) {
     const AxisValues &from = leg.positions.front(), &to = leg.positions.back();
     for (size_t i = 3; i < axis_count; ++i)
         if (from[i] != to[i]) return false;
-    return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
+    return core::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
 std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<TrackedPair>& known) {

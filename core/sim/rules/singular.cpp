@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "core/motion/kinematics.h"
@@ -58,7 +59,7 @@ Seen measure(const Machine& machine, const Motion& motion,
     }
     const double cosine =
         glm::dot(direction(machine, positions[0]), direction(machine, positions[2]));
-    seen.lean = std::acos(std::clamp(cosine, -1.0, 1.0)) * degrees_per_radian;
+    seen.lean = core::acos(std::clamp(cosine, -1.0, 1.0)) * degrees_per_radian;
     const Vec3 from = tip_position(machine, positions[0], length);
     const Vec3 to = tip_position(machine, positions[2], length);
     seen.way =

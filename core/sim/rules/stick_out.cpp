@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/leg/leg_check.h"
@@ -196,7 +197,7 @@ Finding rubbing(const ToolAssembly& tool, const ToolReach& reach) {
 
 bool goes_sideways(const Leg& leg) {
     const AxisValues &from = leg.positions.front(), &to = leg.positions.back();
-    return std::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
+    return core::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
 } // namespace

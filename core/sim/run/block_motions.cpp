@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
 #include "core/sim/run/block_run.h"
@@ -98,7 +99,7 @@ namespace {
 /// Removes everything from a stock.
 void remove_all(CutModel& stock) {
     const Vec3 size = stock.outer_box.size();
-    const double radius = std::hypot(size.x, size.y);
+    const double radius = core::hypot(size.x, size.y);
     const RevolvedProfile all{{{0.0, radius, size.z + 2.0, radius, 0.0}}};
     const Vec3 at = stock.outer_box.min + Vec3(0.5 * size.x, 0.5 * size.y, -1.0);
     cut(stock,

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 
 namespace core {
@@ -97,7 +98,7 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
     if (way(3) + way(4) + way(5) > 0.0) return true;
     // A drill may follow a hole that is slightly inclined.
     constexpr double slack = 0.1, slope = 0.05;
-    return !motion.arc && std::hypot(way(0), way(1)) <= slack + slope * way(2);
+    return !motion.arc && core::hypot(way(0), way(1)) <= slack + slope * way(2);
 }
 
 /// Notes which pairs the motion that ended just now made worse. Returns their indices in
@@ -264,7 +265,7 @@ Finding BlockRun::finding_about(const PairClearance& pair, const PairStudy& stud
     finding.cure = fmt::format(
         "Ramp or helix in at {:.1f} degrees or less, with a radius larger than that of the centre; "
         "pre-drill; or use a centre-cutting tool.",
-        std::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
+        core::atan(centre_recess(described) / (2.0 * described.centre_radius)) * 180.0
             / std::numbers::pi);
     return finding;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <numbers>
 
+#include "core/base/math.h"
 #include "core/distance/inner_depth.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/setup.h"
@@ -218,9 +219,10 @@ private:
             const Vec3 v = glm::cross(best.towards, u);
             bool is_better = false;
             for (const Vec3& side : {u, -u, v, -v})
-                is_better = is_better
-                            || try_direction(
-                                piece, glm::normalize(best.towards + std::tan(angle) * side), best);
+                is_better =
+                    is_better
+                    || try_direction(piece, glm::normalize(best.towards + core::tan(angle) * side),
+                                     best);
             if (!is_better) angle *= 0.5;
         }
     }
@@ -339,7 +341,7 @@ private:
                 for (const double out : {0.5, 0.85})
                     for (int turn = 0; turn < 8; ++turn) {
                         const double angle = 0.25 * std::numbers::pi * turn;
-                        centres.emplace_back(out * r * std::cos(angle), out * r * std::sin(angle),
+                        centres.emplace_back(out * r * core::cos(angle), out * r * core::sin(angle),
                                              z);
                     }
             }

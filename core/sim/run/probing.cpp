@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/math.h"
 #include "core/sim/run/block_run.h"
 
 // A probing move ends where its tip makes contact, so the machine may be anywhere between its start
@@ -63,7 +64,7 @@ Leg line_of(const Motion& motion, const std::array<Range, axis_count>& ranges) {
 double length_of(const Leg& leg) {
     double squared = 0.0;
     for (size_t i = 0; i < axis_count; ++i)
-        squared += std::pow(leg.positions[1][i] - leg.positions[0][i], 2);
+        squared += core::pow(leg.positions[1][i] - leg.positions[0][i], 2);
     return std::sqrt(squared);
 }
 
