@@ -34,6 +34,12 @@ bool doubts_start(const std::vector<core::Finding>& findings) {
     });
 }
 
+bool cuts_beside_stock(const std::vector<core::Finding>& findings) {
+    return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
+        return finding.rule == core::rule_id("offset-implausible");
+    });
+}
+
 std::tuple<std::string, std::string, std::string> subject_of(const core::Finding& finding) {
     return {finding.rule, finding.pair[0].empty() ? finding.message : finding.pair[0],
             finding.pair[1]};

@@ -157,8 +157,13 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
                     block.calls,
                     {}}};
     const core::PathCertainty path = certainty(block, events, state, step.findings);
-    const core::BlockEvents of_block{block.block,     block.is_cycle, events,
-                                     block.goes_home, path,           judge ? &*judged : nullptr};
+    const core::BlockEvents of_block{block.block,
+                                     block.is_cycle,
+                                     events,
+                                     block.goes_home,
+                                     block.in_machine,
+                                     path,
+                                     judge ? &*judged : nullptr};
     track_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
     if (before_block) before_block(block, state);
     std::swap(state.control, next_);

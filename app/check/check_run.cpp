@@ -42,6 +42,7 @@ Coverage CheckRun::full_coverage() const {
     }
     full.holders = full.tools_without_holder.empty() ? Known::described : Known::missing;
     if (doubts_start(findings)) full.start = Known::inferred;
+    if (cuts_beside_stock(findings)) full.stock = std::min(full.stock, Known::inferred);
     return full;
 }
 

@@ -108,8 +108,8 @@ void CorrectedRun::follow(const gcode::BlockCommands& real, const core::Setup& s
     if (is_lost_) return;
     const gcode::BlockCommands& block = **next;
     const std::vector<core::Event> events = events_of(setup_, block, lowering_, speed_by_hand_);
-    const core::BlockEvents of_block{block.block, block.is_cycle, events, block.goes_home,
-                                     real.path};
+    const core::BlockEvents of_block{block.block,     block.is_cycle,   events,
+                                     block.goes_home, block.in_machine, real.path};
     core::BlockResult result = core::run_block(setup_, of_block, machine_);
     is_lost_ = !result.checked;
     if (is_lost_) return;

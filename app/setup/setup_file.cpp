@@ -481,6 +481,17 @@ void read_bodies(TableReader& root, BodyContext& context) {
     if (auto part = root.table("part", "[part]")) read_part(*part, context);
 }
 
+/// Removes the limits of all axes; whether there were any.
+bool drop_limits(core::Machine& machine) {
+    bool had_limits = false;
+    for (core::MachineAxis& axis : machine.axes) {
+        had_limits = had_limits || axis.min || axis.max;
+        axis.min.reset();
+        axis.max.reset();
+    }
+    return had_limits;
+}
+
 Known known_limits(const core::Machine& machine) {
     for (size_t i = 0; i < core::axis_count; ++i) {
         const core::MachineAxis& axis = machine.axes[i];
@@ -501,19 +512,14 @@ void read_assumed(TableReader& root, SetupFile& file) {
     file.infers_start = file.assumed.contains("start");
 }
 
-/// How far the gauge line is above the point that the control takes for it while each tool is in
-/// the spindle: what the length in the control lacks of the true length, mm. Empty: not the same
+/// How far the gauge line is above the point that the control takes for it, mm. Empty: not the same
 /// with all tools.
 std::optional<double> gauge_shift(const core::Setup& setup) {
     constexpr double same = 1e-6; // mm
     std::optional<double> shift;
     for (const auto& [number, tool] : setup.tools) {
-        core::ToolDescription untouched = tool.description;
-        untouched.touched_off.reset();
-        const auto whole = core::assemble(untouched);
-        const double lacks = whole ? whole->length - tool.length : 0.0;
-        if (shift && std::abs(*shift - lacks) > same) return std::nullopt;
-        shift = lacks;
+        if (shift && std::abs(*shift - tool.gauge_rise) > same) return std::nullopt;
+        shift = tool.gauge_rise;
     }
     return shift.value_or(0.0);
 }
@@ -525,15 +531,19 @@ void place_machine_bodies(BodyContext& context) {
     core::Machine& machine = file.setup.machine;
     const auto shift = gauge_shift(file.setup);
     if (shift == 0.0) return;
-    const bool has_bodies = !machine.bodies.empty();
     if (!shift || machine.has_rotary()) {
-        machine.bodies.clear();
-        if (has_bodies)
-            file.assumptions.push_back(
-                "the length of the tools in the control is not the true one (touched_off), so "
-                "where the work is on the machine is not known: machine bodies are not checked");
+        const auto elsewhere = [&](const core::MachineBody& body) {
+            return body.link != machine.spindle;
+        };
+        if (std::erase_if(machine.bodies, elsewhere) == 0) return;
+        file.loses_machine = true;
+        file.assumptions.push_back(
+            "the length of the tools in the control is not the true one (touched_off), so where "
+            "the work is on the machine is not known: only those machine bodies are checked that "
+            "move with the spindle");
         return;
     }
+    const bool has_bodies = !machine.bodies.empty();
     const core::Transform up = core::translation({0.0, 0.0, *shift});
     for (core::MachineBody& body : machine.bodies) body.place = up;
     context.frames.machine_from["machine"] = up;
@@ -591,6 +601,9 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
     read_bodies(root, context);
     read_allowances(root, setup);
     check_allowance_names(root, setup);
+    if (file.assumed.contains("offsets") && !file.infers_frame && drop_limits(setup.machine))
+        file.assumptions.push_back(
+            "axis limits are not checked, because the work offsets are only assumed");
     file.limits_known = known_limits(setup.machine);
     if (auto table = root.table("rules", "[rules]")) read_rules(*table, file);
     root.finish();
@@ -617,12 +630,7 @@ std::string assume_machine_zero(SetupFile& file) {
     if (file.infers_home) environment.home = gcode::AxisValues{0.0, 0.0, top};
     if (file.infers_second_home && top != 0.0)
         environment.second_home = gcode::AxisValues{0.0, 0.0, top};
-    bool has_limits = false;
-    for (core::MachineAxis& axis : machine.axes) {
-        has_limits = has_limits || axis.min || axis.max;
-        axis.min.reset();
-        axis.max.reset();
-    }
+    const bool has_limits = drop_limits(machine);
     const bool is_zero = top == 0.0;
     return fmt::format(
         "all work offsets are equal; machine {}, which is also the start and home position, is "

@@ -62,6 +62,8 @@ struct SetupFile {
     bool infers_tools = false;    // no tool is stated: those of the program are inferred
     bool infers_frame = false;    // no work offset is stated
     bool mesh_is_stated = false;  // the mesh size
+    bool touches_off = false;     // assumed: Z is touched off with each tool
+    bool loses_machine = false; // machine bodies are left out: nobody knows where the work is on it
     Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
     bool infers_start = false; // the start position, with the work offsets
     bool infers_home = false, infers_second_home = false; // likewise the reference points

@@ -33,10 +33,13 @@ MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, siz
     const MachineBody& body = setup.machine.bodies[index];
     const Aabb box = bounds(body.body);
     const bool nose = body.name == name_of(PartKind::nose);
+    // The spindle is above the tool by its true length, whatever the control takes for it.
+    const Transform place =
+        body.link == setup.machine.spindle ? translation({0.0, 0.0, tool.gauge_rise}) : body.place;
     return {.kind = nose ? PartKind::nose : PartKind::machine,
             .carried = index,
             .body = &body.body,
-            .mover = {{body.link, body.place},
+            .mover = {{body.link, place},
                       box.center(),
                       0.5 * glm::length(box.size()),
                       0.0,

@@ -515,7 +515,10 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
     if (!shank.empty()) tool.parts.push_back({PartKind::shank, std::move(shank)});
     if (!holder.empty()) tool.parts.push_back({PartKind::holder, std::move(holder)});
     tool.length = holder.empty() ? description.gauge_length.value_or(z) : z;
-    if (description.touched_off) tool.length = *description.touched_off;
+    if (description.touched_off) {
+        tool.gauge_rise = tool.length - *description.touched_off;
+        tool.length = *description.touched_off;
+    }
     if (tool.description.diameter == 0.0)
         tool.description.diameter = 2.0 * bounds(tool.parts[0].profile).max.x;
     if (!description.single_point) return tool;

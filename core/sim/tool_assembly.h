@@ -51,6 +51,7 @@ struct ToolAssembly {
     ToolDescription description;
     std::vector<ToolPart> parts; // existing parts, from the flutes up
     double length = 0.0;         // gauge length, mm; if touched off, the length in the control
+    double gauge_rise = 0.0;     // gauge line above the point that the control takes for it, mm
     // Nobody stated how far it sticks out, so where the spindle is, is not known.
     bool reach_is_assumed = false;
     // A boring bar whose spindle stands in the direction in which a cycle moves its edge off the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -43,8 +44,9 @@ bool goes_elsewhere(const Word& word) {
 /// control.
 core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
                                       const Dialect& dialect, const Environment& environment) {
-    if (environment.known_m_codes.count(static_cast<int>(word.value))) return {};
-    if (word.value < 0.0 || std::abs(word.value - std::round(word.value)) > 1e-6)
+    const bool is_number = word.value >= 0.0 && word.value <= std::numeric_limits<int>::max();
+    if (is_number && environment.known_m_codes.count(static_cast<int>(word.value))) return {};
+    if (!is_number || std::abs(word.value - std::round(word.value)) > 1e-6)
         return core::fail(
             ErrorCode::unsupported,
             fmt::format("{}: an M code must be a whole number, not negative; correct or remove it",

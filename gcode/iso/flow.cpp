@@ -131,6 +131,7 @@ bool Flowing::meet_sub(uint32_t line) {
 /// Source: rs274 2.9, probed.
 core::Result<void> Flowing::skip_sub() {
     const FlowMark* first = index_.first(sub, name_);
+    if (!first) return refuse("a line with 'sub' must begin with its O word");
     if (first->line != line_)
         return refuse(
             fmt::format("subprogram {} is defined twice, first in line {}: the control stops here",

@@ -101,6 +101,51 @@ TEST(Coverage, WhatASetupCallsAssumedIsNotDescribed) {
     EXPECT_THAT(wrong.err, HasSubstr("is a list of stock, offsets, start"));
 }
 
+TEST(Coverage, LimitsAreNotCheckedAgainstAnAssumedOffset) {
+    std::string beyond = setup_of(all_tables);
+    const std::string offset = "X = -350";
+    beyond.replace(beyond.find(offset), offset.size(), "X = 350");
+    EXPECT_EQ(run(slot, beyond).status, 1);
+    const Json report = json_of(slot, "assumed = [\"offsets\"]\n" + beyond);
+    EXPECT_EQ(report["findings"], Json::array());
+    EXPECT_EQ(report["coverage"]["limits"], "missing");
+}
+
+/// Without tools, the length that G43 adds is not known, so neither is Z of the machine.
+TEST(Coverage, LimitsOfZAreNotCheckedWhileTheLengthIsAGuess) {
+    std::string low = setup_of(without("tool"));
+    const std::string offset = "Z = -420";
+    low.replace(low.find(offset), offset.size(), "Z = -500");
+    EXPECT_THAT(run(slot, low).out, Not(HasSubstr("over-travel")));
+    const std::string machine = test_support::program({"G0 X-20. Y50.", "G53 G0 Z-900."});
+    EXPECT_THAT(run(machine, low).out, HasSubstr("over-travel"));
+}
+
+TEST(Coverage, TheStockIsNotDescribedWhereAnotherOffsetCutsBesideIt) {
+    const std::string both = "[offsets]\nG54 = { X = -350, Y = -200, Z = -420 }\n"
+                             "G55 = { X = -120, Y = -200, Z = -420 }\n";
+    const std::string program =
+        test_support::program({"G0 X-20. Y50.", "Z-5.", "G1 X120. F800.", "G0 Z60.", "G55",
+                               "G0 X0. Y50.", "Z2.", "G1 Z-3. F200.", "X40. F800.", "G0 Z60."});
+    const Json report = json_of(program, setup_of(without("offsets")) + both);
+    EXPECT_EQ(report["headline"], "NO ERROR IN THE PROGRAM ITSELF") << report["findings"];
+    EXPECT_EQ(report["coverage"]["stock"], "inferred");
+}
+
+/// Nothing states how Z was set, so a tool that is described may not be in the way more than one
+/// that is not.
+TEST(Coverage, AToolIsTouchedOffIfNeitherOffsetsNorLengthsAreStated) {
+    const std::string by_hand = "G21 G90 G54\nT1 M6\nM3 S3000\nG0 X30 Y20\nG0 Z50\nG0 Z2\n"
+                                "G1 Z-3 F200\nG1 X70 F600\nG0 Z50\nM5\nM30\n";
+    const std::string tool =
+        "[[tool]]\nnumber = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 25\n";
+    for (const std::string dialect : {"grbl", "fanuc"}) {
+        const auto ran = run(by_hand, "[program]\ndialect = \"" + dialect + "\"\n" + tool);
+        EXPECT_EQ(ran.status, 0) << ran.out;
+        EXPECT_THAT(ran.out, HasSubstr("Z is touched off with each tool"));
+    }
+}
+
 TEST(Coverage, OffsetsIncludeThoseOfRapids) {
     for (const std::string offset : {"G55", "G54.1 P7"}) {
         const std::string program =

@@ -232,6 +232,24 @@ std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program
     return why;
 }
 
+/// Assumes that Z is touched off with each tool: then their lengths have no effect.
+void assume_touch_off(SetupFile& file) {
+    file.touches_off = true;
+    for (auto& [number, tool] : file.setup.tools) {
+        if (tool.description.touched_off) continue;
+        core::ToolDescription touched = tool.description;
+        touched.touched_off = 0.0;
+        auto assembled = core::assemble(touched);
+        if (!assembled) continue;
+        assembled->reach_is_assumed = tool.reach_is_assumed;
+        tool = *std::move(assembled);
+        file.environment.tool_lengths[number] = 0.0;
+    }
+    file.setup.rules[core::rule_id("missing-length-offset")] = core::Severity::off;
+    file.assumptions.push_back(
+        "the program uses no tool length offset: Z is touched off with each tool");
+}
+
 /// Assumes what an operator does by hand when running such a program.
 void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
     const bool cuts = !seen.mills.empty();
@@ -243,10 +261,7 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         file.speed_by_hand = true;
         file.assumptions.push_back("the program has no spindle speed: it is set by hand");
     }
-    if (seen.offsets_lengths) return;
-    file.setup.rules[core::rule_id("missing-length-offset")] = core::Severity::off;
-    file.assumptions.push_back(
-        "the program uses no tool length offset: Z is touched off with each tool");
+    if (!seen.offsets_lengths) assume_touch_off(file);
 }
 
 /// Whether the set-up or the program states every work offset in whose coordinates the program
@@ -371,6 +386,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     if (file.infers_frame && assume_extended_offsets(file.environment, first))
         first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
+    if (file.infers_frame && !file.infers_tools && !first.offsets_lengths) assume_touch_off(file);
     put_tools(file, tools, first, 0.0);
     assume_axes(file, first);
     file.stock_known = file.needs_stock ? Known::missing : Known::described;
@@ -419,12 +435,12 @@ std::shared_ptr<const Coverage> coverage_of(const SetupFile& file) {
         return file.assumed.contains(word) ? std::min(stated, Known::inferred) : stated;
     };
     const Known start = file.infers_start ? Known::inferred : Known::described;
-    return std::make_shared<const Coverage>(
-        Coverage{.stock = has_stock ? known(file.stock_known, "stock") : Known::missing,
-                 .fixtures = file.fixtures_known,
-                 .offsets = known(file.offsets_known, "offsets"),
-                 .limits = file.limits_known,
-                 .start = known(start, "start")});
+    return std::make_shared<const Coverage>(Coverage{
+        .stock = has_stock ? known(file.stock_known, "stock") : Known::missing,
+        .fixtures = file.fixtures_known,
+        .offsets = file.loses_machine ? Known::missing : known(file.offsets_known, "offsets"),
+        .limits = file.limits_known,
+        .start = known(start, "start")});
 }
 
 namespace {
@@ -478,7 +494,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                      double control_length) {
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
-    if (file.infers_tools) {
+    if (file.infers_tools || file.touches_off) {
         tool.touched_off = control_length;
         tool.length_is_guess = control_length == 0.0;
     }

@@ -53,7 +53,7 @@ void BlockRun::check_limits(const Motion& motion, const AxisSpread& before) {
     }
     for (size_t i = 0; i < axis_count; ++i) {
         const MachineAxis& axis = setup.machine.axes[i];
-        if (!axis.present || (i == 2 && spindle_is_lost())) continue;
+        if (!axis.present || (i == 2 && (spindle_is_lost() || has_guessed_height()))) continue;
         const double below = axis.min.value_or(-infinity) - range.min[i];
         const double above = range.max[i] - axis.max.value_or(infinity);
         if (below > resolution) tell(over_travel({i, false, range.min[i], below}, before.none()));
@@ -110,7 +110,7 @@ void remove_all(CutModel& stock) {
 
 void BlockRun::move_unmeasured(const Motion& motion, const Path& path) {
     if (block.path == PathCertainty::pose_unknown) check_limits(motion, state.spread);
-    if (!tool()) move_without_tool(motion);
+    if (!tool()) move_without_tool(motion, path);
     if (tool() && use(motion) == FluteUse::cutting) {
         // It may have cut anything.
         if (!state.certain_stock) state.certain_stock = state.stock;
@@ -185,7 +185,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     state.memory.off_path = off_path + state.corners.of_cuts;
     doubt_assumed_start(motion);
     state.position = motion.to;
-    if (!tool()) move_without_tool(motion);
+    if (!tool()) move_without_tool(motion, path);
     const bool is_lost = spindle_is_lost();
     if (is_lost) forget_bounds();
     if (!tool() && (setup.machine.bodies.empty() || is_lost)) {
@@ -371,10 +371,38 @@ void BlockRun::check_feed(const Motion& motion, const Path& path, double removed
     tell(std::move(found));
 }
 
-void BlockRun::move_without_tool(const Motion& motion) {
+void BlockRun::doubt_empty_spindle(const Path& path) {
+    const bool is_known =
+        !path.legs.empty() && path.legs[0].start_known && state.is_assumed == std::array<bool, 3>{};
+    if (!is_known || block.judgement || state.reported_unchecked_tool) return;
+    for (const auto& [number, held] : setup.tools) {
+        if (held.reach_is_assumed) continue;
+        CheckMemory memory; // the bounds of the run hold for its own bodies
+        CutModel stock = state.stock;
+        std::vector<TrackedPair> here;
+        state.tool = number;
+        for (const Leg& leg : path.legs)
+            leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, here);
+        state.tool.reset();
+        const TrackedPair* worst = deciding_pair(here);
+        if (!worst || worst->verdict == Verdict::clear) continue;
+        state.reported_unchecked_tool = true;
+        result.checked = false;
+        return find(rule_id("open-premise"),
+                    fmt::format("The set-up does not state which tool is in the spindle at the "
+                                "start. With tool {}, the {} may come too close to {} here.",
+                                value_of(number), part_name(setup, worst->pair),
+                                worst->pair.fixture ? body_name(setup, worst->pair) : "the stock"),
+                    "State `tool_at_start` under [program] in the set-up (0: none).");
+    }
+}
+
+void BlockRun::move_without_tool(const Motion& motion, const Path& path) {
     if (!state.tool && (state.tool_known || motion.kind == MotionKind::rapid)) {
-        if (!state.tool_known)
+        if (!state.tool_known) {
             state.assumptions.insert("the spindle is empty until the first tool change");
+            doubt_empty_spindle(path);
+        }
         return;
     }
     result.checked = false;

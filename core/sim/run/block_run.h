@@ -73,6 +73,12 @@ struct BlockRun {
         return state.tool && !tool() && (state.length_offset.is_assumed || state.height_is_assumed);
     }
 
+    /// Whether Z in machine coordinates rests on a length of the tool that nobody states.
+    bool has_guessed_height() const {
+        return !block.in_machine && tool() && tool()->description.length_is_guess
+               && state.length_offset.number;
+    }
+
     /// The check for the legs of a motion, with the current tool, if any.
     LegCheck leg_check(FluteUse use, CheckMemory& memory) {
         static const ToolAssembly nothing;
@@ -125,7 +131,10 @@ struct BlockRun {
     void check_rapid(const Motion& motion, const Path& path, const CutModel& before,
                      std::span<const size_t> worsened);
     void check_feed(const Motion& motion, const Path& path, double removed);
-    void move_without_tool(const Motion& motion);
+    void move_without_tool(const Motion& motion, const Path& path);
+    /// Reports, once, a motion that is not clear with some tool of the set-up, while nobody states
+    /// which tool is in the spindle.
+    void doubt_empty_spindle(const Path& path);
     /// A motion of which it is unknown where it brings the bodies: nothing is measured or cut.
     void move_unmeasured(const Motion& motion, const Path& path);
     void track_centre(const Motion& motion, const Leg& leg);

@@ -13,6 +13,7 @@ Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& posi
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
     state.tool_known = setup.tool_at_start.has_value();
+    if (state.tool == ToolNumber{0} && !setup.tools.contains(*state.tool)) state.tool.reset();
     state.position = position;
     state.is_assumed = setup.start_is_assumed;
     for (const Fixture& fixture : setup.fixtures)

@@ -67,7 +67,8 @@ struct BlockEvents {
     BlockIndex block{};
     bool is_cycle = false; // several motions in one block: a canned cycle, G28
     std::span<const Event> events;
-    bool goes_home = false; // G28 or G30
+    bool goes_home = false;  // G28 or G30
+    bool in_machine = false; // moves to machine coordinates: G53
     PathCertainty path = PathCertainty::known;
     // Replaces measuring: the stock is still cut, and rules that need no clearance still apply.
     const Judgement* judgement = nullptr;
