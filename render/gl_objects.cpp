@@ -29,12 +29,12 @@ core::Result<void> compile(const Shader& shader, const std::string& text) {
     GLint ok = 0;
     glGetShaderiv(shader.id, GL_COMPILE_STATUS, &ok);
     if (ok != 0) return {};
-    std::string log(2000, '\0');
+    std::string report(2000, '\0');
     GLsizei length = 0;
-    glGetShaderInfoLog(shader.id, static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<size_t>(length));
+    glGetShaderInfoLog(shader.id, static_cast<GLsizei>(report.size()), &length, report.data());
+    report.resize(static_cast<size_t>(length));
     return core::fail(core::ErrorCode::unsupported,
-                      fmt::format("the graphics driver rejects a shader: {}", log));
+                      fmt::format("the graphics driver rejects a shader: {}", report));
 }
 
 } // namespace
