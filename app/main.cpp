@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
     app::add_history(cli, exit_code);
     app::add_diff(cli, exit_code);
     app::add_bench(cli, exit_code);
+    app::add_completion(cli, exit_code);
     try {
         const std::vector<const char*> arguments = arguments_of(argc, argv);
         cli.parse(argc, arguments.data());

@@ -26,5 +26,6 @@ void add_shot(CLI::App& cli, ExitCode& exit_code);
 void add_merge(CLI::App& cli, ExitCode& exit_code);
 void add_history(CLI::App& cli, ExitCode& exit_code);
 void add_diff(CLI::App& cli, ExitCode& exit_code);
+void add_completion(CLI::App& cli, ExitCode& exit_code);
 
 } // namespace app

@@ -255,7 +255,7 @@ void note_clock(const Block& block, InterpreterState& state, BlockCommands& resu
     for (size_t i = 0; !state.said_time && i + 1 < steps.size(); ++i) {
         const bool reads = steps[i].operation == Operation::number
                            && steps[i + 1].operation == Operation::numbered
-                           && is_of_clock(static_cast<int>(steps[i].number));
+                           && is_of_clock(steps[i].number);
         if (!reads) continue;
         state.said_time = true;
         result.warnings.push_back(

@@ -369,7 +369,7 @@ bool sets_fanuc_offset(const Environment& environment, int number) {
     return range && range->write;
 }
 
-bool is_of_clock(int number) {
+bool is_of_clock(double number) {
     return number == milliseconds_timer || number == hours_timer || number == date
            || number == time_of_day;
 }

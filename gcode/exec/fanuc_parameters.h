@@ -33,7 +33,7 @@ bool sets_fanuc_offset(const Environment& environment, int number);
 void forget_offset_as_set(InterpreterState& state, int number);
 
 /// Whether this is a clock variable. Programs are checked without a clock.
-bool is_of_clock(int number);
+bool is_of_clock(double number);
 
 /// Advances the timers by one block, if the program has set them.
 void advance_timers(InterpreterState& state);
