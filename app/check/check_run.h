@@ -48,24 +48,35 @@ struct ReadingError {
     core::Finding finding;
 };
 
+/// An open premise in the words of the report.
+struct PremiseText {
+    std::string reason;  // "The set-up does not state parameter 5006#6 (TOS)"
+    std::string assumed; // a clause: "parameter 5006#6 (TOS) is 1"
+    std::string cure;    // a sentence: how to state it
+};
+
 /// What a check found with another reading of an open premise.
 struct ReadingResult {
-    std::string reason;            // "The set-up does not state parameter 5006#6 (TOS)"
-    std::string assumed;           // a clause: "parameter 5006#6 (TOS) is 1"
-    std::vector<std::string> when; // likewise, of this reading; the premises met first come first
-    std::string effect;            // what the control then does; may be empty
-    std::string cure;              // a sentence: how to state the premise
-    core::BlockIndex block{};      // of the assumed reading, in which the premise matters
-    uint32_t line = 0;             // of that block
+    PremiseText premise;
+    std::vector<PremiseText> earlier; // those that the run has read differently before
+    std::vector<std::string> when;    // clauses, of this reading; the premises met first come first
+    std::string effect;               // what the control then does; may be empty
+    core::BlockIndex block{};         // of the assumed reading, in which the premise matters
+    uint32_t line = 0;                // of that block
     std::string file;
     core::Verdict verdict = core::Verdict::clear; // of the blocks from there on
-    std::vector<ReadingError> errors;             // the first few
+    // The highest severity that the set-up leaves to its findings, where it has no error.
+    core::Severity lowered = core::Severity::off;
+    std::vector<ReadingError> errors; // the first few
     size_t error_count = 0;
     std::optional<core::Error> stopped; // why this reading ended early
     bool is_condition = false;          // of the program; otherwise a parameter of the control
     bool continues = false;             // it goes on where another reading had been stopped
     std::optional<ReadingError>
         avoided; // the first error of the assumed reading that this one lacks
+
+    /// How to state all the premises that differ, each once.
+    std::string cure() const;
 };
 
 /// Wall time of the stages of a check, seconds.

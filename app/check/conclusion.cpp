@@ -303,9 +303,10 @@ bool other_position_was_checked(const CheckRecord& record, const gcode::Environm
         gcode::find_parameter(gcode::ControlQuestion::blocks_are_deleted, environment.dialect);
     if (!parameter) return false;
     const std::string reason = gcode::premise_of(*parameter, environment).reason;
-    return std::any_of(
-        record.readings.begin(), record.readings.end(),
-        [&](const ReadingResult& reading) { return reading.reason == reason && !reading.stopped; });
+    return std::any_of(record.readings.begin(), record.readings.end(),
+                       [&](const ReadingResult& reading) {
+                           return reading.premise.reason == reason && !reading.stopped;
+                       });
 }
 
 } // namespace

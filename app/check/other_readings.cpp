@@ -97,10 +97,22 @@ std::string consequence_of(const ReadingResult& result) {
     return text;
 }
 
-core::Finding open_premise(const core::Setup& setup, std::string message, std::string cure) {
+/// The severity of the finding about a reading. A collision is an error whatever the set-up says
+/// about the rule. What the set-up lowers in the assumed reading is lowered here, too.
+core::Severity severity_of(const core::Setup& setup, const ReadingResult& result) {
+    if (result.verdict == core::Verdict::collision) return core::Severity::error;
+    const core::Severity own = core::severity_of(setup, core::rule_id("open-premise"));
+    if (result.error_count > 0 || result.stopped || result.avoided) return own;
+    if (result.verdict == core::Verdict::violation)
+        return std::min(own, std::max(result.lowered, core::Severity::note));
+    return std::min(
+        own, std::max(core::severity_of(setup, core::rule_id("undecided")), core::Severity::note));
+}
+
+core::Finding open_premise(core::Severity severity, std::string message, std::string cure) {
     core::Finding finding;
     finding.rule = core::rule_id("open-premise");
-    core::settle_severity(setup, finding);
+    finding.severity = severity;
     finding.message = std::move(message);
     finding.cure = std::move(cure);
     return finding;
@@ -125,6 +137,8 @@ struct ToldReadings {
     std::string begin, end, cure; // of the text, before and after the ways to read the premise
     core::BlockIndex block{};
     std::vector<std::string> ways;
+    core::Severity severity = core::Severity::off;
+    bool tells_rapids = false; // the premise is whether rapids are straight
 
     bool begins_and_ends_as(const ToldReadings& other) const {
         return begin == other.begin && end == other.end && cure == other.cure
@@ -132,24 +146,39 @@ struct ToldReadings {
     }
 };
 
-ToldReadings told(const ReadingResult& result) {
+/// A member of the premises that differ from the assumed reading, each text once.
+std::vector<std::string> each_of(const ReadingResult& result, std::string PremiseText::*member) {
+    std::vector<std::string> texts;
+    const auto add = [&](const PremiseText& premise) {
+        const std::string& text = premise.*member;
+        if (std::find(texts.begin(), texts.end(), text) == texts.end()) texts.push_back(text);
+    };
+    for (const PremiseText& premise : result.earlier) add(premise);
+    add(result.premise);
+    return texts;
+}
+
+ToldReadings told(const core::Setup& setup, const ReadingResult& result) {
     const std::string effect =
         result.effect.empty() ? std::string() : fmt::format(" ({})", result.effect);
-    return {place_of(result.file, result.line),
-            fmt::format("{}. Assumed: {}. If ", result.reason, result.assumed),
-            fmt::format("{}, {}", effect, consequence_of(result)),
-            result.cure,
-            result.block,
-            {way_of(result)}};
+    return {.place = place_of(result.file, result.line),
+            .begin = fmt::format("{}. Assumed: {}. If ",
+                                 fmt::join(each_of(result, &PremiseText::reason), ". "),
+                                 fmt::join(each_of(result, &PremiseText::assumed), ", and ")),
+            .end = fmt::format("{}, {}", effect, consequence_of(result)),
+            .cure = result.cure(),
+            .block = result.block,
+            .ways = {way_of(result)},
+            .severity = severity_of(setup, result)};
 }
 
 /// The finding for readings. Where the check stopped in their block, it is not recorded.
-core::Finding finding_of(const core::Setup& setup, const CheckRecord& record,
-                         const ToldReadings& readings) {
+core::Finding finding_of(const CheckRecord& record, const ToldReadings& readings) {
     const bool is_recorded = core::value_of(readings.block) < record.blocks.size();
     const std::string text = readings.begin + ways_text(readings.ways) + readings.end;
     core::Finding finding = open_premise(
-        setup, is_recorded ? text : fmt::format("In {}: {}", readings.place, text), readings.cure);
+        readings.severity, is_recorded ? text : fmt::format("In {}: {}", readings.place, text),
+        readings.cure);
     if (is_recorded) finding.block = readings.block;
     return finding;
 }
@@ -179,8 +208,8 @@ std::string reasons_of(const std::vector<ReadingResult>& readings) {
     constexpr size_t most_shown = 8;
     std::vector<std::string> reasons;
     for (const ReadingResult& reading : readings)
-        if (std::find(reasons.begin(), reasons.end(), reading.reason) == reasons.end())
-            reasons.push_back(reading.reason);
+        if (std::find(reasons.begin(), reasons.end(), reading.premise.reason) == reasons.end())
+            reasons.push_back(reading.premise.reason);
     const size_t shown = std::min(reasons.size(), most_shown);
     const std::string more = shown < reasons.size()
                                  ? fmt::format("; and {} more", reasons.size() - shown)
@@ -202,7 +231,7 @@ std::string note_of(const std::string& reason, const std::set<std::string>& plac
 }
 
 core::Finding too_many(const core::Setup& setup, const std::vector<ReadingResult>& followed) {
-    return open_premise(setup,
+    return open_premise(core::severity_of(setup, core::rule_id("open-premise")),
                         fmt::format("The program can take more than {} ways, depending on values "
                                     "that only the machine knows. The others were not checked. "
                                     "{}.",
@@ -210,21 +239,31 @@ core::Finding too_many(const core::Setup& setup, const std::vector<ReadingResult
                         "State these values under [program.values] in the set-up.");
 }
 
+/// The severity of a finding for which the set-up lowers that of its rule.
+core::Severity lowered_severity(const core::Finding& finding) {
+    const bool is_lowered = core::default_severity(finding.rule) == core::Severity::error;
+    return is_lowered ? finding.severity : core::Severity::off;
+}
+
 } // namespace
 
+std::string ReadingResult::cure() const {
+    return fmt::to_string(fmt::join(each_of(*this, &PremiseText::cure), " "));
+}
+
 bool OtherReadings::is_known(const Crossing& crossing, const RunState& before) {
-    const Outcomes& outcomes = before.control.readings->answers;
-    std::vector<Outcomes>& visits = visited_[crossing];
+    const gcode::Facts& facts = before.control.readings->facts;
+    std::vector<gcode::Facts>& visits = visited_[crossing];
     const bool goes_past = running_ && running_->goes_past == crossing;
     if (visits.empty() || goes_past) {
-        visits.push_back(outcomes);
+        visits.push_back(facts);
         return false;
     }
-    if (std::find(visits.begin(), visits.end(), outcomes) == visits.end() && running_) {
+    if (std::find(visits.begin(), visits.end(), facts) == visits.end() && running_) {
         Fork fork{before, running_->result, running_->parent, crossing};
         fork.result.continues = true;
         stopped_.push_back({std::move(fork), visits});
-        visits.push_back(outcomes);
+        visits.push_back(facts);
     }
     return true;
 }
@@ -262,12 +301,15 @@ bool OtherReadings::note(const RunState& before, const gcode::InterpreterState& 
             gcode::Readings& readings = fork.state.control.readings.write();
             for (size_t j = first; j < i; ++j) readings.chosen[met[j].id] = met[j].taken;
             readings.chosen[premise.id] = other;
-            fork.result.reason = premise.reason;
-            fork.result.assumed = premise.readings[premise.taken].when;
-            if (running_) fork.result.when = running_->result.when;
+            if (running_) {
+                fork.result.when = running_->result.when;
+                fork.result.earlier = running_->result.earlier;
+                fork.result.earlier.push_back(running_->result.premise);
+            }
+            fork.result.premise = {premise.reason, premise.readings[premise.taken].when,
+                                   premise.cure};
             fork.result.when.push_back(premise.readings[other].when);
             fork.result.effect = premise.readings[other].effect;
-            fork.result.cure = premise.cure;
             fork.result.block = core::BlockIndex{static_cast<uint32_t>(blocks)};
             fork.result.line = premise.line;
             fork.result.is_condition = !premise.id.question;
@@ -292,16 +334,18 @@ void OtherReadings::note_dog_legs(const BlockStep& step) {
 }
 
 ReadingResult OtherReadings::bent_reading(const std::vector<BentBlock>& blocks,
-                                          std::vector<std::string> when) const {
+                                          const ReadingResult* in) const {
     const gcode::ControlParameter& parameter = *open_rapid_parameter(check_.file.environment);
     gcode::OpenPremise premise = gcode::premise_of(parameter, check_.file.environment);
     ReadingResult result;
-    result.reason = std::move(premise.reason);
-    result.assumed = premise.readings[0].when;
-    result.when = std::move(when);
+    result.premise = {std::move(premise.reason), premise.readings[0].when, std::move(premise.cure)};
+    if (in) {
+        result.when = in->when;
+        result.earlier = in->earlier;
+        result.earlier.push_back(in->premise);
+    }
     result.when.push_back(premise.readings[1].when);
     result.effect = premise.readings[1].effect;
-    result.cure = std::move(premise.cure);
     result.block = blocks.front().block;
     result.line = blocks.front().line;
     result.file = blocks.front().file;
@@ -317,15 +361,11 @@ ReadingResult OtherReadings::bent_reading(const std::vector<BentBlock>& blocks,
 
 void OtherReadings::resume_runs() {
     const auto differs = [&](const StoppedRun& run) {
-        const Outcomes& own = run.fork.state.control.readings->answers;
-        const auto in = [&](const Outcomes& outcomes, const std::string& condition) {
-            const auto found = outcomes.find(condition);
-            return found == outcomes.end() ? std::optional<bool>() : found->second;
-        };
-        return std::any_of(repeated_.begin(), repeated_.end(), [&](const std::string& condition) {
-            return std::any_of(run.others.begin(), run.others.end(), [&](const Outcomes& other) {
-                return in(own, condition) != in(other, condition);
-            });
+        const gcode::Facts& own = run.fork.state.control.readings->facts;
+        return std::any_of(repeated_.begin(), repeated_.end(), [&](const std::string& identity) {
+            return std::any_of(
+                run.others.begin(), run.others.end(),
+                [&](const gcode::Facts& other) { return !own.agree_on(identity, other); });
         });
     };
     const auto resumed = std::stable_partition(
@@ -384,6 +424,8 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
         for (const core::Finding& finding : done.findings) {
             if (finding.severity == core::Severity::error)
                 errors.insert(key_of(finding, done.checked.file, done.checked.line));
+            else
+                result.lowered = std::max(result.lowered, lowered_severity(finding));
             add_error(result, known, finding, done.checked.file, done.checked.line);
         }
         if (++blocks % 256 == 0 && !goes_on()) {
@@ -401,7 +443,7 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
         result.avoided = avoided_by(errors, result, record);
     // One finding about rapids is enough, but the verdict is that of the worst combination.
     for (const BentBlock& block : bent) worst_bent_ = std::max(worst_bent_, block.verdict);
-    if (!bent.empty() && bent_.empty()) bent_readings_.push_back(bent_reading(bent, result.when));
+    if (!bent.empty() && bent_.empty()) bent_readings_.push_back(bent_reading(bent, &result));
     for (const std::string& condition : state.control.readings->repeated)
         repeated_.insert(condition);
     running_ = nullptr;
@@ -436,37 +478,42 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     std::vector<Fork> kept_forks;
     if (may_go_back) kept_forks = forks_;
     const std::vector<Assumed> kept_assumed = assumed_;
-    const auto report = [&](const ReadingResult& result) {
-        ToldReadings readings = told(result);
+    const core::Severity own = core::severity_of(setup, core::rule_id("open-premise"));
+    const auto take_verdict = [&](core::Verdict verdict) {
+        if (own != core::Severity::off || verdict == core::Verdict::collision)
+            record.verdict = std::max(record.verdict, verdict);
+    };
+    const auto report = [&](const ReadingResult& result) -> ToldReadings& {
+        if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
+            record.verdict = std::max(record.verdict, core::Verdict::undecided);
+        ToldReadings readings = told(setup, result);
         const auto same = std::find_if(found.begin(), found.end(), [&](const ToldReadings& other) {
             return other.begins_and_ends_as(readings);
         });
-        if (same == found.end())
-            found.push_back(std::move(readings));
-        else if (std::find(same->ways.begin(), same->ways.end(), way_of(result))
-                 == same->ways.end())
+        if (same == found.end()) return found.emplace_back(std::move(readings));
+        same->severity = std::max(same->severity, readings.severity);
+        if (std::find(same->ways.begin(), same->ways.end(), way_of(result)) == same->ways.end())
             same->ways.push_back(way_of(result));
-        if (setup.rules.find(core::rule_id("open-premise")) == setup.rules.end())
-            record.verdict = std::max(record.verdict, core::Verdict::undecided);
+        return *same;
     };
     const auto add_bent = [&](ReadingResult result) {
-        record.verdict = std::max(record.verdict, result.verdict);
-        report(result);
+        take_verdict(result.verdict);
+        report(result).tells_rapids = true;
         record.readings.push_back(std::move(result));
     };
-    if (!bent_.empty()) add_bent(bent_reading(bent_, {}));
+    if (!bent_.empty()) add_bent(bent_reading(bent_, nullptr));
     for (size_t i = 0; i < forks_.size(); ++i) {
         const std::shared_ptr<const Outcome> parent = forks_[i].parent;
         ReportedReading reading;
         ReadingResult result = run(std::move(forks_[i]), record, goes_on, reading.errors);
         reading.when.insert(result.when.begin(), result.when.end());
         reading.verdict = result.verdict;
-        record.verdict = std::max(record.verdict, result.verdict);
+        take_verdict(result.verdict);
         if (decides(result, parent ? std::max(assumed, parent->verdict) : assumed)) {
             if (!is_explained(reported, reading)) report(result);
             reported.push_back(std::move(reading));
         } else if (result.is_condition && !result.avoided) {
-            conditions[result.reason].insert(place_of(result.file, result.line));
+            conditions[result.premise.reason].insert(place_of(result.file, result.line));
         } else {
             const std::string effect =
                 result.avoided ? fmt::format("the error in {} ({}) does not occur",
@@ -474,14 +521,17 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
                                              result.avoided->finding.rule)
                                : "there are no further errors";
             ways[fmt::format("{}: it is assumed that {}; {}", place_of(result.file, result.line),
-                             result.assumed, effect)]
+                             result.premise.assumed, effect)]
                 .push_back(way_of(result));
         }
         record.readings.push_back(std::move(result));
         if (i + 1 == forks_.size()) resume_runs();
     }
     for (ReadingResult& bent : bent_readings_) add_bent(std::move(bent));
-    record.verdict = std::max(record.verdict, worst_bent_);
+    take_verdict(worst_bent_);
+    for (ToldReadings& readings : found)
+        if (readings.tells_rapids && worst_bent_ == core::Verdict::collision)
+            readings.severity = core::Severity::error;
     worst_bent_ = core::Verdict::clear;
     bent_readings_.clear();
     for (Assumed& premise : assumed_) record.later_assumptions.push_back(std::move(premise.clause));
@@ -490,11 +540,14 @@ void OtherReadings::follow(CheckRecord& record, const gcode::InterpreterState& l
     for (const auto& [note, others] : ways) harmless.insert(note + " if " + ways_text(others));
     for (const std::string& note : harmless) record.later_assumptions.push_back(note);
     std::vector<core::Finding> findings;
-    for (const ToldReadings& readings : found)
-        findings.push_back(finding_of(setup, record, readings));
+    for (const ToldReadings& readings : found) findings.push_back(finding_of(record, readings));
     if (has_too_many_) {
         findings.push_back(too_many(setup, record.readings));
         record.verdict = std::max(record.verdict, core::Verdict::undecided);
+        if (own == core::Severity::off)
+            record.later_assumptions.push_back(
+                fmt::format("the program can take more than {} ways; the others were not checked",
+                            most_readings));
     }
     for (core::Finding& finding : findings)
         if (finding.severity != core::Severity::off) record.findings.push_back(std::move(finding));

@@ -63,7 +63,6 @@ public:
                 const std::function<bool()>& goes_on);
 
 private:
-    using Outcomes = std::map<std::string, bool>;           // of conditions, by their text
     using Crossing = std::pair<gcode::PremiseId, uint64_t>; // a condition and the state at it
 
     /// A premise of which only the assumed reading is followed.
@@ -88,11 +87,11 @@ private:
         std::optional<Crossing> goes_past = {}; // it was stopped there, and goes on
     };
 
-    /// A run that was stopped where another one had been in the same state, but with other outcomes
-    /// of earlier conditions. It goes on if one of these conditions is met again.
+    /// A run that was stopped where another one had been in the same state, but knows
+    /// other facts. It goes on if one of them decides a condition later.
     struct StoppedRun {
         Fork fork;
-        std::vector<Outcomes> others;
+        std::vector<gcode::Facts> others;
     };
 
     /// A block whose rapids are worse as dog-legs.
@@ -105,9 +104,9 @@ private:
     };
 
     void assume(const gcode::OpenPremise& premise, size_t blocks);
-    /// The reading in which rapids are dog-legs, in a run to which `when` has led.
-    ReadingResult bent_reading(const std::vector<BentBlock>& blocks,
-                               std::vector<std::string> when) const;
+    /// The reading in which rapids are dog-legs, in another reading or, without one, the assumed
+    /// one.
+    ReadingResult bent_reading(const std::vector<BentBlock>& blocks, const ReadingResult* in) const;
     ReadingResult run(Fork fork, const CheckRecord& record, const std::function<bool()>& goes_on,
                       std::set<FindingKey>& new_errors);
     bool is_known(const Crossing& crossing, const RunState& before);
@@ -118,9 +117,9 @@ private:
     std::vector<Fork> forks_;
     const Fork* running_ = nullptr;    // null: the reading that the check assumes
     std::shared_ptr<Outcome> outcome_; // of the running one
-    std::map<Crossing, std::vector<Outcomes>> visited_;
+    std::map<Crossing, std::vector<gcode::Facts>> visited_;
     std::vector<StoppedRun> stopped_;
-    std::set<std::string> repeated_; // conditions that a run has met again
+    std::set<std::string> repeated_; // identities for which facts have decided a condition
     std::vector<Assumed> assumed_;
     std::vector<BentBlock> bent_;                     // of the reading that the check assumes
     std::vector<ReadingResult> bent_readings_;        // of the others

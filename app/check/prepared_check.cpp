@@ -171,8 +171,8 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     // is_stopped may have cut the survey short. From here on the run polls it.
     if (job.is_stopped && job.is_stopped()) return tl::unexpected(stopped_before(job));
     file.environment.limits.is_stopped = {};
-    file.environment.control.reports_premises =
-        core::severity_of(run.setup, core::rule_id("open-premise")) != core::Severity::off;
+    // Also where the rule is off: a reading that collides is reported all the same.
+    file.environment.control.reports_premises = true;
     const auto is_limited = [](const core::MachineAxis& axis) { return axis.min || axis.max; };
     const auto& axes = run.setup.machine.axes;
     // A program that starts in the middle has the modes of the lines before; a rule compares them.

@@ -83,6 +83,11 @@ void note_unknown(const Assigning& assigning, Word& word, Value& value) {
         value = value.value_or(0.0);
         return;
     }
+    if (calls_macro(assigning.block))
+        if (auto unknown = assigning.parameters.unknown_value(assigning.block.pool, word.expression,
+                                                              assigning.block.line))
+            assigning.parameters.state().readings.write().arguments.insert_or_assign(
+                word.span.column, *std::move(unknown));
     const bool is_rate = word.letter == 'F' || word.letter == 'S';
     if (is_rate && !calls_macro(assigning.block)) return assume_rate(assigning, word, value);
     word.is_unknown = true;
@@ -127,36 +132,38 @@ core::Result<double> number_of(const Assigning& assigning, const Assignment& ent
     return number.value_or(0.0);
 }
 
-/// Whether the value of the last right side is unpredictable.
-bool is_unknown(const Assigning& assigning) {
-    return !assigning.parameters.unpredictable_reads().empty();
+/// What the last right side stands for; empty if its value is known.
+std::optional<UnknownValue> unknown_value(const Assigning& assigning, const Assignment& entry) {
+    if (!entry.value) return std::nullopt;
+    return assigning.parameters.unknown_value(assigning.block.pool, entry.value,
+                                              assigning.block.line);
 }
 
 /// Reports an offset that is set to a value that only the machine knows: all positions under it
 /// depend on it. Called after both sides have been evaluated.
 void note_unknown_offset(const Assigning& assigning, const Assignment& entry, double number) {
     const Environment& environment = assigning.parameters.environment();
-    if (entry.is_named || !is_unknown(assigning)) return;
+    if (entry.is_named || assigning.parameters.unpredictable_reads().empty()) return;
     if (!sets_the_machine(environment, static_cast<int>(std::lround(number)))) return;
     report_unknown(assigning.parameters, assigning.result, entry.span,
                    fmt::format("{}{:g}", assigning.dialect.parameter_letter, number));
 }
 
 core::Result<void> set(const Assigning& assigning, const Assignment& entry, double number,
-                       Value value, bool unknown) {
+                       Value value, std::optional<UnknownValue> unknown) {
     ProgramParameters& parameters = assigning.parameters;
     if (entry.is_named) {
         const std::string& name = assigning.block.pool.names[entry.name];
         const auto old = parameters.exists(name) ? parameters.named(name, entry.span)
                                                  : core::Result<Value>(Value{});
         if (auto done = parameters.set_named(name, value, entry.span); !done) return done;
-        if (follows_values(assigning)) parameters.mark_named(name, unknown);
+        if (follows_values(assigning)) parameters.mark_named(name, std::move(unknown));
         assigning.undos.push_back({true, 0.0, name, *old});
         return {};
     }
     const Value old = parameters.stored_value(number);
     if (auto done = parameters.set_numbered(number, value, entry.span); !done) return done;
-    if (follows_values(assigning)) parameters.mark_numbered(number, unknown);
+    if (follows_values(assigning)) parameters.mark_numbered(number, std::move(unknown));
     assigning.undos.push_back({false, number, {}, old});
     return execute_alarm(assigning.block, assigning.dialect, number, value, entry.span,
                          assigning.result);
@@ -167,18 +174,18 @@ core::Result<void> assign(const Assigning& assigning) {
     std::vector<Value>& values = assigning.values;
     values.clear();
     std::vector<double> numbers;
-    std::vector<bool> unknown;
+    std::vector<std::optional<UnknownValue>> unknown;
     for (const Assignment& entry : assigning.block.assignments) {
         FEELER_TRY(const Value value, right_side(assigning, entry));
-        unknown.push_back(is_unknown(assigning));
+        unknown.push_back(unknown_value(assigning, entry));
         values.push_back(value);
         FEELER_TRY(const double number, number_of(assigning, entry));
         note_unknown_offset(assigning, entry, number);
         numbers.push_back(number);
     }
     for (size_t i = 0; i < numbers.size(); ++i)
-        if (auto done =
-                set(assigning, assigning.block.assignments[i], numbers[i], values[i], unknown[i]);
+        if (auto done = set(assigning, assigning.block.assignments[i], numbers[i], values[i],
+                            std::move(unknown[i]));
             !done)
             return done;
     return {};
@@ -199,9 +206,10 @@ core::Result<void> work_out_in_order(const Assigning& assigning) {
     for (const Assignment& entry : assigning.block.assignments) {
         if (auto done = words_up_to(entry.span.column); !done) return done;
         FEELER_TRY(const Value value, right_side(assigning, entry));
-        const bool unknown = is_unknown(assigning);
+        auto unknown = unknown_value(assigning, entry);
         FEELER_TRY(const double number, number_of(assigning, entry));
-        if (auto done = set(assigning, entry, number, value, unknown); !done) return done;
+        if (auto done = set(assigning, entry, number, value, std::move(unknown)); !done)
+            return done;
     }
     return words_up_to(UINT32_MAX);
 }

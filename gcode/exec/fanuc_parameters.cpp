@@ -8,6 +8,7 @@
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/readings.h"
+#include "gcode/language/control.h"
 
 namespace gcode {
 namespace {
@@ -137,7 +138,7 @@ void set_extended_offset(InterpreterState& state, int index, double value) {
 
 // --- tool offsets ---
 
-enum class Part : uint8_t { length, length_wear, diameter, radius, radius_wear, diameter_wear };
+enum class Part : uint8_t { length, length_wear, diameter, diameter_wear };
 
 LengthOffset entry_of(const InterpreterState& state, int number) {
     const auto& lengths = state.tables->lengths;
@@ -152,8 +153,6 @@ Value tool_part(const InterpreterState& state, int index) {
     double value = entry.length;
     if (part == Part::length_wear) value = entry.wear;
     if (part == Part::diameter) value = entry.diameter;
-    if (part == Part::radius) value = entry.diameter / 2.0;
-    if (part == Part::radius_wear) value = entry.radius_wear;
     if (part == Part::diameter_wear) value = entry.radius_wear * 2.0;
     return from_mm(value, state.modal.unit);
 }
@@ -165,8 +164,6 @@ void set_tool_part(InterpreterState& state, int index, double value) {
     if (part == Part::length) entry.length = length;
     if (part == Part::length_wear) entry.wear = length;
     if (part == Part::diameter) entry.diameter = length;
-    if (part == Part::radius) entry.diameter = length * 2.0;
-    if (part == Part::radius_wear) entry.radius_wear = length;
     if (part == Part::diameter_wear) entry.radius_wear = length / 2.0;
     const auto number = OffsetNumber(index + 1);
     state.tables.write().lengths[number] = entry;
@@ -234,8 +231,8 @@ constexpr Range fanuc_ranges[] = {
      [](InterpreterState& s, int i, double v) { set_extended_offset(s, i + 400, v); }},
     {10001, 10999, tool_part<length_wear>, set_tool_part<length_wear>, Stored::as_wear},
     {11001, 11999, tool_part<length>, set_tool_part<length>, Stored::as_length},
-    {12001, 12999, tool_part<radius_wear>, set_tool_part<radius_wear>},
-    {13001, 13999, tool_part<radius>, set_tool_part<radius>},
+    {12001, 12999, tool_part<diameter_wear>, set_tool_part<diameter_wear>, Stored::as_size},
+    {13001, 13999, tool_part<diameter>, set_tool_part<diameter>, Stored::as_size},
     {14001, 19980, extended_offset, set_extended_offset},
 };
 
@@ -276,7 +273,9 @@ bool is_zero_at_first(int number) {
 }
 
 bool enters_radii(const InterpreterState& state, const Environment& environment) {
-    return current_number(state, environment, ControlQuestion::radii_are_entered) != 0.0;
+    constexpr ControlQuestion question = ControlQuestion::radii_are_entered;
+    return !find_parameter(question, environment.dialect)
+           || current_number(state, environment, question) != 0.0;
 }
 
 /// Sets a value or wear of H that the same number also has under D, by the type of the memory.
@@ -287,20 +286,33 @@ void set_shared_offset(InterpreterState& state, const Environment& environment, 
     const bool is_wear = range.stored == Stored::as_wear;
     if (is_wear && memory == OffsetMemory::one_value) {
         set_tool_part<length_wear>(state, index, 0.0);
-        set_tool_part<radius_wear>(state, index, 0.0);
-        set_tool_part<radius>(state, index, value);
+        set_tool_part<diameter_wear>(state, index, 0.0);
+        set_tool_part<diameter>(state, index, size_factor(state, environment, line) * value);
         set_tool_part<length>(state, index, value);
         return;
     }
     range.write(state, index, value);
     if (memory == OffsetMemory::separate) return;
+    const double size = size_factor(state, environment, line) * value;
     if (is_wear)
-        set_tool_part<radius_wear>(state, index, value);
+        set_tool_part<diameter_wear>(state, index, size);
     else
-        set_tool_part<radius>(state, index, value);
+        set_tool_part<diameter>(state, index, size);
 }
 
 } // namespace
+
+double size_factor(InterpreterState& state, const Environment& environment, uint32_t line) {
+    constexpr ControlQuestion question = ControlQuestion::radii_are_entered;
+    const bool is_radius = !find_parameter(question, environment.dialect)
+                           || answer_to(state, environment, question, line);
+    return is_radius ? 2.0 : 1.0;
+}
+
+bool is_size_of_tool(const Environment& environment, int number) {
+    const Range* range = range_of(environment, number);
+    return range && range->stored == Stored::as_size;
+}
 
 std::optional<Value> fanuc_parameter(const InterpreterState& state, const Environment& environment,
                                      int number) {
@@ -333,9 +345,7 @@ core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environmen
     const Offsets before = state.modal.offsets;
     switch (range->stored) {
     case Stored::as_size:
-        if (answer_to(state, environment, ControlQuestion::radii_are_entered, where.line))
-            set *= 2.0;
-        range->write(state, index, set);
+        range->write(state, index, size_factor(state, environment, where.line) * set);
         break;
     case Stored::as_wear:
         state.parameters.write().set_numbered(number, set);

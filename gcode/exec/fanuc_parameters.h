@@ -26,6 +26,13 @@ core::Result<bool> set_fanuc_parameter(InterpreterState& state, const Environmen
 /// the machine knows, such as the wear of a tool or a setting.
 bool is_modelled_variable(const Environment& environment, int number);
 
+/// The diameter that a size of 1 under D in the offset memory stands for: 2 if sizes are radii. An
+/// open premise where it is not stated.
+double size_factor(InterpreterState& state, const Environment& environment, uint32_t line);
+
+/// Whether a system variable shows a size that is a radius or a diameter.
+bool is_size_of_tool(const Environment& environment, int number);
+
 /// Whether an assignment to this variable changes an offset.
 bool sets_fanuc_offset(const Environment& environment, int number);
 

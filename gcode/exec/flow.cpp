@@ -23,7 +23,8 @@ core::Result<bool> condition_holds(InterpreterState& state, const Block& block,
     FEELER_TRY(const Value value, evaluate(block.pool, block.flow.condition, block.line, parameters,
                                            dialect.arithmetic, &margins));
     note_condition(state, block.line, block.pool, block.flow.condition, margins, value);
-    return outcome_of(parameters, block, value.value_or(0.0) != 0.0);
+    return outcome_of(parameters, block, block.flow.condition, dialect.arithmetic,
+                      value.value_or(0.0) != 0.0);
 }
 
 std::optional<uint32_t> line_of_block(ProgramLibrary& library, uint32_t source, double number,
@@ -63,7 +64,11 @@ void leave(InterpreterState& state) {
         note_repetitions(state, frame.called_from, frame.rounds_left);
         frame.repeats.clear();
         frame.repeated.clear();
-        if (frame.again) frame.locals = *frame.again;
+        if (frame.again) {
+            frame.locals = frame.again->values;
+            frame.unpredictable_locals = frame.again->unpredictable;
+            frame.unknown = frame.again->unknown;
+        }
         state.next = frame.begin;
         return;
     }
@@ -75,8 +80,12 @@ void leave_to(InterpreterState& state, uint32_t line) {
     if (frame.restores && *frame.saved) restore_modes(state, **frame.saved);
     if (frame.restore) frame.restore(state, frame);
     // Fanuc B-64304, modal call: local variables keep their values between the calls.
-    if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size())
-        state.modal_macros[frame.modal_macro - 1].arguments = frame.locals;
+    if (frame.modal_macro > 0 && frame.modal_macro <= state.modal_macros.size()) {
+        ModalMacro& macro = state.modal_macros[frame.modal_macro - 1];
+        macro.arguments = frame.locals;
+        macro.unpredictable = frame.unpredictable_locals;
+        macro.unknown = std::move(frame.unknown);
+    }
     state.next = {frame.called_from.source, line};
     state.frames.pop_back();
 }

@@ -24,6 +24,26 @@ struct Program;
 /// The type of a variable that a program declares.
 enum class VariableType : uint8_t { real, whole, truth, text };
 
+/// The value of a variable that depends on what only the machine knows.
+struct UnknownValue {
+    std::vector<std::string> origins; // what it was computed from, as written; empty: it is known
+    std::string identity;             // see Trace
+
+    bool operator==(const UnknownValue&) const = default;
+};
+
+/// By the names of the variables as written.
+using UnknownValues = std::map<std::string, UnknownValue, std::less<>>;
+
+/// The local variables at the start of a call.
+struct LocalValues {
+    LocalParameters values{};
+    uint64_t unpredictable = 0; // one bit for each number
+    UnknownValues unknown{};
+
+    bool operator==(const LocalValues&) const = default;
+};
+
 /// A line of one of the programs that were read; source 0 is the main program.
 struct ProgramLine {
     uint32_t source = 0;
@@ -38,6 +58,7 @@ struct ModalMacro {
     ProgramLine begin;           // its first line
     LocalParameters arguments{}; // as left by the last call
     uint64_t unpredictable = 0;  // arguments with such values, one bit for each number
+    UnknownValues unknown{};     // likewise
     int64_t rounds = 1;
     bool each_block = false; // G66.1: every block is a list of its arguments
 
@@ -62,11 +83,12 @@ struct Frame {
     NamedValues named{};
     uint64_t unpredictable_locals = 0; // one bit for each of #1 to #33
     std::set<std::string, std::less<>> unpredictable_names{};
+    UnknownValues unknown{};                                  // values of its own variables
     std::map<std::string, VariableType, std::less<>> types{}; // of declared names that are not REAL
     std::map<uint32_t, int64_t> repeats{};     // remaining repetitions, by the line of `repeat`
     std::vector<RepeatedLines> repeated{};     // being repeated, outermost first
     int64_t rounds_left = 0;                   // remaining repetitions of M98 L
-    std::optional<LocalParameters> again{};    // locals at the start of each repetition
+    std::optional<LocalValues> again{};        // locals at the start of each repetition
     Shared<std::optional<ModalState>> saved{}; // M70, M73, SAVE
     bool restores = false;                     // M73: restore at the return
     // SAVE: what each return does with `saved` and with the state of the language at the call.

@@ -14,6 +14,7 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "gcode/exec/frame.h"
+#include "gcode/exec/possible_values.h"
 #include "gcode/exec/rules.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/parameters.h"
@@ -116,15 +117,36 @@ struct OpenPremise {
     uint64_t state_digest = 0;     // of the interpreter, at a condition
 };
 
+/// What the conditions of a run have settled about values that are not known, by their identities.
+struct Facts {
+    std::map<std::string, PossibleValues> possible; // of what was compared with a known value
+    std::map<std::string, bool> answers;            // of other conditions
+
+    bool operator==(const Facts&) const = default;
+
+    /// Whether two runs know the same about a value or a condition.
+    bool agree_on(const std::string& identity, const Facts& other) const;
+    /// Forgets what contains this part of an identity.
+    void forget(std::string_view part);
+};
+
+/// A state in which a condition was passed before.
+struct Passed {
+    uint64_t state_digest = 0;
+    uint32_t count = 0;   // of the passes in other states
+    uint32_t returns = 0; // to this state
+};
+
 /// The open premises that a run has met, and those for which a reading was chosen beforehand.
 struct Readings {
     std::vector<OpenPremise> met;
     std::map<PremiseId, size_t> chosen;
-    std::map<std::string, bool> answers; // outcomes of conditions, by their text
-    std::set<std::string> repeated;      // conditions whose answer was used again
-    std::set<std::string> reported;      // values that are unknown, once each
-    // What variables were computed from that only the machine knows, by their names as written.
-    std::map<std::string, std::vector<std::string>> origins;
+    Facts facts;
+    std::set<std::string> repeated; // identities for which a fact has decided a condition
+    std::set<std::string> reported; // values that are unknown, once each
+    UnknownValues unknown;          // values of the variables that all call levels share
+    std::map<uint32_t, UnknownValue> arguments; // of the macro call of a block, by column
+    std::map<ProgramLine, Passed> passed;       // conditions that facts have decided
 
     bool operator==(const Readings& other) const { return met.size() == other.met.size(); }
 };

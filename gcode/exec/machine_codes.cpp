@@ -57,6 +57,7 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
                           entry.word->span);
     execution.emit(WaitForInput{number, analog, kind > 0 ? time->value : 0.0});
     execution.state.parameters.write().set_numbered(5399, 0.0);
+    ProgramParameters(execution.state, execution.environment).renew(5399);
     return {};
 }
 
@@ -68,7 +69,10 @@ core::Result<void> ask_operator(Execution& execution, const CodeWord& entry) {
     ProgramParameters parameters(execution.state, execution.environment);
     const double answer = known == stated.end() ? 0.0 : known->second;
     if (auto done = parameters.set_numbered(number, answer, entry.word->span); !done) return done;
-    parameters.mark_numbered(number, known == stated.end());
+    if (known == stated.end())
+        parameters.mark_unknown(number);
+    else
+        parameters.mark_numbered(number, std::nullopt);
     return {};
 }
 
@@ -204,6 +208,8 @@ core::Result<void> probe(Execution& execution) {
                                 is_rotary(axis) ? value : from_mm(value, modal.unit));
     }
     parameters.set_numbered(5070, 1.0);
+    ProgramParameters renewed(execution.state, execution.environment);
+    for (int number = 5061; number <= 5070; ++number) renewed.renew(number);
     return {};
 }
 

@@ -444,19 +444,16 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
                                       number ? "an R word, the value" : "a P word, the number"),
                           entry.word->span);
     FEELER_TRY(const int index, whole_number(*number, 1, 999));
-    const bool has_diameters =
-        find_parameter(ControlQuestion::radii_are_entered, execution.dialect.id);
     const bool is_length = kind <= 11;
     const auto memory = static_cast<OffsetMemory>(
         is_length ? number_for(execution.state, execution.environment,
                                ControlQuestion::offset_memory, execution.block.line)
                   : 0.0);
-    const bool is_radius =
-        !has_diameters
-        || (!is_length
-            && answer_to(execution.state, execution.environment, ControlQuestion::radii_are_entered,
-                         execution.block.line));
     const bool is_shared = memory != OffsetMemory::separate;
+    const double sizes =
+        !is_length || is_shared
+            ? size_factor(execution.state, execution.environment, execution.block.line)
+            : 1.0;
     forget_offset_as_set(execution.state, index);
     Tables& tables = execution.state.tables.write();
     const bool known = tables.lengths.count(OffsetNumber(index)) != 0;
@@ -464,27 +461,26 @@ core::Result<void> write_fanuc_entry(Execution& execution, int kind) {
     LengthOffset& offset = tables.lengths[OffsetNumber(index)];
     if (!known) offset.length = length;
     const double written_value = length_of(execution, *value);
-    const double radii = is_radius ? 2.0 : 1.0;
     switch (kind) {
     case 10:
         write(execution, written_value, offset.length);
-        if (is_shared) offset.diameter = 2.0 * offset.length;
+        if (is_shared) offset.diameter = sizes * offset.length;
         break;
     case 11:
         if (memory == OffsetMemory::one_value) {
             write(execution, written_value, offset.length);
-            offset.diameter = 2.0 * offset.length;
+            offset.diameter = sizes * offset.length;
             offset.wear = offset.radius_wear = 0.0;
             break;
         }
         write(execution, written_value, offset.wear);
-        if (is_shared) offset.radius_wear = offset.wear;
+        if (is_shared) offset.radius_wear = 0.5 * sizes * offset.wear;
         break;
     case 12:
-        write(execution, radii * written_value, offset.diameter);
+        write(execution, sizes * written_value, offset.diameter);
         break;
     default:
-        write(execution, 0.5 * radii * written_value, offset.radius_wear);
+        write(execution, 0.5 * sizes * written_value, offset.radius_wear);
         break;
     }
     if (is_length) apply_offset_in_use(execution, index, *value);
@@ -498,7 +494,8 @@ core::Result<void> write_single_entry(Execution& execution) {
     Tables& tables = execution.state.tables.write();
     const auto known = tables.lengths.find(OffsetNumber(index));
     const LengthOffset old = known == tables.lengths.end() ? LengthOffset{} : known->second;
-    if (old.length != 0.0 && old.diameter != 0.0 && old.diameter != 2.0 * old.length)
+    const double sizes = size_factor(execution.state, execution.environment, execution.block.line);
+    if (old.length != 0.0 && old.diameter != 0.0 && old.diameter != sizes * old.length)
         return core::fail(ErrorCode::unsupported,
                           fmt::format("{}: G10 without L writes the one value of an offset number, "
                                       "but offset {} has a length and a diameter: use L10 to L13",
@@ -508,12 +505,12 @@ core::Result<void> write_single_entry(Execution& execution) {
     entry.length = length_under(tables, index).value_or(0.0);
     write(execution, length_of(execution, value), entry.length);
     entry.wear = entry.radius_wear = 0.0;
-    entry.diameter = 2.0 * entry.length;
+    entry.diameter = sizes * entry.length;
     tables.lengths[OffsetNumber(index)] = entry;
     execution.warn(execution.statement.of(ModalGroup::action)->word->span,
                    fmt::format("G10 without L: offset {} is taken as one value, used as a length "
-                               "under H and as a radius under D (tool offset memory A)",
-                               index),
+                               "under H and as a {} under D (tool offset memory A)",
+                               index, sizes == 2.0 ? "radius" : "diameter"),
                    Severity::note);
     apply_offset_in_use(execution, index, value);
     return {};

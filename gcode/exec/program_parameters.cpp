@@ -45,6 +45,18 @@ core::Result<int> parameter_number(double number, int lowest, const Dialect& dia
     return stored_number(static_cast<int>(whole), dialect);
 }
 
+bool is_siemens(const Environment& environment) {
+    return dialect(environment.dialect).system_parameters == SystemParameters::siemens;
+}
+
+bool is_klartext(const Environment& environment) {
+    return dialect(environment.dialect).language == Language::klartext;
+}
+
+bool is_fanuc(const Environment& environment) {
+    return remembers_words(dialect(environment.dialect).system_parameters);
+}
+
 } // namespace
 
 ProgramParameters::ProgramParameters(InterpreterState& state, const Environment& environment)
@@ -73,6 +85,7 @@ const NamedValues& ProgramParameters::named_values(std::string_view name) const 
 core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan where) const {
     FEELER_TRY(const int index,
                parameter_number(number, dialect_.unset_is_vacant ? 0 : 1, dialect_, where));
+    identity_.clear();
     if (index == 0) return Value{};
     if (environment_.control.reports_premises) {
         const auto stated = environment_.control.values.find(index);
@@ -80,6 +93,8 @@ core::Result<Value> ProgramParameters::numbered(double number, core::SourceSpan 
             && knowledge_of(environment_, index) != Knowledge::unknown_until_set)
             return Value{stated->second};
         note_read(index, index <= dialect_.local_count);
+        if (is_fanuc(environment_) && is_size_of_tool(environment_, index))
+            (void)size_factor(state_, environment_, where.line);
     }
     const Value unset = dialect_.unset_is_vacant ? Value{} : Value{0.0};
     if (index <= dialect_.local_count) {
@@ -109,6 +124,7 @@ tl::unexpected<core::Error> ProgramParameters::undeclared(std::string_view name,
 }
 
 core::Result<Value> ProgramParameters::named(std::string_view name, core::SourceSpan where) const {
+    identity_.clear();
     if (const auto shown = system_parameter(state_, environment_, name)) return told(*shown);
     if (environment_.control.reports_premises) note_read(name);
     const NamedValues& all = named_values(name);
@@ -129,13 +145,14 @@ bool ProgramParameters::may_be_left(std::string_view name) const {
 }
 
 bool ProgramParameters::exists(std::string_view name) const {
+    identity_.clear();
     const NamedValues& all = named_values(name);
     if (all.find(name) != all.end() || system_parameter(state_, environment_, name)) return true;
     const auto& stated = environment_.control.named_values;
     if (!environment_.control.reports_premises || !is_global(name)
         || stated.find(name) != stated.end())
         return false;
-    note_unpredictable(shown_name(name), true);
+    note_unpredictable(shown_name(name), "exists " + shown_name(name));
     if (!may_be_left(name)) state_.parameters.write().mark(name, true);
     return false;
 }
@@ -220,8 +237,29 @@ void ProgramParameters::note_read(int number, bool is_local) const {
                                ? locals().unpredictable_locals >> static_cast<unsigned>(number) & 1U
                                : state_.parameters->is_unpredictable(number);
     if (!is_unknown && !is_marked) return;
-    reads_vary_ |= knowledge == Knowledge::unknown;
-    note_unpredictable(shown_name(number), is_unknown);
+    std::string name = shown_name(number);
+    const UnknownValues& values = is_local ? locals().unknown : state_.readings->unknown;
+    const auto found = values.find(name);
+    if (knowledge == Knowledge::unknown) {
+        reads_vary_ = true;
+        note_unpredictable(std::move(name), no_identity);
+    } else if (found != values.end()) {
+        note_unknown(found->second);
+        if (!has_identity(number)) identity_ = no_identity;
+    } else {
+        const bool is_left = knowledge == Knowledge::unknown_until_set && !is_set;
+        note_unpredictable(name, is_left && has_identity(number) ? name : no_identity);
+    }
+}
+
+/// Whether a variable keeps its value until the program sets it. System variables may change
+/// without that.
+bool ProgramParameters::has_identity(int number) const {
+    constexpr int first_preassigned = 100, last_preassigned = 199; // Q of Klartext
+    if (dialect_.language == Language::klartext)
+        return number < first_preassigned || number > last_preassigned;
+    return !sets_the_machine(environment_, number)
+           && !(is_fanuc(environment_) && is_of_clock(number));
 }
 
 /// Those of a macro are its arguments or vacant; those of the main program may be left over.
@@ -241,41 +279,123 @@ std::string ProgramParameters::shown_name(int number) const {
     return fmt::format("{}{}", dialect_.parameter_letter, number == highest_parameter ? 0 : number);
 }
 
-/// A variable that was computed stands for what it was computed from.
-void ProgramParameters::note_unpredictable(std::string name, bool is_origin) const {
-    const auto& origins = state_.readings->origins;
-    const auto found = is_origin ? origins.end() : origins.find(name);
-    if (found == origins.end()) return unpredictable_.push_back(std::move(name));
-    for (const std::string& origin : found->second)
-        if (std::find(unpredictable_.begin(), unpredictable_.end(), origin) == unpredictable_.end())
-            unpredictable_.push_back(origin);
+void ProgramParameters::note_unpredictable(std::string name, std::string identity) const {
+    identity_ = std::move(identity);
+    if (std::find(unpredictable_.begin(), unpredictable_.end(), name) == unpredictable_.end())
+        unpredictable_.push_back(std::move(name));
 }
 
-void ProgramParameters::keep_origins(std::string name) {
-    Readings& readings = state_.readings.write();
-    readings.answers.clear();
-    if (unpredictable_.empty())
-        readings.origins.erase(name);
-    else
-        readings.origins.insert_or_assign(std::move(name), unpredictable_);
+/// A variable that was computed stands for what it was computed from.
+void ProgramParameters::note_unknown(const UnknownValue& value) const {
+    for (const std::string& origin : value.origins) note_unpredictable(origin, {});
+    identity_ = value.identity;
+}
+
+std::optional<UnknownValue> ProgramParameters::unknown_value(const ExpressionPool& pool,
+                                                             Expression expression,
+                                                             uint32_t line) const {
+    if (unpredictable_.empty()) return std::nullopt;
+    UnknownValue value{unpredictable_, no_identity};
+    const ProgramParameters again(state_, environment_);
+    Trace trace;
+    const auto evaluated =
+        evaluate(pool, expression, line, again, dialect_.arithmetic, nullptr, &trace);
+    if (evaluated && !trace.identity.empty())
+        value.identity = trace.is_negated ? "!" + trace.identity : trace.identity;
+    return value;
+}
+
+/// An identity that no variable has. Identities of values that are gone are used again, so that a
+/// loop that waits for an input comes back to the same state.
+std::string ProgramParameters::fresh_identity(const UnknownValues& others) const {
+    const auto is_used = [&](const std::string& identity) {
+        const auto is_in = [&](const UnknownValues& values) {
+            return std::any_of(values.begin(), values.end(), [&](const auto& value) {
+                return value.second.identity.find(identity) != std::string::npos;
+            });
+        };
+        const auto is_in_frame = [&](const Frame& frame) {
+            return is_in(frame.unknown) || (frame.again && is_in(frame.again->unknown));
+        };
+        const auto is_in_macro = [&](const ModalMacro& macro) { return is_in(macro.unknown); };
+        return is_in(others) || is_in(state_.readings->unknown)
+               || std::any_of(state_.frames.begin(), state_.frames.end(), is_in_frame)
+               || std::any_of(state_.modal_macros.begin(), state_.modal_macros.end(), is_in_macro);
+    };
+    for (int i = 0;; ++i) {
+        const std::string identity = fmt::format("?{};", i);
+        if (is_used(identity)) continue;
+        state_.readings.write().facts.forget(identity);
+        return identity;
+    }
+}
+
+/// Records what a variable that was just set stands for.
+void ProgramParameters::keep(UnknownValues& values, std::string name,
+                             std::optional<UnknownValue> value) {
+    values.erase(name);
+    if (value && value->identity == no_identity) value->identity = fresh_identity(values);
+    if (value) values.insert_or_assign(std::move(name), *std::move(value));
+}
+
+void ProgramParameters::keep_shared(std::string name, std::optional<UnknownValue> value) {
+    const UnknownValues& known = state_.readings->unknown;
+    if (!value && known.find(name) == known.end()) return;
+    keep(state_.readings.write().unknown, std::move(name), std::move(value));
+}
+
+void ProgramParameters::renew(const std::string& name) {
+    keep_shared(name, UnknownValue{{name}, no_identity});
+}
+
+void ProgramParameters::renew(int number) {
+    if (environment_.control.reports_premises) renew(shown_name(number));
+}
+
+void ProgramParameters::keep_argument(UnknownValues& arguments, size_t number,
+                                      UnknownValue value) const {
+    keep_argument(arguments, shown_name(static_cast<int>(number)), std::move(value));
+}
+
+void ProgramParameters::keep_argument(UnknownValues& arguments, std::string name,
+                                      UnknownValue value) const {
+    if (value.identity == no_identity) value.identity = fresh_identity(arguments);
+    arguments.insert_or_assign(std::move(name), std::move(value));
 }
 
 void ProgramParameters::note_read(std::string_view name) const {
     const auto& marked = is_global(name) ? state_.parameters->unpredictable_names()
                                          : state_.frames.back().unpredictable_names;
     if (marked.find(name) == marked.end()) return;
-    note_unpredictable(shown_name(name), false);
+    const UnknownValues& values =
+        is_global(name) ? state_.readings->unknown : state_.frames.back().unknown;
+    const std::string shown = shown_name(name);
+    const NamedValues& all = named_values(name);
+    if (const auto found = values.find(shown); found != values.end())
+        note_unknown(found->second);
+    else
+        note_unpredictable(shown,
+                           is_global(name) && all.find(name) == all.end() ? shown : no_identity);
 }
 
 std::string ProgramParameters::shown_name(std::string_view name) const {
     return dialect_.names_are_declared ? std::string(name) : fmt::format("#<{}>", name);
 }
 
-void ProgramParameters::mark_numbered(double number, bool unpredictable) {
+void ProgramParameters::mark_numbered(double number, std::optional<UnknownValue> value) {
     const auto index = parameter_number(number, 1, dialect_, {});
     if (!index) return;
-    if (unpredictable) keep_origins(shown_name(*index));
-    if (*index <= dialect_.local_count) {
+    const bool unpredictable = value.has_value();
+    const bool is_local = *index <= dialect_.local_count;
+    // Set to nothing, a variable is known to be vacant.
+    if (!value && dialect_.unset_is_vacant && !stored_value(number)) value = UnknownValue{};
+    const UnknownValues& values = is_local ? locals().unknown : state_.readings->unknown;
+    const bool changes = value || !values.empty();
+    if (changes && is_local)
+        keep(locals().unknown, shown_name(*index), std::move(value));
+    else if (changes)
+        keep_shared(shown_name(*index), std::move(value));
+    if (is_local) {
         const uint64_t bit = uint64_t{1} << static_cast<unsigned>(*index);
         uint64_t& marks = locals().unpredictable_locals;
         marks = unpredictable ? marks | bit : marks & ~bit;
@@ -284,8 +404,17 @@ void ProgramParameters::mark_numbered(double number, bool unpredictable) {
     }
 }
 
-void ProgramParameters::mark_named(std::string_view name, bool unpredictable) {
-    if (unpredictable) keep_origins(shown_name(name));
+void ProgramParameters::mark_unknown(double number) {
+    if (const auto index = parameter_number(number, 1, dialect_, {}))
+        mark_numbered(*index, UnknownValue{{shown_name(*index)}, no_identity});
+}
+
+void ProgramParameters::mark_named(std::string_view name, std::optional<UnknownValue> value) {
+    const bool unpredictable = value.has_value();
+    if (is_global(name))
+        keep_shared(shown_name(name), std::move(value));
+    else
+        keep(state_.frames.back().unknown, shown_name(name), std::move(value));
     if (is_global(name)) {
         const auto& marked = state_.parameters->unpredictable_names();
         if ((marked.find(name) != marked.end()) != unpredictable)
@@ -313,22 +442,6 @@ void load_parameters(InterpreterState& state, const Environment& environment) {
     for (const auto& [name, value] : environment.control.named_values)
         if (value) state.parameters.write().set_named(name, value);
 }
-
-namespace {
-
-bool is_siemens(const Environment& environment) {
-    return dialect(environment.dialect).system_parameters == SystemParameters::siemens;
-}
-
-bool is_klartext(const Environment& environment) {
-    return dialect(environment.dialect).language == Language::klartext;
-}
-
-bool is_fanuc(const Environment& environment) {
-    return remembers_words(dialect(environment.dialect).system_parameters);
-}
-
-} // namespace
 
 std::optional<Value> system_parameter(const InterpreterState& state, const Environment& environment,
                                       int number) {

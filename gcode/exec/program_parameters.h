@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ public:
     core::Result<Value> numbered(double number, core::SourceSpan where) const override;
     core::Result<Value> named(std::string_view name, core::SourceSpan where) const override;
     bool exists(std::string_view name) const override;
+    std::string identity() const override { return identity_; }
 
     /// Errors: invalid_value when there is no such parameter, or it is read-only.
     core::Result<void> set_numbered(double number, Value value, core::SourceSpan where);
@@ -40,9 +42,21 @@ public:
     /// Whether one of them can change between two reads, as an input can.
     bool reads_vary() const { return reads_vary_; }
     void forget_reads() const;
+    /// What an expression stands for that was just evaluated; empty if its value is known.
+    std::optional<UnknownValue> unknown_value(const ExpressionPool& pool, Expression expression,
+                                              uint32_t line) const;
     /// Records whether the value of a variable, which was just set, is unpredictable.
-    void mark_numbered(double number, bool unpredictable);
-    void mark_named(std::string_view name, bool unpredictable);
+    void mark_numbered(double number, std::optional<UnknownValue> value);
+    void mark_named(std::string_view name, std::optional<UnknownValue> value);
+    /// Records that a variable was just set to a value that only the machine knows.
+    void mark_unknown(double number);
+    /// Records that the machine gave a variable a value that is not known.
+    void renew(int number);
+    /// The same for one that is shared by all call levels, by its name as written.
+    void renew(const std::string& name);
+    /// The unknown values among the arguments of a call, by the names of the local variables.
+    void keep_argument(UnknownValues& arguments, size_t number, UnknownValue value) const;
+    void keep_argument(UnknownValues& arguments, std::string name, UnknownValue value) const;
 
     InterpreterState& state() const { return state_; }
     const Environment& environment() const { return environment_; }
@@ -55,9 +69,12 @@ private:
     Knowledge knowledge_of_locals() const;
     std::string shown_name(int number) const;
     std::string shown_name(std::string_view name) const;
-    void note_unpredictable(std::string name, bool is_origin) const;
-    /// Records what the variable that was just set depends on.
-    void keep_origins(std::string name);
+    bool has_identity(int number) const;
+    void note_unpredictable(std::string name, std::string identity) const;
+    void note_unknown(const UnknownValue& value) const;
+    std::string fresh_identity(const UnknownValues& others) const;
+    void keep(UnknownValues& values, std::string name, std::optional<UnknownValue> value);
+    void keep_shared(std::string name, std::optional<UnknownValue> value);
 
     Frame& locals();
     const Frame& locals() const;
@@ -71,6 +88,7 @@ private:
     const Dialect& dialect_;
     mutable std::vector<std::string> unpredictable_;
     mutable bool reads_vary_ = false;
+    mutable std::string identity_; // of the value that was read last
 };
 
 /// The value of a system variable; empty when the number or name is not one.

@@ -1,6 +1,9 @@
 #include "gcode/exec/readings.h"
 
 #include <algorithm>
+#include <bit>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +19,14 @@
 
 namespace gcode {
 namespace {
+
+template <typename T>
+bool is_same_in(const std::map<std::string, T>& a, const std::map<std::string, T>& b,
+                const std::string& key) {
+    const auto found = a.find(key), other = b.find(key);
+    if (found == a.end() || other == b.end()) return found == a.end() && other == b.end();
+    return found->second == other->second;
+}
 
 const OpenPremise* find_met(const Readings& readings, const PremiseId& id) {
     const auto found = std::find_if(readings.met.begin(), readings.met.end(),
@@ -88,13 +99,20 @@ bool is_premise(const Environment& environment, const ControlParameter& paramete
     return environment.control.reports_premises && parameter.if_not_stated != IfNotStated::go_on;
 }
 
-std::string_view trimmed(std::string_view text) {
-    const size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
+} // namespace
+
+bool Facts::agree_on(const std::string& identity, const Facts& other) const {
+    return is_same_in(possible, other.possible, identity)
+           && is_same_in(answers, other.answers, identity);
 }
 
-} // namespace
+void Facts::forget(std::string_view part) {
+    const auto contains = [&](const auto& fact) {
+        return fact.first.find(part) != std::string::npos;
+    };
+    std::erase_if(possible, contains);
+    std::erase_if(answers, contains);
+}
 
 OpenPremise premise_of(const ControlParameter& parameter, const Environment& environment) {
     const std::span<const ParameterValue> values = parameter.values;
@@ -133,10 +151,10 @@ double other_answer(const ControlParameter& parameter, double number) {
 
 /// As number_for, for one of several switches that have the same parameter: `which`, 0 if there is
 /// only one.
-double number_of(InterpreterState& state, const Environment& environment, ControlQuestion question,
-                 uint32_t which, uint32_t line) {
+double answer_under(InterpreterState& state, const Environment& environment,
+                    ControlQuestion question, uint32_t which, uint32_t line) {
     if (may_be_left(environment, question)
-        && number_of(state, environment, ControlQuestion::modes_are_initial, 0, line) == 0.0)
+        && answer_under(state, environment, ControlQuestion::modes_are_initial, 0, line) == 0.0)
         return other_answer(*find_parameter(question, environment.dialect),
                             *environment.control.number(question));
     if (const auto stated = stated_number(environment, question)) return *stated;
@@ -160,7 +178,7 @@ double number_of(InterpreterState& state, const Environment& environment, Contro
 
 double number_for(InterpreterState& state, const Environment& environment, ControlQuestion question,
                   uint32_t line) {
-    return number_of(state, environment, question, 0, line);
+    return answer_under(state, environment, question, 0, line);
 }
 
 double current_number(const InterpreterState& state, const Environment& environment,
@@ -251,7 +269,7 @@ bool deletes_blocks(InterpreterState& state, const Environment& environment, int
     // `/` and `/1` are the same switch.
     const uint32_t which = number > 1 ? static_cast<uint32_t>(number) : 0;
     return environment.block_delete
-           || number_of(state, environment, ControlQuestion::blocks_are_deleted, which, line)
+           || answer_under(state, environment, ControlQuestion::blocks_are_deleted, which, line)
                   != 0.0;
 }
 
@@ -271,39 +289,104 @@ struct OpenCondition {
     std::string reason;
     std::string cure;
     bool computed; // its outcome with the usual values
-    bool varies;   // two evaluations can differ
+    Trace trace{no_identity, false, std::nullopt};
+    double equality = 0.0;
+    std::vector<std::string> reads{}; // the unknown variables
+
+    bool varies() const { return trace.identity == no_identity; }
 };
 
-/// Whether a condition led back to the state in which it was met: the program waits here for ever.
-bool waits_at(const Readings& readings, const ProgramLine& line, uint64_t digest) {
-    return std::any_of(readings.met.begin(), readings.met.end(), [&](const OpenPremise& earlier) {
-        return !earlier.id.question && earlier.id.line == line && earlier.state_digest == digest;
-    });
+PossibleValues values_of(const Facts& facts, const std::string& identity,
+                         const Environment& environment) {
+    const auto known = facts.possible.find(identity);
+    return known != facts.possible.end()
+               ? known->second
+               : PossibleValues(dialect(environment.dialect).unset_is_vacant);
 }
 
-bool outcome_of(InterpreterState& state, const OpenCondition& condition) {
+/// The key under which facts about a condition are kept.
+const std::string& subject_of(const OpenCondition& condition) {
+    const auto& comparison = condition.trace.comparison;
+    return comparison ? comparison->identity : condition.trace.identity;
+}
+
+/// The outcome that follows from earlier conditions of the run; empty if both are possible.
+std::optional<bool> settled_outcome(const Facts& facts, const Environment& environment,
+                                    const OpenCondition& condition) {
+    if (condition.varies()) return std::nullopt;
+    if (const auto& comparison = condition.trace.comparison) {
+        const PossibleValues values = values_of(facts, comparison->identity, environment);
+        const bool can_hold = !values.where(*comparison, condition.equality, true).is_empty();
+        const bool can_fail = !values.where(*comparison, condition.equality, false).is_empty();
+        return can_hold != can_fail ? std::optional(can_hold) : std::nullopt;
+    }
+    const auto known = facts.answers.find(condition.trace.identity);
+    if (known == facts.answers.end()) return std::nullopt;
+    return known->second != condition.trace.is_negated;
+}
+
+void keep_outcome(Facts& facts, const Environment& environment, const OpenCondition& condition,
+                  bool outcome) {
+    if (condition.varies()) return;
+    if (const auto& comparison = condition.trace.comparison)
+        facts.possible.insert_or_assign(comparison->identity,
+                                        values_of(facts, comparison->identity, environment)
+                                            .where(*comparison, condition.equality, outcome));
+    else
+        facts.answers.insert_or_assign(condition.trace.identity,
+                                       outcome != condition.trace.is_negated);
+}
+
+/// Whether a condition that was settled has been met twice again in the same state: the program
+/// waits here for ever. At the first return, another condition of the loop may still end it. States
+/// are compared with those after 1, 2, 4 ... passes, so that a long loop costs no memory.
+bool comes_back_to(Readings& readings, const ProgramLine& line, uint64_t digest) {
+    Passed& passed = readings.passed[line];
+    if (passed.count > 0 && passed.state_digest == digest) return ++passed.returns > 1;
+    if (!std::has_single_bit(++passed.count)) return false;
+    passed.state_digest = digest;
+    passed.returns = 0;
+    return false;
+}
+
+/// The program waits until something outside changes the values that a condition reads.
+void renew_reads(InterpreterState& state, const Environment& environment,
+                 const OpenCondition& condition) {
+    if (condition.varies()) return;
+    ProgramParameters parameters(state, environment);
+    for (const std::string& name : condition.reads) parameters.renew(name);
+}
+
+bool outcome_of(InterpreterState& state, const Environment& environment,
+                const OpenCondition& condition) {
     const Block& block = condition.block;
     const bool computed = condition.computed;
-    const std::string text(trimmed(block.text));
     const Readings& readings = *state.readings;
-    if (const auto known = readings.answers.find(text);
-        known != readings.answers.end() && !condition.varies) {
-        const bool outcome = known->second;
-        if (waits_at(readings, {state.next.source, block.line}, digest_of(state))) return !outcome;
-        if (!readings.repeated.contains(text)) state.readings.write().repeated.insert(text);
-        return outcome;
+    const ProgramLine here{state.next.source, block.line};
+    if (const auto settled = settled_outcome(readings.facts, environment, condition)) {
+        const uint64_t digest = digest_of(state);
+        Readings& written = state.readings.write();
+        written.repeated.insert(subject_of(condition));
+        if (comes_back_to(written, here, digest)) {
+            renew_reads(state, environment, condition);
+            return !*settled;
+        }
+        return *settled;
     }
     OpenPremise premise;
     premise.line = block.line;
-    premise.id.line = {state.next.source, block.line};
+    premise.id.line = here;
     premise.state_digest = digest_of(state);
     for (const OpenPremise& earlier : readings.met) {
         if (earlier.id.question || earlier.id.line != premise.id.line) continue;
         // That outcome leads back to the same state: the program waits here. A loop that changes
         // the state is left after as many passes as a check can follow.
         if (earlier.state_digest == premise.state_digest
-            || premise.id.occurrence == most_occurrences)
-            return !earlier.outcome;
+            || premise.id.occurrence == most_occurrences) {
+            const bool outcome = !earlier.outcome;
+            renew_reads(state, environment, condition);
+            return outcome;
+        }
         ++premise.id.occurrence;
     }
     for (const bool outcome : {computed, !computed})
@@ -316,33 +399,45 @@ bool outcome_of(InterpreterState& state, const OpenCondition& condition) {
     const bool outcome = taken == 0 ? computed : !computed;
     Readings& written = state.readings.write();
     written.met.back().outcome = outcome;
-    if (!condition.varies) written.answers.insert_or_assign(text, outcome);
+    keep_outcome(written.facts, environment, condition, outcome);
     return outcome;
 }
 
 /// Only an earlier program can have set a global variable of LinuxCNC that the program asks for.
-std::string how_to_state(const std::string& name) {
-    return fmt::format("State the value of {}{} under [program.values] in the set-up.", name,
-                       name.starts_with("#<_") ? ", or \"unset\"," : "");
+std::string how_to_state(const std::vector<std::string>& names) {
+    std::vector<std::string> values;
+    for (const std::string& name : names)
+        values.push_back(name + (name.starts_with("#<_") ? ", or \"unset\"," : ""));
+    return fmt::format("State the value{} of {} under [program.values] in the set-up.",
+                       names.size() > 1 ? "s" : "", fmt::join(values, " and "));
 }
 
 } // namespace
 
-bool outcome_of(const ProgramParameters& parameters, const Block& block, bool computed) {
+bool outcome_of(const ProgramParameters& parameters, const Block& block, Expression condition,
+                const Arithmetic& arithmetic, bool computed) {
     const auto& reads = parameters.unpredictable_reads();
     if (reads.empty()) return computed;
-    return outcome_of(parameters.state(),
-                      {block,
+    OpenCondition open{block,
                        fmt::format("The condition depends on {}, which the program does not set",
                                    fmt::join(reads, " and ")),
-                       how_to_state(reads.front()), computed, parameters.reads_vary()});
+                       how_to_state(reads), computed};
+    open.equality = arithmetic.equality;
+    open.reads = reads;
+    const ProgramParameters again(parameters.state(), parameters.environment());
+    Trace trace;
+    if (evaluate(block.pool, condition, block.line, again, arithmetic, nullptr, &trace)
+        && !trace.identity.empty() && !parameters.reads_vary())
+        open.trace = std::move(trace);
+    return outcome_of(parameters.state(), parameters.environment(), open);
 }
 
 bool outcome_of_input(InterpreterState& state, const Environment& environment, const Block& block,
                       const std::string& what, bool computed) {
     if (!environment.control.reports_premises) return computed;
-    return outcome_of(state, {block, fmt::format("The path depends on {}", what),
-                              "Change the program so that both ways are safe.", computed, true});
+    return outcome_of(state, environment,
+                      {block, fmt::format("The path depends on {}", what),
+                       "Change the program so that both ways are safe.", computed});
 }
 
 std::string cause_of_number(const ProgramParameters& parameters) {
@@ -364,7 +459,7 @@ void report_unknown(const ProgramParameters& parameters, BlockCommands& result,
                  "{} depends on {}, which only the machine knows here: the program does not "
                  "set it before",
                  what, name),
-             core::rule_id("unknown-value"), how_to_state(name)});
+             core::rule_id("unknown-value"), how_to_state({name})});
     }
 }
 

@@ -64,8 +64,10 @@ bool is_open(const InterpreterState& state, const Environment& environment,
 
 /// The outcome of the condition of a block. If it depends on a value that only the machine knows,
 /// the premise is recorded, and the outcome may be another than the computed one. `parameters` have
-/// just evaluated the condition.
-bool outcome_of(const ProgramParameters& parameters, const Block& block, bool computed);
+/// just evaluated the condition. What the outcome says about unknown values decides later
+/// conditions.
+bool outcome_of(const ProgramParameters& parameters, const Block& block, Expression condition,
+                const Arithmetic& arithmetic, bool computed);
 
 /// The outcome of a condition on something that only the machine knows and no variable holds.
 /// `what` names it: "an input".

@@ -146,6 +146,13 @@ void add(Digest& digest, const ModalState& modal) {
                          + 1024 * int(modal.following.rotary_unknown) + 16 * modal.doubt));
 }
 
+void add(Digest& digest, const UnknownValues& unknown) {
+    for (const auto& [name, value] : unknown) {
+        digest.add(name);
+        digest.add(value.identity);
+    }
+}
+
 void add(Digest& digest, const ProgramLine& position) {
     digest.add(number_of(position.source));
     digest.add(number_of(position.line));
@@ -160,6 +167,7 @@ void add(Digest& digest, const Frame& frame) {
     add_all(digest, frame.locals);
     digest.add(frame.unpredictable_locals);
     for (const std::string& name : frame.unpredictable_names) digest.add(name);
+    add(digest, frame.unknown);
     for (const auto& [name, value] : frame.named) {
         digest.add(name);
         digest.add(value);
@@ -178,7 +186,11 @@ void add(Digest& digest, const Frame& frame) {
     digest.add(
         number_of(int(frame.shares_locals) + 2 * int(frame.restores) + 4 * int(frame.modal_macro)));
     digest.add(uint64_t{frame.again.has_value()});
-    if (frame.again) add_all(digest, *frame.again);
+    if (frame.again) {
+        add_all(digest, frame.again->values);
+        digest.add(frame.again->unpredictable);
+        add(digest, frame.again->unknown);
+    }
     digest.add(uint64_t{frame.saved->has_value()});
     if (*frame.saved) add(digest, **frame.saved);
     if (frame.saved_language) frame.saved_language->add_to(digest);
@@ -216,6 +228,8 @@ uint64_t digest_of(const InterpreterState& state) {
     for (const ModalMacro& macro : state.modal_macros) {
         digest.add(macro.name);
         add_all(digest, macro.arguments);
+        digest.add(macro.unpredictable);
+        add(digest, macro.unknown);
         digest.add(number_of(2 * macro.rounds + int(macro.each_block)));
     }
     digest.add(uint64_t{state.contour->path.has_value()});
@@ -230,6 +244,7 @@ uint64_t digest_of(const InterpreterState& state) {
     if (const LanguageState* own = state.language.get()) own->add_to(digest);
     for (const NamedTool& tool : state.named_tools) digest.add(tool.name);
     digest.add(uint64_t{state.points.counts_steps});
+    add(digest, state.readings->unknown);
     for (const OpenPremise& premise : state.readings->met) {
         if (!premise.id.question) continue;
         digest.add(number_of(static_cast<int>(*premise.id.question)));

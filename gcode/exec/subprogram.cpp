@@ -351,6 +351,24 @@ uint64_t unpredictable_arguments(const std::vector<const Word*>& words) {
     return bits;
 }
 
+/// What the arguments with unpredictable values stand for.
+UnknownValues unknown_arguments(Execution& execution, const std::vector<const Word*>& words) {
+    const ProgramParameters parameters(execution.state, execution.environment);
+    UnknownValues values;
+    for (const Word* word : words) {
+        const auto& arguments = execution.state.readings->arguments;
+        const auto found = arguments.find(word->span.column);
+        if (!word->is_unknown || found == arguments.end()) continue;
+        UnknownValue value = found->second;
+        // Of repeated I, J and K it is not said which one has the value.
+        if (is_offset(word->letter)) value.identity = no_identity;
+        const uint64_t bits = unpredictable_arguments({word});
+        for (size_t number = 1; number < std::tuple_size_v<LocalParameters>; ++number)
+            if (bits >> number & 1U) parameters.keep_argument(values, number, value);
+    }
+    return values;
+}
+
 /// The macro called by G65 or G66, with its arguments.
 core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry) {
     const Word* program = argument(execution, 'P');
@@ -376,6 +394,7 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
     const std::vector<const Word*> words = words_of_call(execution);
     FEELER_TRY(macro.arguments, arguments_of(words));
     macro.unpredictable = unpredictable_arguments(words);
+    macro.unknown = unknown_arguments(execution, words);
     macro.each_block = entry.code->number == g_code(66, 1);
     return macro;
 }
@@ -388,9 +407,11 @@ core::Result<void> enter_macro(Execution& execution, const ModalMacro& macro, si
                 .name = macro.name,
                 .locals = macro.arguments,
                 .unpredictable_locals = macro.unpredictable,
+                .unknown = macro.unknown,
                 .rounds_left = macro.rounds - 1,
                 .modal_macro = modal};
-    if (macro.rounds > 1 && modal == 0) frame.again = macro.arguments;
+    if (macro.rounds > 1 && modal == 0)
+        frame.again = {macro.arguments, macro.unpredictable, macro.unknown};
     return enter(execution.state, execution.environment, std::move(frame), where);
 }
 

@@ -216,8 +216,11 @@ core::Result<void> Flowing::call_sub() {
         parameters_.forget_reads();
         FEELER_TRY(next.locals[i + 1], evaluate(step_.block.pool, step_.block.flow.arguments[i],
                                                 line_, parameters_, step_.dialect.arithmetic));
-        if (!parameters_.unpredictable_reads().empty())
+        if (auto unknown =
+                parameters_.unknown_value(step_.block.pool, step_.block.flow.arguments[i], line_)) {
             next.unpredictable_locals |= uint64_t{1} << (i + 1);
+            parameters_.keep_argument(next.unknown, i + 1, *std::move(unknown));
+        }
     }
     return enter(step_.state, step_.environment, std::move(next), step_.block.flow.span);
 }
@@ -227,13 +230,17 @@ core::Result<void> Flowing::return_statement() {
     const bool inside = step_.state.frames.size() > 1;
     if (!inside) return refuse("return outside a subprogram");
     Value value;
+    std::optional<UnknownValue> unknown;
+    parameters_.forget_reads();
     if (step_.block.flow.has_condition) {
         FEELER_TRY(value, evaluate(step_.block.pool, step_.block.flow.condition, line_, parameters_,
                                    step_.dialect.arithmetic));
+        unknown = parameters_.unknown_value(step_.block.pool, step_.block.flow.condition, line_);
     }
     Parameters& parameters = step_.state.parameters.write();
     parameters.set_named("_value", value.value_or(0.0));
     parameters.set_named("_value_returned", value ? 1.0 : 0.0);
+    parameters_.mark_named("_value", std::move(unknown));
     const ModalState before = step_.state.modal;
     if (frame().restores && *frame().saved)
         for (const std::string& loss : losses_of_restoring(before, **frame().saved))

@@ -136,6 +136,10 @@ constexpr ParameterValue offset_sizes[] = {
     {0, false, "sizes in the table of tool offsets are diameters", "DIAMETER"},
     {1, true, "sizes in the table of tool offsets are radii", "RADIUS"},
 };
+constexpr ParameterValue radius_sizes[] = {
+    {0, true, "the values under D in the offset memory are radii"},
+    {1, false, "the values under D in the offset memory are diameters"},
+};
 constexpr ParameterValue tool_change_motion[] = {{0, false, "M6 does not move the machine"}};
 constexpr ParameterValue entry_types[] = {
     {0, false, "the tool goes straight to the first offset point and straight off the last one"},
@@ -429,6 +433,8 @@ constexpr ControlParameter parameters[] = {
     {offset_memory, fanuc, "tool offset memory", "the type of the tool offset memory",
      offset_memories, follow_all,
      "Fanuc B-63944EN, tool compensation values, and system variables of tool compensation"},
+    {radii_are_entered, fanuc, "5004#2", "parameter 5004#2 (ODI)", radius_sizes, follow_all,
+     "Fanuc B-63950EN, parameters of tool compensation"},
     {radii_are_entered, haas, "setting 40", "setting 40 (Tool Offset Measure)", offset_sizes,
      follow_all, "Haas mill operator's manual 96-8000, settings"},
     {entry_has_corner, fanuc, "5003#0", "parameter 5003#0 (SUP)", entry_types, follow_all,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -274,18 +275,102 @@ constexpr bool is_comparison(Operation operation) {
     }
 }
 
+Operation mirrored(Operation comparison) {
+    switch (comparison) {
+    case Operation::greater:
+        return Operation::less;
+    case Operation::greater_or_equal:
+        return Operation::less_or_equal;
+    case Operation::less:
+        return Operation::greater;
+    case Operation::less_or_equal:
+        return Operation::greater_or_equal;
+    default:
+        return comparison;
+    }
+}
+
+Operation opposite(Operation comparison) {
+    switch (comparison) {
+    case Operation::greater:
+        return Operation::less_or_equal;
+    case Operation::greater_or_equal:
+        return Operation::less;
+    case Operation::less:
+        return Operation::greater_or_equal;
+    case Operation::less_or_equal:
+        return Operation::greater;
+    case Operation::equal:
+        return Operation::not_equal;
+    default:
+        return Operation::equal;
+    }
+}
+
+/// An operand of a traced operation.
+struct TracedValue {
+    Trace trace;
+    Value value; // if it is known
+
+    bool is_known() const { return trace.identity.empty(); }
+    std::string text() const {
+        if (is_known()) return value ? fmt::format("{}", *value) : "vacant";
+        return (trace.is_negated ? "!" : "") + trace.identity;
+    }
+};
+
+Trace with_identity(std::string identity, bool is_negated = false) {
+    constexpr size_t longest = 400;
+    if (identity.size() > longest) identity = no_identity;
+    return {std::move(identity), is_negated, std::nullopt};
+}
+
+/// Comparisons are traced as "equal" and "less" only, so that opposite ones have the same identity.
+Trace traced_comparison(Operation operation, const TracedValue& left, const TracedValue& right) {
+    if (operation == Operation::greater || operation == Operation::less_or_equal)
+        return traced_comparison(mirrored(operation), right, left);
+    const bool is_equality = operation == Operation::equal || operation == Operation::not_equal;
+    const bool is_negated =
+        operation == Operation::not_equal || operation == Operation::greater_or_equal;
+    std::string first = left.text(), second = right.text();
+    if (is_equality && second < first) std::swap(first, second);
+    Trace trace = with_identity(fmt::format("({} {} {})", first, is_equality ? "=" : "<", second),
+                                is_negated);
+    if (right.is_known()) trace.comparison = {operation, left.text(), right.value};
+    if (left.is_known()) trace.comparison = {mirrored(operation), right.text(), left.value};
+    return trace;
+}
+
+/// What an operation makes of its operands; `right` is empty for operations on one value.
+Trace traced(Operation operation, const TracedValue& left, const TracedValue* right) {
+    if (left.is_known() && (!right || right->is_known())) return {};
+    if (left.trace.identity == no_identity || (right && right->trace.identity == no_identity))
+        return with_identity(no_identity);
+    if (is_comparison(operation)) return traced_comparison(operation, left, *right);
+    if (operation == Operation::truth_not && left.trace.comparison) {
+        Trace trace = left.trace;
+        trace.is_negated = !trace.is_negated;
+        trace.comparison->operation = opposite(trace.comparison->operation);
+        return trace;
+    }
+    const int number = static_cast<int>(operation);
+    return with_identity(right ? fmt::format("({} {} {})", number, left.text(), right->text())
+                               : fmt::format("({} {})", number, left.text()));
+}
+
 constexpr size_t deepest = 64;
 
 /// The value stack for evaluating an expression.
 class Stack {
 public:
     Stack(const ExpressionPool& pool, uint32_t line, const ParameterReader& parameters,
-          const Arithmetic& arithmetic, Margins* margins)
+          const Arithmetic& arithmetic, Margins* margins, bool traces)
         : pool_(pool),
           line_(line),
           parameters_(parameters),
           arithmetic_(arithmetic),
-          margins_(margins) {}
+          margins_(margins),
+          traces_(traces ? deepest : 0) {}
 
     core::Result<void> apply(const Instruction& step) {
         const core::SourceSpan where{.line = line_, .column = step.column, .length = 1};
@@ -296,6 +381,7 @@ public:
         const Value left = pop();
         if (margins_ && is_comparison(operation))
             margins_->add(std::abs(left.value_or(0.0) - right.value_or(0.0)));
+        if (!traces_.empty()) trace_operation(operation, pair, left, right);
         if (is_comparison_with_vacant(operation, left, right)) return {};
         const double a = left.value_or(0.0), b = right.value_or(0.0);
         if (const std::string_view why = objection_to(operation, a, b); !why.empty())
@@ -311,8 +397,29 @@ public:
     }
 
     Value top() const { return values_[depth_ - 1]; }
+    const Trace& top_trace() const { return traces_[depth_ - 1]; }
 
 private:
+    /// The operands were popped; the result takes the place of the first.
+    void trace_operation(Operation operation, bool pair, Value left, Value right) {
+        Trace& result = traces_[depth_];
+        const TracedValue first{std::move(result), left};
+        if (!pair) {
+            result = traced(operation, first, nullptr);
+            return;
+        }
+        const TracedValue second{traces_[depth_ + 1], right};
+        result = traced(operation, first, &second);
+    }
+
+    /// Traces an operand. One whose number is not known may be any variable.
+    void trace_operand(bool has_known_number) {
+        if (traces_.empty()) return;
+        std::string identity = parameters_.identity();
+        if (!has_known_number) identity = no_identity;
+        traces_[depth_] = {std::move(identity), false, std::nullopt};
+    }
+
     Value pop() { return values_[--depth_]; }
 
     core::Result<void> push(Value value, core::SourceSpan where) {
@@ -324,14 +431,22 @@ private:
     }
 
     core::Result<void> load(const Instruction& step, core::SourceSpan where) {
-        if (step.operation == Operation::number) return push(step.number, where);
-        if (step.operation == Operation::exists)
-            return push(truth(parameters_.exists(pool_.names[step.name])), where);
-        if (step.operation == Operation::named) {
-            FEELER_TRY(const Value value, parameters_.named(pool_.names[step.name], where));
-            return push(value, where);
+        if (step.operation == Operation::number) {
+            if (!traces_.empty() && depth_ < deepest) traces_[depth_] = {};
+            return push(step.number, where);
         }
-        FEELER_TRY(const Value value, parameters_.numbered(pop().value_or(0.0), where));
+        Value value;
+        bool has_known_number = true;
+        if (step.operation == Operation::exists) {
+            value = truth(parameters_.exists(pool_.names[step.name]));
+        } else if (step.operation == Operation::named) {
+            FEELER_TRY(value, parameters_.named(pool_.names[step.name], where));
+        } else {
+            const double number = pop().value_or(0.0);
+            has_known_number = traces_.empty() || traces_[depth_].identity.empty();
+            FEELER_TRY(value, parameters_.numbered(number, where));
+        }
+        if (depth_ < deepest) trace_operand(has_known_number);
         return push(value, where);
     }
 
@@ -350,6 +465,7 @@ private:
     const Arithmetic& arithmetic_;
     Margins* margins_;
     std::array<Value, deepest> values_;
+    std::vector<Trace> traces_; // of the values; empty if nothing is traced
     size_t depth_ = 0;
 };
 
@@ -357,11 +473,12 @@ private:
 
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
                              const ParameterReader& parameters, const Arithmetic& arithmetic,
-                             Margins* margins) {
-    Stack stack(pool, line, parameters, arithmetic, margins);
+                             Margins* margins, Trace* trace) {
+    Stack stack(pool, line, parameters, arithmetic, margins, trace != nullptr);
     for (uint32_t i = 0; i < expression.count; ++i)
         if (auto done = stack.apply(pool.instructions[expression.first + i]); !done)
             return tl::unexpected(std::move(done).error());
+    if (trace) *trace = stack.top_trace();
     return stack.top();
 }
 

@@ -110,6 +110,9 @@ public:
     virtual core::Result<Value> numbered(double number, core::SourceSpan where) const = 0;
     virtual core::Result<Value> named(std::string_view name, core::SourceSpan where) const = 0;
     virtual bool exists(std::string_view name) const = 0;
+
+    /// The identity of the value that was read last, see Trace.
+    virtual std::string identity() const { return {}; }
 };
 
 /// Differences between controls in arithmetic.
@@ -136,13 +139,31 @@ struct Margins {
     }
 };
 
-/// Evaluates an expression; `margins`, if given, receives those of its comparisons.
+/// A comparison of an unknown value with a known one.
+struct ValueComparison {
+    Operation operation = Operation::equal;
+    std::string identity; // of the unknown value, on the left
+    Value with;
+};
+
+/// The identity of a value that is not known. Values of the same identity are equal.
+inline constexpr const char* no_identity = "?";
+
+/// What an expression stands for of which some operands are not known.
+struct Trace {
+    std::string identity; // empty: the value is known; no_identity: another one at each evaluation
+    bool is_negated = false; // it is the opposite of the truth value of that identity
+    std::optional<ValueComparison> comparison; // if it is one of an unknown and a known value
+};
+
+/// Evaluates an expression; `margins`, if given, receives those of its comparisons, and `trace`
+/// what the result stands for.
 /// Units:  angles in degrees, lengths in the units of the program.
 /// Errors: invalid_value with the column: a division by zero, the root of a negative number, a
 ///         missing parameter, a result that is not finite.
 core::Result<Value> evaluate(const ExpressionPool& pool, Expression expression, uint32_t line,
                              const ParameterReader& parameters, const Arithmetic& arithmetic,
-                             Margins* margins = nullptr);
+                             Margins* margins = nullptr, Trace* trace = nullptr);
 
 /// The numeric value of a condition: 1 or 0.
 constexpr double truth(bool holds) { return holds ? 1.0 : 0.0; }

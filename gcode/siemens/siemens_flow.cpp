@@ -43,7 +43,8 @@ private:
                                  step_.dialect.arithmetic);
             !read)
             return tl::unexpected(std::move(read).error());
-        return outcome_of(parameters, step_.block, value != 0.0);
+        return outcome_of(parameters, step_.block, condition.expression, step_.dialect.arithmetic,
+                          value != 0.0);
     }
     const FlowMark* structure() const;
     core::Result<uint32_t> partner(std::string_view wanted) const;
@@ -180,7 +181,16 @@ core::Result<void> SiemensFlowing::count_on() {
     const Assignment& entry = block.assignments[0];
     const FlowStep at_head{step_.library, step_.environment, step_.dialect,
                            block,         step_.state,       step_.result};
-    FEELER_TRY(const double last, value_of_argument(at_head, siemens_of(block).arguments[0]));
+    const SiemensArgument& limit = siemens_of(block).arguments[0];
+    FEELER_TRY(const double last, value_of_argument(at_head, limit));
+    if (begins && limit.expression) {
+        parameters.forget_reads();
+        if (auto read = evaluate(block.pool, limit.expression, block.line, parameters,
+                                 step_.dialect.arithmetic);
+            !read)
+            return tl::unexpected(std::move(read).error());
+        report_unknown(parameters, step_.result, block.flow.span, "the number of passes");
+    }
     double number = 0.0;
     Value value;
     if (entry.is_named) {
@@ -390,6 +400,18 @@ core::Result<Block> head_of(const FlowStep& step, ProgramLine begin) {
     return Block{};
 }
 
+/// What an argument of a call stands for; empty if its value is known.
+core::Result<std::optional<UnknownValue>> unknown_argument(const FlowStep& step,
+                                                           const SiemensArgument& argument) {
+    if (!argument.expression) return std::nullopt;
+    const ProgramParameters parameters(step.state, step.environment);
+    if (auto read = evaluate(step.block.pool, argument.expression, step.block.line, parameters,
+                             step.dialect.arithmetic);
+        !read)
+        return tl::unexpected(std::move(read).error());
+    return parameters.unknown_value(step.block.pool, argument.expression, step.block.line);
+}
+
 core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame& frame) {
     const auto& arguments = siemens_of(step.block).arguments;
     const auto& parameters = siemens_of(head).declarations;
@@ -415,6 +437,12 @@ core::Result<void> set_parameters(const FlowStep& step, const Block& head, Frame
         double value = 0.0;
         if (given) {
             FEELER_TRY(value, value_of_argument(step, arguments[i]));
+            FEELER_TRY(auto unknown, unknown_argument(step, arguments[i]));
+            if (unknown) {
+                const ProgramParameters own(step.state, step.environment);
+                own.keep_argument(frame.unknown, parameter.name, *std::move(unknown));
+                frame.unpredictable_names.insert(parameter.name);
+            }
         } else if (parameter.initial.kind != SiemensArgument::Kind::nothing) {
             FEELER_TRY(value, value_of_argument(at_head, parameter.initial));
         }

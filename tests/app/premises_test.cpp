@@ -230,8 +230,64 @@ TEST(Premises, AnUnknownPositionIsNeverClear) {
     EXPECT_NE(result.verdict, "clear");
 }
 
-TEST(Premises, SwitchingTheRuleOffFollowsNoReadings) {
-    EXPECT_EQ(errors_with(lone_g49(), "[rules]\nopen-premise = \"off\"\n"), "");
+TEST(Premises, ACollisionIsAnErrorWhateverTheSeverityOfTheRule) {
+    const std::string open = errors_with(lone_g49(), "");
+    EXPECT_NE(open, "");
+    for (const char* severity : {"off", "note", "warning"}) {
+        const std::string rules = std::string("[rules]\nopen-premise = \"") + severity + "\"\n";
+        const Checked result = check(plate("fanuc").also(rules), lone_g49());
+        EXPECT_EQ(result.errors(), open) << severity;
+        EXPECT_EQ(result.verdict, "collision") << severity;
+        EXPECT_EQ(result.status, 1) << severity;
+    }
+}
+
+TEST(Premises, AReadingWithoutACollisionHasTheSeverityOfTheRule) {
+    // If #500 is 1, the tool passes 1 mm above the clamp.
+    const std::string program = head
+                                + std::string("G0 X50. Y50.\nG0 Z60.\nIF[#500NE1]GOTO20\nG0 Z13.\n"
+                                              "N20 G0 Y150.\nM30\n");
+    const auto with = [&](const std::string& rules) {
+        return check(plate("fanuc").also("[rules]\n" + rules), program);
+    };
+    EXPECT_EQ(with("").errors(), "open-premise 8");
+    const Checked warned = with("open-premise = \"warning\"\n");
+    EXPECT_EQ(warned.finding("open-premise").severity, "warning");
+    EXPECT_EQ(warned.status, 0);
+    const Checked off = with("open-premise = \"off\"\n");
+    EXPECT_EQ(off.verdict, "clear");
+    EXPECT_EQ(off.status, 0);
+    // What the assumed reading would report as a warning is not an error in another one.
+    const Checked lowered = with("rapid-near-clamp = \"warning\"\n");
+    EXPECT_EQ(lowered.finding("open-premise").severity, "warning");
+    EXPECT_EQ(lowered.status, 0);
+}
+
+TEST(Premises, AnErrorThatNeedsTwoPremisesNamesBoth) {
+    // Only if the length change moves Z and #500 is 3, the tool meets the clamp: 95 mm lower.
+    const std::string program =
+        head
+        + std::string("G0 X50. Y150.\nG0 Z100.\nG49\nIF[#500EQ3]GOTO10\nG43 H1\n"
+                      "N10 G0 Y50.\nM30\n");
+    const FindingLine finding = check(plate("fanuc"), program).finding("open-premise");
+    for (const char* part : {"5006#6", "#500", "the condition in line 9 holds"})
+        EXPECT_NE(finding.message.find(part), std::string::npos) << finding.message;
+    EXPECT_NE(finding.cure.find("\"5006#6\" = 1 or 0"), std::string::npos) << finding.cure;
+    EXPECT_NE(finding.cure.find("#500"), std::string::npos) << finding.cure;
+    EXPECT_EQ(errors_with(program, "[control]\n\"5006#6\" = 1\n"), "");
+}
+
+TEST(Premises, ACopyNamesTheVariableThatItWasCopiedFrom) {
+    const std::string tail = "IF[#1NE1]GOTO10\nG0 Z5.\nN10 G0 Y150.\nM30\n";
+    for (const std::string& copy :
+         {std::string("#1=#500\n"), std::string("#101=#500\n#1=#101\n")}) {
+        const std::string program = head + std::string("G0 X50. Y50.\nG0 Z60.\n") + copy + tail;
+        const Checked open = check(plate("fanuc"), program);
+        EXPECT_EQ(open.verdict, "collision");
+        EXPECT_NE(open.finding("open-premise").cure.find("#500 "), std::string::npos)
+            << open.finding("open-premise").cure;
+        EXPECT_EQ(errors_with(program, "[program.values]\n\"#500\" = 0\n"), "");
+    }
 }
 
 struct BadControl {

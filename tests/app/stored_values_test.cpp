@@ -90,6 +90,29 @@ TEST(StoredValues, ASizeOfHaasIsADiameterOrARadius) {
     EXPECT_NE(open.find("open-premise 5"), std::string::npos) << open;
 }
 
+TEST(StoredValues, AValueUnderDOfFanucIsARadiusOrADiameter) {
+    // Left of the contour by the radius: 10 mm from X40, or 20 mm.
+    const auto program = [](const std::string& writes) {
+        return fanuc_head + writes
+               + "G43 H1 G0 Z100.\nG0 X-15. Y150.\nG0 Z5.\n"
+                 "G1 G41 D1 X20. F500.\nG1 X20. Y110.\nG1 Y90.\nG1 G40 X0.\nG0 Z100.\nM30\n";
+    };
+    const std::string memory = "[control]\n\"tool offset memory\" = \"C\"\n\"5003#0\" = 0\n";
+    for (const std::string writes : {"G10 L12 P1 R20.\n", "#13001=20.\n"}) {
+        const std::string open = errors_of("fanuc", program(writes), memory);
+        const std::string radius = errors_of("fanuc", program(writes), memory + "\"5004#2\" = 0\n");
+        const std::string diameter =
+            errors_of("fanuc", program(writes), memory + "\"5004#2\" = 1\n");
+        EXPECT_NE(open, diameter) << writes;
+        EXPECT_NE(radius, diameter) << writes;
+        EXPECT_EQ(radius.find("open-premise"), std::string::npos) << radius;
+    }
+    // The radius of the tool in the set-up is known.
+    const Checked own = check(plate("fanuc").also(memory), program(""));
+    for (const std::string& assumption : own.assumptions)
+        EXPECT_EQ(assumption.find("5004#2"), std::string::npos) << assumption;
+}
+
 TEST(StoredValues, ALengthThatG28CancelsMayComeBack) {
     const std::string program = fanuc_head
                                 + std::string("G43 H1 G0 Z100.\nG0 X50. Y50.\nG91 G28 Z0.\nG90\n"

@@ -122,7 +122,7 @@ Json readings_json(const CheckRun& run) {
         json["block"] = reading.block;
         json["line"] = reading.line;
         if (!reading.file.empty()) json["file"] = reading.file;
-        json["assumed"] = reading.assumed;
+        json["assumed"] = reading.premise.assumed;
         json["if"] = reading.when;
         json["effect"] = reading.effect;
         json["verdict"] = core::name_of(reading.verdict);
@@ -134,7 +134,7 @@ Json readings_json(const CheckRun& run) {
                                       {"rule", error.finding.rule},
                                       {"message", error.finding.message}});
         if (reading.stopped) json["stopped"] = error_json(*reading.stopped);
-        json["cure"] = reading.cure;
+        json["cure"] = reading.cure();
         all.push_back(std::move(json));
     }
     return all;

@@ -1,0 +1,21 @@
+%
+O1041 (SLOT ALONG THE CLAMP - If D values are diameters, the radius is 4 and the tool hits the clamp)
+(T1 D=10. - FLAT END MILL)
+G17 G21 G40 G49 G80 G90
+G53 G0 Z0.
+T1 M6
+G54 G90 G0 X10. Y-40. S6000 M3
+G43 H1 Z60. M8
+G10 L12 P1 R8.
+G0 Z5.
+G1 Z-2. F300.
+G41 D1 X40. Y-20. F600.
+Y140.
+G40 X10.
+G0 Z60.
+M9
+M5
+G53 G0 Z0.
+G53 G0 Y0.
+M30
+%
