@@ -618,6 +618,7 @@ std::string assume_machine_zero(SetupFile& file) {
     if (file.infers_second_home && top != 0.0)
         environment.second_home = gcode::AxisValues{0.0, 0.0, top};
     bool has_limits = false;
+    file.limits_need_offsets = known_limits(machine) == Known::described;
     for (core::MachineAxis& axis : machine.axes) {
         has_limits = has_limits || axis.min || axis.max;
         axis.min.reset();
