@@ -28,6 +28,14 @@ bool is_error_of_program(const core::Finding& finding) {
            && finding.rule != core::rule_id("incomplete-setup");
 }
 
+bool lacks_coverage(const core::Finding& finding) {
+    return finding.severity == core::Severity::error && !is_error_of_program(finding);
+}
+
+bool says_nothing_moves(const core::Finding& finding) {
+    return finding.rule == core::rule_id("nothing-moves");
+}
+
 bool doubts_start(const std::vector<core::Finding>& findings) {
     return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
         return finding.rule == core::rule_id("first-move");

@@ -60,6 +60,12 @@ std::vector<GroupOf<Finding>> grouped_by(const std::vector<Finding>& findings, K
 /// Whether a finding is an error other than an incomplete set-up.
 bool is_error_of_program(const core::Finding& finding);
 
+/// Whether a finding says that coverage is missing that is required.
+bool lacks_coverage(const core::Finding& finding);
+
+/// Whether a finding says that the program moves nothing.
+bool says_nothing_moves(const core::Finding& finding);
+
 /// Whether a motion was checked only from a start position that nothing states.
 bool doubts_start(const std::vector<core::Finding>& findings);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "app/base/clearance_text.h"
 #include "app/base/findings.h"
 #include "app/base/sha256.h"
@@ -41,6 +43,7 @@ Coverage CheckRun::full_coverage() const {
             full.tools_without_holder.push_back(number);
     }
     full.holders = full.tools_without_holder.empty() ? Known::described : Known::missing;
+    if (std::any_of(findings.begin(), findings.end(), says_nothing_moves)) full.moves = false;
     if (doubts_start(findings)) full.start = Known::inferred;
     if (cuts_beside_stock(findings)) full.stock = std::min(full.stock, Known::inferred);
     return full;
@@ -49,7 +52,10 @@ Coverage CheckRun::full_coverage() const {
 std::string CheckRun::headline() const {
     const bool in_program = std::any_of(findings.begin(), findings.end(), is_error_of_program);
     return headline_of(
-        {.verdict = verdict, .is_stopped = stopped.has_value(), .has_errors = in_program},
+        {.verdict = verdict,
+         .is_stopped = stopped.has_value(),
+         .has_errors = in_program,
+         .lacks_required = std::any_of(findings.begin(), findings.end(), lacks_coverage)},
         full_coverage());
 }
 
@@ -71,9 +77,27 @@ ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult
     return {.lower = least_clearance(setup, result)};
 }
 
+bool is_permitted_contact(const core::BlockResult& result) {
+    if (!result.deciding) return false;
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    return pair.verdict == core::Verdict::clear && pair.allowance.distance <= core::resolution
+           && pair.lower <= core::resolution;
+}
+
+std::string tightest_words(const core::BlockResult& result, ClearanceStyle style) {
+    if (is_permitted_contact(result)) return "permitted contact only";
+    const core::PairClearance& pair = result.pairs[*result.deciding];
+    return fmt::format("{}{} (minimum {} mm)", clearance_text(shown_clearance(pair), style),
+                       style == ClearanceStyle::sentence ? "" : " mm",
+                       core::at_most(pair.allowance.distance));
+}
+
 const CheckedBlock* tightest_block(const CheckRun& run) {
     const CheckedBlock* tightest = nullptr;
     const auto is_tighter = [](const CheckedBlock& block, const CheckedBlock& than) {
+        const bool touches = is_permitted_contact(block.result);
+        const bool other_touches = is_permitted_contact(than.result);
+        if (touches != other_touches) return other_touches;
         const core::PairClearance& pair = block.result.pairs[*block.result.deciding];
         const core::PairClearance& other = than.result.pairs[*than.result.deciding];
         return pair.verdict != other.verdict ? pair.verdict > other.verdict

@@ -25,6 +25,7 @@ enum class DialectId : uint8_t;
 namespace app {
 
 struct ShownClearance;
+enum class ClearanceStyle : uint8_t;
 
 enum class Engine : uint8_t;
 struct Coverage;
@@ -152,8 +153,15 @@ double least_clearance(const core::Setup& setup, const core::BlockResult& result
 /// pairs.
 ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult& result);
 
-/// The block whose deciding pair has the worst verdict, and of those the least margin; null if no
-/// pair decides any block.
+/// Whether the deciding pair of a block may touch, and perhaps does: it cuts, or leaves its own
+/// cut.
+bool is_permitted_contact(const core::BlockResult& result);
+
+/// The block whose deciding pair has the worst verdict, and of those the least margin; permitted
+/// contact counts only if there is nothing else. Null if no pair decides any block.
 const CheckedBlock* tightest_block(const CheckRun& run);
+
+/// What the tightest block keeps: "3.605 mm (minimum 2.000 mm)"; "permitted contact only".
+std::string tightest_words(const core::BlockResult& result, ClearanceStyle style);
 
 } // namespace app

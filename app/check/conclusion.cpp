@@ -74,10 +74,12 @@ void report_incomplete_setup(const CheckRun& run, CheckRecord& record) {
     const Coverage coverage = run.full_coverage();
     if (coverage.is_complete() || finding.severity == core::Severity::off) return;
     finding.message = "Not everything was checked: " + uncovered_text(coverage) + ".";
-    finding.cure = "Describe it in the set-up.";
+    finding.cure = "Describe it in the set-up";
     if (coverage.fixtures == Known::missing)
-        finding.cure = "Describe it in the set-up; if there are no fixtures, write "
-                       "fixtures = \"none\" at its top.";
+        finding.cure += "; if there are no fixtures, write fixtures = \"none\" at its top";
+    if (coverage.limits_need_offsets)
+        finding.cure += "; the axis limits are checked once [offsets] states the work offsets";
+    finding.cure += ".";
     record.findings.push_back(finding);
 }
 

@@ -38,6 +38,15 @@ double length_of(const core::Motion& motion, const core::AxisValues& by) {
     return core::hypot(radius * motion.arc->angle, by[normal]);
 }
 
+/// Whether a motion of the block is not an incremental one by 0.
+bool moves(const gcode::ModalState& modal, const core::BlockEvents& block) {
+    const bool may_stay = modal.distance == gcode::DistanceMode::incremental && !block.goes_home;
+    return std::any_of(block.events.begin(), block.events.end(), [&](const core::Event& event) {
+        const auto* motion = std::get_if<core::Motion>(&event);
+        return motion && (!may_stay || motion->arc || motion->from != motion->to);
+    });
+}
+
 /// The fastest feed along a straight line that the rapid speeds of the axes allow, mm/min; empty if
 /// an axis that moves has no stated speed.
 std::optional<double> fastest_along(const core::Machine& machine, const core::AxisValues& by) {
@@ -82,6 +91,7 @@ void note_spindle(FeedFacts& facts, const core::Setup& setup, const core::Simula
 
 void note_feeds(FeedFacts& facts, const core::Setup& setup, const gcode::ModalState& modal,
                 const core::BlockEvents& block, const core::SimulatorState& state) {
+    facts.moves = facts.moves || moves(modal, block);
     for (const core::Event& event : block.events) {
         const auto* motion = std::get_if<core::Motion>(&event);
         if (!motion || motion->kind == core::MotionKind::rapid) continue;

@@ -54,6 +54,7 @@ struct OffsetUse {
     bool is_parallel = true;            // false: the program's axes are turned against the stock's
     bool rapids_through = false;        // a rapid crosses the stock's height range, not upwards
     bool is_upright = true;             // false: the tool was tilted
+    std::optional<core::BlockIndex> first_rapid; // with the spindle on
 };
 
 /// The uses of all work offsets so far, by index; 0 is G54. A plain value.
@@ -71,6 +72,9 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
 /// the one beside it may belong to a second workpiece, and the finding is a note.
 std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const core::Setup& setup,
                                                const core::Aabb& stock);
+
+/// The finding `nothing-cut` for a program without feeds: it moves by rapids with the spindle on.
+std::optional<core::Finding> only_rapids(const OffsetUses& uses, const core::Setup& setup);
 
 /// The finding `nothing-cut`: the program feeds with a tool that turns, but no flutes come near the
 /// stock in any work offset. `is_located`: another finding says where the cuts are.
@@ -97,9 +101,10 @@ struct FeedFacts {
     double cut_way = 0.0;                  // travel of feeds with a stated spindle speed, mm
     double revolutions = 0.0;              // of the spindle on these feeds
     bool in_mm = false, in_inches = false; // units in effect at feeds
+    bool moves = false;                    // some motion is not an incremental one by 0
 };
 
-/// Adds the feeds of a block. `modal` and `state` are those after it.
+/// Adds the motions of a block. `modal` and `state` are those after it.
 void note_feeds(FeedFacts& facts, const core::Setup& setup, const gcode::ModalState& modal,
                 const core::BlockEvents& block, const core::SimulatorState& state);
 

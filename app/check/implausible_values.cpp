@@ -181,13 +181,10 @@ bool defines_subprogram(const gcode::Program& program) {
     return false;
 }
 
-std::optional<core::Finding> nothing_moves(const CheckRecord& record, const core::Setup& setup,
+std::optional<core::Finding> nothing_moves(const CheckRecord& record, const FeedFacts& facts,
+                                           const core::Setup& setup,
                                            const gcode::Program& program) {
-    if (record.stopped
-        || std::any_of(record.blocks.begin(), record.blocks.end(), [](const CheckedBlock& block) {
-               return block.result.motion != core::BlockMotion::none;
-           }))
-        return std::nullopt;
+    if (record.stopped || facts.moves) return std::nullopt;
     core::Finding finding;
     finding.rule = core::rule_id("nothing-moves");
     finding.severity = core::severity_of(setup, finding.rule);
@@ -203,6 +200,24 @@ std::optional<core::Finding> nothing_moves(const CheckRecord& record, const core
     return finding;
 }
 
+/// The finding `offset-implausible`: the program's own stock reaches beyond that of the set-up.
+/// Nothing if another finding of the rule says that the work offset is wrong.
+std::optional<core::Finding> stock_mismatch(const SetupFile& file, const CheckRecord& record,
+                                            const core::Setup& setup) {
+    core::Finding finding;
+    finding.rule = core::rule_id("offset-implausible");
+    const bool is_known =
+        std::any_of(record.findings.begin(), record.findings.end(),
+                    [&](const core::Finding& other) { return other.rule == finding.rule; });
+    if (file.stock_mismatch.empty() || is_known) return std::nullopt;
+    finding.severity = core::severity_of(setup, finding.rule);
+    finding.message = file.stock_mismatch;
+    finding.cure = "Clamp the stock that the program was made for, or correct [stock] or the work "
+                   "offset in the set-up.";
+    if (finding.severity == core::Severity::off) return std::nullopt;
+    return finding;
+}
+
 } // namespace
 
 std::vector<core::Finding> implausible_findings(const PreparedCheck& check,
@@ -212,11 +227,12 @@ std::vector<core::Finding> implausible_findings(const PreparedCheck& check,
     const auto add = [&](std::optional<core::Finding> finding) {
         if (finding) findings.push_back(*std::move(finding));
     };
-    add(nothing_moves(record, setup, *check.program));
+    add(nothing_moves(record, end.feeds, setup, *check.program));
     const bool unit_said = end.control.modal.unit_said;
     std::optional<core::Aabb> stock;
     if (check.stock_is_stated) stock = end.machine.stock.outer_box;
     if (stock) add(unit_mismatch(end.feeds, setup, *stock, unit_said));
+    if (stock) add(stock_mismatch(check.file, record, setup));
     if (!check.file.not_judged.empty()) return findings;
     for (core::Finding& value : implausible_values(end.feeds, record, setup)) add(std::move(value));
     for (core::Finding& tool : findings_of(check.tool_mismatches, end.feeds, setup))
@@ -224,7 +240,8 @@ std::vector<core::Finding> implausible_findings(const PreparedCheck& check,
     add(units_doubtful(*check.program, end.feeds, setup, stock, unit_said,
                        check.file.environment.dialect == gcode::DialectId::siemens
                            ? UnitCodes{"G71 or G710", "G70 or G700"}
-                           : UnitCodes{}));
+                           : UnitCodes{},
+                       end.offsets));
     return findings;
 }
 

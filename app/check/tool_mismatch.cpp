@@ -46,12 +46,12 @@ Kind kind_of(ToolShape shape) {
     }
 }
 
-/// Whether a tool of one shape was described and another one is in the set-up. A set-up may
-/// describe anything by a simpler shape, and a drill that mills by a mill.
+/// Whether a tool of one shape was described and another one is in the set-up. Drills, spot drills,
+/// countersinks and chamfer mills may stand for each other.
 bool differ(ToolShape in_comment, ToolShape in_setup) {
     const Kind comment = kind_of(in_comment), setup = kind_of(in_setup);
     if (comment == Kind::other || setup == Kind::other) return false;
-    return comment != setup && comment != Kind::pointed;
+    return comment != setup;
 }
 
 std::string described(const core::ToolDescription& tool, bool has_shape) {

@@ -13,6 +13,7 @@
 #include "app/setup/tools/tool_text.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
+#include "core/sim/rules/rules.h"
 #include "core/sim/setup.h"
 #include "gcode/language/modal_state.h"
 #include "gcode/text/source.h"
@@ -230,14 +231,85 @@ std::vector<UnitClue> unit_clues_of_feeds(const FeedFacts& facts, LengthUnit uni
     return clues;
 }
 
+namespace {
+
+/// The box of the feeds and that of the stock, both from program zero.
+struct FeedPlace {
+    core::Aabb feeds, stock;
+};
+
+/// Where the feeds are; empty if there are none, or in several work offsets or turned.
+std::optional<FeedPlace> place_of(const OffsetUses& uses, const core::Aabb& stock) {
+    std::optional<FeedPlace> place;
+    for (const auto& [index, use] : uses) {
+        if (use.total <= 0.0) continue;
+        if (place || !use.is_parallel) return std::nullopt;
+        place = FeedPlace{{use.feeds.min - use.datum, use.feeds.max - use.datum},
+                          {stock.min - use.datum, stock.max - use.datum}};
+    }
+    return place;
+}
+
+/// Whether feeds that are scaled about program zero are at the stock and reach into it, but not far
+/// through it.
+bool fits_scaled(const FeedPlace& place, double scale, double diameter) {
+    constexpr double cut_through = 5.0; // mm
+    const core::Aabb feeds{place.feeds.min * scale, place.feeds.max * scale};
+    const core::Aabb room = place.stock.grown(diameter);
+    return feeds.min.x >= room.min.x && feeds.max.x <= room.max.x && feeds.min.y >= room.min.y
+           && feeds.max.y <= room.max.y && feeds.min.z < place.stock.max.z
+           && feeds.min.z > place.stock.min.z - cut_through;
+}
+
+double wider(const core::Aabb& box) { return std::max(box.size().x, box.size().y); }
+
+} // namespace
+
+std::optional<UnitClue> unit_clue_of_place(const OffsetUses& uses, LengthUnit unit,
+                                           const core::Aabb& stock, double diameter) {
+    const auto place = place_of(uses, stock);
+    if (!place) return std::nullopt;
+    const double longest = wider(place->feeds), widest = wider(stock);
+    if (unit == LengthUnit::mm) {
+        constexpr double part = 0.25; // of the stock, that the feeds would span in inches
+        if (!(longest > 0.0) || longest >= diameter || longest * core::mm_per_inch < part * widest
+            || !fits_scaled(*place, core::mm_per_inch, diameter))
+            return std::nullopt;
+        return UnitClue{LengthUnit::inch, 1,
+                        fmt::format("the feeds span {:.1f} mm, less than the diameter of the tool, "
+                                    "and would fit the stock in inches",
+                                    longest)};
+    }
+    constexpr double part = 0.1, more = 1.5; // of the stock
+    const bool misses = std::all_of(uses.begin(), uses.end(), [](const auto& entry) {
+        return entry.second.gap > core::air_gap;
+    });
+    if (!misses || longest < more * widest || longest < part * core::mm_per_inch * widest
+        || !fits_scaled(*place, 1.0 / core::mm_per_inch, diameter))
+        return std::nullopt;
+    return UnitClue{LengthUnit::mm, 3,
+                    fmt::format("the feeds span {:.1f} mm and miss the stock of {:.1f} mm, but "
+                                "would fit it in mm",
+                                longest, widest)};
+}
+
 std::optional<core::Finding> units_doubtful(const gcode::Program& program, const FeedFacts& facts,
                                             const core::Setup& setup,
                                             const std::optional<core::Aabb>& stock, bool unit_said,
-                                            const UnitCodes& codes) {
+                                            const UnitCodes& codes, const OffsetUses& uses) {
     if (!facts.first || facts.in_mm == facts.in_inches) return std::nullopt;
     const LengthUnit unit = facts.in_inches ? LengthUnit::inch : LengthUnit::mm;
     std::vector<UnitClue> clues = unit_clues_of_comments(program);
     for (UnitClue& clue : unit_clues_of_feeds(facts, unit, stock)) clues.push_back(std::move(clue));
+    // Small cuts are usual, so their place only counts beside what speaks against a stated unit.
+    if (stock && (unit_said || unit == LengthUnit::inch)) {
+        double diameter = 0.0;
+        for (const auto& [number, block] : facts.tools)
+            if (const auto tool = setup.tools.find(number); tool != setup.tools.end())
+                diameter = std::max(diameter, tool->second.description.diameter);
+        if (auto clue = unit_clue_of_place(uses, unit, *stock, diameter))
+            clues.push_back(*std::move(clue));
+    }
     int excess = 0;
     std::vector<std::string> reasons;
     for (const UnitClue& clue : clues) {

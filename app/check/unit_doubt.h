@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Program;
 namespace app {
 
 struct FeedFacts;
+struct OffsetUse;
+using OffsetUses = std::map<size_t, OffsetUse>;
 
 /// A reason to believe that a program is in one unit of length.
 struct UnitClue {
@@ -34,6 +37,12 @@ std::vector<UnitClue> unit_clues_of_comments(const gcode::Program& program);
 std::vector<UnitClue> unit_clues_of_feeds(const FeedFacts& facts, gcode::LengthUnit unit,
                                           const std::optional<core::Aabb>& stock);
 
+/// The clue in where the feeds are, which were run in `unit`: they miss the stated stock, or are
+/// small for it and for the tool, and would fit it in the other unit. `diameter`: of the largest
+/// tool that feeds, mm.
+std::optional<UnitClue> unit_clue_of_place(const OffsetUses& uses, gcode::LengthUnit unit,
+                                           const core::Aabb& stock, double diameter);
+
 /// The codes that choose the unit of a program.
 struct UnitCodes {
     std::string_view mm = "G21", inch = "G20";
@@ -41,11 +50,12 @@ struct UnitCodes {
 
 /// The finding `units-doubtful`: the clues for the other unit outweigh those for the unit of the
 /// feeds. It takes more if the program states its unit. In a program that states none, a single
-/// clue is a warning.
+/// clue is a warning. `uses`: where the feeds are.
 std::optional<core::Finding> units_doubtful(const gcode::Program& program, const FeedFacts& facts,
                                             const core::Setup& setup,
                                             const std::optional<core::Aabb>& stock, bool unit_said,
-                                            const UnitCodes& codes = {});
+                                            const UnitCodes& codes = {},
+                                            const OffsetUses& uses = {});
 
 /// The finding `units-jump`: the feeds span about 25.4 times the stock or, if the program states no
 /// unit, 1/25.4 of it.

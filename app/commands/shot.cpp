@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <string>
 
@@ -216,34 +215,57 @@ core::Result<size_t> chosen_block(const ShotOptions& options, const ViewModel& m
 
 core::Result<void> shoot_block(const ShotOptions& options, const render::Viewport& size,
                                OffscreenViewer& offscreen) {
-    FEELER_TRY(const size_t block, chosen_block(options, offscreen.model));
+    ViewModel& model = offscreen.model;
+    FEELER_TRY(const size_t block, chosen_block(options, model));
     if (options.block)
-        viewer::go_to(offscreen.model, block);
+        viewer::go_to(model, block);
+    else if (options.finding)
+        viewer::go_to_witness(model, block, model.findings[*options.finding - 1].pair);
     else
-        viewer::go_to_witness(offscreen.model, block);
+        viewer::go_to_witness(model, block);
     offscreen.settle();
     offscreen.set_view(view_named(options.view), size);
     FEELER_TRY(const render::Image image, offscreen.picture(size, !options.no_ui));
     return render::write_png(image, options.output);
 }
 
-/// Blocks with findings, in order, and the indices of their findings.
-std::vector<std::pair<size_t, std::vector<size_t>>> blocks_with_findings(const ViewModel& model) {
-    std::map<size_t, std::vector<size_t>> blocks;
+/// What a print of a sheet shows: a block, a pair of bodies (without names, the deciding one), and
+/// the findings about them.
+struct SheetPrint {
+    size_t block = 0;
+    viewer::BodyNames pair;
+    std::vector<size_t> findings; // indices
+};
+
+/// The prints of all findings about blocks, in the order of the blocks.
+std::vector<SheetPrint> prints_of_findings(const ViewModel& model) {
+    std::vector<SheetPrint> prints;
     for (size_t i = 0; i < model.findings.size(); ++i) {
-        const auto& block = model.findings[i].block;
-        if (block && core::value_of(*block) < model.rows.size())
-            blocks[core::value_of(*block)].push_back(i);
+        const core::Finding& finding = model.findings[i];
+        if (!finding.block || core::value_of(*finding.block) >= model.rows.size()) continue;
+        const size_t block = core::value_of(*finding.block);
+        const auto same = std::find_if(prints.begin(), prints.end(), [&](const SheetPrint& print) {
+            return print.block == block && print.pair == finding.pair;
+        });
+        if (same != prints.end())
+            same->findings.push_back(i);
+        else
+            prints.push_back({block, finding.pair, {i}});
     }
-    return {blocks.begin(), blocks.end()};
+    std::stable_sort(prints.begin(), prints.end(),
+                     [](const auto& a, const auto& b) { return a.block < b.block; });
+    return prints;
 }
 
-std::string caption_of(const ViewModel& model, size_t block, const std::vector<size_t>& findings) {
-    const BlockRow& row = model.rows[block];
+std::string caption_of(const ViewModel& model, const SheetPrint& print) {
+    const BlockRow& row = model.rows[print.block];
     std::string text;
-    for (const size_t i : findings)
+    for (const size_t i : print.findings)
         text += fmt::format("{}{} {}", text.empty() ? "" : ", ", i + 1, model.findings[i].rule);
-    text += fmt::format("  \xC2\xB7  block {}, line {}", block, row.line);
+    text += fmt::format("  \xC2\xB7  block {}, line {}", print.block, row.line);
+    const viewer::BodyNames decides = {row.part, row.body};
+    if (!print.pair[0].empty() && print.pair != decides)
+        return text + fmt::format("  \xC2\xB7  {} \xE2\x80\x93 {}", print.pair[0], print.pair[1]);
     if (row.has_pair())
         text += fmt::format("  \xC2\xB7  {} mm  {} \xE2\x80\x93 {}",
                             core::clearance_at_least(*row.lower, 2), row.part, row.body);
@@ -253,18 +275,18 @@ std::string caption_of(const ViewModel& model, size_t block, const std::vector<s
 core::Result<void> shoot_sheet(const ShotOptions& options, OffscreenViewer& offscreen) {
     const render::Viewport size{460, 330};
     std::vector<OffscreenViewer::Print> prints;
-    const auto blocks = blocks_with_findings(offscreen.model);
-    for (const auto& [block, findings] : blocks) {
+    const std::vector<SheetPrint> wanted = prints_of_findings(offscreen.model);
+    for (const SheetPrint& print : wanted) {
         if (prints.size() == most_prints) break;
-        viewer::go_to_witness(offscreen.model, block);
+        viewer::go_to_witness(offscreen.model, print.block, print.pair);
         offscreen.settle();
         offscreen.set_view(viewer::ShotView::witness, size);
         FEELER_TRY(render::Image image, offscreen.picture(size, false));
-        prints.push_back({std::move(image), caption_of(offscreen.model, block, findings)});
+        prints.push_back({std::move(image), caption_of(offscreen.model, print)});
     }
-    if (blocks.size() > prints.size())
-        print_note(fmt::format("feeler: the sheet has the first {} of {} blocks with findings\n",
-                               prints.size(), blocks.size()));
+    if (wanted.size() > prints.size())
+        print_note(fmt::format("feeler: the sheet has the first {} of {} pictures of findings\n",
+                               prints.size(), wanted.size()));
     if (prints.empty())
         return core::fail(core::ErrorCode::missing_value, "--sheet: no finding is about a block");
     const size_t columns = prints.size() < 4 ? prints.size() : prints.size() < 9 ? 2 : 3;

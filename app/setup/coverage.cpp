@@ -22,6 +22,7 @@ std::string names_text(const Coverage& coverage, Known known) {
     std::string text;
     for (const CoverageItem& item : items_of(coverage)) {
         if (item.known != known) continue;
+        if (coverage.limits_need_offsets && item.key == std::string_view("limits")) continue;
         const bool is_tools = item.key == std::string_view("holders");
         const bool has_tools = is_tools && !coverage.tools_without_holder.empty();
         text += (text.empty() ? "" : ", ")
@@ -57,6 +58,9 @@ std::string uncovered_text(const Coverage& coverage) {
     const std::string inferred = names_text(coverage, Known::inferred);
     std::string text = missing.empty() ? "" : missing + ": not described";
     if (!inferred.empty()) text += (text.empty() ? "" : "; ") + inferred + ": assumed";
+    if (coverage.limits_need_offsets)
+        text += std::string(text.empty() ? "" : "; ")
+                + "axis limits: not checked, because no work offset is stated";
     return text;
 }
 
@@ -65,6 +69,8 @@ std::string headline_of(const Judged& judged, const Coverage& coverage) {
     if (judged.verdict != core::Verdict::clear) return verdict_text(judged.verdict);
     if (!coverage.moves) return "NOTHING CHECKED, the program moves nothing";
     if (judged.has_errors) return "ERRORS in the program; clearances are sufficient";
+    if (judged.lacks_required)
+        return "REQUIRED COVERAGE IS MISSING; no error in the program itself";
     return coverage.is_complete() ? verdict_text(judged.verdict) : "NO ERROR IN THE PROGRAM ITSELF";
 }
 

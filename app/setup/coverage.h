@@ -29,6 +29,7 @@ struct Coverage {
     Known start = Known::described;   // the start position, or no verdict rests on it
     std::vector<core::ToolNumber> tools_without_holder; // that feed; in ascending order
     bool moves = false;                                 // some block moves
+    bool limits_need_offsets = false; // the limits are described, but not where the work is
 
     bool is_complete() const;
     bool operator==(const Coverage&) const = default;
@@ -51,8 +52,9 @@ std::string uncovered_text(const Coverage& coverage);
 /// What a headline depends on besides the coverage.
 struct Judged {
     core::Verdict verdict = core::Verdict::clear;
-    bool is_stopped = false; // before the end of the program
-    bool has_errors = false; // other than `incomplete-setup`
+    bool is_stopped = false;     // before the end of the program
+    bool has_errors = false;     // other than `incomplete-setup`
+    bool lacks_required = false; // `incomplete-setup` is an error: coverage that is required
 };
 
 /// The verdict on a program in words, in capitals, that says no more than was checked: "CLEAR" only

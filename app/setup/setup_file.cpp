@@ -601,7 +601,10 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
     read_bodies(root, context);
     read_allowances(root, setup);
     check_allowance_names(root, setup);
-    if (file.assumed.contains("offsets") && !file.infers_frame && drop_limits(setup.machine))
+    const bool has_assumed_offsets = file.assumed.contains("offsets") && !file.infers_frame;
+    if (has_assumed_offsets)
+        file.limits_need_offsets = known_limits(setup.machine) == Known::described;
+    if (has_assumed_offsets && drop_limits(setup.machine))
         file.assumptions.push_back(
             "axis limits are not checked, because the work offsets are only assumed");
     file.limits_known = known_limits(setup.machine);
@@ -630,6 +633,7 @@ std::string assume_machine_zero(SetupFile& file) {
     if (file.infers_home) environment.home = gcode::AxisValues{0.0, 0.0, top};
     if (file.infers_second_home && top != 0.0)
         environment.second_home = gcode::AxisValues{0.0, 0.0, top};
+    file.limits_need_offsets = known_limits(machine) == Known::described;
     const bool has_limits = drop_limits(machine);
     const bool is_zero = top == 0.0;
     return fmt::format(

@@ -65,7 +65,9 @@ struct SetupFile {
     bool touches_off = false;     // assumed: Z is touched off with each tool
     bool loses_machine = false; // machine bodies are left out: nobody knows where the work is on it
     Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
-    bool infers_start = false; // the start position, with the work offsets
+    bool limits_need_offsets = false; // the limits were dropped because no work offset is stated
+    std::string stock_mismatch;       // how the program's own stock differs; empty: it does not
+    bool infers_start = false;        // the start position, with the work offsets
     bool infers_home = false, infers_second_home = false; // likewise the reference points
     std::set<std::string> assumed; // words of `assumed`: what the file states without knowing it
     std::string start_assumption;  // of a start position that nothing states; or empty

@@ -49,13 +49,20 @@ std::string direction_text(const Vec3& direction) {
     return text;
 }
 
+std::string depth_text(const Overlap& overlap, int digits) {
+    if (!overlap.most) return "at least " + clearance_at_least(overlap.least, digits);
+    return overlap.least < 0.01 ? "up to " + at_most(*overlap.most, digits)
+                                : bounds_text(overlap.least, *overlap.most, " to ", digits);
+}
+
+std::string depth_number(const Overlap& overlap, int digits) {
+    const std::string text = depth_text(overlap, digits);
+    return text.substr(text.rfind(' ') + 1);
+}
+
 std::string overlap_text(const Overlap& overlap) {
-    constexpr int digits = 2;
-    const std::string least = clearance_at_least(overlap.least, digits);
-    if (!overlap.most) return fmt::format("The overlap is at least {} mm deep.", least);
-    const std::string depth = overlap.least < 0.01
-                                  ? "up to " + at_most(*overlap.most, digits)
-                                  : bounds_text(overlap.least, *overlap.most, " to ", digits);
+    const std::string depth = depth_text(overlap);
+    if (!overlap.most) return fmt::format("The overlap is {} mm deep.", depth);
     return fmt::format("The overlap is {} mm deep; the shortest way out is towards {}.", depth,
                        direction_text(overlap.way_out));
 }

@@ -62,6 +62,14 @@ std::string target_text(const OverTravel& over_travel);
 /// A direction in the frame of the stock by its main axes: "X+ Z+".
 std::string direction_text(const Vec3& direction);
 
+/// How deep an overlap is, without the unit: "2.00", "1.96 to 2.01", "up to 0.01", "at least 3.19".
+/// Lower bounds are rounded down and upper bounds up; bounds that differ by at most one unit of the
+/// last digit are one number, the lower bound.
+std::string depth_text(const Overlap& overlap, int digits = 2);
+
+/// The last number of depth_text: the depth at most, else at least.
+std::string depth_number(const Overlap& overlap, int digits = 2);
+
 /// "The overlap is 3.199 to 3.201 mm deep; the shortest way out is towards X+."
 std::string overlap_text(const Overlap& overlap);
 

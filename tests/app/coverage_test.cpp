@@ -217,11 +217,35 @@ TEST(Coverage, MayBeRequired) {
     const auto lacking = run(slot, "", {"--require", "coverage"});
     EXPECT_EQ(lacking.status, 1);
     EXPECT_THAT(lacking.out, HasSubstr("error    incomplete-setup"));
-    EXPECT_THAT(lacking.out, HasSubstr("p.nc: NO ERROR IN THE PROGRAM ITSELF"));
+    EXPECT_THAT(lacking.out, HasSubstr("p.nc: REQUIRED COVERAGE IS MISSING; no error in the "));
+    EXPECT_THAT(lacking.out, HasSubstr("findings   1 error"));
     EXPECT_EQ(run(slot, setup_of(all_tables), {"--require", "coverage"}).status, 0);
     for (const auto& [name, text] : tables)
         EXPECT_EQ(run(slot, setup_of(without(name)), {"--require", "coverage"}).status, 1) << name;
     EXPECT_EQ(run(slot, "", {"--require", "miracles"}).status, 2);
+}
+
+TEST(Coverage, ThatIsRequiredAndMissingIsCalledSoInEveryFormat) {
+    const std::string headline = "REQUIRED COVERAGE IS MISSING; no error in the program itself";
+    for (const char* format : {"text", "html", "json", "jsonl", "sarif", "junit"}) {
+        const auto ran = run(slot, "", {"--require", "coverage", "--format", format});
+        EXPECT_EQ(ran.status, 1) << format;
+        EXPECT_THAT(ran.out, HasSubstr(headline)) << format;
+        EXPECT_THAT(ran.out, Not(HasSubstr("NO ERROR IN THE PROGRAM ITSELF"))) << format;
+    }
+    const auto junit = run(slot, "", {"--require", "coverage", "--format", "junit"});
+    EXPECT_THAT(junit.out,
+                HasSubstr("message=\"" + headline + ": 1 error\" type=\"incomplete-setup\""));
+}
+
+TEST(Coverage, OfLimitsThatNeedAWorkOffsetNamesTheWorkOffset) {
+    const auto lacking = run(slot, setup_of(without("offsets")), {"--require", "coverage"});
+    const std::string out = lacking.out;
+    EXPECT_THAT(out, HasSubstr("because no work offset is"));
+    EXPECT_THAT(out, HasSubstr("[offsets]"));
+    EXPECT_THAT(out, Not(HasSubstr("axis limits: not described")));
+    EXPECT_THAT(run(slot, setup_of(without("machine"))).out,
+                HasSubstr("axis limits: not described"));
 }
 
 TEST(Coverage, MayBeRequiredOfManyProgramsAndByTheirProject) {

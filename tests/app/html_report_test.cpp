@@ -209,6 +209,25 @@ TEST(HtmlReport, ShowsTheTightestBlockWhereNothingWasFound) {
                                             core::value_of(tightest_block(run)->block))));
 }
 
+/// The text and the chip of a finding give one depth.
+TEST(HtmlReport, RoundsTheDepthOfAnOverlapAlikeEverywhere) {
+    EXPECT_EQ(core::depth_text({.least = 1.9996, .most = 2.0003}), "1.99 to 2.01");
+    EXPECT_EQ(core::depth_text({.least = 2.0, .most = 2.0003}), "2.00");
+    EXPECT_EQ(core::depth_number({.least = 2.0, .most = 2.0003}), "2.00");
+    EXPECT_EQ(core::depth_number({.least = 1.9612, .most = 2.0012}), "2.01");
+    EXPECT_EQ(core::depth_text({.least = 3.1999}), "at least 3.19");
+    EXPECT_EQ(core::depth_text({.least = 0.0, .most = 0.004}), "up to 0.01");
+    CheckRun run = clamped_plate();
+    for (core::Finding& finding : run.findings) {
+        if (!finding.overlap) continue;
+        finding.overlap = core::Overlap{2.0, 2.0003, {0.0, 0.0, 1.0}};
+        finding.message = core::overlap_text(*finding.overlap);
+    }
+    const std::string page = html_report(run, {});
+    EXPECT_THAT(page, HasSubstr("2.00 mm deep"));
+    EXPECT_THAT(page, Not(HasSubstr("2.01 mm deep")));
+}
+
 TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {
     CheckRun run = clamped_plate();
     const std::string plain = html_report(run, {});

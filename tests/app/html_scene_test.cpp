@@ -1,4 +1,5 @@
 #include <cstring>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,9 @@
 #include "render/body_mesh.h"
 #include "render/camera.h"
 #include "render/scene.h"
+#include "tests/support/program_writer.h"
+#include "tests/support/scoped_folder.h"
+#include "tests/support/setup_writer.h"
 
 namespace app {
 namespace {
@@ -109,9 +113,9 @@ TEST(PicturedRun, FindsWhatACheckFindsAndShowsTheWorstBlocks) {
     EXPECT_EQ(run.blocks.size(), plain.blocks.size());
     EXPECT_EQ(run.findings.size(), plain.findings.size());
     EXPECT_EQ(run.removed, plain.removed);
-    std::vector<size_t> blocks;
+    std::vector<ShownMoment> moments;
     for (const BlockView& view : views.views) {
-        blocks.push_back(view.block);
+        moments.push_back(view.moment);
         const json scene = json::parse(view.scene);
         EXPECT_GT(scene["bodies"].size(), 3U);
         EXPECT_TRUE(scene.contains("witness"));
@@ -119,8 +123,33 @@ TEST(PicturedRun, FindsWhatACheckFindsAndShowsTheWorstBlocks) {
         EXPECT_EQ(view.picture.substr(0, 2), "\xFF\xD8");
         EXPECT_EQ(view.picture.substr(view.picture.size() - 2), "\xFF\xD9");
     }
-    EXPECT_EQ(blocks, blocks_to_show(plain, 12));
-    EXPECT_EQ(blocks.size(), 4U);
+    EXPECT_EQ(moments, moments_to_show(plain, 12));
+    EXPECT_EQ(moments.size(), 4U);
+}
+
+TEST(PicturedRun, ShowsEachPairOfABlockAtItsOwnMoment) {
+    // The plunge takes first the flutes and then the holder into a jaw.
+    const test_support::ScopedFolder files;
+    const CheckJob job{
+        .program = files.write(
+            "p.nc", test_support::program({"G0 X50. Y97.", "Z20.", "G1 Z-28. F200.", "G0 Z60."})),
+        .setup =
+            files.write("s.toml", test_support::SetupWriter()
+                                      .fixture("jaw", "box = [[-40, 100, -60], [140, 130, 10]]")
+                                      .text()),
+        .detail = core::Detail::deciding_pair};
+    ReportViews views;
+    const CheckRun run = *run_pictured_check(job, views);
+    std::map<std::string, std::string> scenes; // by the part that meets the jaw in the plunge
+    for (const BlockView& view : views.views)
+        if (view.moment.pair[1] == "jaw" && run.blocks[view.moment.block].text == "G1 Z-28. F200.")
+            scenes[view.moment.pair[0]] = view.scene;
+    ASSERT_TRUE(scenes.contains("flutes") && scenes.contains("holder"));
+    EXPECT_NE(scenes["flutes"], scenes["holder"]);
+    for (const auto& [part, text] : scenes)
+        for (const json& body : json::parse(text)["bodies"])
+            EXPECT_EQ(body.contains("state"), body["name"] == part || body["name"] == "jaw")
+                << part << " " << body["name"];
 }
 
 TEST(PicturedRun, EndsEarlyOnRequest) {

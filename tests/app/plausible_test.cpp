@@ -170,6 +170,24 @@ TEST(ToolMismatch, IsAWarningIfTheToolInTheSetupIsTheLargerOne) {
     EXPECT_EQ(count_of(with("T3 DRILL D20"), "tool-mismatch"), 0) << "not used";
 }
 
+TEST(ToolMismatch, IsAWarningIfTheCommentNamesADrillOrAChamferMillForAMill) {
+    const auto with = [](const std::string& comment, const std::string& shape) {
+        const SetupWriter setup =
+            SetupWriter().tool("number = 1\nshape = \"" + shape
+                               + "\"\ndiameter = 10\nflute_length = 40\nshank = [[10, 10, 25]]\n"
+                                 "holder = [[40, 40, 50]]\n");
+        return check(setup, "(" + comment + ")\n"
+                                + program({"G0 X50. Y50.", "G98 G81 Z-5. R2. F300.", "G80"}));
+    };
+    EXPECT_EQ(with("T1 10MM DRILL", "flat").finding("tool-mismatch").severity, "warning");
+    EXPECT_EQ(with("T1 10MM CHAMFER MILL", "flat").finding("tool-mismatch").severity, "warning");
+    EXPECT_EQ(with("T1 10MM DRILL", "ball").finding("tool-mismatch").severity, "warning");
+    EXPECT_EQ(count_of(with("T1 10MM DRILL", "drill"), "tool-mismatch"), 0);
+    EXPECT_EQ(count_of(with("T1 10MM SPOT DRILL", "drill"), "tool-mismatch"), 0);
+    EXPECT_EQ(count_of(with("T1 10MM COUNTERSINK", "drill"), "tool-mismatch"), 0);
+    EXPECT_EQ(count_of(with("T1 10MM END MILL", "flat"), "tool-mismatch"), 0);
+}
+
 TEST(ImplausibleValue, IsAWarningForAFeedAboveTheRapidSpeedOfTheMachine) {
     const auto at = [](const char* feed) {
         return check(SetupWriter(), program({"G0 X-20. Y50.", "Z2.", "G1 Z-5. F300.",

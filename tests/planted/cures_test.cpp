@@ -111,6 +111,21 @@ TEST(Cure, OfARapidThroughAClampIsTheSmallestShiftThatClearsTheBlock) {
     EXPECT_NE(finding.message.find("towards Y-."), std::string::npos) << finding.message;
 }
 
+/// A plunge next to a jaw that stands 10 above the stock: only a tool that cuts nothing clears it.
+TEST(Cure, OfAFeedDoesNotLiftItOutOfItsCut) {
+    const SetupWriter setup =
+        SetupWriter().fixture("jaw", "box = [[-40, 97, -60], [140, 130, 10]]");
+    const FindingLine finding =
+        check(setup, program({"G0 X50. Y97.", "Z20.", "G1 Z-15. F200.", "G0 Z60."}))
+            .finding("collision");
+    EXPECT_EQ(finding.cure.find("towards Z+"), std::string::npos) << finding.cure;
+    // Beside the stock there is nothing to cut, so the shift away is offered there.
+    const FindingLine in_air =
+        check(setup, program({"G0 X-20. Y93.", "Z20.", "G1 Z5. F200.", "X-15.", "G0 Z60."}))
+            .finding("near-miss");
+    EXPECT_NE(in_air.cure.find("tried"), std::string::npos) << in_air.cure;
+}
+
 TEST(Cure, OfACycleThatBeginsInTheStockTellsHowDeepItsRapidIs) {
     const SetupWriter setup =
         SetupWriter().also_tool("number = 2\nshape = \"drill\"\ndiameter = 8\nflute_length = 40\n"

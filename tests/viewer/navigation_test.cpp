@@ -82,6 +82,38 @@ TEST(Navigation, ViolationsAreVisitedAtTheirClosestMomentAndRoundAgain) {
     EXPECT_EQ(model.cursor.block, 7U);
 }
 
+/// A block in which two pairs collide at different times.
+ViewModel two_collisions() {
+    BlockRow row = row_with(0.0);
+    row.verdict = core::Verdict::collision;
+    row.part = "flutes";
+    row.body = "jaw";
+    row.witness_time = 0.2;
+    row.others = {{.names = {"holder", "jaw"},
+                   .on_tool = core::Vec3(1.0),
+                   .on_body = core::Vec3(2.0),
+                   .time = 0.75,
+                   .verdict = core::Verdict::collision}};
+    return model_of({row_with(5.0), row, row_with(5.0)});
+}
+
+TEST(Navigation, AFindingIsShownWhenItsOwnBodiesCollide) {
+    ViewModel model = two_collisions();
+    go_to_witness(model, 1, {"holder", "jaw"});
+    EXPECT_EQ(model.cursor, (Cursor{1, 0.75}));
+    const auto witness = witness_of(model);
+    ASSERT_TRUE(witness);
+    EXPECT_EQ(witness->b, core::Vec3(2.0));
+    go_to_witness(model, 1, {"flutes", "jaw"});
+    EXPECT_EQ(model.cursor, (Cursor{1, 0.2}));
+    go_to_witness(model, 1);
+    EXPECT_EQ(model.cursor, (Cursor{1, 0.2})) << "the deciding pair";
+    go_to_witness(model, 1, {"holder", "jaw"});
+    step(model, 1);
+    step(model, 1);
+    EXPECT_EQ(model.shown_pair, BodyNames());
+}
+
 /// The stock must be the one that the block meets, not the one that it leaves.
 TEST(Navigation, AWitnessAtTheEndOfABlockIsShownBeforeItsEnd) {
     ViewModel model = ten_blocks();

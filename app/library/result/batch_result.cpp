@@ -37,8 +37,7 @@ Outcome outcome_of(const ProgramResult& result) {
         break;
     }
     if (result.coverage && !result.coverage->moves) return Outcome::no_motion;
-    if (std::any_of(result.findings.begin(), result.findings.end(), is_error_of_program))
-        return Outcome::errors;
+    if (status_of(result) == 1) return Outcome::errors;
     return result.coverage && result.coverage->is_complete() ? Outcome::clear : Outcome::no_error;
 }
 

@@ -382,7 +382,7 @@ ProgramChange change_between(const ProgramResult& before, const ProgramResult& a
                          .longer = after.cycle_time - before.cycle_time,
                          .new_findings = missing_in(were, after.findings, are),
                          .gone_findings = missing_in(are, before.findings, were)};
-    if (before.tightest && after.tightest)
+    if (before.tightest && after.tightest && !has_only_contact(before) && !has_only_contact(after))
         change.nearer = margin_of(*before.tightest) - margin_of(*after.tightest);
     return change;
 }

@@ -213,6 +213,12 @@ ProgramResult failed_result(const CheckJob& job, const core::Error& error) {
     return result;
 }
 
+bool has_only_contact(const ProgramResult& result) {
+    return result.verdict == core::Verdict::clear && result.tightest
+           && result.tightest->allowance <= core::resolution
+           && result.tightest->lower <= core::resolution;
+}
+
 int status_of(const ProgramResult& result) {
     if (result.error) return 2;
     const bool has_errors = std::any_of(
@@ -228,7 +234,9 @@ std::string headline_of(const ProgramResult& result) {
     unknown.moves = result.blocks > 0;
     return headline_of({.verdict = result.verdict,
                         .is_stopped = result.error.has_value(),
-                        .has_errors = in_program},
+                        .has_errors = in_program,
+                        .lacks_required = std::any_of(result.findings.begin(),
+                                                      result.findings.end(), lacks_coverage)},
                        result.coverage.value_or(unknown));
 }
 

@@ -78,6 +78,10 @@ struct ProgramResult {
     bool operator==(const ProgramResult&) const = default;
 };
 
+/// Whether the tightest block only shows that bodies touch that may: the program has no clearance
+/// that says more.
+bool has_only_contact(const ProgramResult& result);
+
 /// The stored result of a check.
 ProgramResult result_of(const CheckRun& run, const std::string& setup);
 

@@ -63,6 +63,7 @@ StoredJson json_of(const Coverage& coverage) {
     for (const core::ToolNumber tool : coverage.tools_without_holder)
         json["tools_without_holder"].push_back(core::value_of(tool));
     json["moves"] = coverage.moves;
+    json["limits_need_offsets"] = coverage.limits_need_offsets;
     json["complete"] = coverage.is_complete();
     return json;
 }
@@ -83,6 +84,7 @@ Coverage coverage_from(const StoredJson& json) {
         coverage.tools_without_holder.push_back(core::ToolNumber{whole_from<int>(tool)});
     if (!json.at("moves").is_boolean()) throw std::invalid_argument("neither true nor false");
     coverage.moves = json.at("moves").get<bool>();
+    coverage.limits_need_offsets = json.value("limits_need_offsets", false);
     return coverage;
 }
 

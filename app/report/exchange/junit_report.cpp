@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include "app/base/findings.h"
 #include "app/base/text.h"
 #include "app/report/exchange/exchange_reports.h"
+#include "core/base/rule_table.h"
 
 namespace app {
 namespace {
@@ -82,6 +84,14 @@ std::string name_attributes(const std::string& program) {
                        xml_attribute(folder.empty() ? "." : folder));
 }
 
+/// The type of a failure: the verdict or, if that is clear, what kind of error there is.
+const char* failure_type(const ProgramResult& program) {
+    if (program.verdict != core::Verdict::clear) return core::name_of(program.verdict);
+    const bool in_program =
+        std::any_of(program.findings.begin(), program.findings.end(), is_error_of_program);
+    return in_program ? "error" : core::rule_id("incomplete-setup");
+}
+
 std::string case_of(const ProgramResult& program) {
     std::string text = fmt::format("    <testcase {} time=\"{:.3f}\">\n",
                                    name_attributes(program.program), program.seconds);
@@ -100,7 +110,7 @@ std::string case_of(const ProgramResult& program) {
                                 ? xml_attribute(headline_of(program))
                                 : core::name_of(program.verdict),
                             counted(count_of(program, core::Severity::error), "error"),
-                            core::name_of(program.verdict), xml_text(errors));
+                            failure_type(program), xml_text(errors));
     }
     if (!others.empty()) text += "      <system-out>" + xml_text(others) + "</system-out>\n";
     return text + "    </testcase>\n";

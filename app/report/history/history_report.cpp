@@ -42,6 +42,9 @@ std::string minute_text(int64_t seconds) { return time_text("{:%Y-%m-%d %H:%M}",
 std::string nearest_text(const ProgramResult& result) {
     if (!result.tightest) return "no pair of bodies within the search limit";
     const Tightest& tightest = *result.tightest;
+    if (has_only_contact(result))
+        return fmt::format("permitted contact only: {} / {}, line {}", trimmed(tightest.pair[0]),
+                           trimmed(tightest.pair[1]), tightest.line);
     return fmt::format("{} mm {} / {}, line {}",
                        clearance_text({true, tightest.lower, tightest.upper, tightest.allowance},
                                       ClearanceStyle::column),

@@ -84,6 +84,12 @@ function clearanceText(blocks, i) {
   return millimetres(blocks.lower[i]) + "\u2013" + millimetres(blocks.lower[i] + blocks.width[i]);
 }
 
+/** The clearance with its unit and the pair, for a sentence: "3.605 mm flutes / jaw", "contact flutes / stock". */
+function clearanceWithPair(blocks, i) {
+  const text = clearanceText(blocks, i), hasUnit = /[0-9]/.test(text);
+  return [text + (hasUnit ? " mm" : ""), pairText(blocks, i)].filter(Boolean).join(" ");
+}
+
 function pairText(blocks, i) {
   const pair = blocks.pairs[blocks.pair[i]];
   return pair ? pair[0] + " / " + pair[1] : "";

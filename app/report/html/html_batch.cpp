@@ -182,7 +182,7 @@ size_t tightest_program(const BatchResult& batch) {
     };
     size_t tightest = batch.programs.size();
     for (size_t i = 0; i < batch.programs.size(); ++i) {
-        if (!batch.programs[i].tightest) continue;
+        if (!batch.programs[i].tightest || has_only_contact(batch.programs[i])) continue;
         const bool is_first = tightest == batch.programs.size();
         if (is_first || margin(batch.programs[i]) < margin(batch.programs[tightest])) tightest = i;
     }
@@ -192,7 +192,7 @@ size_t tightest_program(const BatchResult& batch) {
 std::string tightest_html(const BatchResult& batch) {
     const size_t at = tightest_program(batch);
     if (at == batch.programs.size())
-        return "no pair of bodies within the search limit in any program";
+        return "no pair of bodies within the search limit in any program, except permitted contact";
     const ProgramResult& program = batch.programs[at];
     const Tightest& tightest = *program.tightest;
     const std::string name = program.program.substr(common_folder(batch).size());

@@ -19,10 +19,18 @@ using viewer::FindingStretch;
 
 constexpr size_t most_locations = 12; // per card; the table of blocks has all
 
-const BlockView* view_of(const ReportViews& views, size_t block) {
-    for (const BlockView& view : views.views)
-        if (view.block == block) return &view;
-    return nullptr;
+/// The index of the view of a moment; `views.views.size()` if there is none.
+size_t view_of(const ReportViews& views, const ShownMoment& moment) {
+    const auto found = std::find_if(views.views.begin(), views.views.end(),
+                                    [&](const BlockView& view) { return view.moment == moment; });
+    return static_cast<size_t>(found - views.views.begin());
+}
+
+/// The attributes of a button that shows a moment.
+std::string target_of(const ReportViews& views, const ShownMoment& moment) {
+    const size_t view = view_of(views, moment);
+    return fmt::format("data-block=\"{}\"", moment.block)
+           + (view < views.views.size() ? fmt::format(" data-view=\"{}\"", view) : "");
 }
 
 /// "line 23"; in a subprogram's file "O1000.nc, line 23".
@@ -31,40 +39,44 @@ std::string line_of(const CheckedBlock& block) {
     return block.file.empty() ? line : html_text(block.file) + ", " + line;
 }
 
-void add_new(std::vector<size_t>& blocks, size_t block) {
-    if (std::find(blocks.begin(), blocks.end(), block) == blocks.end()) blocks.push_back(block);
+void add_new(std::vector<ShownMoment>& moments, const ShownMoment& moment) {
+    if (std::find(moments.begin(), moments.end(), moment) == moments.end())
+        moments.push_back(moment);
 }
 
-std::string picture_of(const CheckRun& run, const std::string& rule, size_t block,
+std::string picture_of(const CheckRun& run, const std::string& rule, const ShownMoment& moment,
                        const ReportViews& views) {
-    const BlockView* view = view_of(views, block);
-    if (!view || view->picture.empty()) return "";
+    const size_t view = view_of(views, moment);
+    if (view == views.views.size() || views.views[view].picture.empty()) return "";
     return fmt::format(
-        R"(<button type="button" class="shot" data-block="{0}" aria-label="Show block {0} in 3D">)"
-        R"(<img alt="{1} in block {0}, {2}" src="data:image/jpeg;base64,{3}"></button>)",
-        block, html_text(rule), line_of(run.blocks[block]), base64(view->picture));
+        R"(<button type="button" class="shot" {1} aria-label="Show block {0} in 3D">)"
+        R"(<img alt="{2} in block {0}, {3}" src="data:image/jpeg;base64,{4}"></button>)",
+        moment.block, target_of(views, moment), html_text(rule), line_of(run.blocks[moment.block]),
+        base64(views.views[view].picture));
 }
 
 std::string clearance_of(const FindingStretch& stretch) {
-    if (const auto depth = viewer::depth_of(stretch))
-        return " \xC2\xB7 " + core::at_most(*depth, 2) + " mm deep";
+    if (stretch.overlap) return " \xC2\xB7 " + core::depth_text(*stretch.overlap) + " mm deep";
     return stretch.clearance ? " \xC2\xB7 " + core::clearance_at_least(*stretch.clearance) + " mm"
                              : std::string();
 }
 
-std::string location_button(const CheckRun& run, const FindingStretch& stretch) {
+std::string location_button(const CheckRun& run, const FindingStretch& stretch,
+                            const std::string& target) {
     const CheckedBlock &first = run.blocks[stretch.first], &last = run.blocks[stretch.last];
     std::string lines = line_of(first);
     if (last.line != first.line) lines += fmt::format("\xE2\x80\x93{}", last.line);
-    return fmt::format(R"(<li><button type="button" data-block="{}">{}{}</button></li>)",
-                       stretch.worst, lines, clearance_of(stretch));
+    return fmt::format(R"(<li><button type="button" {}>{}{}</button></li>)", target, lines,
+                       clearance_of(stretch));
 }
 
-std::string location_list(const CheckRun& run, const FindingGroup& group) {
+std::string location_list(const CheckRun& run, const FindingGroup& group,
+                          const ReportViews& views) {
     if (group.stretches.size() < 2) return "";
     std::string list = R"(<ul class="places">)";
     for (size_t i = 0; i < std::min(group.stretches.size(), most_locations); ++i)
-        list += location_button(run, group.stretches[i]);
+        list += location_button(run, group.stretches[i],
+                                target_of(views, {group.stretches[i].worst, group.pair}));
     if (group.stretches.size() > most_locations)
         list += fmt::format(R"(<li><button type="button" data-rule="{}">and {} more</button></li>)",
                             html_text(group.rule), group.stretches.size() - most_locations);
@@ -94,33 +106,33 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
     if (group.stretches.empty()) return card + said(group.message, group.cure) + "</article>\n";
     const FindingStretch& worst = group.stretches[group.worst];
     const CheckedBlock& block = run.blocks[worst.worst];
-    card += picture_of(run, group.rule, worst.worst, views) + said(worst.message, worst.cure);
-    card += fmt::format(
-        R"(<p class="where"><button type="button" data-block="{}">Block {}, {}{}</button> )"
-        R"(<code>{}</code>{}</p>)",
-        worst.worst, worst.worst, line_of(block), clearance_of(worst),
-        html_text(trimmed(block.text)),
-        group.count > 1 ? fmt::format(" The worst of {} blocks.", group.count) : std::string());
-    return card + location_list(run, group) + "</article>\n";
+    const ShownMoment moment{worst.worst, group.pair};
+    card += picture_of(run, group.rule, moment, views) + said(worst.message, worst.cure);
+    card += fmt::format(R"(<p class="where"><button type="button" {}>Block {}, {}{}</button> )"
+                        R"(<code>{}</code>{}</p>)",
+                        target_of(views, moment), worst.worst, line_of(block), clearance_of(worst),
+                        html_text(trimmed(block.text)),
+                        group.count > 1 ? fmt::format(" The worst of {} blocks.", group.count)
+                                        : std::string());
+    return card + location_list(run, group, views) + "</article>\n";
 }
 
 /// Card of the tightest block, for a program without findings.
 std::string tightest_card(const CheckRun& run, const ReportViews& views) {
     const CheckedBlock* nearest = tightest_block(run);
     if (!nearest) return "";
-    const size_t block = core::value_of(nearest->block);
+    const ShownMoment moment{core::value_of(nearest->block), {}};
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
     return fmt::format(
                R"(<article class="card"><header><span class="badge">tightest</span><h3>{}</h3>)"
                R"(<span class="pair">{} / {}</span></header>)",
                line_of(*nearest), html_text(core::part_name(run.setup, pair.pair)),
                html_text(core::body_name(run.setup, pair.pair)))
-           + picture_of(run, "tightest", block, views)
-           + fmt::format(R"(<p class="where"><button type="button" data-block="{0}">Block {0} )"
-                         "\xC2\xB7 {1} (minimum {2} mm)</button> <code>{3}</code></p>"
-                         "</article>\n",
-                         block, clearance_text(shown_clearance(pair), ClearanceStyle::sentence),
-                         core::at_most(pair.allowance.distance), html_text(trimmed(nearest->text)));
+           + picture_of(run, "tightest", moment, views)
+           + fmt::format(R"(<p class="where"><button type="button" {3}>Block {0} )"
+                         "\xC2\xB7 {1}</button> <code>{2}</code></p></article>\n",
+                         moment.block, tightest_words(nearest->result, ClearanceStyle::sentence),
+                         html_text(trimmed(nearest->text)), target_of(views, moment));
 }
 
 } // namespace
@@ -132,22 +144,23 @@ std::vector<FindingGroup> finding_groups(const CheckRun& run) {
     return viewer::grouped(rows, run.findings);
 }
 
-std::vector<size_t> blocks_of_cards(const CheckRun& run) {
-    std::vector<size_t> blocks;
+std::vector<ShownMoment> moments_of_cards(const CheckRun& run) {
+    std::vector<ShownMoment> moments;
     for (const FindingGroup& group : finding_groups(run))
-        if (!group.stretches.empty()) add_new(blocks, group.stretches[group.worst].worst);
+        if (!group.stretches.empty())
+            add_new(moments, {group.stretches[group.worst].worst, group.pair});
     const CheckedBlock* nearest = tightest_block(run);
-    if (blocks.empty() && nearest) blocks.push_back(core::value_of(nearest->block));
-    return blocks;
+    if (moments.empty() && nearest) moments.push_back({core::value_of(nearest->block), {}});
+    return moments;
 }
 
-std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most) {
-    std::vector<size_t> blocks = blocks_of_cards(run);
+std::vector<ShownMoment> moments_to_show(const CheckRun& run, size_t most) {
+    std::vector<ShownMoment> moments = moments_of_cards(run);
     for (const FindingGroup& group : finding_groups(run))
         for (size_t i = 0; i < std::min(group.stretches.size(), most_locations); ++i)
-            add_new(blocks, group.stretches[i].worst);
-    if (blocks.size() > most) blocks.resize(most);
-    return blocks;
+            add_new(moments, {group.stretches[i].worst, group.pair});
+    if (moments.size() > most) moments.resize(most);
+    return moments;
 }
 
 std::string html_cards(const CheckRun& run, const ReportViews& views) {

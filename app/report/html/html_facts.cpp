@@ -36,9 +36,8 @@ std::string tightest_text(const CheckRun& run) {
     const CheckedBlock* block = tightest_block(run);
     if (!block) return "no pair of bodies within the search limit";
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-    return fmt::format("{} (minimum {} mm): {} / {} in block {}, line {}",
-                       clearance_text(shown_clearance(pair), ClearanceStyle::sentence),
-                       core::at_most(pair.allowance.distance),
+    return fmt::format("{}: {} / {} in block {}, line {}",
+                       tightest_words(block->result, ClearanceStyle::sentence),
                        core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
                        core::value_of(block->block), block->line);
 }

@@ -66,7 +66,9 @@ std::string notice_of(const ReportViews& views) {
 std::string views_json(const ReportViews& views) {
     std::string list;
     for (const BlockView& view : views.views)
-        list += fmt::format(R"({}{{"block":{},"scene":{}}})", list.empty() ? "" : ",", view.block,
+        list += fmt::format(R"({}{{"block":{},"pair":[{},{}],"scene":{}}})",
+                            list.empty() ? "" : ",", view.moment.block,
+                            script_string(view.moment.pair[0]), script_string(view.moment.pair[1]),
                             view.scene.empty() ? "null" : view.scene);
     return fmt::format(R"({{"meshes":{},"views":[{}]}})",
                        views.meshes.empty() ? "[]" : views.meshes, list);

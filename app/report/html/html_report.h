@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -12,9 +13,17 @@ namespace app {
 
 struct CheckRun;
 
+/// What a report shows of a block: the moment at which two bodies are nearest or first collide.
+struct ShownMoment {
+    size_t block = 0;
+    std::array<std::string, 2> pair; // names of the bodies; empty: the pair that decides the block
+
+    bool operator==(const ShownMoment&) const = default;
+};
+
 /// The picture and scene of one block in a report.
 struct BlockView {
-    size_t block = 0;
+    ShownMoment moment;
     std::string picture; // bytes of a JPEG; empty: none
     std::string scene;   // JSON object for the 3D view; empty: none
 };
@@ -44,13 +53,13 @@ std::string blocks_json(const CheckRun& run);
 /// The findings of a check as the window groups them.
 std::vector<viewer::FindingGroup> finding_groups(const CheckRun& run);
 
-/// The blocks that get a card: the worst one of each group of findings; without findings, the block
-/// with the least margin.
-std::vector<size_t> blocks_of_cards(const CheckRun& run);
+/// The moments that get a card: the worst block of each group of findings, with its pair; without
+/// findings, the block with the least margin.
+std::vector<ShownMoment> moments_of_cards(const CheckRun& run);
 
-/// The blocks that a report should show, at most `most`: first those with cards, then the other
+/// The moments that a report should show, at most `most`: first those with cards, then the other
 /// stretches of the groups.
-std::vector<size_t> blocks_to_show(const CheckRun& run, size_t most);
+std::vector<ShownMoment> moments_to_show(const CheckRun& run, size_t most);
 
 /// A card for each group of findings, as HTML.
 std::string html_cards(const CheckRun& run, const ReportViews& views);

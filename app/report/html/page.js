@@ -1,26 +1,28 @@
 // The page of one program: connects findings, view, chart and table. A block selected in one is
 // shown in all.
 
-function captionOf(blocks, i) {
+/** `pair`: the bodies that the view shows; their clearance is known only if they decide the block. */
+function captionOf(blocks, i, pair = ["", ""]) {
   const words = ["Block " + i, "line " + lineText(blocks, i), blocks.texts[blocks.text[i]]];
-  const clearance = clearanceText(blocks, i);
-  if (clearance) words.push(clearance + " mm " + pairText(blocks, i));
+  const names = pair[0] ? pair[0] + " / " + pair[1] : pairText(blocks, i);
+  const clearance = names === pairText(blocks, i) ? clearanceWithPair(blocks, i) : names;
+  if (clearance) words.push(clearance);
   const rules = rulesText(blocks, i);
   if (rules) words.push(rules);
   return words.join(" \u00b7 ");
 }
 
-/** The picture of a block, if a card has one. */
-function pictureOf(block) {
-  const image = document.querySelector('.shot[data-block="' + block + '"] img');
+/** The picture of a view, if a card has one. */
+function pictureOf(view) {
+  const image = document.querySelector('.shot[data-view="' + view + '"] img');
   return image ? image.src : "";
 }
 
 /** The 3D view, or the pictures without WebGL; null if there is neither. */
 function makeView(panel, data) {
   const stage = panel.querySelector(".stage"), buttons = panel.querySelector(".buttons");
-  const known = new Map(data.views.map((view) => [view.block, view.scene]));
-  const solid = window.FeelerView && [...known.values()].some(Boolean)
+  const scenes = data.views.map((view) => view.scene);
+  const solid = window.FeelerView && scenes.some(Boolean)
     ? window.FeelerView.make(stage, buttons, data.meshes, colorOf) : null;
   if (!solid && !window.FeelerView) return null;
   if (!solid && !document.querySelector(".shot")) return null;
@@ -35,11 +37,12 @@ function makeView(panel, data) {
   panel.parentElement.classList.add("with-view");
   return {
     isSolid: Boolean(solid),
-    has: (block) => (solid ? Boolean(known.get(block)) : pictureOf(block) !== ""),
-    show(block, caption) {
-      if (solid) solid.show(known.get(block)); else image.src = pictureOf(block);
+    has: (index) => index >= 0 && (solid ? Boolean(scenes[index]) : pictureOf(index) !== ""),
+    show(index, caption) {
+      if (solid) solid.show(scenes[index]); else image.src = pictureOf(index);
       panel.querySelector(".caption").textContent = caption;
-      panel.dataset.block = String(block);
+      panel.dataset.block = String(data.views[index].block);
+      panel.dataset.view = String(index);
     },
     recolor() { if (solid) solid.recolor(); },
   };
@@ -54,14 +57,15 @@ function startPage() {
   });
   const table = new Table(by("grid"), (block) => blockRow(blocks, block), (block) => choose(block));
 
-  function choose(block) {
+  /** Shows a block; `index`: the view to show, because a block has one for each pair with a finding. */
+  function choose(block, index = views.views.findIndex((entry) => entry.block === block)) {
     chart.choose(block);
     table.choose(block);
     by("chart-read").textContent = captionOf(blocks, block);
-    const isShown = view && view.has(block);
-    if (isShown) view.show(block, captionOf(blocks, block));
+    const isShown = view && view.has(index);
+    if (isShown) view.show(index, captionOf(blocks, block, views.views[index].pair));
     for (const card of document.querySelectorAll(".card"))
-      card.classList.toggle("shown", isShown && card.querySelector('[data-block="' + block + '"]') !== null);
+      card.classList.toggle("shown", isShown && card.querySelector('[data-view="' + index + '"]') !== null);
     return isShown;
   }
 
@@ -77,7 +81,7 @@ function startPage() {
     if (button.dataset.rule !== undefined) {
       by("filter-text").value = button.dataset.rule;
       filter();
-    } else if (choose(Number(button.dataset.block))) {
+    } else if (choose(Number(button.dataset.block), button.dataset.view === undefined ? -1 : Number(button.dataset.view))) {
       return;
     }
     by("blocks").scrollIntoView();
@@ -92,8 +96,8 @@ function startPage() {
   followTheme(by("theme"), repaint);
   addToolTimes(document.querySelector("#tool-times tbody"), blocks);
   filter();
-  const first = views.views.find((entry) => view && view.has(entry.block));
-  if (first) choose(first.block);
+  const first = views.views.findIndex((entry, index) => view && view.has(index));
+  if (first >= 0) choose(views.views[first].block, first);
   document.documentElement.dataset.ready = "true";
 }
 

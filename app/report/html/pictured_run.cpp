@@ -254,11 +254,10 @@ struct Stage {
         return {};
     }
 
-    /// Moves to the time at which the given block has its least clearance, and aims the camera at
-    /// the witness.
-    void go_to(size_t block) {
-        viewer::go_to_witness(model, block);
-        session.show({block, model.cursor.fraction >= 1.0});
+    /// Moves to the given moment of a block, and aims the camera at the witness.
+    void go_to(const ShownMoment& moment) {
+        viewer::go_to_witness(model, moment.block, moment.pair);
+        session.show({moment.block, model.cursor.fraction >= 1.0});
         take_in(model, session.take_update(), 0.0);
         model.camera = render::seen_from(model.camera, render::StandardView::iso);
         model.camera = render::framing(model.camera, picture_size,
@@ -280,13 +279,13 @@ void add_views(Stage& stage, const CheckRun& run, ReportViews& views) {
     auto camera = Camera::make();
     if (!camera) views.no_pictures = camera.error().message;
     SceneWriter writer;
-    const std::vector<size_t> cards = blocks_of_cards(run);
-    for (const size_t block : blocks_to_show(run, most_views)) {
-        if (block >= stage.model.rows.size()) continue;
-        stage.go_to(block);
+    const std::vector<ShownMoment> cards = moments_of_cards(run);
+    for (const ShownMoment& moment : moments_to_show(run, most_views)) {
+        if (moment.block >= stage.model.rows.size()) continue;
+        stage.go_to(moment);
         const render::Scene scene = stage.scene();
-        BlockView view{.block = block, .scene = writer.add(scene, stage.model.camera)};
-        if (camera && std::find(cards.begin(), cards.end(), block) != cards.end()) {
+        BlockView view{.moment = moment, .scene = writer.add(scene, stage.model.camera)};
+        if (camera && std::find(cards.begin(), cards.end(), moment) != cards.end()) {
             auto picture = camera->picture(stage.model, scene);
             if (picture)
                 view.picture = *std::move(picture);

@@ -77,10 +77,12 @@ function stoppedPart(programs, i) {
 
 function clearanceSentence(programs, i) {
   if (programs.pair[i] < 0) return "no pair of bodies within the search limit";
+  const at = programs.texts[programs.pair[i]] + " in block " + programs.block[i] + ", line " + programs.line[i];
+  const isClear = ["clear", "no error", "errors"].includes(outcomes[programs.outcome[i]]);
+  if (isClear && programs.lower[i] === 0 && programs.keep[i] === 0) return "permitted contact only: " + at;
   const lower = millimetres(programs.lower[i]), width = programs.width[i];
   const range = width < 0 ? "at least " + lower + " mm" : width <= 1 ? lower + " mm" : lower + " to " + millimetres(programs.lower[i] + width) + " mm";
-  return range + " (minimum " + millimetres(programs.keep[i]) + " mm): " + programs.texts[programs.pair[i]]
-    + " in block " + programs.block[i] + ", line " + programs.line[i];
+  return range + " (minimum " + millimetres(programs.keep[i]) + " mm): " + at;
 }
 
 function factsPart(programs, i) {

@@ -190,10 +190,10 @@ std::string summary_text(const CheckRun& run, const TextOptions& options) {
                         gcode::dialect(run.dialect).name);
     if (const CheckedBlock* block = tightest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
-        const std::string tightest = fmt::format(
-            "line {}: {} / {}, {} mm (minimum {} mm)", block->line,
-            core::part_name(run.setup, pair.pair), core::body_name(run.setup, pair.pair),
-            block_clearance(run, block->result), core::at_most(pair.allowance.distance));
+        const std::string tightest =
+            fmt::format("line {}: {} / {}, {}", block->line, core::part_name(run.setup, pair.pair),
+                        core::body_name(run.setup, pair.pair),
+                        tightest_words(block->result, ClearanceStyle::column));
         text += row_text("tightest", tightest, options);
     }
     text += fmt::format("  cycle time {}\n", duration_text(run.cycle_time));

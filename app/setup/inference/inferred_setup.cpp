@@ -207,6 +207,31 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     return std::vector<std::string>{stock.why};
 }
 
+/// How the stock that the program states reaches beyond that of the set-up; empty if it does not.
+std::string stock_mismatch(const SetupFile& file, const gcode::Program& program,
+                           const ProgramSurvey& seen) {
+    constexpr double rounding = 0.5; // mm; stock sizes are nominal
+    const core::Transform& machine_from_stock = file.setup.stock_mount.link_from_body;
+    const bool is_parallel = machine_from_stock.rotation == core::Mat3(1.0);
+    if (!seen.feeds || !is_parallel || stands_for_no_stock(file.setup.stock)) return {};
+    const gcode::LengthUnit unit = unit_of_program(program, unit_at_start(file.environment));
+    const core::Aabb reach{seen.cutting.min - seen.zero, seen.cutting.max - seen.zero};
+    const auto stated = declared_stock(program, unit, reach);
+    if (!stated) return {};
+    const core::Aabb body = core::bounds(file.setup.stock);
+    const Vec3 shift = machine_from_stock.translation - seen.zero;
+    const core::Aabb known{body.min + shift, body.max + shift};
+    const core::Aabb room = known.grown(rounding + file.setup.stock.tolerance);
+    bool is_inside = true;
+    for (int axis = 0; axis < 3; ++axis)
+        is_inside = is_inside && stated->box.min[axis] >= room.min[axis]
+                    && stated->box.max[axis] <= room.max[axis];
+    if (is_inside) return {};
+    return fmt::format("The stock that the program was made for reaches beyond that of the set-up: "
+                       "{} gives {}, and the set-up {} (program coordinates).",
+                       stated->source, box_text(stated->box), box_text(known));
+}
+
 /// Omits the stock for a program whose cuts cannot be known.
 ///
 /// Result: the reason; empty for all other programs.
@@ -394,7 +419,10 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     if (file.infers_tools) assume_handwork(file, first);
     std::vector<std::string> about_stock;
     if (file.infers_frame) about_stock = move_apart(file.environment, first);
-    if (!file.needs_stock) choose_mesh_size(file);
+    if (!file.needs_stock) {
+        choose_mesh_size(file);
+        file.stock_mismatch = stock_mismatch(file, program, first);
+    }
     const bool has_stock = !file.needs_stock && !stands_for_no_stock(file.setup.stock);
     if (has_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
@@ -440,7 +468,8 @@ std::shared_ptr<const Coverage> coverage_of(const SetupFile& file) {
         .fixtures = file.fixtures_known,
         .offsets = file.loses_machine ? Known::missing : known(file.offsets_known, "offsets"),
         .limits = file.limits_known,
-        .start = known(start, "start")});
+        .start = known(start, "start"),
+        .limits_need_offsets = file.limits_need_offsets});
 }
 
 namespace {

@@ -17,6 +17,14 @@ const core::PairClearance* shown_pair(const core::BlockResult& result) {
     return pair.found() ? &pair : nullptr;
 }
 
+PairWitness witness_of(const core::Setup& setup, const core::PairClearance& pair) {
+    return {.names = {core::part_name(setup, pair.pair), core::body_name(setup, pair.pair)},
+            .on_tool = pair.on_tool,
+            .on_body = pair.on_body,
+            .time = pair.time,
+            .verdict = pair.verdict};
+}
+
 } // namespace
 
 BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
@@ -48,10 +56,24 @@ BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked) {
     row.on_tool = pair->on_tool;
     row.on_body = pair->on_body;
     row.witness_time = pair->time;
+    for (const core::PairClearance& other : result.pairs)
+        if (&other != pair && other.found() && other.verdict != core::Verdict::clear)
+            row.others.push_back(witness_of(setup, other));
     for (const core::Finding& finding : result.findings)
         if (finding.overlap && finding.pair[0] == row.part && finding.pair[1] == row.body)
-            row.overlap = finding.overlap->most.value_or(finding.overlap->least);
+            row.overlap = finding.overlap;
     return row;
+}
+
+std::optional<PairWitness> witness_in(const BlockRow& row, const BodyNames& names) {
+    for (const PairWitness& other : row.others)
+        if (other.names == names) return other;
+    if (!row.has_witness()) return {};
+    return PairWitness{.names = {row.part, row.body},
+                       .on_tool = row.on_tool,
+                       .on_body = row.on_body,
+                       .time = row.witness_time,
+                       .verdict = row.verdict};
 }
 
 BlockFacts facts_of(const BlockRow& row, size_t block) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/ids.h"
 #include "core/base/vec.h"
@@ -20,8 +22,21 @@ struct Setup;
 
 namespace app::viewer {
 
+/// The names of two bodies: one on the spindle side, and the stock or a fixture.
+using BodyNames = std::array<std::string, 2>;
+
+/// Where the two bodies of a pair are nearest, or first collide.
+struct PairWitness {
+    BodyNames names;
+    core::Vec3 on_tool = core::Vec3(0.0); // frame of the stock
+    core::Vec3 on_body = core::Vec3(0.0);
+    double time = 0.0; // seconds after the block's start
+    core::Verdict verdict = core::Verdict::clear;
+};
+
 /// An executed block as the panels show it. A copy, because the thread of the window must not read
-/// the record, to which another thread adds blocks; and a small one, without pairs and events.
+/// the record, to which another thread adds blocks; and a small one, without events and clear
+/// pairs.
 struct BlockRow {
     uint32_t line = 0;
     std::string text;
@@ -40,8 +55,9 @@ struct BlockRow {
     std::string part, body;               // of the deciding pair
     core::Vec3 on_tool = core::Vec3(0.0); // witness, frame of the stock
     core::Vec3 on_body = core::Vec3(0.0);
-    double witness_time = 0.0; // seconds after the block's start
-    double overlap = 0.0; // of the deciding pair, mm, if it collides and the depth was measured
+    double witness_time = 0.0;            // seconds after the block's start
+    std::optional<core::Overlap> overlap; // of the deciding pair, if it collides and was measured
+    std::vector<PairWitness> others;      // of other pairs that are not clear
     core::Severity worst = core::Severity::off; // of the findings about the block
 
     bool has_pair() const { return upper.has_value(); }
@@ -50,6 +66,10 @@ struct BlockRow {
 
 /// The row of a checked block.
 BlockRow row_of(const core::Setup& setup, const CheckedBlock& checked);
+
+/// The witness of the pair with these names, else that of the deciding pair; empty if the block has
+/// none.
+std::optional<PairWitness> witness_in(const BlockRow& row, const BodyNames& names);
 
 /// The facts of a row for conditions: only the deciding pair, no findings (the window has a
 /// separate list of them) and no values of the control.

@@ -46,16 +46,20 @@ void go_to(ViewModel& model, size_t block, double fraction) {
     if (!model.has_rows()) return;
     stay(model);
     model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(fraction, 0.0, 1.0)};
+    model.shown_pair = {};
     model.wanted = ShowRequest{model.cursor.block, model.cursor.fraction >= 1.0};
     model.list_follows = true;
     model.range = showing(model.range, model.rows.size(), model.cursor.block);
 }
 
-void go_to_witness(ViewModel& model, size_t block) {
+void go_to_witness(ViewModel& model, size_t block, const BodyNames& names) {
     if (!model.has_rows()) return;
     const BlockRow& row = model.rows[std::min(block, model.rows.size() - 1)];
-    const bool known = row.has_witness() && row.duration > 0.0;
-    go_to(model, block, known ? std::min(row.witness_time / row.duration, 0.9999) : 1.0);
+    const auto witness = witness_in(row, names);
+    const bool known = witness && row.duration > 0.0;
+    const BodyNames shown = names; // may be that of the model
+    go_to(model, block, known ? std::min(witness->time / row.duration, 0.9999) : 1.0);
+    model.shown_pair = shown;
 }
 
 void step(ViewModel& model, int blocks) {
@@ -136,7 +140,8 @@ void go_to_bookmark(ViewModel& model) {
 void go_to_stretch(ViewModel& model, const StretchIndex& which) {
     model.playback.running = false;
     model.selected = which;
-    go_to_witness(model, model.groups[which.group].stretches[which.stretch].worst);
+    const FindingGroup& group = model.groups[which.group];
+    go_to_witness(model, group.stretches[which.stretch].worst, group.pair);
 }
 
 bool step_stretch(ViewModel& model, bool forward) {
@@ -187,7 +192,9 @@ void write_note_at(ViewModel& model, const StretchIndex& which, const std::strin
 size_t worst_block(const ViewModel& model) {
     size_t worst = 0;
     const auto margin = [](const BlockRow& row) {
-        return row.has_pair() ? *row.lower - *row.allowance : std::numeric_limits<double>::max();
+        const bool says_little = is_contact(row) && *row.lower <= core::resolution;
+        return row.has_pair() && !says_little ? *row.lower - *row.allowance
+                                              : std::numeric_limits<double>::max();
     };
     const auto is_worse = [&](const BlockRow& a, const BlockRow& b) {
         if (a.verdict != b.verdict) return a.verdict > b.verdict;
@@ -263,6 +270,7 @@ bool play(ViewModel& model, double seconds) {
     }
     const bool is_same_stock =
         block == model.cursor.block && fraction < 1.0 && model.cursor.fraction < 1.0;
+    if (block != model.cursor.block) model.shown_pair = {};
     model.cursor = {block, fraction};
     if (!is_same_stock) model.wanted = ShowRequest{block, fraction >= 1.0};
     model.list_follows = true;

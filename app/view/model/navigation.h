@@ -12,8 +12,9 @@ struct ViewModel;
 /// Goes to a block, at a fraction of its time (1: its end), and requests its view.
 void go_to(ViewModel& model, size_t block, double fraction = 1.0);
 
-/// Goes to a block at its moment of least clearance, if known.
-void go_to_witness(ViewModel& model, size_t block);
+/// Goes to a block at the moment of least clearance of a pair of bodies, if known, and shows that
+/// pair: the one with these names, else the deciding one.
+void go_to_witness(ViewModel& model, size_t block, const BodyNames& names = {});
 
 /// Steps by a number of blocks; with a filter, counts only blocks that pass it.
 void step(ViewModel& model, int blocks);

@@ -46,11 +46,18 @@ bool shows(const VisibleParts& shown, render::BodyRole role) {
     }
 }
 
-void mark_pair(const BlockRow& row, std::vector<render::Body>& bodies) {
-    const render::ClearanceState state = state_of(row);
-    if (!row.has_pair() || state < render::ClearanceState::near) return;
+/// The state that colours a pair of the block.
+render::ClearanceState state_of_pair(const BlockRow& row, const PairWitness& pair) {
+    return pair.verdict == core::Verdict::clear ? state_of(row) : render::ClearanceState::violation;
+}
+
+void mark_pair(const ViewModel& model, std::vector<render::Body>& bodies) {
+    const auto pair = witness_in(model.row(), model.shown_pair);
+    if (!pair) return;
+    const render::ClearanceState state = state_of_pair(model.row(), *pair);
+    if (state < render::ClearanceState::near) return;
     for (render::Body& body : bodies) {
-        if (body.name != row.part && body.name != row.body) continue;
+        if (body.name != pair->names[0] && body.name != pair->names[1]) continue;
         body.highlighted = true;
         body.mark = state;
     }
@@ -92,7 +99,7 @@ void add_bodies(const ViewModel& model, const BlockState& view, render::Scene& s
             body.alpha = 1.0;
     if (values) add_ghost(model, view, *values, tool, scene);
     scene.bodies.insert(scene.bodies.end(), tool.begin(), tool.end());
-    mark_pair(model.row(), scene.bodies);
+    mark_pair(model, scene.bodies);
     scene.stock = view.stock;
 }
 
@@ -126,9 +133,9 @@ std::optional<render::Witness> witness_of(const ViewModel& model) {
     if (!model.has_rows() || !model.settings.shown.witness) return {};
     // Until the worker has made the new view, the tool is drawn at its position in the old one.
     if (model.block_state && model.block_state->block != model.cursor.block) return {};
-    const BlockRow& row = model.row();
-    if (!row.has_witness()) return {};
-    return render::Witness{row.on_tool, row.on_body, state_of(row)};
+    const auto pair = witness_in(model.row(), model.shown_pair);
+    if (!pair) return {};
+    return render::Witness{pair->on_tool, pair->on_body, state_of_pair(model.row(), *pair)};
 }
 
 render::Scene scene_of(const ViewModel& model) {
@@ -155,6 +162,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     key.block_state = model.block_state ? model.block_state->serial : 0;
     key.path = model.path.get();
     key.block = model.cursor.block;
+    key.pair = model.shown_pair;
     key.fraction = model.cursor.fraction;
     key.camera = model.camera;
     key.shown = model.settings.shown;
@@ -212,20 +220,20 @@ std::vector<render::Camera> sides(const render::Camera& camera) {
 render::Camera witness_camera(const ViewModel& model, const render::Viewport& size) {
     core::Aabb box;
     if (!model.has_rows()) return model.camera;
-    const BlockRow& row = model.row();
-    if (!row.has_witness()) {
+    const auto pair = witness_in(model.row(), model.shown_pair);
+    if (!pair) {
         if (model.path)
             box = render::bounds_of_block(*model.path, static_cast<uint32_t>(model.cursor.block));
         return box.empty() ? model.camera : render::framing(model.camera, size, box.grown(8.0));
     }
-    box.extend(row.on_tool);
-    box.extend(row.on_body);
+    box.extend(pair->on_tool);
+    box.extend(pair->on_body);
     // In a collision the witness may be anywhere along the motion, so the tip is framed as well.
-    if (const auto tip = tip_now(model); tip && row.verdict == core::Verdict::collision)
+    if (const auto tip = tip_now(model); tip && pair->verdict == core::Verdict::collision)
         box.extend(*tip);
-    const double apart = glm::length(row.on_tool - row.on_body);
+    const double apart = glm::length(pair->on_tool - pair->on_body);
     box = box.grown(std::max(least_room, 1.2 * apart));
-    const core::Vec3 middle = 0.5 * (row.on_tool + row.on_body);
+    const core::Vec3 middle = 0.5 * (pair->on_tool + pair->on_body);
     const render::Scene scene = scene_of(model);
     for (const render::Camera& side : sides(model.camera)) {
         const render::Camera camera = render::framing(side, size, box);

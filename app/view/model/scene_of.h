@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/view/model/block_row.h"
 #include "app/view/model/settings.h"
 #include "core/sim/setup.h"
 #include "render/scene.h"
@@ -32,6 +33,7 @@ struct SceneKey {
     uint64_t opening = 0, block_state = 0;
     const void* path = nullptr;
     size_t block = 0;
+    BodyNames pair;
     double fraction = 1.0; // of the block's time
     render::Camera camera;
     VisibleParts shown;

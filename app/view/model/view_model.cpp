@@ -32,6 +32,7 @@ struct ShownLength {
 void forget_view_state(ViewModel& model) {
     model.resume.reset();
     model.cursor = {};
+    model.shown_pair = {};
     model.bookmarks.clear();
     model.section.reset();
     model.measuring.positions.clear();
@@ -244,6 +245,8 @@ std::string coverage_words(const ViewModel& model) {
     }
     coverage.tools_without_holder.assign(bare.begin(), bare.end());
     coverage.holders = bare.empty() ? Known::described : Known::missing;
+    if (std::any_of(model.findings.begin(), model.findings.end(), says_nothing_moves))
+        coverage.moves = false;
     if (doubts_start(model.findings)) coverage.start = Known::inferred;
     if (cuts_beside_stock(model.findings))
         coverage.stock = std::min(coverage.stock, Known::inferred);
@@ -251,9 +254,11 @@ std::string coverage_words(const ViewModel& model) {
     const std::string words = uncovered.empty() ? "" : "Not checked: " + uncovered;
     const bool is_clear =
         model.is_recorded && !model.stopped && model.offending.empty()
-        && (!coverage.moves || count_of(model.findings, core::Severity::error) == 0);
+        && (!coverage.moves
+            || std::none_of(model.findings.begin(), model.findings.end(), is_error_of_program));
     if (!is_clear || (words.empty() && coverage.moves)) return words;
-    return headline_of({}, coverage) + (words.empty() ? "" : "\n" + words);
+    const bool lacks = std::any_of(model.findings.begin(), model.findings.end(), lacks_coverage);
+    return headline_of({.lacks_required = lacks}, coverage) + (words.empty() ? "" : "\n" + words);
 }
 
 std::string length_text(const ViewModel& model, double mm, int decimals) {
@@ -271,10 +276,29 @@ std::string clearance_at_least(const ViewModel& model, const BlockRow& row) {
     return lower_bound_text(length_at_least(model, *row.lower, has_upper ? 2 : 0), has_upper);
 }
 
+namespace {
+
+/// An overlap with its depth in the unit of the window, and the number of decimals.
+std::pair<core::Overlap, int> shown_overlap(const ViewModel& model, core::Overlap overlap) {
+    const ShownLength least(model, overlap.least, 2);
+    overlap.least = least.value;
+    if (overlap.most) overlap.most = ShownLength(model, *overlap.most, 2).value;
+    return {overlap, least.decimals};
+}
+
+} // namespace
+
+std::string depth_words(const ViewModel& model, const core::Overlap& overlap) {
+    const auto [shown, decimals] = shown_overlap(model, overlap);
+    return core::depth_text(shown, decimals);
+}
+
 std::string clearance_words(const ViewModel& model, const BlockRow& row) {
     if (is_contact(row)) return row.removed > 0.0 ? "cutting" : "contact";
-    if (row.verdict == core::Verdict::collision && row.overlap > 0.0)
-        return "-" + length_at_most(model, row.overlap);
+    if (row.verdict == core::Verdict::collision && row.overlap) {
+        const auto [overlap, decimals] = shown_overlap(model, *row.overlap);
+        return "-" + core::depth_number(overlap, decimals);
+    }
     return clearance_at_least(model, row);
 }
 

@@ -141,6 +141,7 @@ struct ViewModel {
 
     // input of the user
     Cursor cursor;
+    BodyNames shown_pair; // of the finding that is shown; empty: the deciding pair of the block
     Playback playback;
     std::string filter_text;
     RowFilter filter;             // parsed
@@ -221,9 +222,13 @@ std::string length_at_least(const ViewModel& model, double mm, int decimals = 2)
 /// The lower bound of the clearance of a block that has one; ">= 50" without an upper bound.
 std::string clearance_at_least(const ViewModel& model, const BlockRow& row);
 
-/// The clearance of a block as lists show it: "1.90"; "-3.20" for an overlap of that depth, which
-/// is at most so deep; "cutting" or "contact" for bodies that touch as intended.
+/// The clearance of a block as lists show it: "1.90"; "-3.20" for an overlap that is at
+/// most so deep; "cutting" or "contact" for bodies that touch as intended.
 std::string clearance_words(const ViewModel& model, const BlockRow& row);
+
+/// How deep an overlap is, as reports say it, in the unit of the window, without the unit:
+/// "1.96 to 2.01".
+std::string depth_words(const ViewModel& model, const core::Overlap& overlap);
 
 /// As length_text, for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);

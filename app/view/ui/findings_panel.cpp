@@ -41,7 +41,7 @@ std::string location_text(const ViewModel& model, const FindingStretch& stretch)
 
 /// The depth of the overlap or the clearance in the worst block; without both, the shortfall.
 std::string worst_text(const ViewModel& model, const FindingStretch& stretch) {
-    if (const auto depth = depth_of(stretch)) return length_at_most(model, *depth) + " deep";
+    if (stretch.overlap) return depth_words(model, *stretch.overlap) + " deep";
     if (stretch.clearance) return length_at_least(model, *stretch.clearance);
     if (stretch.shortfall > 0.0) return "short " + length_at_most(model, stretch.shortfall);
     return {};

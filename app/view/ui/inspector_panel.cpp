@@ -48,9 +48,8 @@ std::string sentence_of(const ViewModel& model, const BlockRow& row) {
         "minimum clearance " + length_at_most(model, *row.allowance) + " " + unit;
     if (row.verdict == core::Verdict::collision)
         return allowance + " \xC2\xB7 collision"
-               + (row.overlap > 0.0
-                      ? ", up to " + length_at_most(model, row.overlap) + " " + unit + " deep"
-                      : "");
+               + (row.overlap ? ", " + depth_words(model, *row.overlap) + " " + unit + " deep"
+                              : "");
     if (is_contact(row)) return "the bodies touch as intended: no minimum clearance";
     const double margin = *row.lower - *row.allowance;
     if (margin >= -core::resolution)

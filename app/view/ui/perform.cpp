@@ -49,8 +49,9 @@ void toggle_section(ViewModel& model) {
     if (model.section) return model.section.reset();
     render::SectionPlane plane;
     core::Vec3 through = model.camera.target;
-    if (model.has_rows() && model.row().has_witness())
-        through = 0.5 * (model.row().on_tool + model.row().on_body);
+    if (model.has_rows())
+        if (const auto witness = witness_in(model.row(), model.shown_pair))
+            through = 0.5 * (witness->on_tool + witness->on_body);
     // Cut away the half on the side of the eye.
     const core::Vec3 to_eye = render::eye(model.camera) - through;
     const int axis = std::abs(to_eye.x) > std::abs(to_eye.y) ? 0 : 1;
@@ -339,7 +340,7 @@ void perform(ViewModel& model, Command command, double now) {
 
 void frame_witness(ViewModel& model) {
     if (!model.has_rows()) return;
-    if (model.row().has_witness()) go_to_witness(model, model.cursor.block);
+    if (model.row().has_witness()) go_to_witness(model, model.cursor.block, model.shown_pair);
     model.camera = witness_camera(model, any_view);
 }
 

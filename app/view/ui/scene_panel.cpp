@@ -123,9 +123,9 @@ void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
 
 std::string words_of(const ViewModel& model, const BlockRow& row) {
     if (row.verdict == core::Verdict::collision)
-        return row.overlap > 0.0 ? fmt::format(
-                   "collision, {} {} deep", length_at_most(model, row.overlap), length_unit(model))
-                                 : "collision";
+        return row.overlap ? fmt::format("collision, {} {} deep", depth_words(model, *row.overlap),
+                                         length_unit(model))
+                           : "collision";
     if (is_contact(row)) return clearance_words(model, row);
     return length_at_least(model, *row.lower) + " " + length_unit(model);
 }

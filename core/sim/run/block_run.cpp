@@ -232,7 +232,8 @@ PairStudy BlockRun::study(const PairClearance& pair) {
         pair.pair.fixture || pair.verdict == Verdict::violation || rapid_in_stock;
     if (!is_cured_by_shift || move.only_dog_leg || (rapid_in_stock && study.starts_inside))
         return study;
-    const BlockTrial trial{setup, block, state, *before, corners_before};
+    study.cuts = !rapid_in_stock && result.removed > 0.0;
+    const BlockTrial trial{setup, block, state, *before, corners_before, study.cuts};
     study.shift = find_shift(trial, pair.pair, shifts_to_try(pair, study, rapid_in_stock),
                              rapid_in_stock ? air_gap : 0.0, state.trials.work);
     study.tried = true;

@@ -101,6 +101,7 @@ private:
             std::any_of(result.findings.begin(), result.findings.end(),
                         [](const Finding& each) { return each.severity == Severity::error; });
         if (!result.checked || result.verdict != Verdict::clear || has_error) return std::nullopt;
+        if (trial_.must_cut && result.removed <= 0.0) return std::nullopt;
         for (const PairClearance& pair : result.pairs)
             if (pair.pair == pair_ && pair.lower >= room_ - resolution)
                 return TriedShift{start.axis, by, pair.lower};

@@ -25,8 +25,9 @@ struct TriedShift {
 /// What was found out about a pair that is not clear in a block.
 struct PairStudy {
     std::optional<Overlap> overlap;
-    bool starts_inside = false;      // the pair overlaps where the block begins
-    bool tried = false;              // shifts of the block were tried
+    bool starts_inside = false; // the pair overlaps where the block begins
+    bool tried = false;         // shifts of the block were tried
+    bool cuts = false;          // the block removes material, so only shifts count that also do
     std::optional<TriedShift> shift; // that makes the block clear; empty: none was found
 };
 
@@ -45,6 +46,7 @@ struct BlockTrial {
         state;              // after the block, with a tool of the set-up, with a tool of the set-up
     const CutModel& stock;  // before the block
     RoundedCorners corners; // before the block
+    bool must_cut = false;  // only shifts count with which the block still removes material
 };
 
 /// Whether the block consists of motions that can be shifted as a whole.

@@ -47,6 +47,10 @@ std::string cure_by_shift(const PairClearance& pair, const PairStudy& study,
         return fmt::format("Move the tool path at least {} towards {}{} ({}){}.",
                            amount_text(*study.shift), "XYZ"[study.shift->axis],
                            study.shift->by > 0.0 ? '+' : '-', kept_text(*study.shift, body), move);
+    if (study.tried && study.cuts)
+        return fmt::format("Change the path{} (no small shift along one axis clears this block and "
+                           "still lets it cut; tried).",
+                           move);
     if (study.tried)
         return fmt::format("Change the path{} (this block cannot be cleared by shifting it along "
                            "one axis; tried).",
