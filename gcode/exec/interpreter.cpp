@@ -342,8 +342,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
     if (std::any_of(result.commands.begin(), result.commands.end(), is_motion)) note_motion(state);
-    const bool follows_decisions = dialect.language == Language::words && !state.is_iso_mode;
-    if (auto checked = detect_endless_loop(state, here, follows_decisions); !checked)
+    if (auto checked = detect_endless_loop(state, here, dialect); !checked)
         return tl::unexpected(std::move(checked).error());
     return true;
 }
