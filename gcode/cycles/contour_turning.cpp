@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "gcode/cycles/cycles.h"
@@ -23,6 +25,18 @@ core::Result<void> check_turning(const Execution& execution) {
                                      : mover.value == 70.0         ? "; if it means inches, use G20"
                                      : mover.value == 71.0 ? "; if it means millimetres, use G21"
                                                            : "";
+    const auto& words = execution.block.words;
+    const bool is_mach3 = std::any_of(words.begin(), words.end(), [](const Word& word) {
+        return word.letter == 'G' && (word.value == 90.1 || word.value == 91.1);
+    });
+    if (is_mach3 && !instead.empty())
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: beside G91.1 it is Mach3's code for {}; with that, "
+                        "--dialect linuxcnc reads the program",
+                        written(mover),
+                        mover.value == 70.0 ? "inches: use G20" : "millimetres: use G21"),
+            mover.span);
     const auto refuse = [&](std::string_view why) {
         return core::fail(ErrorCode::syntax, fmt::format("{}: {}{}", written(mover), why, instead),
                           mover.span);

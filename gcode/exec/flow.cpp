@@ -22,7 +22,7 @@ core::Result<bool> condition_holds(InterpreterState& state, const Block& block,
     parameters.forget_reads();
     FEELER_TRY(const Value value, evaluate(block.pool, block.flow.condition, block.line, parameters,
                                            dialect.arithmetic, &margins));
-    note_condition(state, block.line, block.pool, block.flow.condition, margins, value);
+    note_condition(state, block.line, block.pool, block.flow.condition, margins, value, dialect);
     return outcome_of(parameters, block, block.flow.condition, dialect.arithmetic,
                       value.value_or(0.0) != 0.0);
 }

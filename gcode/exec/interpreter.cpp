@@ -103,12 +103,14 @@ bool changes_level(FlowKind kind) {
            || kind == FlowKind::call_program || is_siemens_statement(kind);
 }
 
-/// The switch that skips a line without parsing: its words may be for another machine. 0: none.
-int switch_before(std::string_view line) {
+/// The switch that skips a line without parsing: its words may be for another machine. Empty: none.
+std::optional<int> switch_before(std::string_view line, BlockDelete switches) {
     const size_t first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos || line[first] != '/') return 0;
+    if (first == std::string_view::npos || line[first] != '/') return std::nullopt;
+    const int plain = number_of_plain_slash(switches);
     const char next = first + 1 < line.size() ? line[first + 1] : ' ';
-    return next >= '1' && next <= '9' ? next - '0' : 1;
+    const bool is_number = next >= '0' && next <= '9' && next - '0' >= plain;
+    return is_number ? next - '0' : plain;
 }
 
 } // namespace
@@ -176,7 +178,8 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         const auto is_skipped = [&](int at) {
             return deletes_blocks(state, environment, at, number);
         };
-        if (const int at = switch_before(text); at != 0 && is_skipped(at)) continue;
+        if (const auto at = switch_before(text, dialect.block_delete); at && is_skipped(*at))
+            continue;
         if (auto parsed = parse_line(text, number, dialect, block); !parsed)
             return tl::unexpected(std::move(parsed).error());
         const bool inside = state.frames.size() > 1;
@@ -188,7 +191,7 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
         }
         if (begins_another_program(state)) return false;
         if (state.next.source == 0) state.tape_open |= block.tape_mark;
-        if (block.words_before_slash && is_skipped(1))
+        if (block.words_before_slash && is_skipped(number_of_plain_slash(dialect.block_delete)))
             block.words.erase(block.words.begin()
                                   + static_cast<std::ptrdiff_t>(*block.words_before_slash),
                               block.words.end());
@@ -339,8 +342,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
     if (std::any_of(result.commands.begin(), result.commands.end(), is_motion)) note_motion(state);
-    const bool follows_decisions = dialect.language == Language::words && !state.is_iso_mode;
-    if (auto checked = detect_endless_loop(state, here, follows_decisions); !checked)
+    if (auto checked = detect_endless_loop(state, here, dialect); !checked)
         return tl::unexpected(std::move(checked).error());
     return true;
 }

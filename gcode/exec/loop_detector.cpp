@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "gcode/exec/interpreter.h"
+#include "gcode/language/dialect.h"
 #include "gcode/text/digest.h"
 
 namespace gcode {
@@ -26,8 +27,10 @@ constexpr uint64_t idle_jumps = 1'000'000;     // without a motion
 constexpr double first_system_parameter = 1000.0;
 constexpr ParameterKey last_local = 33, named_keys = ParameterKey{1} << 63;
 
-/// A parameter that only assignments change: not a system variable.
-bool is_plain_number(double number) {
+/// A parameter that only assignments change: not a system variable, and none that the control sets,
+/// as Klartext's Q100 to Q199.
+bool is_plain_number(double number, const Dialect& dialect) {
+    if (dialect.language == Language::klartext && number >= 100.0 && number < 200.0) return false;
     return number >= 0.0 && number < first_system_parameter && number == std::floor(number);
 }
 
@@ -38,19 +41,21 @@ void add_read(LoopDecision& decision, ParameterKey key) {
         decision.reads[decision.read_count++] = key;
 }
 
-void add_reads(LoopDecision& decision, const ExpressionPool& pool, Expression condition) {
+void add_reads(LoopDecision& decision, const ExpressionPool& pool, Expression condition,
+               const Dialect& dialect) {
     for (uint32_t i = 0; i < condition.count; ++i) {
         const Instruction& step = pool.instructions[condition.first + i];
         if (step.operation == Operation::named) {
             const std::string& name = pool.names[step.name];
-            // Names that begin with _ may be system variables.
-            if (name.starts_with('_'))
+            // Names that begin with _ or $ may be system variables.
+            if (name.starts_with('_') || name.starts_with('$'))
                 decision.reads_others = true;
             else
                 add_read(decision, key_of(name));
         } else if (step.operation == Operation::numbered) {
             const Instruction* number = i > 0 ? &(&step)[-1] : nullptr;
-            if (number && number->operation == Operation::number && is_plain_number(number->number))
+            if (number && number->operation == Operation::number
+                && is_plain_number(number->number, dialect))
                 add_read(decision, key_of(number->number));
             else
                 decision.reads_others = true;
@@ -61,22 +66,23 @@ void add_reads(LoopDecision& decision, const ExpressionPool& pool, Expression co
 }
 
 /// The entry of a decision in the list of those made lately; null if the list is full.
-LoopDecision* entry_of(LoopDetector& loops, ProgramLine at, size_t level) {
+LoopDecision* entry_of(LoopDetector& loops, const LoopDecision& decision) {
     const auto same = [&](const LoopDecision& made) {
-        return made.at == at && made.level == level;
+        return made.at == decision.at && made.column == decision.column
+               && made.level == decision.level;
     };
     auto& made = loops.decisions;
     if (const auto found = std::find_if(made.begin(), made.end(), same); found != made.end())
         return &*found;
     if (made.size() == most_decisions) return nullptr;
-    made.push_back({.at = at, .level = level});
+    made.push_back({.at = decision.at, .column = decision.column, .level = decision.level});
     return &made.back();
 }
 
 void note(InterpreterState& state, const LoopDecision& decision) {
     LoopDetector& loops = state.loops.write();
     ++loops.time;
-    LoopDecision* entry = entry_of(loops, decision.at, decision.level);
+    LoopDecision* entry = entry_of(loops, decision);
     if (!entry) {
         loops.unclear = loops.time;
         return;
@@ -132,7 +138,8 @@ PassChange change_of(const LoopDetector& loops, const WatchedLoop& loop,
     PassChange change;
     for (size_t i = 0; i < now.size(); ++i) {
         const LoopDecision &a = loop.decisions[i], &b = now[i];
-        if (a.at != b.at || a.level != b.level || a.margin_count != b.margin_count)
+        if (a.at != b.at || a.column != b.column || a.level != b.level
+            || a.margin_count != b.margin_count)
             return {false, false, false};
         const bool fixed = is_fixed(loops, b, loop.time);
         bool grows = b.margin_count > 0, stays = true;
@@ -164,37 +171,46 @@ std::string variation(std::string_view name, const Value& before, const Value& n
 }
 
 /// Which parameters differ from those that a loop had in an early pass.
-std::vector<std::string> variations(const InterpreterState& state, const WatchedLoop& loop) {
+std::vector<std::string> variations(const InterpreterState& state, const WatchedLoop& loop,
+                                    const Dialect& dialect) {
     constexpr size_t most = 3;
     std::vector<std::string> found;
     const auto compare = [&](const std::string& name, const Value& before, const Value& now) {
         if (before != now && found.size() < most) found.push_back(variation(name, before, now));
     };
+    const auto shown = [&](const std::string& name) {
+        return dialect.names_are_declared ? name : fmt::format("#<{}>", name);
+    };
+    const auto numbered = [&](size_t number) {
+        const bool is_zero = dialect.has_parameter_zero && number == highest_parameter;
+        return fmt::format("{}{}", dialect.parameter_letter, is_zero ? 0 : number);
+    };
     const Frame& frame = state.frames.back();
     if (!loop.frame) return found;
     for (size_t i = 1; i < frame.locals.size(); ++i)
-        compare(fmt::format("#{}", i), loop.frame->locals[i], frame.locals[i]);
+        compare(numbered(i), loop.frame->locals[i], frame.locals[i]);
     for (const auto& [name, value] : frame.named) {
         const auto before = loop.frame->named.find(name);
-        compare(fmt::format("#<{}>", name),
-                before == loop.frame->named.end() ? Value{} : Value{before->second}, value);
+        compare(shown(name), before == loop.frame->named.end() ? Value{} : Value{before->second},
+                value);
     }
     for (size_t i = 1; i < state.parameters->numbered_count(); ++i)
-        compare(fmt::format("#{}", i), loop.parameters->numbered(static_cast<int>(i)),
+        compare(numbered(i), loop.parameters->numbered(static_cast<int>(i)),
                 state.parameters->numbered(static_cast<int>(i)));
     for (const auto& [name, value] : state.parameters->named()) {
         const auto before = loop.parameters->named().find(name);
-        compare(fmt::format("#<{}>", name),
+        compare(shown(name),
                 before == loop.parameters->named().end() ? Value{} : Value{before->second}, value);
     }
     return found;
 }
 
-core::Error endless(const InterpreterState& state, const WatchedLoop& loop, std::string_view why) {
+core::Error endless(const InterpreterState& state, const WatchedLoop& loop, const Dialect& dialect,
+                    std::string_view why) {
     std::string where = fmt::format("line {}", loop.from.line);
     if (loop.to.source == loop.from.source && loop.to.line < loop.from.line)
         where = fmt::format("lines {} to {}", loop.to.line, loop.from.line);
-    const std::vector<std::string> changes = variations(state, loop);
+    const std::vector<std::string> changes = variations(state, loop, dialect);
     return {ErrorCode::invalid_value,
             {.line = loop.from.line, .column = 1},
             fmt::format("the program never ends: the loop of {} {}{}", where, why,
@@ -203,7 +219,8 @@ core::Error endless(const InterpreterState& state, const WatchedLoop& loop, std:
 }
 
 /// Compares this pass of a loop with the one before.
-core::Result<void> compare_passes(InterpreterState& state, ProgramLine from) {
+core::Result<void> compare_passes(InterpreterState& state, ProgramLine from,
+                                  const Dialect& dialect) {
     LoopDetector& loops = state.loops.write();
     WatchedLoop& loop = loop_of(loops, from, state.next, state.frames.size());
     std::vector<LoopDecision> now = decisions_since(loops, loop.time);
@@ -220,17 +237,17 @@ core::Result<void> compare_passes(InterpreterState& state, ProgramLine from) {
         loop.frame = std::make_shared<const Frame>(state.frames.back());
     }
     if (loop.certain >= certain_passes)
-        return tl::unexpected(endless(state, loop,
+        return tl::unexpected(endless(state, loop, dialect,
                                       loop.decisions.empty()
                                           ? "has no condition that ends it"
                                           : "does not change what its conditions depend on"));
     if (loop.receding >= receding_passes)
         return tl::unexpected(endless(
-            state, loop,
+            state, loop, dialect,
             fmt::format("has made {} passes, and each was further from its end", receding_passes)));
     if (loop.unchanged >= unchanged_passes)
         return tl::unexpected(endless(
-            state, loop,
+            state, loop, dialect,
             fmt::format("has made {} passes, and none was nearer to its end", unchanged_passes)));
     return {};
 }
@@ -271,8 +288,11 @@ ParameterKey key_of(std::string_view name) {
 }
 
 void note_condition(InterpreterState& state, uint32_t line, const ExpressionPool& pool,
-                    Expression condition, const Margins& margins, Value value) {
-    LoopDecision decision{.at = {state.next.source, line}, .level = state.frames.size()};
+                    Expression condition, const Margins& margins, Value value,
+                    const Dialect& dialect) {
+    LoopDecision decision{.at = {state.next.source, line},
+                          .column = condition ? pool.instructions[condition.first].column : 0,
+                          .level = state.frames.size()};
     if (!margins.has_all()) return note_computed_target(state);
     decision.margins = margins.values;
     decision.margin_count = margins.count;
@@ -281,7 +301,20 @@ void note_condition(InterpreterState& state, uint32_t line, const ExpressionPool
         decision.margin_count = 1;
     }
     decision.holds = value.value_or(0.0) != 0.0;
-    add_reads(decision, pool, condition);
+    add_reads(decision, pool, condition, dialect);
+    note(state, decision);
+}
+
+void note_counting(InterpreterState& state, const CountingPass& pass, const ExpressionPool& pool,
+                   const Dialect& dialect) {
+    LoopDecision decision{.at = pass.head, .level = state.frames.size()};
+    decision.margins[0] = std::abs(pass.left);
+    decision.margin_count = 1;
+    decision.holds = pass.goes_on;
+    // After the first pass the variable decides, which the loop itself changes.
+    decision.reads_others = !pass.is_first;
+    for (const Expression bound : pass.bounds)
+        if (bound) add_reads(decision, pool, bound, dialect);
     note(state, decision);
 }
 
@@ -322,11 +355,11 @@ void note_motion(InterpreterState& state) {
 }
 
 core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from,
-                                       bool follows_decisions) {
+                                       const Dialect& dialect) {
     const bool back = state.next.source != from.source || state.next.line <= from.line;
     if (!back) return {};
-    if (auto checked = compare_states(state, from); !checked || !follows_decisions) return checked;
-    return compare_passes(state, from);
+    if (auto checked = compare_states(state, from); !checked) return checked;
+    return compare_passes(state, from, dialect);
 }
 
 } // namespace gcode

@@ -14,6 +14,7 @@
 
 namespace gcode {
 
+struct Dialect;
 struct InterpreterState;
 
 /// Identifies a parameter: its number, or a hash of its name.
@@ -24,6 +25,7 @@ ParameterKey key_of(std::string_view name);
 /// A decision about the order of execution: a condition, or a count of repetitions.
 struct LoopDecision {
     ProgramLine at;
+    uint32_t column = 0;             // a line may hold several conditions
     size_t level = 0;                // call level
     std::array<double, 4> margins{}; // how far its comparisons are from changing
     size_t margin_count = 0;
@@ -73,9 +75,21 @@ struct LoopDetector {
     std::vector<WatchedLoop> loops{};
 };
 
-/// Notes that a condition was evaluated.
+/// Notes that a condition was evaluated. Without comparisons it is true unless its value is 0.
 void note_condition(InterpreterState& state, uint32_t line, const ExpressionPool& pool,
-                    Expression condition, const Margins& margins, Value value);
+                    Expression condition, const Margins& margins, Value value,
+                    const Dialect& dialect);
+
+/// The decision of a counting loop whether to run once more.
+struct CountingPass {
+    ProgramLine head;
+    double left = 0.0; // from its variable to its last value
+    bool goes_on = false;
+    bool is_first = false;              // at the head
+    std::array<Expression, 2> bounds{}; // the first and the last value
+};
+void note_counting(InterpreterState& state, const CountingPass& pass, const ExpressionPool& pool,
+                   const Dialect& dialect);
 
 /// Notes how many repetitions are left at a place.
 void note_repetitions(InterpreterState& state, ProgramLine at, int64_t left);
@@ -92,11 +106,10 @@ void note_new_locals(InterpreterState& state);
 /// Notes a motion.
 void note_motion(InterpreterState& state);
 
-/// Checks whether a backward jump belongs to a loop that never ends. `follows_decisions`: whether
-/// all decisions of the language are noted.
+/// Checks whether a backward jump belongs to a loop that never ends.
 ///
 /// Errors: invalid_value if so, with the lines of the loop and the parameters that vary.
 core::Result<void> detect_endless_loop(InterpreterState& state, ProgramLine from,
-                                       bool follows_decisions);
+                                       const Dialect& dialect);
 
 } // namespace gcode

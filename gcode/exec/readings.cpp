@@ -265,9 +265,11 @@ size_t first_work_offset(InterpreterState& state, const Environment& environment
 
 bool deletes_blocks(InterpreterState& state, const Environment& environment, int number,
                     uint32_t line) {
-    if (!dialect(environment.dialect).has_block_delete) return false;
-    // `/` and `/1` are the same switch.
-    const uint32_t which = number > 1 ? static_cast<uint32_t>(number) : 0;
+    const BlockDelete switches = dialect(environment.dialect).block_delete;
+    if (switches == BlockDelete::none) return false;
+    const bool is_first =
+        switches == BlockDelete::one_switch || number == number_of_plain_slash(switches);
+    const uint32_t which = is_first ? 0 : static_cast<uint32_t>(number);
     return environment.block_delete
            || answer_under(state, environment, ControlQuestion::blocks_are_deleted, which, line)
                   != 0.0;

@@ -242,7 +242,7 @@ void check_block_delete(Execution& execution) {
     const bool switched = execution.block.block_delete || execution.block.words_before_slash;
     if (!switched || memory.said_block_delete) return;
     memory.said_block_delete = true;
-    if (!execution.dialect.has_block_delete) {
+    if (execution.dialect.block_delete == BlockDelete::none) {
         if (execution.environment.block_delete)
             execution.warn({.line = execution.block.line, .column = 1},
                            "block delete has no effect: the control does not have it and runs the "

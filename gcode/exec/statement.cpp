@@ -69,6 +69,8 @@ std::string_view meant_instead(const Word& word) {
     if (word.value == 71.0)
         return "; if it means millimetres, use G21; lathe cycles are not supported";
     if (word.value == 72.0) return "; lathe cycles are not supported";
+    if (word.value == 90.1 || word.value == 91.1)
+        return "; LinuxCNC and Mach3 have it: use --dialect linuxcnc";
     return {};
 }
 

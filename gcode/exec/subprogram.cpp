@@ -107,6 +107,24 @@ namespace {
 
 using core::ErrorCode;
 
+/// Why a word has no usable number, if it depends on a variable that the program does not set.
+std::string cause_of(const Execution& execution, const Word& word) {
+    if (!word.is_unknown) return {};
+    const ProgramParameters parameters(execution.state, execution.environment);
+    (void)evaluate(execution.block.pool, word.expression, execution.block.line, parameters,
+                   execution.dialect.arithmetic);
+    return cause_of_number(parameters);
+}
+
+/// The error for a P word with the number of a program that does not exist.
+tl::unexpected<core::Error> no_program(Execution& execution, const Word& word, int number) {
+    const std::string cause = cause_of(execution, word);
+    const std::string message =
+        cause.empty() ? missing_program(execution.library, execution.state.next.source, number)
+                      : fmt::format("there is no program O{}{}", number, cause);
+    return core::fail(ErrorCode::syntax, fmt::format("{}: {}", written(word), message), word.span);
+}
+
 /// The line of the block that a word refers to, in a program of the library.
 core::Result<uint32_t> block_named(Execution& execution, const Word& word, ProgramLine from,
                                    std::string_view where) {
@@ -114,7 +132,8 @@ core::Result<uint32_t> block_named(Execution& execution, const Word& word, Progr
     const auto line = line_of_block(execution.library, from.source, number, from.line);
     if (line) return *line;
     return core::fail(ErrorCode::syntax,
-                      fmt::format("{}: there is no block N{} in {}", written(word), number, where),
+                      fmt::format("{}: there is no block N{} in {}{}", written(word), number, where,
+                                  cause_of(execution, word)),
                       word.span);
 }
 
@@ -169,10 +188,7 @@ core::Result<Called> called_by(Execution& execution, const Word& word, bool file
         FEELER_TRY(begin, find_program(execution.library, source, number, files_first));
     }
     if (begin) return Called{number, rounds, *begin};
-    return core::fail(
-        ErrorCode::syntax,
-        fmt::format("{}: {}", written(word), missing_program(execution.library, source, number)),
-        word.span);
+    return no_program(execution, word, number);
 }
 
 core::Result<void> call_program(Execution& execution, const CodeWord& entry) {
@@ -381,11 +397,7 @@ core::Result<ModalMacro> named_macro(Execution& execution, const CodeWord& entry
     const uint32_t source = execution.state.next.source;
     FEELER_TRY(const std::optional<ProgramLine> begin,
                find_program(execution.library, source, number));
-    if (!begin)
-        return core::fail(ErrorCode::syntax,
-                          fmt::format("{}: {}", written(*program),
-                                      missing_program(execution.library, source, number)),
-                          program->span);
+    if (!begin) return no_program(execution, *program, number);
     ModalMacro macro{.name = fmt::format("O{}", number), .begin = *begin};
     if (const Word* rounds = argument(execution, 'L')) {
         FEELER_TRY(macro.rounds, whole_number(*rounds));

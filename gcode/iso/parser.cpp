@@ -118,10 +118,7 @@ private:
                 dialect_.has_active_comments && active_comment(comment.text).has_value();
             return {};
         }
-        if (c == ';') {
-            block_.comments.push_back(lexer_.line_comment());
-            return {};
-        }
+        if (c == ';') return end_of_block();
         if (c == '/') return block_delete();
         if (c == '%') return tape_mark();
         if (c == '#') return assignment();
@@ -133,12 +130,41 @@ private:
         return stray(c);
     }
 
+    /// `;` begins a comment. Where it ends the block, what follows it may be a block, which the
+    /// control runs.
+    core::Result<void> end_of_block() {
+        block_.comments.push_back(lexer_.line_comment());
+        if (!dialect_.semicolon_ends_block || block_.comments.back().text.empty()) return {};
+        Dialect one_block = dialect_;
+        one_block.semicolon_ends_block = false;
+        Comment rest = block_.comments.back();
+        while (true) {
+            Block next;
+            if (!LineParser(rest.text, lexer_.line_number, one_block, next).parse()) return {};
+            if (!next.is_empty() || next.prints) break;
+            if (next.comments.empty() || next.comments.back().text.empty()) return {};
+            const Comment& last = next.comments.back();
+            if (last.text.data() + last.text.size() != rest.text.data() + rest.text.size())
+                return {};
+            rest = last;
+        }
+        Lexer found{.line = lexer_.line,
+                    .at = static_cast<size_t>(rest.text.data() - lexer_.line.data())};
+        found.peek();
+        return core::fail(
+            ErrorCode::syntax,
+            fmt::format("'{}': on this control ';' ends the block, so this is a block of its own: "
+                        "put it on a line of its own, or write it as a comment in ( and )",
+                        found.line.substr(found.at)),
+            lexer_.span(found.at, lexer_.line.size()));
+    }
+
     /// `/` comes first, or right after the N word; on some controls also before the words to be
     /// skipped. `/10` is not a block delete. Where there is none, a `/` is passed over.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
         int number = 1;
-        if (!dialect_.has_block_delete) {
+        if (dialect_.block_delete == BlockDelete::none) {
             block_.block_delete = number;
             return {};
         }

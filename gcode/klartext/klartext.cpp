@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/following.h"
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/state_digest.h"
 #include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
@@ -369,8 +370,9 @@ core::Result<void> read_system_datum(Execution& execution) {
                                    axis_letters[axis]));
     const double value = position[axis].value_or(0.0);
     if (execution.environment.on_system_read) execution.environment.on_system_read(value);
-    execution.state.parameters.write().set_numbered(static_cast<int>(statement.word('Q')->value),
-                                                    value);
+    const double target = statement.word('Q')->value;
+    execution.state.parameters.write().set_numbered(static_cast<int>(target), value);
+    note_written(execution.state, key_of(target));
     return {};
 }
 

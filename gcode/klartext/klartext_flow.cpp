@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/readings.h"
 #include "gcode/klartext/klartext.h"
 #include "gcode/language/flow_index.h"
@@ -13,6 +14,7 @@ namespace {
 core::Result<std::string> label_name(const FlowStep& step) {
     const Flow& flow = step.block.flow;
     if (flow.has_label) return step.block.pool.names[flow.label_name];
+    note_computed_target(step.state);
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value value, evaluate(step.block.pool, flow.label, step.block.line, parameters,
                                            step.dialect.arithmetic));
@@ -50,9 +52,14 @@ core::Result<void> repeat_part(const FlowStep& step, uint32_t label) {
     report_unknown(parameters, step.result, step.block.flow.span, "the number of repetitions");
     auto& repeats = step.state.frames.back().repeats;
     const auto rounds = static_cast<int64_t>(std::clamp(count.value_or(0.0), 0.0, 1e15));
-    int64_t& left = repeats.try_emplace(step.block.line, rounds).first->second;
+    const auto [entry, begins] = repeats.try_emplace(step.block.line, rounds);
+    if (begins)
+        note_condition(step.state, step.block.line, step.block.pool, step.block.flow.condition, {},
+                       static_cast<double>(rounds), step.dialect);
+    int64_t& left = entry->second;
     if (left > 0) {
         --left;
+        note_repetitions(step.state, {step.state.next.source, step.block.line}, left);
         step.state.next.line = label;
     } else {
         repeats.erase(step.block.line);

@@ -161,7 +161,7 @@ struct Block {
     Flow flow{};
     ExpressionPool pool{};
     LanguageLine language_line{};
-    std::optional<int> block_delete{};          // 1 for `/`, 1 to 9 for `/1` to `/9`
+    std::optional<int> block_delete{};          // the number after the `/`, or that it stands for
     bool tape_mark = false;                     // a line that begins with %
     bool is_program_name = false;               // a line that begins with <NAME>
     bool prints = false;                        // POPEN, PCLOS, DPRNT or BPRNT

@@ -93,7 +93,8 @@ constexpr Dialect linuxcnc_dialect = {.id = DialectId::linuxcnc,
                                       .has_o_words = true,
                                       .has_fanuc_flow = false,
                                       .deletes_within_blocks = false,
-                                      .has_block_delete = true,
+                                      .block_delete = BlockDelete::from_one,
+                                      .semicolon_ends_block = false,
                                       .comments_nest = true,
                                       .has_parameters = true,
                                       .refused_letters = "",
@@ -196,7 +197,8 @@ constexpr Dialect fanuc_dialect = {.id = DialectId::fanuc,
                                    .has_o_words = false,
                                    .has_fanuc_flow = true,
                                    .deletes_within_blocks = true,
-                                   .has_block_delete = true,
+                                   .block_delete = BlockDelete::from_one,
+                                   .semicolon_ends_block = true,
                                    .comments_nest = true,
                                    .has_parameters = true,
                                    .refused_letters = "",
@@ -290,7 +292,7 @@ constexpr Dialect grbl_dialect = [] {
     entry.clears_offset_after_move = true; // targets are computed in step 3, G92.1 acts in step 4
     entry.machine_move_needs_g90 = false;
     // protocol.c, protocol_main_loop
-    entry.has_block_delete = false;
+    entry.block_delete = BlockDelete::none;
     entry.comments_nest = false;
     entry.longest_line = 79;
     // E is refused, too, with a hint of what it may mean
@@ -323,6 +325,8 @@ constexpr Dialect heidenhain = [] {
     entry.dwell_without_point_is_milliseconds = false;
     entry.decimal_points_matter = false;
     entry.language = Language::klartext;
+    entry.block_delete = BlockDelete::one_switch;
+    entry.semicolon_ends_block = false;
     entry.parameter_letter = "Q";
     entry.expressions = ExpressionSyntax::klartext;
     entry.arithmetic = {};
@@ -358,6 +362,8 @@ constexpr Dialect siemens_dialect = [] {
     entry.dwell_without_point_is_milliseconds = false;
     entry.begins_with_g0 = false;
     entry.language = Language::siemens;
+    entry.block_delete = BlockDelete::from_zero;
+    entry.semicolon_ends_block = false;
     entry.iso_mode = DialectId::siemens_iso;
     entry.expressions = ExpressionSyntax::siemens;
     entry.arithmetic = {};
@@ -387,6 +393,7 @@ constexpr Dialect siemens_iso = [] {
     entry.codes = DialectId::siemens_iso;
     entry.machine_move_bends = false;
     entry.radius_arc_may_vanish = false;
+    entry.semicolon_ends_block = false;
     entry.arc = siemens_arc;
     return entry;
 }();

@@ -36,6 +36,19 @@ constexpr bool remembers_words(SystemParameters parameters) {
     return parameters == SystemParameters::fanuc || parameters == SystemParameters::haas;
 }
 
+/// The switches for block delete, and how a program names them.
+enum class BlockDelete : uint8_t {
+    none,       // a / has no effect, wherever it is
+    one_switch, // a number after a / is that of the block
+    from_zero,  // / is /0, and /1 is the second switch
+    from_one,   // / is /1
+};
+
+/// The switch of a / without a number.
+constexpr int number_of_plain_slash(BlockDelete switches) {
+    return switches == BlockDelete::from_zero ? 0 : 1;
+}
+
 /// Which codes are not allowed between G41 and G40.
 enum class ContourCodes : uint8_t { rs274, fanuc };
 
@@ -106,12 +119,13 @@ struct Dialect {
     bool contour_breaks_are_errors;  // G28, G53 and similar between G41 and G40
     ContourCodes contour_codes;      // which codes these are
     ContourStyle contour_style;
-    bool radius_number_stays;         // G41 without D uses the last D, D0 cancels
-    bool has_active_comments;         // (MSG, ...) and (DEBUG, ...)
-    bool has_o_words;                 // o<name> sub, if, while ...
-    bool has_fanuc_flow;              // IF[] GOTO, WHILE[] DO, M98 P, G65
-    bool deletes_within_blocks;       // X1 /Y2 leaves out Y2
-    bool has_block_delete;            // otherwise a / has no effect, wherever it is
+    bool radius_number_stays;   // G41 without D uses the last D, D0 cancels
+    bool has_active_comments;   // (MSG, ...) and (DEBUG, ...)
+    bool has_o_words;           // o<name> sub, if, while ...
+    bool has_fanuc_flow;        // IF[] GOTO, WHILE[] DO, M98 P, G65
+    bool deletes_within_blocks; // X1 /Y2 leaves out Y2
+    BlockDelete block_delete;
+    bool semicolon_ends_block;        // text after a ; can be a block; otherwise it is a comment
     bool comments_nest;               // otherwise a comment ends at the first ), or with its line
     bool has_parameters;              // #5, and values in brackets
     std::string_view refused_letters; // of words that make the control refuse their line

@@ -219,12 +219,13 @@ Clue unsupported_clue(const EvidenceLine& evidence, size_t line) {
     return std::nullopt;
 }
 
-/// Evidence from the file name: Siemens programs end in .MPF and .SPF.
-Clue name_clue(const std::string& file) {
+/// Evidence from the file name: programs for this dialect have one of these endings.
+Clue name_clue(const std::string& file, DialectId dialect,
+               std::initializer_list<std::string_view> endings) {
     const std::string ending =
         core::upper_case(file.substr(std::min(file.find_last_of('.'), file.size())));
-    if (ending != ".MPF" && ending != ".SPF") return std::nullopt;
-    return Recognition{DialectId::siemens, fmt::format("the file name ends in {}", ending)};
+    if (std::find(endings.begin(), endings.end(), ending) == endings.end()) return std::nullopt;
+    return Recognition{dialect, fmt::format("the file name ends in {}", ending)};
 }
 
 /// Whether there is a `@5` or `^30`. `letters` has no blanks.
@@ -245,6 +246,13 @@ bool is_active_comment(std::string_view comment) {
     for (const std::string_view word : {"(DEBUG,", "(PRINT,", "(LOG,"})
         if (letters.starts_with(word) && letters.find('#') != std::string::npos) return true;
     return false;
+}
+
+/// Whether a comment names a post-processor for LinuxCNC: `(Post Processor: linuxcnc_post)`.
+bool names_linuxcnc_post(std::string_view comment) {
+    const std::string letters = without_blanks(comment);
+    return letters.find("POSTPROCESSOR:LINUXCNC") != std::string::npos
+           || letters.find("LINUXCNC_POST") != std::string::npos;
 }
 
 /// Features of LinuxCNC that the parser of this version does not accept.
@@ -276,6 +284,7 @@ struct Habits {
     std::array<size_t, candidates.size()> unknown_count{}; // of G codes
     size_t first_length_offset = 0;                        // G43 with H
     size_t first_crowd = 0; // G28 or a cycle with a motion code in one block
+    Clue linuxcnc{};        // counts only if no code decides
     bool has_tape_mark = false;
     bool changes_tools = false;
     bool has_expressions = false;
@@ -284,6 +293,19 @@ struct Habits {
 
 void remember(size_t& first, bool seen, uint32_t line) {
     if (seen && first == 0) first = line;
+}
+
+/// Whether a block has G64 with a tolerance, which only LinuxCNC takes.
+bool states_tolerance(const Block& block) {
+    bool blends = false, tolerance = false, is_of_other = false;
+    for (const Word& word : block.words) {
+        tolerance |= word.letter == 'P' || word.letter == 'Q';
+        if (word.letter != 'G' || word.expression) continue;
+        blends |= word.value == 64.0;
+        const Code* code = find_code('G', word.value, DialectId::fanuc);
+        is_of_other |= word.value != 64.0 && code && (code->uses('P') || code->uses('Q'));
+    }
+    return blends && tolerance && !is_of_other;
 }
 
 void observe(const Block& block, Habits& habits) {
@@ -310,6 +332,8 @@ void observe(const Block& block, Habits& habits) {
     }
     remember(habits.first_length_offset, length && offset_number, block.line);
     remember(habits.first_crowd, homes && moves, block.line);
+    if (!habits.linuxcnc && states_tolerance(block))
+        habits.linuxcnc = found(DialectId::linuxcnc, block.line, "has G64 with P or Q");
     habits.has_refused_words |= (moves && cancels) || (arcs && !names_axis);
 }
 
@@ -336,13 +360,16 @@ Clue clue_of_codes(const Habits& habits) {
     return std::nullopt;
 }
 
-Recognition judge(const Habits& habits) {
+Recognition judge(const Habits& habits, const std::string& file) {
     if (Clue clue = clue_of_codes(habits)) return *clue;
     if (habits.first_crowd)
         return found(DialectId::fanuc, habits.first_crowd,
                      "has G28 and a motion code in one block");
-    if (habits.first_length_offset)
+    if (habits.linuxcnc) return *habits.linuxcnc;
+    if (habits.first_length_offset) {
+        if (Clue clue = name_clue(file, DialectId::linuxcnc, {".NGC"})) return *clue;
         return found(DialectId::fanuc, habits.first_length_offset, "has G43 with H");
+    }
     const bool grbl_knows_all = habits.first_unknown.back() == 0;
     if (habits.changes_tools || habits.has_expressions || habits.has_tape_mark
         || habits.has_refused_words || !grbl_knows_all)
@@ -402,7 +429,11 @@ Clue language_clue(std::string_view text, const EvidenceLine& evidence, size_t l
 
 Recognition recognise(const Program& program) {
     constexpr size_t enough_lines = 10000; // that are not empty
-    if (Clue clue = name_clue(program.file)) return *clue;
+    if (Clue clue = name_clue(program.file, DialectId::siemens, {".MPF", ".SPF"})) return *clue;
+    // Of the languages with letters and numbers, Fanuc's accepts the most, if any text may follow
+    // a semicolon.
+    Dialect widest = dialect(DialectId::fanuc);
+    widest.semicolon_ends_block = false;
     Habits habits;
     Block block;
     Clue family; // Fanuc, unless a code of Haas follows
@@ -414,9 +445,12 @@ Recognition recognise(const Program& program) {
         if (Clue clue = unsupported_clue(evidence, number)) return *clue;
         if (!family)
             if (Clue clue = language_clue(text, evidence, number)) return *clue;
-        // Of the languages with letters and numbers, Fanuc's accepts the most.
-        if (!parse_line(text, static_cast<uint32_t>(number), dialect(DialectId::fanuc), block))
-            continue;
+        const bool names_post =
+            std::any_of(evidence.comments.begin(), evidence.comments.end(), names_linuxcnc_post);
+        if (!habits.linuxcnc && names_post)
+            habits.linuxcnc =
+                found(DialectId::linuxcnc, number, "names a post-processor for LinuxCNC");
+        if (!parse_line(text, static_cast<uint32_t>(number), widest, block)) continue;
         lines += !block.is_empty();
         habits.has_expressions |= !block.pool.instructions.empty();
         if (!family) family = family_clue(block);
@@ -426,7 +460,7 @@ Recognition recognise(const Program& program) {
         }
         observe(block, habits);
     }
-    if (!family) return judge(habits);
+    if (!family) return judge(habits, program.file);
     return *family;
 }
 

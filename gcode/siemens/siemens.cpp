@@ -219,7 +219,7 @@ core::Result<void> end_block(Execution& execution) {
         return {};
     }
     if (returns) {
-        execution.state.ending = ProgramStatus::main_return;
+        end_main_program(execution.state, execution.result, execution.column, "M17");
         return {};
     }
     return stop(execution);

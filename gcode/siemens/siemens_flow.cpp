@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "gcode/exec/flow.h"
+#include "gcode/exec/loop_detector.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/flow_index.h"
 #include "gcode/language/language.h"
@@ -36,15 +37,18 @@ private:
         return {};
     }
     core::Result<bool> holds(const SiemensArgument& condition) const {
-        FEELER_TRY(const double value, value_of_argument(step_, condition, true));
-        if (!condition.expression) return value != 0.0;
+        if (!condition.expression) {
+            FEELER_TRY(const double value, value_of_argument(step_, condition, true));
+            return value != 0.0;
+        }
         const ProgramParameters parameters(step_.state, step_.environment);
-        if (auto read = evaluate(step_.block.pool, condition.expression, line_, parameters,
-                                 step_.dialect.arithmetic);
-            !read)
-            return tl::unexpected(std::move(read).error());
+        Margins margins;
+        FEELER_TRY(const Value value, evaluate(step_.block.pool, condition.expression, line_,
+                                               parameters, step_.dialect.arithmetic, &margins));
+        note_condition(step_.state, line_, step_.block.pool, condition.expression, margins, value,
+                       step_.dialect);
         return outcome_of(parameters, step_.block, condition.expression, step_.dialect.arithmetic,
-                          value != 0.0);
+                          value.value_or(0.0) != 0.0);
     }
     const FlowMark* structure() const;
     core::Result<uint32_t> partner(std::string_view wanted) const;
@@ -208,7 +212,16 @@ core::Result<void> SiemensFlowing::count_on() {
                        ? parameters.set_named(block.pool.names[entry.name], now, entry.span)
                        : parameters.set_numbered(number, now, entry.span);
         if (!set) return set;
+        note_written(step_.state,
+                     entry.is_named ? key_of(block.pool.names[entry.name]) : key_of(number));
     }
+    note_counting(step_.state,
+                  {.head = {source_, block.line},
+                   .left = last - now,
+                   .goes_on = now <= last,
+                   .is_first = begins,
+                   .bounds = {entry.value, siemens_of(block).arguments[0].expression}},
+                  block.pool, step_.dialect);
     if (now <= last) return begins ? core::Result<void>{} : go_after(other);
     return begins ? go_after(other) : core::Result<void>{};
 }
@@ -235,10 +248,14 @@ core::Result<void> SiemensFlowing::repeat_part() {
                           "block to be repeated, with the first label only",
                           step_.block.flow.span);
     const auto rounds = static_cast<int64_t>(std::clamp(count, 0.0, 1e15));
-    int64_t& left = repeats.try_emplace(line_, rounds).first->second;
+    const auto [entry, begins] = repeats.try_emplace(line_, rounds);
+    if (const Expression times = siemens_of(step_.block).repeats.expression; begins && times)
+        note_condition(step_.state, line_, step_.block.pool, times, {}, count, step_.dialect);
+    int64_t& left = entry->second;
     const bool repeats_lines = !frame.repeated.empty() && frame.repeated.back().statement == line_;
     if (left > 0) {
         --left;
+        note_repetitions(step_.state, {source_, line_}, left);
         step_.state.next.line = *begin;
         const auto end = first_in("ENDLABEL", *begin, line_);
         if (end && !repeats_lines)
@@ -291,11 +308,22 @@ core::Result<void> return_from(const FlowStep& step) {
     if (step.state.frames.size() > 1)
         return_to_caller(step.state, step.result, step.block.flow.span.column);
     else
-        step.state.ending = ProgramStatus::main_return;
+        end_main_program(step.state, step.result, step.block.flow.span.column, "RET");
     return {};
 }
 
 } // namespace
+
+// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, M functions: M2, M17 and M30.
+void end_main_program(InterpreterState& state, BlockCommands& result, uint32_t column,
+                      std::string_view word) {
+    state.ending = ProgramStatus::program_end;
+    result.commands.emplace_back(ProgramEnd{});
+    result.columns.push_back(column);
+    result.warnings.push_back({Severity::note,
+                               {.line = result.line, .column = column},
+                               fmt::format("{} in a main program ends it, as M30 does", word)});
+}
 
 ProgramLines lines_around(const FlowIndex& index, uint32_t line) {
     ProgramLines lines;
@@ -456,6 +484,9 @@ core::Result<int64_t> rounds_of(const FlowStep& step) {
     const SiemensArgument& repeats = siemens_of(step.block).repeats;
     if (repeats.kind == SiemensArgument::Kind::nothing) return 1;
     FEELER_TRY(const double rounds, value_of_argument(step, repeats));
+    if (repeats.expression)
+        note_condition(step.state, step.block.line, step.block.pool, repeats.expression, {}, rounds,
+                       step.dialect);
     if (rounds >= 0.0 && rounds <= 9999.0 && rounds == std::floor(rounds))
         return static_cast<int64_t>(rounds);
     return core::fail(ErrorCode::invalid_value,
@@ -500,6 +531,7 @@ core::Result<void> declare_variables(const FlowStep& step) {
         if (frame.named.size() >= most_named_parameters)
             return core::fail(ErrorCode::invalid_value, "too many variables", entry.span);
         frame.named[entry.name] = values[i];
+        note_written(step.state, key_of(entry.name));
         if (entry.type != VariableType::real) frame.types[entry.name] = entry.type;
     }
     return {};

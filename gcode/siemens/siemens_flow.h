@@ -29,6 +29,10 @@ void save_siemens_modes(const InterpreterState& state, Frame& frame);
 /// Returns from a called program and emits the commands for the modes that this restores.
 void return_to_caller(InterpreterState& state, BlockCommands& result, uint32_t column);
 
+/// Ends the main program at a word that ends subprograms, M17 or RET, as M30 does.
+void end_main_program(InterpreterState& state, BlockCommands& result, uint32_t column,
+                      std::string_view word);
+
 /// Initialises the variables declared by DEF.
 core::Result<void> declare_variables(const FlowStep& step);
 

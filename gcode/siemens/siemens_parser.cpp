@@ -76,7 +76,7 @@ private:
     /// `/`, `/0` to `/9`: first, or after the block number.
     core::Result<void> block_delete() {
         const size_t begin = lexer_.at++;
-        int number = 1;
+        int number = number_of_plain_slash(reader_.dialect.block_delete);
         if (lexer_.at < lexer_.line.size() && is_digit(lexer_.line[lexer_.at]))
             number = lexer_.line[lexer_.at++] - '0';
         const bool after_number = block_.words.size() == 1 && block_.words[0].letter == 'N';

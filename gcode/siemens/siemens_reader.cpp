@@ -166,6 +166,15 @@ core::Result<void> ExpressionReader::siemens_parameter(size_t begin) {
 core::Result<void> ExpressionReader::siemens_function(size_t begin, std::string_view name) {
     const auto found = std::find_if(std::begin(siemens_functions), std::end(siemens_functions),
                                     [&](const NamedFunction& some) { return some.name == name; });
+    for (const std::string_view addressing : {"AC", "IC", "DC", "ACP", "ACN"})
+        if (name == addressing)
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format(
+                    "'{}' is not supported here: it can only be the whole value of an axis, "
+                    "of I, J or K, or of AP= or RP=",
+                    name),
+                lexer_.span(begin, begin + name.size()));
     if (found == std::end(siemens_functions))
         return core::fail(
             ErrorCode::unsupported,

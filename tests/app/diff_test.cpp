@@ -37,8 +37,8 @@ TEST(Diff, EndsWithZeroWhenItIsBetterOrTheSame) {
 
 TEST(Diff, OfASetupListsEveryBlockInJson) {
     const test_support::ScopedFolder folder;
-    const std::string program = folder.write("a.ngc", "G21 G90 G54\nT1 M6\nG43 H1\nG0 X20 Y50\n"
-                                                      "G0 Z40\nG0 X80\nM2\n");
+    const std::string program = folder.write("a.nc", "G21 G90 G54\nT1 M6\nG43 H1\nG0 X20 Y50\n"
+                                                     "G0 Z40\nG0 X80\nM2\n");
     const auto with_post = [&](const std::string& name, int x) {
         const std::string from = std::to_string(x), to = std::to_string(x + 20);
         return folder.write(

@@ -26,8 +26,8 @@ protected:
     void check_and_keep(const std::string& cut) {
         app::CheckJob job;
         job.program = program =
-            folder.write("teil 1.ngc", "G21 G90 G54\nT1 M6\nG43 H1\nS3000 M3\nG0 X20 Y50\nG0 Z5\n"
-                                           + cut + "G0 Z50\nM2\n");
+            folder.write("teil 1.nc", "G21 G90 G54\nT1 M6\nG43 H1\nS3000 M3\nG0 X20 Y50\nG0 Z5\n"
+                                          + cut + "G0 Z50\nM2\n");
         job.setup = setup;
         job.mesh_size = 2.0;
         const auto run = app::run_check(job);
@@ -65,8 +65,8 @@ TEST_F(TwoVersions, AreListedInJson) {
 
 TEST_F(TwoVersions, AreFoundFromADeeperFolderAndByName) {
     fs::create_directories(folder / "jobs/today");
-    fs::copy_file(program, folder / "jobs/today/new.ngc");
-    const auto unknown = feeler({"history", folder / "jobs/today/new.ngc"});
+    fs::copy_file(program, folder / "jobs/today/new.nc");
+    const auto unknown = feeler({"history", folder / "jobs/today/new.nc"});
     EXPECT_EQ(unknown.status, 2);
     EXPECT_NE(unknown.err.find("has no results for"), std::string::npos) << unknown.err;
     fs::rename(folder / ".feeler/results.db", folder / "kept.db");

@@ -23,7 +23,7 @@ SetupWriter beside_post(double x = 110.0) {
 
 CheckRun checked(const ScopedFolder& folder, const std::string& program, const SetupWriter& setup) {
     app::CheckJob job;
-    job.program = folder.write("a.ngc", program);
+    job.program = folder.write("a.nc", program);
     job.setup = folder.write("a.toml", setup.text());
     job.mesh_size = 2.0;
     auto run = app::run_check(job);

@@ -202,5 +202,19 @@ TEST(Calls, AreRefusedByGrbl) {
     EXPECT_THAT(rapids("M98 P100\nM2", DialectId::grbl), HasSubstr("other controls"));
 }
 
+TEST(Call, WhoseNumberTheProgramDoesNotSetNamesTheVariable) {
+    Environment environment = known_environment(DialectId::fanuc);
+    environment.control.reports_premises = true;
+    for (const char* call : {"M98 P#500", "G65 P#500", "M98 P#500 L2", "M99 P#500"}) {
+        const Ran ran = run_text("G21 G90 G0 X1.\n" + std::string(call) + "\nM30\n", environment);
+        ASSERT_TRUE(ran.run.error) << call;
+        EXPECT_THAT(ran.run.error->message,
+                    testing::HasSubstr(": the number depends on #500, which the program does not "
+                                       "set; state its value under [program.values]"))
+            << call;
+    }
+    EXPECT_THAT(error_of("G21\n#500=7\nM98 P#500\nM30\n"), testing::HasSubstr("no program O7 in"));
+}
+
 } // namespace
 } // namespace gcode

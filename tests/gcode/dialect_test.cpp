@@ -8,8 +8,8 @@ namespace {
 
 using testing::HasSubstr;
 
-Recognition recognised(std::string_view text) {
-    const auto program = program_from_text(text);
+Recognition recognised(std::string_view text, std::string file = {}) {
+    const auto program = program_from_text(text, std::move(file));
     EXPECT_TRUE(program);
     return recognise(*program);
 }
@@ -74,6 +74,31 @@ TEST(Recognition, IgnoresCluesInComments) {
         EXPECT_THAT(seen.reason, testing::AnyOf(HasSubstr("no tools"), HasSubstr("nothing in")))
             << comment;
     }
+}
+
+TEST(Recognition, TakesLinuxcncFromWeakEvidenceBeforeFanucFromG43WithH) {
+    const std::string text = "G21 G90\nT1 M6\nG43 H1 Z5\nG0 X1\n";
+    EXPECT_EQ(recognised(text, "part.nc").dialect, DialectId::fanuc);
+    EXPECT_THAT(recognised(text, "part.ngc").reason, HasSubstr("ends in .NGC"));
+    EXPECT_THAT(recognised(text + "G64 P0.01 Q0.02\n").reason, HasSubstr("has G64 with P or Q"));
+    EXPECT_THAT(recognised("(Post Processor: linuxcnc_post)\n" + text).reason,
+                HasSubstr("line 1 names a post-processor for LinuxCNC"));
+    for (const std::string& weak :
+         {"G64 P0.01\n" + text, "(Post Processor: linuxcnc_post)\n" + text})
+        EXPECT_EQ(recognised(weak).dialect, DialectId::linuxcnc);
+    EXPECT_EQ(recognised("G64\nG4 P1\n" + text).dialect, DialectId::fanuc);
+    EXPECT_EQ(recognised("G64 G4 P1\n" + text).dialect, DialectId::fanuc);
+    EXPECT_EQ(recognised("(NOT FOR LINUXCNC)\n" + text).dialect, DialectId::fanuc);
+    EXPECT_EQ(recognised("G21 G90\nG0 X1\n", "part.ngc").dialect, DialectId::grbl);
+    // Stronger evidence stays stronger.
+    EXPECT_EQ(recognised("O1000\n" + text, "part.ngc").dialect, DialectId::fanuc);
+    EXPECT_EQ(recognised(text + "G187 P1\nG64 P1\n", "part.ngc").dialect, DialectId::haas);
+    EXPECT_EQ(recognised(text + "G91 G28 G0 Z0\n", "part.ngc").dialect, DialectId::fanuc);
+}
+
+TEST(Recognition, IsNotDisturbedByTextAfterASemicolon) {
+    EXPECT_EQ(recognised("T1 M6 ; T1\nG43 H1 Z5 ; G0\nG0 X1 ; G1 X2\n").dialect, DialectId::fanuc);
+    EXPECT_EQ(recognised("O1 ; G0 X5\nG0 X1\n").dialect, DialectId::fanuc);
 }
 
 TEST(Recognition, ReadsCodeAroundCommentsAndInExpressions) {

@@ -76,6 +76,81 @@ TEST(EndlessLoop, ThatNeverMovesIsStoppedAtALimit) {
     EXPECT_LT(stop.blocks, 4'000'001u);
 }
 
+std::string klartext_lines(std::string_view lines) {
+    return "BEGIN PGM A MM\nL X+0 Y+0 Z+0 R0 FMAX\n" + std::string(lines) + "END PGM A MM\n";
+}
+
+Stop klartext_stop(std::string_view lines) {
+    return stop_of(klartext_lines(lines), DialectId::heidenhain);
+}
+
+Stop siemens_stop(std::string_view lines) {
+    return stop_of("G71 G90 G0 X0\n" + std::string(lines) + "M30\n", DialectId::siemens);
+}
+
+TEST(EndlessLoop, IsFoundInEachLanguage) {
+    for (const char* lines :
+         {"LOOP\nR1=R1+1\nX=R1\nENDLOOP\n", "LOOP\nR1=R1+1\nENDLOOP\n", "AA:\nR1=R1+1\nGOTOB AA\n",
+          "WHILE 1==1\nR1=R1+1\nENDWHILE\n", "REPEAT\nR1=R1+1\nX=R1\nUNTIL R2>0\n",
+          "LOOP\nFOR R2=1 TO 0\nX1\nENDFOR\nR1=R1+1\nX=R1\nENDLOOP\n"}) {
+        const Stop stop = siemens_stop(lines);
+        EXPECT_LT(stop.blocks, 60u) << lines;
+        EXPECT_THAT(stop.message,
+                    AllOf(HasSubstr("never ends: the loop of lines"), HasSubstr("R1 goes from")))
+            << lines;
+    }
+    for (const char* lines : {"AA: R1=R1+1\nX=R1\nIF R1>0 GOTOB AA\n",
+                              "DEF REAL FAR=0\nREPEAT\nFAR=FAR+1\nR1=FAR\nUNTIL FAR<0\n",
+                              "LOOP\nFOR R2=1 TO 3\nX=R2\nENDFOR\nR1=R1+1\nX=R1\nENDLOOP\n",
+                              "FOR R2=1 TO 3\nR1=R1+1\nX=R1\nR2=R2-2\nENDFOR\n"}) {
+        const Stop stop = siemens_stop(lines);
+        EXPECT_LT(stop.blocks, 150'000u) << lines;
+        EXPECT_THAT(stop.message,
+                    AllOf(HasSubstr("has made 10000 passes"), HasSubstr("R1 goes from")))
+            << lines;
+    }
+    for (const char* lines :
+         {"LBL 1\nFN 1: Q1 = +Q1 + +1\nL X+Q1 F500\nFN 9: IF +1 EQU +1 GOTO LBL 1\n",
+          "LBL 1\nQ1 = Q1 + 1\nFN 9: IF +1 EQU +1 GOTO LBL 1\n",
+          "LBL 1\nQ1 = Q1 + 1\nLBL 2\nL IX+1 F500\nCALL LBL 2 REP 3\n"
+          "FN 9: IF +1 EQU +1 GOTO LBL 1\n"}) {
+        const Stop stop = klartext_stop(lines);
+        EXPECT_LT(stop.blocks, 100u) << lines;
+        EXPECT_THAT(stop.message,
+                    AllOf(HasSubstr("never ends: the loop of lines"), HasSubstr("Q1 goes from")))
+            << lines;
+    }
+    EXPECT_THAT(
+        klartext_stop("LBL 1\nQ1 = Q1 + 1\nL X+Q1 F500\nFN 11: IF +Q1 GT +0 GOTO LBL 1\n").message,
+        HasSubstr("has made 10000 passes"));
+}
+
+TEST(LongLoop, IsRunToItsEndInEachLanguage) {
+    for (const char* lines :
+         {"FOR R1=1 TO 50000\nX=R1/1000\nENDFOR\n",
+          "WHILE R1<50000\nR1=R1+1\nX=R1/1000\nENDWHILE\n",
+          "LOOP\nR1=R1+1\nX=R1/1000\nIF R1>50000 GOTOF OUT\nENDLOOP\nOUT:\n",
+          "AA: G91 X0.001\nREPEAT AA P=9000\n",
+          // Two conditions in a line, of which the second moves away from its end.
+          "AA: R1=R1+1\nX=R1/1000\nIF R1>20000 GOTOF OUT IF R1>0 GOTOB AA\nOUT:\n",
+          // The number of passes stays the same for 20,000 passes.
+          "LOOP\nR1=R1+1\nX=R1/1000\nR5=1-TRUNC(R1/20000)\nFOR R2=1 TO R5\nGOTOF ON\nENDFOR\n"
+          "GOTOF OUT\nON:\nENDLOOP\nOUT:\n",
+          "LOOP\nR1=R1+1\nX=R1/1000\nR5=TRUNC(R1/20000)\nFOR R2=1 TO R5\nGOTOF OUT\nENDFOR\n"
+          "ENDLOOP\nOUT:\n"})
+        EXPECT_EQ(siemens_stop(lines).message, "") << lines;
+    for (const char* lines :
+         {"LBL 1\nL IX+0.001 F500\nCALL LBL 1 REP 50000\n",
+          "LBL 1\nQ1 = Q1 + 1\nL IX+0.001 F500\nFN 12: IF +Q1 LT +50000 GOTO LBL 1\n",
+          "LBL 9\nQ1 = Q1 + 1\nQ2 = INT (Q1 / 20000)\nL IX+0.001 F500\n"
+          "FN 9: IF +1 EQU +1 GOTO LBL 3\nLBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 4\nLBL 3\n"
+          "CALL LBL 1 REP Q2\nFN 9: IF +1 EQU +1 GOTO LBL 9\nLBL 4\n",
+          // Read from the control in each pass.
+          "LBL 1\nL IX+0.001 F500\nFN 18: SYSREAD Q2 = ID270 NR1 IDX1\n"
+          "Q3 = INT Q2\nFN 12: IF +Q3 LT +20 GOTO LBL 1\n"})
+        EXPECT_EQ(klartext_stop(lines).message, "") << lines;
+}
+
 TEST(LongLoop, IsRunToItsEnd) {
     const std::string_view counts = "#1=0\nWHILE[#1 LT 100000]DO1\n#1=#1+1\nEND1\nM30\n";
     EXPECT_EQ(stop_of(counts).message, "");

@@ -72,6 +72,32 @@ TEST(Interpreter, BlockDeleteRunsOrSkipsBySwitch) {
     EXPECT_EQ(commands_of(run_text("/G0 X1").run), "straight_traverse x=1 y=0 z=0\n");
 }
 
+TEST(Interpreter, BlockDeleteHasASwitchForEachNumberThatTheControlKnows) {
+    const auto questions = [](std::string_view text, DialectId dialect) {
+        Environment environment = known_environment(dialect);
+        environment.control.reports_premises = true;
+        const auto program = program_from_text(text, "test.nc");
+        ProgramLibrary library(*program, gcode::dialect(dialect));
+        Interpreter interpreter(library, environment);
+        InterpreterState state = initial_state(environment);
+        while (true) {
+            const auto block = interpreter.next(state);
+            if (!block || !*block) break;
+        }
+        return std::count_if(state.readings->met.begin(), state.readings->met.end(),
+                             [](const OpenPremise& premise) {
+                                 return premise.id.question == ControlQuestion::blocks_are_deleted;
+                             });
+    };
+    EXPECT_EQ(questions("G90 G0 X1\n/X2\n/1 X3\n/2 X4\n", DialectId::fanuc), 2);
+    EXPECT_EQ(questions("G90 G0 X1\n/X2\n/0 X3\n/1 X4\n", DialectId::siemens), 2);
+    EXPECT_EQ(
+        questions("BEGIN PGM A MM\n/1 L X+1 FMAX\n/2 L X+2 FMAX\n3 / L X+3 FMAX\n/ L X+4 FMAX\n"
+                  "END PGM A MM\n",
+                  DialectId::heidenhain),
+        1);
+}
+
 TEST(Interpreter, LeavesTheStateAloneOnError) {
     const std::string_view mistakes[] = {"G1 X5",
                                          "G0 X5 G123",

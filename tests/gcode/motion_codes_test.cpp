@@ -159,6 +159,9 @@ TEST(Turning, ReportsMistakesWithLineAndColumn) {
     EXPECT_EQ(error(shaft + "G71 X18 Z4\nM2\n"),
               "9:1: G71: no Q word: it must give the number of the subprogram with the contour; if "
               "it means millimetres, use G21");
+    EXPECT_EQ(error("G21\nN20G71G91.1\nM2\n"),
+              "2:4: G71: beside G91.1 it is Mach3's code for millimetres: use G21; with that, "
+              "--dialect linuxcnc reads the program");
     EXPECT_EQ(error(shaft + "G17 G71 Q100 X18 Z4\nM2\n"),
               "9:5: G71: turning cycles work in the ZX plane: program G18 first");
     EXPECT_EQ(error(shaft + "G71 Q200 X18 Z4\nM2\n").substr(0, 4), "9:5:");

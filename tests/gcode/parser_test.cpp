@@ -72,6 +72,33 @@ TEST(Parser, ReadsBlockDeleteWithItsSwitch) {
     EXPECT_EQ(refused("G0 / X1", DialectId::linuxcnc), "4: '/' must be at the start of the block");
 }
 
+TEST(Parser, NumbersTheSwitchesForBlockDeleteAsTheControlDoes) {
+    EXPECT_EQ(parsed("/G0 X1", DialectId::siemens).block_delete, 0);
+    EXPECT_EQ(parsed("/0 G0 X1", DialectId::siemens).block_delete, 0);
+    EXPECT_EQ(parsed("/1 G0 X1", DialectId::siemens).block_delete, 1);
+    EXPECT_EQ(parsed("/4 L X+1", DialectId::heidenhain).block_delete,
+              parsed("/5 L X+1", DialectId::heidenhain).block_delete);
+}
+
+TEST(Parser, RefusesABlockAfterASemicolonWhereItEndsTheBlock) {
+    const std::string_view own = ": on this control ';' ends the block, so this is a block";
+    for (const DialectId id : {DialectId::fanuc, DialectId::haas}) {
+        EXPECT_THAT(refused("G1 X60.; G0 Z5.; G0 Y0.", id),
+                    AllOf(HasSubstr("10: 'G0 Z5.; G0 Y0.'"), HasSubstr(own)));
+        for (const char* text : {";G0 X1", "G1 X1 ;; G0 Z5.", "G1 X1;(UP) Z5.", "X1; /G0 Z5.",
+                                 "X1;#1=5", "X1;GOTO 10", "X1;M98 P1;", "X1; ;X2"})
+            EXPECT_THAT(refused(text, id), HasSubstr(own)) << text;
+        for (const char* text :
+             {"G1 X60.;", "G1 X60. ; ", "X1; T1 10MM END MILL", "; G0 to the start", "X1;;",
+              "X1;()", "X1;(G0 Z5.)", "X1; (G0 Z5.);", "X1; first; G0 Z5.", "; T6 D=50 - face mill",
+              "X1;%"})
+            EXPECT_EQ(refused(text, id), "accepted") << text;
+    }
+    for (const DialectId id : {DialectId::linuxcnc, DialectId::grbl, DialectId::siemens,
+                               DialectId::siemens_iso, DialectId::heidenhain})
+        EXPECT_EQ(refused("; G0 Z5.", id), "accepted");
+}
+
 TEST(Parser, TakesATapeMarkAndIgnoresTheRestOfItsLine) {
     EXPECT_TRUE(parsed("%").tape_mark);
     EXPECT_TRUE(parsed("%1234_NAME").tape_mark);

@@ -128,5 +128,14 @@ TEST(SiemensCall, ModalCallsComeAfterEveryBlockThatMoves) {
               "1 3 2 3 9 ");
 }
 
+TEST(SiemensFlow, EndsAMainProgramAtTheEndOfASubprogram) {
+    for (const std::string end : {"M17", "RET"}) {
+        const Ran ran = run_text("G71 G0 X1\n" + end + "\nX2\n", DialectId::siemens);
+        EXPECT_FALSE(ran.run.error);
+        EXPECT_EQ(commands_of(ran.run), "straight_traverse x=1 y=0 z=0\n");
+        EXPECT_EQ(warnings_of(ran.run), end + " in a main program ends it, as M30 does\n");
+    }
+}
+
 } // namespace
 } // namespace gcode

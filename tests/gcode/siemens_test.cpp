@@ -55,6 +55,8 @@ TEST(SiemensWords, NamesWhatItCannotRead) {
                 HasSubstr("1:6: 'foo': this variable is not defined in this program"));
     EXPECT_THAT(siemens_error("G1 X=FOO(1)\n"),
                 HasSubstr("1:6: 'FOO': this function is not supported; supported are SIN"));
+    EXPECT_THAT(siemens_error("G2 X1 Y0 I1=IC(5) F1\n"),
+                HasSubstr("1:13: 'IC' is not supported here: it can only be the whole value of"));
     EXPECT_THAT(siemens_error("FOO=1\n"),
                 HasSubstr("'foo': this variable is not defined in this program"));
     EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments start with ';'"));

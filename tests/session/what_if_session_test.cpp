@@ -183,7 +183,7 @@ TEST(WhatIf, OfASmallAllowanceLooksAsFarAsBefore) {
 
 TEST(WhatIf, MovesAFixtureFromWhereTheProgramHasPutIt) {
     const ProgramFiles files(
-        "moved.ngc", moved_by_program,
+        "moved.nc", moved_by_program,
         walked_setup().fixture("vise", "box = [[170, 40, -30], [180, 60, 40]]\n"
                                        "[[fixture.move]]\ncode = \"M110\"\nat = [0, 10, 0]\n"));
     const auto session = open_session(files);
@@ -197,7 +197,7 @@ TEST(WhatIf, MovesAFixtureFromWhereTheProgramHasPutIt) {
 
 TEST(WhatIf, RefusesToMoveAFixtureThatHasBeenTakenAway) {
     const ProgramFiles files(
-        "moved.ngc", moved_by_program,
+        "moved.nc", moved_by_program,
         walked_setup().fixture("vise", "box = [[170, 40, -30], [180, 60, 40]]\n"
                                        "[[fixture.move]]\ncode = \"M110\"\nremove = true\n"));
     const auto session = open_session(files);
@@ -213,7 +213,7 @@ TEST(WhatIf, RefusesToMoveAFixtureThatHasBeenTakenAway) {
 /// The length in the control is 30 mm too short from G43 on. Meanwhile the clamp is moved into the
 /// path.
 TEST(WhatIf, LetsAWrongLengthAbsorbOnlyItsConsequences) {
-    const ProgramFiles files("short.ngc",
+    const ProgramFiles files("short.nc",
                              "G21 G90 G17 G54\nT1 M6\nS2000 M3\nG43 H3\nG0 Z90\nG0 X10 Y50\n"
                              "G1 Z-2 F500\nG1 X95\nG0 Z90\nM2\n",
                              walked_setup()
