@@ -14,7 +14,6 @@
 #include "core/base/ids.h"
 #include "core/base/result.h"
 #include "gcode/exec/frame.h"
-#include "gcode/exec/possible_values.h"
 #include "gcode/exec/rules.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/parameters.h"

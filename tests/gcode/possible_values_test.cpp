@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gcode/exec/possible_values.h"
+#include "gcode/language/expression.h"
 
 namespace gcode {
 namespace {

@@ -1,4 +1,4 @@
-#include "gcode/exec/possible_values.h"
+#include "gcode/language/expression.h"
 
 namespace gcode {
 
