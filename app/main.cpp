@@ -7,13 +7,25 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sqlite3.h>
 
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
 #include "app/commands/suggestion.h"
+#include "app/report/html/html_page.h"
 
 namespace {
+
+/// The version, and what this build can do.
+std::string version_text() {
+    const bool has_view = !app::view_bundle().empty();
+    return fmt::format("feeler {}\nwith     window and pictures (OpenGL), database of results "
+                       "(SQLite {}), line editing (libedit){}{}",
+                       app::version, sqlite3_libversion(),
+                       has_view ? ", 3D view in HTML reports" : "",
+                       has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing");
+}
 
 /// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.
 std::vector<const char*> arguments_of(int argc, char** argv) {
@@ -28,7 +40,7 @@ int run(int argc, char** argv) {
     CLI::App cli(
         "Feeler checks NC programs for collisions, with proven clearances for every block.",
         "feeler");
-    cli.set_version_flag("--version", fmt::format("feeler {}", app::version));
+    cli.set_version_flag("--version", version_text());
     cli.require_subcommand(1);
     app::ExitCode exit_code = app::ExitCode::clear;
     app::add_check(cli, exit_code);

@@ -208,6 +208,8 @@ TEST(HtmlBatch, ShowsNoMarginLargerThanItIs) {
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("<td>-0.001 mm: clearance 1.999 to 2.003 mm (minimum 2.000 mm)"));
     tightest = {.lower = -0.0000011, .upper = 0.0};
+    EXPECT_THAT(html_batch_summary(batch), HasSubstr("except permitted contact"));
+    batch.programs[0].verdict = core::Verdict::undecided;
     EXPECT_THAT(html_batch_summary(batch),
                 HasSubstr("<td>0.000 mm: clearance 0.000 mm (minimum 0.000 mm)"));
 }

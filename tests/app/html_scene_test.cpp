@@ -135,7 +135,7 @@ TEST(PicturedRun, ShowsEachPairOfABlockAtItsOwnMoment) {
             "p.nc", test_support::program({"G0 X50. Y97.", "Z20.", "G1 Z-28. F200.", "G0 Z60."})),
         .setup =
             files.write("s.toml", test_support::SetupWriter()
-                                      .fixture("jaw", "box = [[-40, 100, -60], [140, 130, 10]]")
+                                      .fixture("jaw", "box = [[-40, 100, -60], [140, 130, 18]]")
                                       .text()),
         .detail = core::Detail::deciding_pair};
     ReportViews views;

@@ -101,12 +101,12 @@ void apply_style(const Theme& palette, double scale) {
 
 namespace {
 
-constexpr const char* inter = "/usr/share/fonts/opentype/inter/Inter-Regular.otf";
-constexpr const char* inter_strong = "/usr/share/fonts/opentype/inter/Inter-SemiBold.otf";
-constexpr const char* inter_big = "/usr/share/fonts/opentype/inter/InterDisplay-SemiBold.otf";
-constexpr const char* jetbrains =
-    "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
-constexpr const char* awesome = "/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf";
+// Files of fonts, in their folders of /usr/share/fonts.
+constexpr const char* inter = "opentype/inter/Inter-Regular.otf";
+constexpr const char* inter_strong = "opentype/inter/Inter-SemiBold.otf";
+constexpr const char* inter_big = "opentype/inter/InterDisplay-SemiBold.otf";
+constexpr const char* jetbrains = "truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
+constexpr const char* awesome = "truetype/font-awesome/fontawesome-webfont.ttf";
 
 /// Unicode ranges for programs, names and units. Zero ends the list.
 constexpr ImWchar letters[] = {0x0020, 0x017F, 0x0370, 0x04FF, 0x2010, 0x2027, 0x2030, 0x2044,
@@ -114,16 +114,25 @@ constexpr ImWchar letters[] = {0x0020, 0x017F, 0x0370, 0x04FF, 0x2010, 0x2027, 0
 constexpr ImWchar digits[] = {0x0020, 0x007E, 0x2013, 0x2014, 0x2265, 0x2265, 0};
 constexpr ImWchar icons[] = {0xF000, 0xF2E0, 0};
 
-bool is_there(const char* path) {
+/// The path of a font: beside the installed program, for an archive that was unpacked anywhere,
+/// else in the system. Empty if it is in neither.
+std::string font_file(const char* name) {
+    namespace fs = std::filesystem;
     std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    const fs::path own = program.parent_path().parent_path() / "share/feeler/fonts";
+    for (const fs::path& path :
+         {own / fs::path(name).filename(), fs::path("/usr/share/fonts") / name})
+        if (fs::is_regular_file(path, ignored)) return path.string();
+    return {};
 }
 
-ImFont* load(const char* path, double size, const ImWchar* ranges) {
+ImFont* load(const char* name, double size, const ImWchar* ranges) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     const auto pixels = static_cast<float>(size);
-    if (is_there(path))
-        if (ImFont* font = atlas.AddFontFromFileTTF(path, pixels, nullptr, ranges)) return font;
+    if (const std::string path = font_file(name); !path.empty())
+        if (ImFont* font = atlas.AddFontFromFileTTF(path.c_str(), pixels, nullptr, ranges))
+            return font;
     ImFontConfig config;
     config.SizePixels = pixels;
     return atlas.AddFontDefault(&config);
@@ -131,13 +140,15 @@ ImFont* load(const char* path, double size, const ImWchar* ranges) {
 
 /// Puts the icons into the font that was loaded last.
 bool merge_icons(double size) {
-    if (!is_there(awesome)) return false;
+    const std::string path = font_file(awesome);
+    if (path.empty()) return false;
     ImFontConfig config;
     config.MergeMode = true;
     config.GlyphMinAdvanceX = static_cast<float>(size);
     config.GlyphOffset.y = static_cast<float>(0.06 * size);
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-    return atlas.AddFontFromFileTTF(awesome, static_cast<float>(size), &config, icons) != nullptr;
+    return atlas.AddFontFromFileTTF(path.c_str(), static_cast<float>(size), &config, icons)
+           != nullptr;
 }
 
 struct IconText {
