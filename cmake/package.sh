@@ -25,7 +25,7 @@ mv "$doc/LICENSE" "$work/LICENSE"
     printf 'Files: core/base/libm/*\nCopyright: the authors of musl; 1993 Sun Microsystems\nLicense: MIT\n'
     sed -e 's/^$/./' -e 's/^/ /' "$source_folder/core/base/libm/COPYRIGHT"
 } >"$doc/copyright"
-printf 'feeler (%s) stable; urgency=medium\n\n  * Version %s.\n\n -- Feeler <feeler@localhost>  %s\n' \
+printf 'feeler (%s) stable; urgency=medium\n\n  * Version %s.\n\n -- Feeler <feeler@feeler.invalid>  %s\n' \
     "$version" "$version" "$(date -R -d "@${SOURCE_DATE_EPOCH:-$(date +%s)}")" \
     | gzip -9n >"$doc/changelog.gz"
 gzip -9n "$tree"/usr/share/man/man1/*.1
@@ -37,7 +37,7 @@ cat >"$tree/DEBIAN/control" <<CONTROL
 Package: feeler
 Version: $version
 Architecture: $architecture
-Maintainer: Feeler <feeler@localhost>
+Maintainer: Feeler <feeler@feeler.invalid>
 Installed-Size: $(du -sk --exclude=DEBIAN "$tree" | cut -f1)
 Depends: $depends
 Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1-mesa-dri, libegl-mesa0
@@ -55,14 +55,13 @@ dpkg-deb --root-owner-group --build "$tree" "$out/feeler_${version}_$architectur
 
 # --- archive ---
 
-# Its program finds its libraries and fonts beside it. Those of the C library, of the graphics driver and of the
-# window system are the system's.
+# Its program finds its libraries and fonts beside it. The C library and the graphics driver are the system's.
 name=feeler-$version-linux-$(uname -m)
 tree=$work/$name
 cmake --install "$build" --prefix "$tree" --strip >/dev/null
 mkdir -p "$tree/lib/feeler" "$tree/share/feeler/fonts"
 ldd "$tree/bin/feeler" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' \
-    | grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*|lib(GL|EGL|OpenGL|GLX|GLdispatch|gbm|drm)|libX[^/]*|libxcb[^/]*|libwayland[^/]*)\.so' \
+    | grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*|lib(GL|EGL|OpenGL|GLX|GLdispatch|gbm|drm))\.so' \
     | xargs -I{} cp -L {} "$tree/lib/feeler/"
 # shellcheck disable=SC2016
 patchelf --set-rpath '$ORIGIN/../lib/feeler' "$tree/bin/feeler"

@@ -21,7 +21,8 @@ ValueText value_of(const CLI::Option& option) {
     if (option.get_items_expected_max() == 0) return {};
     const std::string type = option.get_type_name(); // "TEXT:{text,json}", "UINT:1..1024", "MM"
     const size_t begin = type.find('{'), end = type.find('}');
-    ValueText value{type.substr(0, type.find(':')), {}};
+    ValueText value{option.get_option_text(), {}};
+    if (value.name.empty()) value.name = type.substr(0, type.find(':'));
     if (begin == std::string::npos || end == std::string::npos) return value;
     for (size_t at = begin + 1; at < end;) {
         const size_t comma = std::min(type.find(',', at), end);
