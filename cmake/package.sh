@@ -40,7 +40,7 @@ Architecture: $architecture
 Maintainer: Feeler <feeler@feeler.invalid>
 Installed-Size: $(du -sk --exclude=DEBIAN "$tree" | cut -f1)
 Depends: $depends
-Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1-mesa-dri, libegl-mesa0
+Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1-mesa-dri, libegl1, libopengl0
 Suggests: ffmpeg
 Section: science
 Priority: optional

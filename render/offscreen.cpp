@@ -1,5 +1,9 @@
 #include "render/offscreen.h"
 
+#include <algorithm>
+#include <initializer_list>
+
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 
 namespace render {
@@ -13,7 +17,17 @@ bool has_extension(const char* list, const char* name) {
     return list != nullptr && std::string(list).find(name) != std::string::npos;
 }
 
+/// Whether the system has one of these libraries. libepoxy ends the program where it misses one.
+bool has_library(std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [](const char* name) {
+        return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr; // stays open for libepoxy
+    });
+}
+
 core::Result<EGLDisplay> open_display() {
+    if (!has_library({"libEGL.so.1"}) || !has_library({"libOpenGL.so.0", "libGL.so.1"}))
+        return unsupported(
+            "libEGL or libOpenGL is missing: install libegl1, libopengl0 and libgl1-mesa-dri");
     if (!has_extension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS),
                        "EGL_MESA_platform_surfaceless"))
         return unsupported(
