@@ -54,7 +54,6 @@ struct OffsetUse {
     bool is_parallel = true;            // false: the program's axes are turned against the stock's
     bool rapids_through = false;        // a rapid crosses the stock's height range, not upwards
     bool is_upright = true;             // false: the tool was tilted
-    std::optional<core::BlockIndex> first_rapid; // with the spindle on
 };
 
 /// The uses of all work offsets so far, by index; 0 is G54. A plain value.
@@ -72,9 +71,6 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
 /// the one beside it may belong to a second workpiece, and the finding is a note.
 std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const core::Setup& setup,
                                                const core::Aabb& stock);
-
-/// The finding `nothing-cut` for a program without feeds: it moves by rapids with the spindle on.
-std::optional<core::Finding> only_rapids(const OffsetUses& uses, const core::Setup& setup);
 
 /// The finding `nothing-cut`: the program feeds with a tool that turns, but no flutes come near the
 /// stock in any work offset. `is_located`: another finding says where the cuts are.

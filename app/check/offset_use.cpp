@@ -322,12 +322,7 @@ void track_offsets(OffsetUses& uses, const core::Setup& setup, const gcode::Offs
         const auto track = motion ? track_of(setup, *motion, tool->second) : std::nullopt;
         if (!track) continue;
         const bool is_rapid = motion->kind == core::MotionKind::rapid;
-        const bool turns = core::turns_to_cut(state.spindle, tool->second);
-        const bool cuts = !is_rapid && turns;
-        if (is_rapid && turns) {
-            OffsetUse& use = uses[offsets.active];
-            if (!use.first_rapid) use.first_rapid = block.block;
-        }
+        const bool cuts = !is_rapid && core::turns_to_cut(state.spindle, tool->second);
         core::Aabb around = track->reached();
         around = around.grown(0.5 * tool->second.description.diameter);
         const bool crosses = overlaps_in_plane(around, stock);
@@ -373,20 +368,6 @@ std::vector<core::Finding> implausible_offsets(const OffsetUses& uses, const cor
         return finding.severity == core::Severity::off;
     });
     return findings;
-}
-
-std::optional<core::Finding> only_rapids(const OffsetUses& uses, const core::Setup& setup) {
-    std::optional<core::BlockIndex> first;
-    for (const auto& [index, use] : uses) {
-        if (use.total > 0.0) return std::nullopt;
-        if (use.first_rapid && (!first || *use.first_rapid < *first)) first = use.first_rapid;
-    }
-    if (!first) return std::nullopt;
-    core::Finding finding = new_finding(setup, core::rule_id("nothing-cut"), first);
-    if (finding.severity == core::Severity::off) return std::nullopt;
-    finding.message = "The program moves only by rapids with the spindle on, and cuts nothing.";
-    finding.cure = "Check whether this is the right file, and whether G1 is missing.";
-    return finding;
 }
 
 std::optional<core::Finding> nothing_cut(const OffsetUses& uses, const core::Setup& setup,

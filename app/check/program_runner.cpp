@@ -329,10 +329,6 @@ void ProgramRunner::compare_with_stock() {
         return first && finding.block && *finding.block >= *first;
     });
     const bool ran_whole = !record_.stopped && !is_partial_;
-    const bool is_clear = record_.verdict == core::Verdict::clear;
-    if (ran_whole && !first && is_clear && !state_->feeds.first)
-        if (auto nothing = only_rapids(state_->offsets, setup))
-            record_.findings.push_back(*std::move(nothing));
     if (ran_whole && !first)
         if (auto nothing = nothing_cut(state_->offsets, setup, stock, !offsets.empty()))
             record_.findings.push_back(*std::move(nothing));
