@@ -130,6 +130,7 @@ CoprocessorRun beside_a_block(const test_support::ScopedFolder& folder, const st
     CoprocessorJob job;
     job.check.setup = folder.write("setup.toml", R"(
 [program]
+dialect = "fanuc"
 start = { X = 0, Y = 0, Z = 100 }
 [stock]
 box = [[-20, -20, -20], [20, 20, 0]]
