@@ -532,6 +532,7 @@ std::optional<Warning> end_warning(const Environment& environment, const Interpr
 }
 
 void keep_calls(const InterpreterState& state, BeforeBlock& before) {
+    if (before.has_calls) return; // a text has ended in this block, before it calls or returns
     before.has_calls = true;
     before.frames = state.frames;
     before.modal_macros = state.modal_macros;

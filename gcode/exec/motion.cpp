@@ -184,12 +184,14 @@ core::Result<Position> within_reach(const Execution& execution, const Position& 
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (!target[axis] || std::abs(*target[axis]) <= farthest) continue;
         const Word* word = execution.statement.word(axis_letters[axis]);
-        const Word& named = word ? *word : moving_word(execution);
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: {} would go to {:.6g} mm, further than any machine "
-                                      "reaches",
-                                      written(named), axis_letters[axis], *target[axis]),
-                          named.span);
+        // Klartext has statements without such words.
+        if (!word && !execution.block.words.empty()) word = &moving_word(execution);
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}{} would go to {:.6g} mm, further than any machine reaches",
+                        word ? written(*word) + ": " : "", axis_letters[axis], *target[axis]),
+            word ? word->span
+                 : core::SourceSpan{.line = execution.block.line, .column = execution.column});
     }
     return target;
 }

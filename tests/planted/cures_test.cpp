@@ -121,7 +121,7 @@ TEST(Cure, OfAFeedDoesNotLiftItOutOfItsCut) {
     EXPECT_EQ(finding.cure.find("towards Z+"), std::string::npos) << finding.cure;
     // Beside the stock there is nothing to cut, so the shift away is offered there.
     const FindingLine in_air =
-        check(setup, program({"G0 X-20. Y93.", "Z20.", "G1 Z5. F200.", "X-15.", "G0 Z60."}))
+        check(setup, program({"G0 X-20. Y91.", "Z20.", "G1 Z5. F200.", "X-15.", "G0 Z60."}))
             .finding("near-miss");
     EXPECT_NE(in_air.cure.find("tried"), std::string::npos) << in_air.cure;
 }

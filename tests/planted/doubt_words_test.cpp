@@ -88,15 +88,15 @@ TEST(TextReport, NamesTheBlockWithTheWorstVerdictAsTheTightest) {
 }
 
 TEST(TextReport, NamesARealClearanceAsTheTightestBeforePermittedContact) {
-    // The retract in line 10 leaves its own slot; the slot passes the clamp at 4 mm.
+    // The retract in line 10 leaves its own slot; the slot passes the clamp at 3 mm.
     const test_support::ScopedFolder folder;
     const std::string lines = program({"G0 X50. Y95.", "Z2.", "G1 Z-2. F300.", "G0 Z20.", "Z60."});
     const auto near = feeler({"check", folder.write("p.nc", lines), "--setup",
                               folder.write("s.toml", SetupWriter()
-                                                         .fixture("clamp-1", "box = [[40, 104, "
+                                                         .fixture("clamp-1", "box = [[40, 103, "
                                                                              "-30], [60, 130, 1]]")
                                                          .text())});
-    EXPECT_THAT(near.out, HasSubstr("flutes / clamp-1, 4.000 mm (minimum 2.000 mm)"));
+    EXPECT_THAT(near.out, HasSubstr("flutes / clamp-1, 3.000 mm (minimum 2.000 mm)"));
     EXPECT_THAT(near.out, Not(HasSubstr("flutes / stock, 0.000 mm")));
 }
 
