@@ -53,7 +53,10 @@ const Word& moving_word(const Execution& execution) {
     for (const Word& word : execution.block.words)
         if (std::string_view("XYZABCUVWIJK@^").find(word.letter) != std::string_view::npos)
             return word;
-    return execution.block.words.front();
+    if (!execution.block.words.empty()) return execution.block.words.front();
+    static thread_local Word none; // Klartext has statements without words
+    none.span = {.line = execution.block.line, .column = execution.column};
+    return none;
 }
 
 namespace {
@@ -184,7 +187,6 @@ core::Result<Position> within_reach(const Execution& execution, const Position& 
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (!target[axis] || std::abs(*target[axis]) <= farthest) continue;
         const Word* word = execution.statement.word(axis_letters[axis]);
-        // Klartext has statements without such words.
         if (!word && !execution.block.words.empty()) word = &moving_word(execution);
         return core::fail(
             ErrorCode::invalid_value,
