@@ -32,22 +32,6 @@ bool lacks_coverage(const core::Finding& finding) {
     return finding.severity == core::Severity::error && !is_error_of_program(finding);
 }
 
-bool says_nothing_moves(const core::Finding& finding) {
-    return finding.rule == core::rule_id("nothing-moves");
-}
-
-bool doubts_start(const std::vector<core::Finding>& findings) {
-    return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
-        return finding.rule == core::rule_id("first-move");
-    });
-}
-
-bool cuts_beside_stock(const std::vector<core::Finding>& findings) {
-    return std::any_of(findings.begin(), findings.end(), [](const core::Finding& finding) {
-        return finding.rule == core::rule_id("offset-implausible");
-    });
-}
-
 std::tuple<std::string, std::string, std::string> subject_of(const core::Finding& finding) {
     return {finding.rule, finding.pair[0].empty() ? finding.message : finding.pair[0],
             finding.pair[1]};

@@ -63,16 +63,6 @@ bool is_error_of_program(const core::Finding& finding);
 /// Whether a finding says that coverage is missing that is required.
 bool lacks_coverage(const core::Finding& finding);
 
-/// Whether a finding says that the program moves nothing.
-bool says_nothing_moves(const core::Finding& finding);
-
-/// Whether a motion was checked only from a start position that nothing states.
-bool doubts_start(const std::vector<core::Finding>& findings);
-
-/// Whether a finding says that cuts are beside the stock or above it, so that there is work whose
-/// stock is not described.
-bool cuts_beside_stock(const std::vector<core::Finding>& findings);
-
 /// How many findings have this severity.
 template <typename Finding>
 size_t count_of(const std::vector<Finding>& findings, core::Severity severity) {

@@ -43,9 +43,7 @@ Coverage CheckRun::full_coverage() const {
             full.tools_without_holder.push_back(number);
     }
     full.holders = full.tools_without_holder.empty() ? Known::described : Known::missing;
-    if (std::any_of(findings.begin(), findings.end(), says_nothing_moves)) full.moves = false;
-    if (doubts_start(findings)) full.start = Known::inferred;
-    if (cuts_beside_stock(findings)) full.stock = std::min(full.stock, Known::inferred);
+    reduce_by(findings, full);
     return full;
 }
 

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "core/base/rule_table.h"
+#include "core/sim/finding.h"
 
 namespace app {
 namespace {
@@ -45,6 +47,15 @@ std::array<CoverageItem, 6> items_of(const Coverage& coverage) {
              {"offsets", "work offsets", coverage.offsets},
              {"limits", "axis limits", coverage.limits},
              {"start", "start position", coverage.start}}};
+}
+
+void reduce_by(const std::vector<core::Finding>& findings, Coverage& coverage) {
+    for (const core::Finding& finding : findings) {
+        if (finding.rule == core::rule_id("nothing-moves")) coverage.moves = false;
+        if (finding.rule == core::rule_id("first-move")) coverage.start = Known::inferred;
+        if (finding.rule == core::rule_id("offset-implausible"))
+            coverage.stock = std::min(coverage.stock, Known::inferred);
+    }
 }
 
 bool Coverage::is_complete() const {

@@ -9,6 +9,10 @@
 #include "core/base/ids.h"
 #include "core/sim/verdict.h"
 
+namespace core {
+struct Finding;
+}
+
 namespace app {
 
 /// How much is known about a thing that a verdict rests on: it is described by the set-up or the
@@ -34,6 +38,10 @@ struct Coverage {
     bool is_complete() const;
     bool operator==(const Coverage&) const = default;
 };
+
+/// Takes from a coverage what the findings of the run show to be missing: a start position that
+/// nothing states, work beside the stock or above it, or any motion.
+void reduce_by(const std::vector<core::Finding>& findings, Coverage& coverage);
 
 /// One item of a coverage: its key in JSON, its name in a sentence, and what is known.
 struct CoverageItem {

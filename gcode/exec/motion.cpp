@@ -192,8 +192,7 @@ core::Result<Position> within_reach(const Execution& execution, const Position& 
             ErrorCode::invalid_value,
             fmt::format("{}{} would go to {:.6g} mm, further than any machine reaches",
                         word ? written(*word) + ": " : "", axis_letters[axis], *target[axis]),
-            word ? word->span
-                 : core::SourceSpan{.line = execution.block.line, .column = execution.column});
+            word ? word->span : moving_word(execution).span);
     }
     return target;
 }

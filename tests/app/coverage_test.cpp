@@ -132,6 +132,20 @@ TEST(Coverage, TheStockIsNotDescribedWhereAnotherOffsetCutsBesideIt) {
     EXPECT_EQ(report["coverage"]["stock"], "inferred");
 }
 
+/// 0 states that no tool is in the spindle at the start, so nothing is too low before T1.
+TEST(Coverage, AnEmptySpindleAtTheStartMayBeStated) {
+    std::string setup = setup_of(all_tables);
+    const std::string start = "start = { X = -350, Y = -200, Z = 0 }";
+    const std::string low = "start = { X = -300, Y = -85, Z = -390 }"; // in the clamp with a tool
+    setup.replace(setup.find(start), start.size(), low);
+    const std::string program = "O1000\nG21 G90 G17 G54\nG0 X-20. Y50.\nG53 G0 Z0.\nT1 M6\n"
+                                "S6000 M3\nG0 G43 H1 Z60.\nZ-5.\nG1 X120. F800.\nG0 Z60.\nM30\n";
+    EXPECT_THAT(run(program, setup).out, HasSubstr("which tool is in the spindle at the start"));
+    setup.replace(setup.find(low), low.size(), low + "\ntool_at_start = 0");
+    EXPECT_THAT(run(program, setup).out, Not(HasSubstr("which tool is in the spindle")));
+    EXPECT_EQ(run(program, setup).status, 0) << run(program, setup).out;
+}
+
 /// Nothing states how Z was set, so a tool that is described may not be in the way more than one
 /// that is not.
 TEST(Coverage, AToolIsTouchedOffIfNeitherOffsetsNorLengthsAreStated) {

@@ -245,11 +245,7 @@ std::string coverage_words(const ViewModel& model) {
     }
     coverage.tools_without_holder.assign(bare.begin(), bare.end());
     coverage.holders = bare.empty() ? Known::described : Known::missing;
-    if (std::any_of(model.findings.begin(), model.findings.end(), says_nothing_moves))
-        coverage.moves = false;
-    if (doubts_start(model.findings)) coverage.start = Known::inferred;
-    if (cuts_beside_stock(model.findings))
-        coverage.stock = std::min(coverage.stock, Known::inferred);
+    reduce_by(model.findings, coverage);
     const std::string uncovered = uncovered_text(coverage);
     const std::string words = uncovered.empty() ? "" : "Not checked: " + uncovered;
     const bool is_clear =
