@@ -230,9 +230,9 @@ void take_back_assignments(const std::vector<AssignmentUndo>& undos,
                            ProgramParameters& parameters) {
     for (auto undo = undos.rbegin(); undo != undos.rend(); ++undo) {
         if (undo->is_named)
-            parameters.restore_named(undo->name, undo->value);
+            parameters.restore_local(undo->name, undo->value);
         else
-            parameters.restore_numbered(undo->number, undo->value);
+            parameters.restore_local(undo->number, undo->value);
     }
 }
 

@@ -40,7 +40,7 @@ bool is_dwell(const Block& block);
 /// Whether words with this letter are lengths or angles, which controls count in least increments.
 bool counts_increments(char letter);
 
-/// Restores the old values of parameters.
+/// Restores the old values of the parameters of a call level.
 void take_back_assignments(const std::vector<AssignmentUndo>& undos, ProgramParameters& parameters);
 
 /// Executes an assignment to #3000 (alarm) or #3006 (stop with a message). The message is the

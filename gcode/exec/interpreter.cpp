@@ -252,12 +252,13 @@ void Interpreter::Scratch::begin_result(const InterpreterState& state, ProgramLi
 }
 
 /// Restores the state after a block that failed. Parameters are undone one by one: a copy of them
-/// in `before` would share them, and the first assignment of each block would copy them all.
+/// in `before` would share them, and the first change in each block would copy them all.
 void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore_calls(state, before);
     ProgramParameters parameters(state, environment);
     take_back_assignments(undos, parameters);
     undos.clear();
+    if (state.parameters->has_changes()) state.parameters.write().take_back_changes();
     restore(state, before);
 }
 
@@ -430,6 +431,7 @@ core::Result<const BlockCommands*> Interpreter::next(InterpreterState& state) {
         if (state.ending != ProgramStatus::running) return nullptr;
         if (scratch.try_quick_move(state)) return &scratch.result;
         keep(state, scratch.before);
+        if (state.parameters->has_changes()) state.parameters.write().begin_changes();
         scratch.undos.clear();
         const uint32_t source = state.next.source;
         auto found = scratch.read_next(state);

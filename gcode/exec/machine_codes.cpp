@@ -62,8 +62,17 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
 }
 
 /// M109 of Haas: the operator's answer is the value of a variable.
+///
+/// Source: Haas, Mill Operator's Manual, M109 Interactive User Input.
 core::Result<void> ask_operator(Execution& execution, const CodeWord& entry) {
     FEELER_TRY(const int number, number_under(execution, entry, 'P', highest_parameter));
+    const int short_number = number > 10000 ? number - 10000 : number;
+    if (short_number < 500 || short_number > 549)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("M109 P{}: the answer goes to #500 to #549 or #10500 to "
+                                      "#10549",
+                                      number),
+                          entry.word->span);
     const auto& stated = execution.environment.control.values;
     const auto known = stated.find(number);
     ProgramParameters parameters(execution.state, execution.environment);

@@ -178,20 +178,16 @@ Value ProgramParameters::stored_value(double number) const {
                     : state_.parameters->numbered(*index);
 }
 
-void ProgramParameters::restore_numbered(double number, Value stored_value) {
+void ProgramParameters::restore_local(double number, Value value) {
     const auto index = parameter_number(number, 1, dialect_, {});
-    if (!index) return;
-    if (*index <= dialect_.local_count)
-        locals().locals[static_cast<size_t>(*index)] = stored_value;
-    else if (state_.parameters->numbered(*index) != stored_value)
-        state_.parameters.write().set_numbered(*index, stored_value);
+    if (index && *index <= dialect_.local_count)
+        locals().locals[static_cast<size_t>(*index)] = value;
 }
 
-void ProgramParameters::restore_named(std::string_view name, Value value) {
+void ProgramParameters::restore_local(std::string_view name, Value value) {
+    if (is_global(name)) return;
     NamedValues& own = state_.frames.back().named;
-    if (is_global(name))
-        state_.parameters.write().set_named(name, value);
-    else if (value)
+    if (value)
         own.insert_or_assign(std::string(name), *value);
     else if (const auto found = own.find(name); found != own.end())
         own.erase(found);

@@ -31,10 +31,10 @@ public:
     /// The stored value of a number, ignoring system variables; empty if there is none.
     Value stored_value(double number) const;
 
-    /// Restores the stored value of a parameter, or removes it. Offsets and modes set through a
-    /// system variable are not changed.
-    void restore_numbered(double number, Value stored_value);
-    void restore_named(std::string_view name, Value value);
+    /// Restores a parameter of the call level, or removes it. Does nothing to those that all levels
+    /// share: `Parameters::take_back_changes` restores them.
+    void restore_local(double number, Value value);
+    void restore_local(std::string_view name, Value value);
 
     /// The unpredictable variables that were read since the last forget_reads(), as written. Always
     /// empty unless the environment reports premises.

@@ -25,14 +25,14 @@ uint64_t key_of(std::string_view name) {
 
 } // namespace
 
-void Parameters::set_numbered(int number, Value value) {
+void Parameters::put(int number, Value value) {
     const auto at = static_cast<size_t>(number);
     if (numbered_.size() <= at) numbered_.resize(at + 1);
     digest_ ^= digest_of_value(at, numbered_[at]) ^ digest_of_value(at, value);
     numbered_[at] = value;
 }
 
-void Parameters::set_named(std::string_view name, Value value) {
+void Parameters::put(std::string_view name, Value value) {
     const auto found = named_.find(name);
     const uint64_t key = key_of(name);
     digest_ ^= digest_of_value(key, found != named_.end() ? Value{found->second} : Value{});
@@ -45,16 +45,54 @@ void Parameters::set_named(std::string_view name, Value value) {
         named_.emplace(name, *value);
 }
 
-void Parameters::mark(int number, bool unpredictable) {
+bool Parameters::put_mark(int number, bool unpredictable) {
     const bool changed =
         unpredictable ? unpredictable_.insert(number).second : unpredictable_.erase(number) > 0;
     if (changed) digest_ ^= key_of(fmt::format("?{}", number));
+    return changed;
 }
 
-void Parameters::mark(std::string_view name, bool unpredictable) {
+bool Parameters::put_mark(std::string_view name, bool unpredictable) {
     const bool changed = unpredictable ? unpredictable_names_.emplace(name).second
                                        : unpredictable_names_.erase(std::string(name)) > 0;
     if (changed) digest_ ^= key_of(fmt::format("?{}", name));
+    return changed;
+}
+
+void Parameters::set_numbered(int number, Value value) {
+    changes_.push_back({false, false, number, {}, numbered(number)});
+    put(number, value);
+}
+
+void Parameters::set_named(std::string_view name, Value value) {
+    const auto found = named_.find(name);
+    changes_.push_back({false, true, 0, std::string(name),
+                        found == named_.end() ? Value{} : Value{found->second}});
+    put(name, value);
+}
+
+void Parameters::mark(int number, bool unpredictable) {
+    if (put_mark(number, unpredictable))
+        changes_.push_back({true, false, number, {}, unpredictable ? 0.0 : 1.0});
+}
+
+void Parameters::mark(std::string_view name, bool unpredictable) {
+    if (put_mark(name, unpredictable))
+        changes_.push_back({true, true, 0, std::string(name), unpredictable ? 0.0 : 1.0});
+}
+
+void Parameters::take_back_changes() {
+    for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) {
+        if (change->is_mark && change->is_named)
+            put_mark(change->name, *change->before == 1.0);
+        else if (change->is_mark)
+            put_mark(change->number, *change->before == 1.0);
+        else if (change->is_named)
+            put(change->name, change->before);
+        else
+            put(change->number, change->before);
+    }
+    changes_.clear();
 }
 
 bool Parameters::operator==(const Parameters& other) const {

@@ -23,7 +23,8 @@ constexpr int highest_parameter = 20000;
 /// The maximum number of named parameters on one call level.
 constexpr size_t most_named_parameters = 100000;
 
-/// The parameters that all call levels share.
+/// The parameters that all call levels share. They keep the changes since the last
+/// `begin_changes()`, so that a block that fails can be taken back without a copy of them all.
 class Parameters {
 public:
     /// The value of a numbered parameter; empty if it was never set.
@@ -53,15 +54,32 @@ public:
     /// Hash of all values and marks; kept up to date, so it costs nothing.
     uint64_t digest() const { return digest_; }
 
+    bool has_changes() const { return !changes_.empty(); }
+    void begin_changes() { changes_.clear(); }
+    void take_back_changes();
+
     /// A parameter that was never set equals one that was set and removed again.
     bool operator==(const Parameters& other) const;
 
 private:
+    /// The value or mark of a parameter before a change.
+    struct Change {
+        bool is_mark, is_named;
+        int number;
+        std::string name;
+        Value before; // of a mark: 1 or 0
+    };
+    void put(int number, Value value);
+    void put(std::string_view name, Value value);
+    bool put_mark(int number, bool unpredictable);
+    bool put_mark(std::string_view name, bool unpredictable);
+
     std::vector<Value> numbered_; // grows as needed
     NamedValues named_;
     std::set<int> unpredictable_;
     std::set<std::string, std::less<>> unpredictable_names_;
     uint64_t digest_ = 0;
+    std::vector<Change> changes_; // in order; no part of what the parameters are
 };
 
 } // namespace gcode
