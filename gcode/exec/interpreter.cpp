@@ -44,6 +44,7 @@ struct BeforeBlock {
     Shared<Tables> tables;
     Shared<SplineState> spline;
     SharedLanguageState language;
+    Shared<UnknownValues> unknown;
     bool is_iso_mode;
     // Only saved for blocks that call or return.
     bool has_calls = false;
@@ -555,6 +556,7 @@ void keep(const InterpreterState& state, BeforeBlock& before) {
     before.tables = state.tables;
     before.spline = state.spline;
     before.language = state.language;
+    before.unknown = state.readings->unknown;
     before.is_iso_mode = state.is_iso_mode;
     before.has_calls = false;
 }
@@ -574,6 +576,8 @@ void restore(InterpreterState& state, const BeforeBlock& before) {
     state.tables = before.tables;
     state.spline = before.spline;
     state.language = before.language;
+    if (!(state.readings->unknown == before.unknown))
+        state.readings.write().unknown = before.unknown;
     state.is_iso_mode = before.is_iso_mode;
 }
 

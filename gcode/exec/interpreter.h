@@ -143,7 +143,7 @@ struct Readings {
     Facts facts;
     std::set<std::string> repeated; // identities for which a fact has decided a condition
     std::set<std::string> reported; // values that are unknown, once each
-    UnknownValues unknown;          // values of the variables that all call levels share
+    Shared<UnknownValues> unknown;  // values of the variables that all call levels share
     std::map<uint32_t, UnknownValue> arguments; // of the macro call of a block, by column
     std::map<ProgramLine, Passed> passed;       // conditions that facts have decided
 
@@ -193,7 +193,7 @@ struct InterpreterState {
         passes; // digests at the ends of passes of a main program that ends in M99
     std::vector<NamedTool> named_tools; // called by names that the set-up lacks
     RuleState rules;
-    Shared<Readings> readings; // not restored when a block fails
+    Shared<Readings> readings; // only `unknown` is restored when a block fails
 };
 
 /// Whether blocks are waiting for later ones, because of cutter radius compensation or a corner.

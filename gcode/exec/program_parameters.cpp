@@ -234,7 +234,7 @@ void ProgramParameters::note_read(int number, bool is_local) const {
                                : state_.parameters->is_unpredictable(number);
     if (!is_unknown && !is_marked) return;
     std::string name = shown_name(number);
-    const UnknownValues& values = is_local ? locals().unknown : state_.readings->unknown;
+    const UnknownValues& values = is_local ? locals().unknown : *state_.readings->unknown;
     const auto found = values.find(name);
     if (knowledge == Knowledge::unknown) {
         reads_vary_ = true;
@@ -314,7 +314,7 @@ std::string ProgramParameters::fresh_identity(const UnknownValues& others) const
             return is_in(frame.unknown) || (frame.again && is_in(frame.again->unknown));
         };
         const auto is_in_macro = [&](const ModalMacro& macro) { return is_in(macro.unknown); };
-        return is_in(others) || is_in(state_.readings->unknown)
+        return is_in(others) || is_in(*state_.readings->unknown)
                || std::any_of(state_.frames.begin(), state_.frames.end(), is_in_frame)
                || std::any_of(state_.modal_macros.begin(), state_.modal_macros.end(), is_in_macro);
     };
@@ -335,9 +335,9 @@ void ProgramParameters::keep(UnknownValues& values, std::string name,
 }
 
 void ProgramParameters::keep_shared(std::string name, std::optional<UnknownValue> value) {
-    const UnknownValues& known = state_.readings->unknown;
+    const UnknownValues& known = *state_.readings->unknown;
     if (!value && known.find(name) == known.end()) return;
-    keep(state_.readings.write().unknown, std::move(name), std::move(value));
+    keep(state_.readings.write().unknown.write(), std::move(name), std::move(value));
 }
 
 void ProgramParameters::renew(const std::string& name) {
@@ -364,7 +364,7 @@ void ProgramParameters::note_read(std::string_view name) const {
                                          : state_.frames.back().unpredictable_names;
     if (marked.find(name) == marked.end()) return;
     const UnknownValues& values =
-        is_global(name) ? state_.readings->unknown : state_.frames.back().unknown;
+        is_global(name) ? *state_.readings->unknown : state_.frames.back().unknown;
     const std::string shown = shown_name(name);
     const NamedValues& all = named_values(name);
     if (const auto found = values.find(shown); found != values.end())
@@ -385,7 +385,7 @@ void ProgramParameters::mark_numbered(double number, std::optional<UnknownValue>
     const bool is_local = *index <= dialect_.local_count;
     // Set to nothing, a variable is known to be vacant.
     if (!value && dialect_.unset_is_vacant && !stored_value(number)) value = UnknownValue{};
-    const UnknownValues& values = is_local ? locals().unknown : state_.readings->unknown;
+    const UnknownValues& values = is_local ? locals().unknown : *state_.readings->unknown;
     const bool changes = value || !values.empty();
     if (changes && is_local)
         keep(locals().unknown, shown_name(*index), std::move(value));

@@ -244,7 +244,7 @@ uint64_t digest_of(const InterpreterState& state) {
     if (const LanguageState* own = state.language.get()) own->add_to(digest);
     for (const NamedTool& tool : state.named_tools) digest.add(tool.name);
     digest.add(uint64_t{state.points.counts_steps});
-    add(digest, state.readings->unknown);
+    add(digest, *state.readings->unknown);
     for (const OpenPremise& premise : state.readings->met) {
         if (!premise.id.question) continue;
         digest.add(number_of(static_cast<int>(*premise.id.question)));
