@@ -166,9 +166,11 @@ core::Result<void> wait_for_motion(Corners& corners, const CornerWord& word, Exe
     return {};
 }
 
-core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock block) {
+} // namespace
+
+core::Result<void> add_to_corners(Corners& corners, ExecutedBlock block,
+                                  std::vector<ExecutedBlock>& ready) {
     const std::optional<CornerWord> asked = std::exchange(corners.asked, std::nullopt);
-    std::vector<ExecutedBlock> ready;
     if (corners.word) {
         FEELER_TRY(const auto second, motion_after(corners, block));
         if (!second) {
@@ -176,7 +178,7 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
                 return tl::unexpected(
                     no_motion(*corners.word, "too many blocks without a motion follow"));
             corners.waiting.push_back(std::move(block));
-            return ready;
+            return {};
         }
         FEELER_TRY(const CornerCut cut, cut_between(*corners.word, corners.first, *second));
         if (cut.fit == CornerFit::fits) {
@@ -185,28 +187,14 @@ core::Result<std::vector<ExecutedBlock>> take(Corners& corners, ExecutedBlock bl
         }
         ready = give_up_corners(corners);
     }
-    if (asked) {
-        if (auto waits = wait_for_motion(corners, *asked, std::move(block)); !waits)
-            return tl::unexpected(waits.error());
-    } else {
-        ready.push_back(std::move(block));
-    }
-    return ready;
+    if (asked) return wait_for_motion(corners, *asked, std::move(block));
+    ready.push_back(std::move(block));
+    return {};
 }
 
-} // namespace
-
-core::Result<std::vector<ExecutedBlock>> add_to_corners(Corners& corners, ExecutedBlock block) {
-    auto ready = take(corners, std::move(block));
-    if (!ready) (void)give_up_corners(corners);
-    return ready;
-}
-
-core::Result<void> end_corners(Corners& corners) {
+core::Result<void> end_corners(const Corners& corners) {
     if (!corners.word) return {};
-    const core::Error error = no_motion(*corners.word, "the program ends");
-    (void)give_up_corners(corners);
-    return tl::unexpected(error);
+    return tl::unexpected(no_motion(*corners.word, "the program ends"));
 }
 
 std::vector<ExecutedBlock> give_up_corners(Corners& corners) {
@@ -516,9 +504,10 @@ core::Result<void> take_all(Contour& contour, const std::vector<ExecutedBlock>& 
 core::Result<void> take_block(Contour& contour, const BlockCommands& block,
                               const ModalState& before, const ModalState& after) {
     if (contour.corners.is_idle()) return take_with_corners(contour, block, before, after);
-    FEELER_TRY(const std::vector<ExecutedBlock> ready,
-               add_to_corners(contour.corners, {block, before, after}));
-    return take_all(contour, ready);
+    std::vector<ExecutedBlock> ready;
+    const auto added = add_to_corners(contour.corners, {block, before, after}, ready);
+    if (auto taken = take_all(contour, ready); !taken) return taken;
+    return added;
 }
 
 core::Result<void> end_contour(Contour& contour) {

@@ -44,20 +44,21 @@ struct Corners {
     bool operator==(const Corners&) const = default;
 };
 
-/// Takes a block and returns the blocks that are now complete, in order. A corner becomes the last
-/// command of the block in which it was programmed.
+/// Takes a block and adds the blocks that are now complete to `ready`, in order. A corner becomes
+/// the last command of the block in which it was programmed.
 ///
 /// Errors: invalid_value when the corner does not fit, missing_value when no motion in the plane
-///         follows. The waiting blocks are dropped in both cases.
+///         follows. Then the block is not added; the waiting ones stay.
 /// Source: Fanuc 30i user's manual B-63944EN-2, "Optional chamfering and corner R": which blocks
 ///         may come between the two motions; no corner is inserted where the directions differ by
 ///         less than one degree.
-core::Result<std::vector<ExecutedBlock>> add_to_corners(Corners& corners, ExecutedBlock block);
+core::Result<void> add_to_corners(Corners& corners, ExecutedBlock block,
+                                  std::vector<ExecutedBlock>& ready);
 
 /// Reports a corner that is still waiting at the end of the program.
 ///
 /// Errors: missing_value if there is one.
-core::Result<void> end_corners(Corners& corners);
+core::Result<void> end_corners(const Corners& corners);
 
 /// Returns the waiting blocks as programmed, without the corner, and clears them.
 std::vector<ExecutedBlock> give_up_corners(Corners& corners);

@@ -97,8 +97,8 @@ private:
     }
 
     core::Result<void> rest() {
+        if (auto begun = flow(declaration); !begun) return begun;
         reader_.lexer.at = reader_.lexer.line.size();
-        block_.flow.kind = declaration;
         return {};
     }
 

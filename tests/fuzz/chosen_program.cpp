@@ -1,12 +1,24 @@
 #include "tests/fuzz/chosen_program.h"
 
 #include <initializer_list>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace test_support {
 namespace {
+
+/// A formatted text. In braces, the arguments are evaluated in the order written, so that all
+/// compilers choose the same program.
+struct Text {
+    template <typename... Arguments>
+    Text(fmt::format_string<Arguments...> form, Arguments&&... arguments)
+        : text(fmt::format(form, std::forward<Arguments>(arguments)...)) {}
+
+    std::string text;
+};
 
 class Writer {
 public:
@@ -45,12 +57,12 @@ private:
                                        "0.00000000001", "123456789012345678901234567890", "-.",
                                        "18446744073709551616", "360", "1000000"}));
         case 1:
-            return has_o_words() || !is_klartext() ? fmt::format("[{}]", expression(0))
-                                                   : fmt::format("Q{}", below(10));
+            return has_o_words() || !is_klartext() ? Text{"[{}]", expression(0)}.text
+                                                   : Text{"Q{}", below(10)}.text;
         case 2:
-            return is_klartext() ? fmt::format("Q{}", below(10)) : fmt::format("#{}", parameter());
+            return is_klartext() ? Text{"Q{}", below(10)}.text : Text{"#{}", parameter()}.text;
         default:
-            return fmt::format("{}", (static_cast<double>(below(256)) - 128.0) / 4.0);
+            return Text{"{}", (static_cast<double>(below(256)) - 128.0) / 4.0}.text;
         }
     }
 
@@ -63,26 +75,28 @@ private:
     std::string expression(int depth) {
         switch (depth > 6 ? 0 : below(6)) {
         case 0:
-            return fmt::format("{}", static_cast<double>(below(256)) / 8.0 - 16.0);
+            return Text{"{}", static_cast<double>(below(256)) / 8.0 - 16.0}.text;
         case 1:
-            return fmt::format("#{}", parameter());
+            return Text{"#{}", parameter()}.text;
         case 2:
-            return fmt::format("{}[{}]",
-                               one_of({"SIN", "ATAN", "SQRT", "EXP", "LN", "ABS", "ROUND", "FIX",
-                                       "FUP", "ACOS", "BCD", "EXISTS", "POW", "MAX"}),
-                               expression(depth + 1));
+            return Text{"{}[{}]",
+                        one_of({"SIN", "ATAN", "SQRT", "EXP", "LN", "ABS", "ROUND", "FIX", "FUP",
+                                "ACOS", "BCD", "EXISTS", "POW", "MAX"}),
+                        expression(depth + 1)}
+                .text;
         case 3:
-            return fmt::format("ATAN[{}]/[{}]", expression(depth + 1), expression(depth + 1));
+            return Text{"ATAN[{}]/[{}]", expression(depth + 1), expression(depth + 1)}.text;
         default:
-            return fmt::format("[{}] {} [{}]", expression(depth + 1),
-                               one_of({"+", "-", "*", "/", "**", "MOD", "EQ", "LT", "AND", "XOR"}),
-                               expression(depth + 1));
+            return Text{"[{}] {} [{}]", expression(depth + 1),
+                        one_of({"+", "-", "*", "/", "**", "MOD", "EQ", "LT", "AND", "XOR"}),
+                        expression(depth + 1)}
+                .text;
         }
     }
 
     void words(std::string_view letters) {
         for (size_t count = below(6); count-- > 0;)
-            text_ += fmt::format(" {}{}", letters[below(letters.size())], value());
+            text_ += Text{" {}{}", letters[below(letters.size())], value()}.text;
     }
 
     void block() {
@@ -94,24 +108,23 @@ private:
         case 2:
             return mode();
         case 3:
-            text_ += fmt::format("G{}.{}", below(190), below(6));
+            text_ += Text{"G{}.{}", below(190), below(6)}.text;
             return words("XYZABCUVWIJKPQRLHDEFS");
         case 4:
-            text_ += fmt::format("M{}", below(200));
+            text_ += Text{"M{}", below(200)}.text;
             return words("PQLSRED");
         case 5:
             return cycle();
         case 6:
-            text_ += fmt::format("#{}={}", parameter(), value());
+            text_ += Text{"#{}={}", parameter(), value()}.text;
             return;
         case 7:
             return has_o_words() ? o_word() : macro_flow();
         case 8:
-            text_ += fmt::format("G10 L{} P{} R{}", below(22), below(12), value());
+            text_ += Text{"G10 L{} P{} R{}", below(22), below(12), value()}.text;
             return words("XYZABCIJQ");
         case 9:
-            text_ +=
-                fmt::format("{} D{} ", one_of({"G41", "G42", "G41.1", "G40", "G42.1"}), value());
+            text_ += Text{"{} D{} ", one_of({"G41", "G42", "G41.1", "G40", "G42.1"}), value()}.text;
             return words("XYIJL");
         case 10:
             text_ += one_of({"/", "/2", "(MSG, #1)", "(DEBUG, #<x> %d)", "%", "M30", "T1 M6", "N10",
@@ -127,7 +140,7 @@ private:
         text_ += one_of({"G0", "G1", "G2", "G3", "", "G53 G0", "G1 F100", "G33", "G38.2", "G5",
                          "G5.1", "G5.2", "G5.3", "G28", "G30"});
         words("XYZABCUVWIJKRPF");
-        if (below(6) == 0) text_ += fmt::format(" ,{}{}", one_of({"R", "C"}), value());
+        if (below(6) == 0) text_ += Text{" ,{}{}", one_of({"R", "C"}), value()}.text;
     }
 
     void mode() {
@@ -143,49 +156,51 @@ private:
     }
 
     void cycle() {
-        text_ += fmt::format("G{} Z{} R{} ",
-                             one_of({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87",
-                                     "88", "89", "70", "71", "72", "12", "13", "150"}),
-                             value(), value());
+        text_ += Text{"G{} Z{} R{} ",
+                      one_of({"73", "74", "76", "81", "82", "83", "84", "85", "86", "87", "88",
+                              "89", "70", "71", "72", "12", "13", "150"}),
+                      value(), value()}
+                     .text;
         words("XYZQPLKIJFDE");
     }
 
     void o_word() {
         const size_t label = below(4);
-        text_ += fmt::format(
-            "o{} {}", label,
-            one_of({"sub", "endsub", "call", "return", "if", "elseif", "else", "endif", "while",
-                    "endwhile", "do", "repeat", "endrepeat", "break", "continue"}));
-        if (below(2) == 1) text_ += fmt::format(" [{}]", expression(0));
+        text_ +=
+            Text{"o{} {}", label,
+                 one_of({"sub", "endsub", "call", "return", "if", "elseif", "else", "endif",
+                         "while", "endwhile", "do", "repeat", "endrepeat", "break", "continue"})}
+                .text;
+        if (below(2) == 1) text_ += Text{" [{}]", expression(0)}.text;
     }
 
     void macro_flow() {
         const size_t label = below(4);
         switch (below(6)) {
         case 0:
-            text_ += fmt::format("IF[{}]GOTO{}", expression(0), label * 10);
+            text_ += Text{"IF[{}]GOTO{}", expression(0), label * 10}.text;
             return;
         case 1:
-            text_ += fmt::format("WHILE[{}]DO{}", expression(0), label);
+            text_ += Text{"WHILE[{}]DO{}", expression(0), label}.text;
             return;
         case 2:
-            text_ += fmt::format("END{}", label);
+            text_ += Text{"END{}", label}.text;
             return;
         case 3:
-            text_ += fmt::format("GOTO{}", label * 10);
+            text_ += Text{"GOTO{}", label * 10}.text;
             return;
         case 4:
-            text_ += fmt::format("IF[{}]THEN #{}={}", expression(0), parameter(), value());
+            text_ += Text{"IF[{}]THEN #{}={}", expression(0), parameter(), value()}.text;
             return;
         default:
             text_ +=
-                fmt::format("{} P{}", one_of({"G65", "G66", "M98", "M97", "G66.1", "G67"}), label);
+                Text{"{} P{}", one_of({"G65", "G66", "M98", "M97", "G66.1", "G67"}), label}.text;
             return words("ABCDIJKL");
         }
     }
 
     void klartext_block() {
-        text_ += fmt::format("{} ", at_ % 1000);
+        text_ += Text{"{} ", at_ % 1000}.text;
         switch (below(8)) {
         case 0:
             text_ += "L";
@@ -200,24 +215,36 @@ private:
                         "BEGIN PGM A MM", "CYCL CALL M3", "M91", "CYCL DEF 7.0", "PLANE RESET"});
             return;
         case 3:
-            text_ += fmt::format("FN {}: Q{} = {} {} {}", below(20), below(10), value(),
-                                 one_of({"+", "*", "DIV", "SQRT", "IF"}), value());
+            text_ += Text{"FN {}: Q{} = {} {} {}",
+                          below(20),
+                          below(10),
+                          value(),
+                          one_of({"+", "*", "DIV", "SQRT", "IF"}),
+                          value()}
+                         .text;
             return;
         case 4:
-            text_ +=
-                fmt::format("CYCL DEF {} Q200={} Q201={} Q206={} Q202={} Q203={} Q204={}",
-                            200 + below(10), value(), value(), value(), value(), value(), value());
+            text_ += Text{"CYCL DEF {} Q200={} Q201={} Q206={} Q202={} Q203={} Q204={}",
+                          200 + below(10),
+                          value(),
+                          value(),
+                          value(),
+                          value(),
+                          value(),
+                          value()}
+                         .text;
             return;
         case 5:
-            text_ += fmt::format("Q{} = {}", below(10), expression(0));
+            text_ += Text{"Q{} = {}", below(10), expression(0)}.text;
             return;
         default:
             text_ += "L";
             break;
         }
         for (size_t count = below(5); count-- > 0;)
-            text_ += fmt::format(" {}{}", one_of({"X", "Y", "Z", "IX", "IY", "F", "R", "PR", "PA"}),
-                                 value());
+            text_ +=
+                Text{" {}{}", one_of({"X", "Y", "Z", "IX", "IY", "F", "R", "PR", "PA"}), value()}
+                    .text;
         text_ += one_of({"", " FMAX", " R0", " RL", " DR+", " DR-", " M3", " M99"});
     }
 

@@ -114,6 +114,16 @@ TEST(Corners, NeedAMotionInThePlaneAfterThem) {
                 HasSubstr("only a dwell is allowed between the two motions"));
 }
 
+TEST(Corners, ThatFailLeaveTheirBlockAsProgrammed) {
+    for (const char* rest : {"M8\nY20.\n", ""}) {
+        const Ran ran = run_text(std::string("G1 X20. F100 ,R5.\n") + rest);
+        EXPECT_TRUE(ran.run.error);
+        ASSERT_EQ(ran.run.blocks.size(), 1u) << rest;
+        EXPECT_EQ(ran.run.blocks[0].line, 1u);
+    }
+    EXPECT_THAT(path_of("G1 X20. F100 ,R5.\nM8\nY20.\n"), HasSubstr("20000,0 error"));
+}
+
 TEST(Corners, BelongToFeedsOnly) {
     EXPECT_THAT(error_of("G0 X20. ,R5.\nG1 Y20. F100\n"),
                 HasSubstr("a corner must be programmed in"));
