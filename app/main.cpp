@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,10 @@
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/commands/commands.h"
+#include "app/commands/line_reader.h"
 #include "app/commands/suggestion.h"
 #include "app/report/html/html_page.h"
+#include "core/base/platform.h"
 
 namespace {
 
@@ -21,27 +23,28 @@ namespace {
 std::string version_text() {
     const bool has_view = !app::view_bundle().empty();
     return fmt::format("feeler {}\nwith     window and pictures (OpenGL), database of results "
-                       "(SQLite {}), line editing (libedit){}{}",
-                       app::version, sqlite3_libversion(),
+                       "(SQLite {}), line editing ({}){}{}",
+                       app::version, sqlite3_libversion(), app::line_editor(),
                        has_view ? ", 3D view in HTML reports" : "",
                        has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing");
 }
 
 /// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.
-std::vector<const char*> arguments_of(int argc, char** argv) {
-    std::vector<const char*> arguments(argv, argv + argc);
-    const bool debugs = argc > 1 && std::string_view(argv[1]) == "debug";
-    for (const char*& argument : arguments)
-        if (debugs && std::string_view(argument) == "-ex") argument = "--eval-command";
+std::vector<const char*> arguments_of(const std::vector<std::string>& words) {
+    std::vector<const char*> arguments;
+    const bool debugs = words.size() > 1 && words[1] == "debug";
+    for (const std::string& word : words)
+        arguments.push_back(debugs && word == "-ex" ? "--eval-command" : word.c_str());
     return arguments;
 }
 
-int run(int argc, char** argv) {
+int run(const std::vector<std::string>& words) {
     CLI::App cli(
         "Feeler checks NC programs for collisions, with proven clearances for every block.",
         "feeler");
     cli.set_version_flag("--version", version_text());
     cli.require_subcommand(1);
+    cli.allow_windows_style_options(false); // "/x" is a path or a block that may be skipped
     app::ExitCode exit_code = app::ExitCode::clear;
     app::add_check(cli, exit_code);
     app::add_setup(cli, exit_code);
@@ -57,12 +60,12 @@ int run(int argc, char** argv) {
     app::add_bench(cli, exit_code);
     app::add_completion(cli, exit_code);
     try {
-        const std::vector<const char*> arguments = arguments_of(argc, argv);
-        cli.parse(argc, arguments.data());
+        const std::vector<const char*> arguments = arguments_of(words);
+        cli.parse(static_cast<int>(arguments.size()), arguments.data());
     } catch (const CLI::ParseError& error) {
         // Help and version are no errors; every misuse is the same to a script.
         if (error.get_exit_code() == 0) return cli.exit(error);
-        const std::string misspelt = app::misspelt_text(cli, arguments_of(argc, argv));
+        const std::string misspelt = app::misspelt_text(cli, arguments_of(words));
         if (misspelt.empty())
             cli.exit(error);
         else
@@ -79,7 +82,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
-        return run(argc, argv);
+        return run(core::platform::begin_program(argc, argv));
     } catch (const std::bad_alloc&) {
         std::fputs("feeler: not enough memory: use a larger mesh size\n", stderr);
     } catch (const std::exception& error) {

@@ -1,5 +1,7 @@
 #include "render/image.h"
 
+#include <fstream>
+
 #include <fmt/format.h>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -13,21 +15,32 @@
 
 namespace render {
 
+namespace {
+
+/// Takes the bytes of a picture for a std::string.
+void append(void* text, void* data, int size) {
+    static_cast<std::string*>(text)->append(static_cast<const char*>(data),
+                                            static_cast<size_t>(size));
+}
+
+} // namespace
+
 core::Result<void> write_png(const Image& image, const std::filesystem::path& path) {
-    if (stbi_write_png(path.c_str(), image.width, image.height, 4, image.rgba.data(),
-                       4 * image.width)
-        == 0)
+    std::string bytes;
+    const bool is_made = stbi_write_png_to_func(append, &bytes, image.width, image.height, 4,
+                                                image.rgba.data(), 4 * image.width)
+                         != 0;
+    std::ofstream file(path, std::ios::binary);
+    file << bytes;
+    file.close();
+    if (!is_made || file.fail())
         return core::fail(core::ErrorCode::io,
-                          fmt::format("cannot write the picture '{}'", path.string()));
+                          fmt::format("cannot write the picture '{}'", path.generic_string()));
     return {};
 }
 
 std::string jpeg_bytes(const Image& image, int quality) {
     std::string bytes;
-    const auto append = [](void* text, void* data, int size) {
-        static_cast<std::string*>(text)->append(static_cast<const char*>(data),
-                                                static_cast<size_t>(size));
-    };
     stbi_write_jpg_to_func(append, &bytes, image.width, image.height, 4, image.rgba.data(),
                            quality);
     return bytes;

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 
-#include <sys/stat.h>
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
 
 using namespace std::chrono_literals;
-
-int64_t nanoseconds(const timespec& time) {
-    return int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
-}
 
 /// The later of both times: a file that is moved over another keeps its modification time.
 std::chrono::nanoseconds last_change(const FileStamp& stamp) {
@@ -21,16 +17,16 @@ std::chrono::nanoseconds last_change(const FileStamp& stamp) {
 } // namespace
 
 FileStamp stamp_of(const std::string& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return {};
+    const auto facts = core::platform::facts_of(path);
+    if (!facts) return {};
     return {.is_there = true,
-            .is_folder = S_ISDIR(status.st_mode),
-            .is_file = S_ISREG(status.st_mode),
-            .device = static_cast<uint64_t>(status.st_dev),
-            .number = static_cast<uint64_t>(status.st_ino),
-            .size = static_cast<uint64_t>(status.st_size),
-            .modified = nanoseconds(status.st_mtim),
-            .changed = nanoseconds(status.st_ctim)};
+            .is_folder = facts->is_folder,
+            .is_file = facts->is_file,
+            .device = facts->device,
+            .number = facts->number,
+            .size = facts->size,
+            .modified = facts->modified,
+            .changed = facts->changed};
 }
 
 std::chrono::nanoseconds tick_of(const FileStamp& stamp) {
@@ -54,21 +50,21 @@ std::filesystem::path resolved_path(const std::filesystem::path& path) {
 
 std::string FileIdentities::of(const std::filesystem::path& path) {
     const std::filesystem::path plain = plain_path(path);
-    const std::string folder = plain.has_parent_path() ? plain.parent_path().string() : ".";
+    const std::string folder = plain.has_parent_path() ? plain.parent_path().generic_string() : ".";
     const auto [known, is_new] = folders_.try_emplace(folder);
     if (is_new) {
         std::error_code failure;
         known->second = std::filesystem::canonical(folder, failure);
         if (failure) known->second = folder;
     }
-    return (known->second / plain.filename()).string();
+    return (known->second / plain.filename()).generic_string();
 }
 
 std::string plain_path(const std::filesystem::path& path) {
     std::filesystem::path plain;
     for (const std::filesystem::path& part : path)
         if (part != "." && !part.empty()) plain /= part;
-    return plain.empty() ? "." : plain.string();
+    return plain.empty() ? "." : plain.generic_string();
 }
 
 } // namespace app

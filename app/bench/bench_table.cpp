@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 
 #include "core/base/math.h"
+#include "core/base/platform.h"
 #include "core/distance/distance_engine.h"
 
 namespace app {
 namespace {
-
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 /// An engine with both bodies of a scene loaded.
 struct Contestant {
@@ -37,9 +31,9 @@ core::Result<EngineResult> answer(const Contestant& by, const core::Transform& a
     EngineResult answer{.seconds = core::infinity};
     double spent = 0.0;
     do {
-        const double start = cpu_seconds();
+        const double start = core::platform::thread_cpu_seconds();
         FEELER_TRY(const core::ClosestPair pair, by.engine->closest_pair(by.a, by.b, a_from_b));
-        const double seconds = cpu_seconds() - start;
+        const double seconds = core::platform::thread_cpu_seconds() - start;
         answer = {pair.distance, pair.node_tests, pair.point_tests,
                   std::min(answer.seconds, seconds)};
         spent += seconds;

@@ -37,6 +37,7 @@
 #include "app/report/text/batch_text.h"
 #include "app/setup/coverage.h"
 #include "app/tolerance/tolerances.h"
+#include "core/base/platform.h"
 
 namespace app {
 
@@ -376,7 +377,11 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--tolerances", options->tolerances,
                      "Also find how far each value of the set-up may deviate; takes some hundred "
                      "times as long");
-    command.callback([options, &exit_code] { exit_code = check(*options); });
+    command.callback([options, &exit_code] {
+        for (std::string& word : options->programs)
+            word = core::platform::with_slashes(std::move(word));
+        exit_code = check(*options);
+    });
 }
 
 namespace {
@@ -404,7 +409,7 @@ std::vector<std::string> wait_for_change(WatchedFiles& files) {
 
 std::string name_of(const std::string& path_text) {
     const std::filesystem::path path(path_text);
-    return (path.has_filename() ? path.filename() : path).string();
+    return (path.has_filename() ? path.filename() : path).generic_string();
 }
 
 /// The file names, with the folder if two are equal.

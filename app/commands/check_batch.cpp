@@ -9,7 +9,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "app/base/stopwatch.h"
 #include "app/check/check_run.h"
@@ -25,6 +24,7 @@
 #include "app/library/store/result_store.h"
 #include "app/library/store/store_file.h"
 #include "app/library/watch/watched_files.h"
+#include "core/base/platform.h"
 
 namespace app {
 
@@ -81,7 +81,7 @@ std::string path_of_store(const CheckOptions& options) {
             return default_store_path(word, options.shard);
         const std::filesystem::path path(word);
         if (path.extension() == ".toml")
-            return default_store_path(path.parent_path().string(), options.shard);
+            return default_store_path(path.parent_path().generic_string(), options.shard);
     }
     return {};
 }
@@ -168,9 +168,8 @@ core::Result<void> refuse_single_options(const CheckOptions& options) {
 
 /// Half of the machine's memory: the rest is for programs, findings and other processes.
 double usual_memory() {
-    const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);
-    return pages > 0 && size > 0 ? 0.5 * static_cast<double>(pages) * static_cast<double>(size)
-                                 : 4e9;
+    const double memory = core::platform::physical_memory();
+    return memory > 0.0 ? 0.5 * memory : 4e9;
 }
 
 BatchLimits limits_of(const CheckOptions& options) {

@@ -273,7 +273,8 @@ std::string completion_script(const CLI::App& cli, std::string_view shell) {
 
 core::Result<void> write_pages(const CLI::App& cli, const std::string& folder) {
     for (const auto& [name, text] : manual_pages(cli))
-        if (auto written = write_output((std::filesystem::path(folder) / name).string(), text);
+        if (auto written =
+                write_output((std::filesystem::path(folder) / name).generic_string(), text);
             !written)
             return written;
     return {};

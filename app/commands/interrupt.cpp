@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "core/base/platform.h"
+
 namespace app {
 namespace {
 
@@ -11,7 +13,9 @@ extern "C" void note(int) { noted = 1; }
 
 } // namespace
 
-void catch_interrupts() { std::signal(SIGINT, note); }
+void catch_interrupts() {
+    core::platform::catch_interrupts(core::platform::Interrupts::keys, note);
+}
 
 bool was_interrupted() { return noted != 0; }
 

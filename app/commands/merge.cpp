@@ -13,6 +13,7 @@
 #include "app/library/shard/shard.h"
 #include "app/library/store/result_key.h"
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -81,7 +82,7 @@ void say_all(const BatchResult& batch, const std::vector<Shard>& shards, const B
 }
 
 core::Result<ExitCode> merge(const MergeOptions& options) {
-    ignore_broken_pipes();
+    core::platform::ignore_broken_pipes();
     ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets,
                targets_of(options.formats, options.outputs));

@@ -10,12 +10,11 @@
 #include <mutex>
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include "app/base/text.h"
 #include "app/library/watch/watched_files.h"
 #include "app/report/text/text_report.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -80,8 +79,9 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     const bool replace = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
     const std::string fresh =
-        replace ? fmt::format("{}.{}.new", target.string(), ::getpid()) : path;
-    state->file.reset(std::fopen(fresh.c_str(), replace ? "wb+" : "wb"));
+        replace ? fmt::format("{}.{}.new", target.generic_string(), core::platform::process_id())
+                : path;
+    state->file.reset(core::platform::open_file(fresh, replace ? "wb+" : "wb"));
     if (!state->file) return refused(path, "cannot be written: no such folder, or no permission");
     state->fresh = fresh;
     if (replace) state->target = target;
@@ -99,11 +99,11 @@ core::Result<void> OutputStream::finish() {
     std::FILE* const file = state.path.empty() ? stdout : state.file.get();
     if (std::fflush(file) != 0) return state.failed();
     if (state.target.empty()) return {};
-    if (::fsync(::fileno(file)) != 0) return state.failed();
+    if (!core::platform::write_through(file)) return state.failed();
     state.file.reset();
-    std::error_code failure;
-    std::filesystem::rename(state.fresh, state.target, failure);
-    if (failure) return state.failed();
+    if (const auto failure = core::platform::replace_file(state.fresh, state.target))
+        return refused(state.path, fmt::format("cannot be replaced: {}; the old file is unchanged",
+                                               failure.message()));
     state.fresh.clear();
     const std::scoped_lock lock(written_guard);
     written_stamps[state.path] = stamp_of(state.path);
@@ -151,13 +151,13 @@ core::Result<void> write_output(const std::string& path, const std::string& text
 TerminalStyle terminal_style(std::FILE* stream) {
     constexpr double narrowest = 40.0, widest = 500.0;
     TerminalStyle style;
-    if (::isatty(::fileno(stream)) != 1) return style;
+    if (!core::platform::is_terminal(stream)) return style;
     const char* const no_colour = std::getenv("NO_COLOR");
     style.colour = !no_colour || *no_colour == '\0';
-    winsize size{};
     const char* const columns = std::getenv("COLUMNS");
     double width = columns ? number_in(columns).value_or(0.0) : 0.0;
-    if (width <= 0.0 && ::ioctl(::fileno(stream), TIOCGWINSZ, &size) == 0) width = size.ws_col;
+    if (const auto known = core::platform::terminal_width(stream); known && width <= 0.0)
+        width = static_cast<double>(*known);
     if (width > 0.0) style.width = static_cast<size_t>(std::clamp(width, narrowest, widest));
     return style;
 }

@@ -10,6 +10,7 @@
 #include "app/commands/suggestion.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
+#include "core/base/platform.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/modal_state.h"
 
@@ -64,7 +65,8 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
         ->check(one_of({"units", "steps"}));
     command
         .add_option("--search-path", arguments.search_path,
-                    "Folder with subprograms; separate several with ':' or repeat the option")
+                    "Folder with subprograms; separate several with ':' (Windows: ';') or repeat "
+                    "the option")
         ->allow_extra_args(false);
     command
         .add_option("--max-blocks", arguments.max_blocks, "Stop a program after this many blocks")
@@ -85,9 +87,9 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
             arguments.units == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
     if (!arguments.no_decimal_point.empty())
         settings.counts_smallest_steps = arguments.no_decimal_point == "steps";
-    settings.parameters = arguments.parameters;
-    settings.tool_table = arguments.tool_table;
-    settings.ini = arguments.ini;
+    settings.parameters = core::platform::with_slashes(arguments.parameters);
+    settings.tool_table = core::platform::with_slashes(arguments.tool_table);
+    settings.ini = core::platform::with_slashes(arguments.ini);
     settings.max_blocks = arguments.max_blocks;
     for (const std::string& list : arguments.search_path) {
         for (const std::string& folder : split_search_path(list)) {
@@ -95,7 +97,7 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
             if (!std::filesystem::is_directory(folder, failure))
                 return core::fail(core::ErrorCode::io,
                                   fmt::format("--search-path: there is no folder {}", folder));
-            settings.search_path.push_back(folder);
+            settings.search_path.push_back(core::platform::with_slashes(folder));
         }
     }
     return settings;
@@ -138,8 +140,8 @@ void add_start_line(CLI::App& command, CheckArguments& arguments) {
 core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     FEELER_TRY(ProgramSettings settings, settings_of(arguments.reading));
     CheckJob job;
-    job.program = arguments.program;
-    job.setup = arguments.setup;
+    job.program = core::platform::with_slashes(arguments.program);
+    job.setup = core::platform::with_slashes(arguments.setup);
     find_setup_next_to(job);
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;

@@ -2,18 +2,16 @@
 
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/library/run/batch_run.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -21,20 +19,13 @@ namespace {
 // Lock-free: set by a signal handler, read by any thread.
 std::atomic<int64_t> interrupted_at = 0; // ms of the steady clock; 0: never
 
-int64_t milliseconds() {
-    timespec now;
-    ::clock_gettime(CLOCK_MONOTONIC, &now);
-    return int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000;
-}
-
 /// Tools that signal a process group, such as timeout, deliver the same signal twice at once. Only
 /// a second signal at least half a second later ends the process.
 extern "C" void note_interrupt(int signal) {
     int64_t first = 0;
-    if (interrupted_at.compare_exchange_strong(first, milliseconds())) return;
-    if (milliseconds() - first < 500) return;
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
+    const int64_t now = core::platform::steady_milliseconds();
+    if (interrupted_at.compare_exchange_strong(first, now) || now - first < 500) return;
+    core::platform::end_by_interrupt(signal);
 }
 
 /// Seconds as coarse as an estimate is: to 5 s below a minute, to 10 s above.
@@ -56,13 +47,9 @@ std::string bar_text(double fraction, const std::string& what, std::optional<dou
 } // namespace
 
 void stop_on_interrupt() {
-    for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, note_interrupt);
-    // SIGHUP stays ignored under nohup: the check is to outlive its terminal.
-    if (std::signal(SIGHUP, note_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-    ignore_broken_pipes();
+    core::platform::catch_interrupts(core::platform::Interrupts::all, note_interrupt);
+    core::platform::ignore_broken_pipes();
 }
-
-void ignore_broken_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 
 bool is_interrupted() { return interrupted_at != 0; }
 
@@ -90,7 +77,7 @@ std::optional<double> TimeLeft::after(double seconds, double fraction) {
     return (seconds - begin) * (1.0 - fraction) / (fraction - done);
 }
 
-ProgressLine::ProgressLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine() : is_terminal_(core::platform::is_terminal(stderr)) {}
 
 void ProgressLine::show(const CheckProgress& progress) { show_any(progress); }
 void ProgressLine::show(const BatchProgress& progress) { show_any(progress); }

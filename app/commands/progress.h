@@ -12,12 +12,9 @@ struct BatchProgress;
 struct CheckProgress;
 
 /// From now on SIGINT, SIGTERM and SIGHUP request a check to stop; a second signal at least half a
-/// second later ends the process. Includes ignore_broken_pipes.
+/// second later ends the process. A closed pipe no longer ends it: writing to it fails, and other
+/// reports are still written.
 void stop_on_interrupt();
-
-/// From now on a closed pipe does not end the process: writing to it fails, and other reports are
-/// still written.
-void ignore_broken_pipes();
 
 /// Whether a stop was requested.
 bool is_interrupted();

@@ -23,7 +23,7 @@ BatchResult batch_of(const ProgramReport& report) {
 
 std::string sarif_of(const BatchResult& batch) {
     std::error_code ignored;
-    return sarif_report(batch, std::filesystem::current_path(ignored).string());
+    return sarif_report(batch, std::filesystem::current_path(ignored).generic_string());
 }
 
 constexpr ReportFormat formats[] = {

@@ -1,18 +1,14 @@
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "app/check/check_job.h"
 #include "app/commands/commands.h"
@@ -22,6 +18,7 @@
 #include "app/commands/suggestion.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
+#include "core/base/platform.h"
 #include "core/sim/verdict.h"
 #include "render/image.h"
 
@@ -62,40 +59,23 @@ private:
 
 namespace {
 
-/// Runs ffmpeg with standard input and output closed off. Whether it exists and succeeded.
-template <size_t count>
-bool run_ffmpeg(const std::array<const char*, count>& words) {
-    posix_spawn_file_actions_t files;
-    ::posix_spawn_file_actions_init(&files);
-    ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    pid_t child = 0;
-    const int failed = ::posix_spawnp(&child, "ffmpeg", &files, nullptr,
-                                      const_cast<char* const*>(words.data()), environ);
-    ::posix_spawn_file_actions_destroy(&files);
-    int status = 0;
-    return failed == 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)
-           && WEXITSTATUS(status) == 0;
+bool run_ffmpeg(std::vector<std::string> words) {
+    words.insert(words.begin(), "ffmpeg");
+    return core::platform::run_quietly(words) == 0;
 }
 
-bool has_ffmpeg() {
-    return run_ffmpeg(
-        std::array{"ffmpeg", "-loglevel", "quiet", "-version", static_cast<const char*>(nullptr)});
-}
+bool has_ffmpeg() { return run_ffmpeg({"-loglevel", "quiet", "-version"}); }
 
 /// Whether ffmpeg can write a file of this name.
 bool can_write(const std::string& output) {
-    return run_ffmpeg(std::array{"ffmpeg", "-y", "-loglevel", "quiet", "-f", "lavfi", "-i",
-                                 "color=size=64x64:duration=0.1", "-pix_fmt", "yuv420p",
-                                 output.c_str(), static_cast<const char*>(nullptr)});
+    return run_ffmpeg({"-y", "-loglevel", "quiet", "-f", "lavfi", "-i",
+                       "color=size=64x64:duration=0.1", "-pix_fmt", "yuv420p", output});
 }
 
 bool join(const std::string& pattern, const std::string& output) {
-    const std::string rate = std::to_string(frames_per_second);
-    return run_ffmpeg(std::array{"ffmpeg", "-y", "-loglevel", "error", "-framerate", rate.c_str(),
-                                 "-i", pattern.c_str(), "-pix_fmt", "yuv420p", "-vf",
-                                 "pad=ceil(iw/2)*2:ceil(ih/2)*2", output.c_str(),
-                                 static_cast<const char*>(nullptr)});
+    return run_ffmpeg({"-y", "-loglevel", "error", "-framerate", std::to_string(frames_per_second),
+                       "-i", pattern, "-pix_fmt", "yuv420p", "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                       output});
 }
 
 } // namespace
@@ -108,10 +88,9 @@ core::Result<std::unique_ptr<FilmWriter>> FilmWriter::open(const std::string& ou
         std::filesystem::remove(writer->unfinished(), ignored);
         return tl::unexpected(writer->refusal());
     }
-    std::string folder = std::filesystem::temp_directory_path() / "feeler-film-XXXXXX";
-    if (!::mkdtemp(folder.data()))
+    writer->folder_ = core::platform::make_temporary_folder("feeler-film");
+    if (writer->folder_.empty())
         return core::fail(core::ErrorCode::io, "cannot create a folder for the film's pictures");
-    writer->folder_ = folder;
     return writer;
 }
 
@@ -127,18 +106,19 @@ core::Error FilmWriter::refusal() const {
             {},
             fmt::format("ffmpeg cannot write the film {}: choose a writable file of a type "
                         "that ffmpeg supports, such as .mp4",
-                        output_.string())};
+                        output_.generic_string())};
 }
 
 std::string FilmWriter::unfinished() const {
-    return output_.parent_path() / (".unfinished-" + output_.filename().string());
+    return (output_.parent_path() / (".unfinished-" + output_.filename().generic_string()))
+        .generic_string();
 }
 
 std::string FilmWriter::picture(size_t number) const {
-    const std::string name = fmt::format("{}-{:04}.png", output_.stem().string(), number);
+    const std::string name = fmt::format("{}-{:04}.png", output_.stem().generic_string(), number);
     return (folder_.empty() ? output_.parent_path() / name
                             : folder_ / fmt::format("{:04}.png", number))
-        .string();
+        .generic_string();
 }
 
 core::Result<void> FilmWriter::add(const render::Image& image) {
@@ -147,7 +127,8 @@ core::Result<void> FilmWriter::add(const render::Image& image) {
 
 core::Result<std::string> FilmWriter::finish() {
     if (folder_.empty()) return fmt::format("{} to {}", picture(1), picture(count_));
-    if (!join(folder_ / "%04d.png", unfinished())) return tl::unexpected(refusal());
+    if (!join((folder_ / "%04d.png").generic_string(), unfinished()))
+        return tl::unexpected(refusal());
     std::error_code failed;
     std::filesystem::rename(unfinished(), output_, failed);
     if (failed) return tl::unexpected(refusal());
@@ -330,7 +311,7 @@ core::Result<void> check_replaced(const std::string& output) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(output, ignored)) return {};
     std::string bytes(signature.size(), '\0');
-    std::ifstream(output, std::ios::binary)
+    std::ifstream(std::filesystem::path(output), std::ios::binary)
         .read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (bytes == signature || std::filesystem::file_size(output, ignored) == 0) return {};
     return tl::unexpected<core::Error>({core::ErrorCode::invalid_value,

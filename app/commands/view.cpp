@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -9,21 +8,14 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/view/ui/window.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
 
-/// A user folder, from an environment variable or below the home folder; empty if neither is known.
-std::filesystem::path user_folder(const char* variable, const char* below_home) {
-    if (const char* stated = std::getenv(variable); stated && *stated) return stated;
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / below_home;
-    return {};
-}
-
 /// Folder for pictures: the user's pictures folder, else that of the program.
 std::filesystem::path pictures_folder(const std::string& program) {
-    const std::filesystem::path pictures = user_folder("XDG_PICTURES_DIR", "Pictures");
+    const std::filesystem::path pictures = core::platform::pictures_folder();
     std::error_code ignored;
     if (!pictures.empty() && std::filesystem::is_directory(pictures, ignored)) return pictures;
     return std::filesystem::path(program).parent_path();
@@ -41,7 +33,7 @@ ExitCode view(const ViewOptions& options) {
     if (!check) return failed(check.error());
     viewer::WindowJob job;
     if (!arguments.program.empty()) job.check = std::make_shared<const CheckJob>(*std::move(check));
-    if (const auto folder = user_folder("XDG_CONFIG_HOME", ".config"); !folder.empty()) {
+    if (const auto folder = core::platform::settings_folder(); !folder.empty()) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";
     }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "core/base/platform.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
 #include "core/motion/machine.h"
@@ -37,7 +38,7 @@ struct IniReader {
     std::string section{};
     std::set<std::string> read{}; // keys with their sections; LinuxCNC takes the first of several
 
-    std::string resolved(const std::string& name) const { return (folder / name).string(); }
+    std::string resolved(const std::string& name) const { return (folder / name).generic_string(); }
 
     /// Stores a number. Programs can read only numbers whose section and key have no lower-case
     /// letters.
@@ -267,7 +268,7 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
 std::vector<std::string> split_search_path(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> folders;
-    for (std::string folder; std::getline(stream, folder, ':');)
+    for (std::string folder; std::getline(stream, folder, core::platform::list_separator());)
         if (!folder.empty()) folders.push_back(std::move(folder));
     return folders;
 }

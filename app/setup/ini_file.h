@@ -56,7 +56,7 @@ gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
                              bool with_positions);
 
-/// Splits a list of folders at ':'.
+/// Splits a list of folders at ':', or at ';' on Windows.
 std::vector<std::string> split_search_path(const std::string& text);
 
 } // namespace app

@@ -9,11 +9,10 @@
 #include <optional>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 #include "gcode/text/program_text.h"
 
 namespace gcode {
@@ -40,10 +39,13 @@ std::string_view LineWindows::Window::line(uint64_t number) const {
     return without_line_end(std::string_view(text).substr(starts[at], end - starts[at]));
 }
 
-LineWindows::LineWindows(std::string path, int file, size_t size)
-    : path_(std::move(path)), file_(file), size_(size), windows_(window_count) {}
+LineWindows::LineWindows(std::string path, core::platform::RandomAccessFile&& file, size_t size)
+    : path_(std::move(path)),
+      file_(std::make_unique<core::platform::RandomAccessFile>(std::move(file))),
+      size_(size),
+      windows_(window_count) {}
 
-LineWindows::~LineWindows() { ::close(file_); }
+LineWindows::~LineWindows() = default;
 
 core::Error LineWindows::refusal(ErrorCode code, std::string_view what, uint64_t line) const {
     return {code, {.line = static_cast<uint32_t>(line)}, fmt::format("{} {}", path_, what), path_};
@@ -51,12 +53,12 @@ core::Error LineWindows::refusal(ErrorCode code, std::string_view what, uint64_t
 
 core::Result<std::shared_ptr<LineWindows>> LineWindows::open(const std::string& path,
                                                              size_t window) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0)
+    std::error_code failure;
+    auto file = core::platform::RandomAccessFile::open(path, failure);
+    if (!file)
         return core::fail(ErrorCode::io,
-                          fmt::format("cannot read {}: {}", path,
-                                      std::error_code(errno, std::generic_category()).message()));
-    return std::shared_ptr<LineWindows>(new LineWindows(path, file, window));
+                          fmt::format("cannot read {}: {}", path, failure.message()));
+    return std::shared_ptr<LineWindows>(new LineWindows(path, std::move(*file), window));
 }
 
 core::Result<std::optional<std::string_view>> LineWindows::line(size_t number) {
@@ -96,13 +98,12 @@ core::Result<bool> LineWindows::read_stretch(uint64_t offset, std::string& text)
         while (text.size() < wanted && !at_end) {
             const size_t before = text.size();
             text.resize(wanted);
-            const ssize_t count = ::pread(file_, text.data() + before, wanted - before,
-                                          static_cast<off_t>(offset + before));
-            text.resize(before + static_cast<size_t>(std::max<ssize_t>(count, 0)));
-            if (count < 0 && errno != EINTR)
+            const auto count = file_->read(text.data() + before, wanted - before, offset + before);
+            text.resize(before + count.value_or(0));
+            if (!count)
                 return tl::unexpected(
                     refusal(ErrorCode::io, "cannot be read: the file system reports an error"));
-            at_end = count == 0;
+            at_end = *count == 0;
         }
         if (at_end) return true;
         const size_t whole = whole_lines(text);
@@ -308,7 +309,7 @@ core::Result<Collector> collected(const std::string& path) {
         return tl::unexpected(
             cannot_read(path, "it is a directory; give the path of an NC program"));
     errno = 0;
-    std::ifstream stream(path, std::ios::binary);
+    std::ifstream stream(std::filesystem::path(path), std::ios::binary);
     if (!stream)
         return tl::unexpected(
             cannot_read(path, std::error_code(errno, std::generic_category()).message()));

@@ -9,6 +9,10 @@
 
 #include "core/base/result.h"
 
+namespace core::platform {
+class RandomAccessFile;
+}
+
 namespace gcode {
 
 /// The lines of a file of any length. Only a few chunks are in memory at a time. Lines can be read
@@ -48,7 +52,7 @@ private:
         std::string_view line(uint64_t number) const;
     };
 
-    LineWindows(std::string path, int file, size_t size);
+    LineWindows(std::string path, core::platform::RandomAccessFile&& file, size_t size);
 
     core::Error refusal(core::ErrorCode code, std::string_view what, uint64_t line = 0) const;
     core::Result<void> go_to(uint64_t number);
@@ -58,7 +62,7 @@ private:
     core::Result<void> note_end(const Window& window, uint64_t offset, bool is_last);
 
     std::string path_;
-    int file_;
+    std::unique_ptr<const core::platform::RandomAccessFile> file_;
     size_t size_;
     std::vector<Mark> marks_ = std::vector<Mark>(1); // of the chunks read so far
     std::optional<Mark> end_;                        // end of the file, once it was reached

@@ -5,10 +5,8 @@
 #include <filesystem>
 #include <set>
 
-#include <fnmatch.h>
-#include <sys/stat.h>
-
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 #include "gcode/language/program_folder.h"
 
 namespace app {
@@ -18,7 +16,7 @@ namespace fs = std::filesystem;
 
 /// Reports access to a path that is not read or listed now, but may become a file or folder.
 void note_presence(const fs::path& path) {
-    core::notify_file_access({core::FileAccessKind::presence, path.string(), {}, {}});
+    core::notify_file_access({core::FileAccessKind::presence, path.generic_string(), {}, {}});
 }
 
 /// Walks through folders one after the other, links last.
@@ -42,19 +40,18 @@ public:
 
 private:
     bool is_new(const fs::path& folder) {
-        struct stat status {};
-        return ::stat(folder.c_str(), &status) != 0
-               || seen_.insert({status.st_dev, status.st_ino}).second;
+        const auto facts = core::platform::facts_of(folder);
+        return !facts || seen_.insert({facts->device, facts->number}).second;
     }
 
     void enter(const fs::path& folder) {
         found.folders.push_back(folder);
-        core::notify_file_access({core::FileAccessKind::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileAccessKind::listing, folder.generic_string(), {}, {}});
         std::error_code failure;
         std::vector<fs::directory_entry> entries;
         for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
              at.increment(failure))
-            if (at->path().filename().string().front() != '.') entries.push_back(*at);
+            if (at->path().filename().generic_string().front() != '.') entries.push_back(*at);
         // The choice among several links to a folder must not depend on the order on disk.
         std::sort(entries.begin(), entries.end());
         for (const fs::directory_entry& entry : entries) sort_in(entry);
@@ -73,7 +70,7 @@ private:
     }
 
     std::deque<fs::path> real_, linked_;
-    std::set<std::pair<dev_t, ino_t>> seen_;
+    std::set<std::pair<uint64_t, uint64_t>> seen_;
 };
 
 } // namespace
@@ -83,19 +80,21 @@ void FolderWalk::sort_in(const fs::path& path) {
     const fs::file_status status = fs::status(path, failure);
     if (!fs::is_regular_file(status)) note_presence(path);
     const auto cannot = [&] {
-        unreadable.push_back(
-            {core::ErrorCode::io, {}, "cannot be accessed: " + failure.message(), path.string()});
+        unreadable.push_back({core::ErrorCode::io,
+                              {},
+                              "cannot be accessed: " + failure.message(),
+                              path.generic_string()});
     };
     const bool leads_nowhere = status.type() == fs::file_type::not_found
                                || failure == std::errc::too_many_symbolic_link_levels;
     if (failure && !leads_nowhere)
         cannot();
     else if (fs::is_regular_file(status))
-        files.push_back(path.string());
+        files.push_back(path.generic_string());
     else if (fs::exists(status))
-        skipped.push_back({path.string(), "is neither a file nor a folder"});
+        skipped.push_back({path.generic_string(), "is neither a file nor a folder"});
     else if (fs::is_symlink(fs::symlink_status(path, ignored)))
-        skipped.push_back({path.string(), "is a link that leads nowhere"});
+        skipped.push_back({path.generic_string(), "is a link that leads nowhere"});
     else if (failure != std::errc::no_such_file_or_directory) // deleted while the folder was listed
         cannot();
 }
@@ -104,7 +103,7 @@ core::Error unreadable_folder(const fs::path& folder, const std::error_code& fai
     return {core::ErrorCode::io,
             {},
             "this folder cannot be read: " + failure.message(),
-            folder.string()};
+            folder.generic_string()};
 }
 
 FolderWalk walk_folder(const std::string& folder) {
@@ -120,13 +119,13 @@ namespace fs = std::filesystem;
 
 class Expansion {
 public:
-    explicit Expansion(const fs::path& pattern) {
-        for (const fs::path& part : pattern) // `**/**` is `**`
+    explicit Expansion(const fs::path& pattern) : root_(pattern.root_path()) {
+        for (const fs::path& part : pattern.relative_path()) // `**/**` is `**`
             if (part != "**" || parts_.empty() || parts_.back() != "**") parts_.push_back(part);
     }
 
     FolderWalk run(const fs::path& folder) {
-        expand(folder, 0);
+        expand(root_.empty() ? folder : folder / root_, 0);
         order(found_.files, std::less<>());
         order(found_.skipped, [](const auto& a, const auto& b) { return a.path < b.path; });
         order(found_.unreadable, [](const auto& a, const auto& b) { return a.file < b.file; });
@@ -146,13 +145,14 @@ private:
         if (i == parts_.size()) return;
         const fs::path& part = parts_[i];
         if (part == "**") return expand_below(folder, i);
-        if (!is_glob(part)) return go_on(folder / part, i);
+        if (!is_glob(part.generic_string())) return go_on(folder / part, i);
         for (const std::string& name : names_of(folder.empty() ? fs::path(".") : folder))
-            if (::fnmatch(part.c_str(), name.c_str(), FNM_PERIOD) == 0) go_on(folder / name, i);
+            if (core::platform::matches_pattern(part.generic_string(), name))
+                go_on(folder / name, i);
     }
 
     std::vector<std::string> names_of(const fs::path& folder) {
-        core::notify_file_access({core::FileAccessKind::listing, folder.string(), {}, {}});
+        core::notify_file_access({core::FileAccessKind::listing, folder.generic_string(), {}, {}});
         std::error_code failure;
         std::vector<std::string> names = gcode::names_in(folder, failure);
         if (failure) found_.unreadable.push_back(unreadable_folder(folder, failure));
@@ -162,7 +162,7 @@ private:
     /// Expands `**` and the parts after it, here and in every folder below.
     void expand_below(const fs::path& folder, size_t i) {
         if (i + 1 == parts_.size()) parts_.push_back("*");
-        FolderWalk below = walk_folder(folder.empty() ? "." : folder.string());
+        FolderWalk below = walk_folder(folder.empty() ? "." : folder.generic_string());
         for (SkippedFile& file : below.skipped) found_.skipped.push_back(std::move(file));
         for (core::Error& error : below.unreadable) found_.unreadable.push_back(std::move(error));
         for (const fs::path& name : below.folders)
@@ -177,10 +177,11 @@ private:
         } else if (is_last || what != "file") {
             // A missing file that the pattern names without wildcards is not reported: its name was
             // not found on disk.
-            if (is_glob(parts_[i]) || what) found_.sort_in(path);
+            if (is_glob(parts_[i].generic_string()) || what) found_.sort_in(path);
         }
     }
 
+    fs::path root_; // empty: the pattern is relative
     std::vector<fs::path> parts_;
     FolderWalk found_;
 };
@@ -196,7 +197,7 @@ FolderWalk files_of_glob(const fs::path& folder, const std::string& pattern) {
 fs::path folder_of_glob(const fs::path& folder, const std::string& pattern) {
     fs::path begin = folder;
     for (const fs::path& part : fs::path(pattern)) {
-        if (is_glob(part)) break;
+        if (is_glob(part.generic_string())) break;
         begin /= part;
     }
     return begin;

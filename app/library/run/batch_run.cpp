@@ -11,12 +11,11 @@
 #include <numeric>
 #include <thread>
 
-#include <malloc.h>
-
 #include "app/base/text.h"
 #include "app/check/check_run.h"
 #include "app/library/run/batch_job.h"
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -155,7 +154,7 @@ private:
             if (!is_cut) end(i, thread, result(job, run));
         }
         // Return the memory of a large model to the system; otherwise the allocator keeps it.
-        if (taken > much) ::malloc_trim(0);
+        if (taken > much) core::platform::release_free_memory();
         budget_.give_back(taken);
     }
 

@@ -10,6 +10,7 @@
 
 #include "app/view/model/block_row.h"
 #include "app/view/model/view_model.h"
+#include "core/base/platform.h"
 
 namespace app::viewer {
 namespace {
@@ -119,11 +120,11 @@ constexpr ImWchar icons[] = {0xF000, 0xF2E0, 0};
 std::string font_file(const char* name) {
     namespace fs = std::filesystem;
     std::error_code ignored;
-    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
-    const fs::path own = program.parent_path().parent_path() / "share/feeler/fonts";
+    const fs::path folder = core::platform::program_path().parent_path();
+    const fs::path below = fs::path("share/feeler/fonts") / fs::path(name).filename();
     for (const fs::path& path :
-         {own / fs::path(name).filename(), fs::path("/usr/share/fonts") / name})
-        if (fs::is_regular_file(path, ignored)) return path.string();
+         {folder.parent_path() / below, folder / below, fs::path("/usr/share/fonts") / name})
+        if (fs::is_regular_file(path, ignored)) return path.generic_string();
     return {};
 }
 

@@ -1,10 +1,10 @@
-#include "render/offscreen.h"
-
 #include <algorithm>
 #include <initializer_list>
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>
+
+#include "render/offscreen.h"
 
 namespace render {
 namespace {

@@ -1,0 +1,130 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+/// What standard C++ does not offer. All other code is the same for every system. Text is UTF-8,
+/// and so are paths that are stored as strings.
+namespace core::platform {
+
+// --- the process ------------------------------------------------------------------------------
+
+/// Prepares standard input and output for UTF-8 and returns the arguments. To be called once,
+/// before anything is printed.
+std::vector<std::string> begin_program(int argc, char** argv);
+
+/// The path of this program; empty if it is unknown.
+std::filesystem::path program_path();
+
+/// What identifies this build: a digest of the program by its linker; empty if it has none.
+std::string build_id();
+
+unsigned process_id();
+
+/// The value of an environment variable; empty if it is unset or empty.
+std::string environment_variable(const char* name);
+
+/// Folders of this user: of settings, of what a program remembers, and of pictures. Empty if they
+/// are unknown; they may not exist yet.
+std::filesystem::path settings_folder();
+std::filesystem::path state_folder();
+std::filesystem::path pictures_folder();
+
+/// Size of the main memory in bytes; 0 if it is unknown.
+double physical_memory();
+
+/// Returns freed memory to the system, which an allocator may keep.
+void release_free_memory();
+
+/// CPU time of the calling thread.
+double thread_cpu_seconds();
+
+/// Milliseconds of a steady clock; may be called while an interrupt is handled.
+int64_t steady_milliseconds();
+
+/// The ways in which a user asks a program to stop.
+enum class Interrupts : uint8_t {
+    keys, // Ctrl-C
+    all,  // also the end of the session and requests of other programs
+};
+
+/// Calls `note` for each interrupt from now on, instead of ending the program. It may be called in
+/// another thread or in a signal handler.
+void catch_interrupts(Interrupts which, void (*note)(int which));
+
+/// Ends the program as the interrupt that was noted would have done.
+void end_by_interrupt(int which);
+
+/// From now on writing to a closed pipe fails instead of ending the program.
+void ignore_broken_pipes();
+
+/// Runs a program without input and output, found as a shell does. Its exit status; empty if it
+/// cannot be started or crashes.
+std::optional<int> run_quietly(const std::vector<std::string>& words);
+
+// --- terminals --------------------------------------------------------------------------------
+
+bool is_terminal(std::FILE* stream);
+
+/// Columns of the terminal that a stream writes to; empty if it is none.
+std::optional<size_t> terminal_width(std::FILE* stream);
+
+// --- files ------------------------------------------------------------------------------------
+
+/// Metadata of a file or folder. Links are followed.
+struct FileFacts {
+    bool is_folder = false;
+    bool is_file = false; // a regular file
+    uint64_t device = 0, number = 0, size = 0;
+    int64_t modified = 0, changed = 0; // nanoseconds since 1970
+};
+std::optional<FileFacts> facts_of(const std::filesystem::path& path);
+
+/// As std::fopen.
+std::FILE* open_file(const std::filesystem::path& path, const char* mode);
+
+/// Flushes a file to the disk. Whether all of it was written.
+bool write_through(std::FILE* file);
+
+/// Renames a file over another. Waits for a moment if another program has that open, where this is
+/// in the way.
+std::error_code replace_file(const std::filesystem::path& fresh, const std::filesystem::path& old);
+
+/// Creates a folder of its own for this program; empty if that is impossible.
+std::filesystem::path make_temporary_folder(const char* name);
+
+/// A path that a user wrote, with '/' between its parts: as paths are stored and reported.
+std::string with_slashes(std::string path);
+
+/// What separates the folders of a list of folders: ':', or ';' where ':' follows a drive.
+char list_separator();
+
+/// Whether a file name matches a pattern with `*`, `?` and `[...]`. A leading dot has to be
+/// written. Upper and lower case differ where they do in file names.
+bool matches_pattern(const std::string& pattern, const std::string& name);
+
+/// A file that is read at any position. Other programs may replace or delete it meanwhile.
+class RandomAccessFile {
+public:
+    /// Empty if it cannot be opened; the reason is in `failure`.
+    static std::optional<RandomAccessFile> open(const std::filesystem::path& path,
+                                                std::error_code& failure);
+    RandomAccessFile(RandomAccessFile&& other) noexcept;
+    RandomAccessFile& operator=(RandomAccessFile&&) = delete;
+    ~RandomAccessFile();
+
+    /// Reads up to `count` bytes at `offset`: their number, 0 at the end, empty if reading fails.
+    std::optional<size_t> read(char* bytes, size_t count, uint64_t offset) const;
+
+private:
+    explicit RandomAccessFile(intptr_t handle) : handle_(handle) {}
+
+    intptr_t handle_;
+};
+
+} // namespace core::platform
