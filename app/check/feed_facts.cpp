@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "app/check/feed_use.h"
 #include "core/base/math.h"
@@ -83,7 +84,8 @@ void note_spindle(FeedFacts& facts, const core::Setup& setup, const core::Simula
     if (tool == setup.tools.end()) return;
     constexpr double mm_per_metre = 1000.0;
     keep_greatest(facts.edge_speed,
-                  M_PI * tool->second.description.diameter * state.spindle.speed / mm_per_metre,
+                  std::numbers::pi * tool->second.description.diameter * state.spindle.speed
+                      / mm_per_metre,
                   block);
 }
 

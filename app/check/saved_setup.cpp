@@ -41,16 +41,16 @@ core::Result<std::string> setup_file_text(const CheckJob& job) {
     FEELER_TRY(PreparedCheck check, read_check(job));
     check.file.setup = std::move(check.run.setup);
     check.file.dialect = check.run.dialect;
-    return setup_text(check.file, fs::path(job.program).filename().string());
+    return setup_text(check.file, fs::path(job.program).filename().generic_string());
 }
 
 std::string proposed_setup_path(const CheckJob& job) {
     fs::path path(job.setup.empty() ? job.program : job.setup);
     if (!job.setup.empty())
-        path.replace_filename(path.stem().string() + "-edited.toml");
+        path.replace_filename(path.stem().generic_string() + "-edited.toml");
     else
         path.replace_extension(".toml");
-    return path.string();
+    return path.generic_string();
 }
 
 core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool may_replace,
@@ -65,7 +65,7 @@ core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool
     if (is_elsewhere && names_relative_files(text))
         return core::fail_file(
             path, fmt::format("the set-up names files by relative paths: save it in {}",
-                              folder_of(job.setup).string()));
+                              folder_of(job.setup).generic_string()));
     return write(path, text);
 }
 

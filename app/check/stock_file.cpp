@@ -25,7 +25,8 @@ double rounding_of(const core::Mesh& mesh) {
 } // namespace
 
 core::Result<MeshForm> mesh_form(const std::string& path) {
-    const std::string ending = core::lower_case(std::filesystem::path(path).extension().string());
+    const std::string ending =
+        core::lower_case(std::filesystem::path(path).extension().generic_string());
     if (ending == ".stl") return MeshForm::stl;
     if (ending == ".ply") return MeshForm::ply;
     if (ending == ".feeler") return MeshForm::record;

@@ -189,7 +189,7 @@ constexpr double highest_machine_code = 9999.0;
 
 std::string path_of(TableReader& table, const char* key, const std::filesystem::path& folder) {
     const auto name = table.string(key);
-    return name ? (folder / *name).string() : std::string();
+    return name ? (folder / *name).generic_string() : std::string();
 }
 
 void read_start(TableReader& table, gcode::Position& start) {
@@ -267,7 +267,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
     settings.tool_table = path_of(table, "tool_table", folder);
     for (const std::string& name :
          table.strings("search_path", 0).value_or(std::vector<std::string>{}))
-        settings.search_path.push_back((folder / name).string());
+        settings.search_path.push_back((folder / name).generic_string());
     if (const auto blocks = table.integer("max_blocks")) {
         if (*blocks < 1) table.refuse("max_blocks", "must be above 0");
         settings.max_blocks = static_cast<uint64_t>(*blocks);

@@ -346,7 +346,7 @@ void read_machine_table(TableReader& table, BodyContext& context,
                         std::optional<core::Error>& error) {
     core::Machine& machine = context.file.setup.machine;
     if (const auto name = table.string("file"))
-        read_machine_file((context.folder / *name).string(), context.file, error);
+        read_machine_file((context.folder / *name).generic_string(), context.file, error);
     const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
     if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
     answer_rapids(table, context.file);
@@ -583,8 +583,8 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
                                    + assume_machine_zero(file));
     place_offsets(context);
     if (const auto library = root.string("tool_library")) {
-        auto tools =
-            read_tool_library((context.folder / *library).string(), file.environment.machine_unit);
+        auto tools = read_tool_library((context.folder / *library).generic_string(),
+                                       file.environment.machine_unit);
         if (tools)
             file.library = *std::move(tools);
         else
@@ -667,7 +667,7 @@ std::string setup_next_to(const std::string& program) {
     const std::filesystem::path setup = std::filesystem::path(program).replace_extension(".toml");
     const bool is_one =
         setup.filename() != project_file_name && setup != program && core::is_there(setup);
-    return is_one ? setup.string() : std::string();
+    return is_one ? setup.generic_string() : std::string();
 }
 
 std::string required_rule(std::string_view word) {

@@ -123,7 +123,7 @@ void read_named(TableReader& table, BodyContext& context, core::ToolDescription&
     HolderLibrary library;
     std::string where = "among the holders shipped with Feeler";
     if (const auto file = table.string("holder_file")) {
-        auto read = read_holder_library((context.folder / *file).string());
+        auto read = read_holder_library((context.folder / *file).generic_string());
         if (!read) return table.refuse_with(read.error());
         library = *std::move(read);
         where = "in " + *file;

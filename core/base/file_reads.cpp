@@ -67,7 +67,7 @@ std::optional<std::string> file_bytes(const std::filesystem::path& path, size_t 
     std::optional<std::string> bytes = read_bytes(path, limit);
     const bool is_whole = bytes && bytes->size() <= limit;
     notify_file_access({FileAccessKind::content,
-                        path.string(),
+                        path.generic_string(),
                         {},
                         is_whole ? std::optional<std::string_view>(*bytes) : std::nullopt});
     return bytes;
@@ -85,7 +85,7 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
         answer = "other";
     else
         answer = leftover_of(path, failure);
-    notify_file_access({FileAccessKind::presence, path.string(), {}, answer});
+    notify_file_access({FileAccessKind::presence, path.generic_string(), {}, answer});
     return answer;
 }
 

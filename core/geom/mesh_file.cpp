@@ -415,7 +415,7 @@ bool is_text_stl(std::string_view bytes) {
 }
 
 Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view bytes) {
-    const std::string extension = lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().generic_string());
     if (extension == ".stl")
         return is_text_stl(bytes) ? MeshFormat::stl_ascii : MeshFormat::stl_binary;
     if (extension == ".obj") return MeshFormat::obj;
@@ -475,8 +475,8 @@ Result<MeshFile> read_solid(const std::filesystem::path& path) {
 
 Result<MeshFile> read_mesh(const std::filesystem::path& path) {
     return read_solid(path).map_error([&](Error error) {
-        error.message = fmt::format("{}: {}", path.string(), error.message);
-        error.file = path.string();
+        error.message = fmt::format("{}: {}", path.generic_string(), error.message);
+        error.file = path.generic_string();
         return error;
     });
 }

@@ -37,7 +37,7 @@ ProgramLibrary::ProgramLibrary(const Program& main, const Dialect& dialect,
     sources_.push_back({std::shared_ptr<const Program>(std::shared_ptr<void>(), &main), nullptr});
     if (search_path_.empty() && !main.file.empty()) {
         const fs::path folder = fs::path(main.file).parent_path();
-        search_path_.push_back(folder.empty() ? "." : folder.string());
+        search_path_.push_back(folder.empty() ? "." : folder.generic_string());
     }
 }
 
@@ -63,7 +63,7 @@ ProgramLibrary::find(const std::vector<std::string>& file_names) {
                 return core::fail(
                     core::ErrorCode::invalid_value,
                     fmt::format("the program calls more than {} files", most_sources));
-            FEELER_TRY(Program program, read_program((fs::path(folder) / name).string()));
+            FEELER_TRY(Program program, read_program((fs::path(folder) / name).generic_string()));
             sources_.push_back({std::make_shared<const Program>(std::move(program)), nullptr});
             const auto source = static_cast<uint32_t>(sources_.size() - 1);
             by_path_[path->string()] = source;

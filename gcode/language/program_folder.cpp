@@ -28,7 +28,7 @@ std::optional<fs::path> found_in(const fs::path& folder, const std::string& name
 std::optional<fs::path> file_in(const fs::path& folder, const std::string& name) {
     const std::optional<fs::path> path = found_in(folder, name);
     const std::string path_text = path ? path->string() : std::string();
-    core::notify_file_access({core::FileAccessKind::in_folder, folder.string(), name,
+    core::notify_file_access({core::FileAccessKind::in_folder, folder.generic_string(), name,
                               path ? std::optional<std::string_view>(path_text) : std::nullopt});
     return path;
 }
@@ -42,7 +42,7 @@ std::vector<std::string> names_in(const fs::path& folder, std::error_code& failu
     std::vector<std::string> names;
     for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
          entry.increment(failure))
-        names.push_back(entry->path().filename().string());
+        names.push_back(entry->path().filename().generic_string());
     std::sort(names.begin(), names.end());
     return names;
 }

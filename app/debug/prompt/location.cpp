@@ -26,14 +26,14 @@ bool are_digits(std::string_view text) {
 /// subprogram must have run, or be in the folder of the main program.
 core::Result<std::string> file_named(PromptState& state, const std::string& name) {
     const auto of_main = std::filesystem::path(state.session.record().program_file).filename();
-    if (name == of_main.string() || name == state.session.record().program_file)
+    if (name == of_main.generic_string() || name == state.session.record().program_file)
         return std::string();
     std::set<std::string> files;
     for (const CheckedBlock& block : state.session.record().blocks)
         if (!block.file.empty()) files.insert(block.file);
-    std::vector<std::string> names{of_main.string()};
+    std::vector<std::string> names{of_main.generic_string()};
     for (const std::string& file : files) {
-        const std::string last = std::filesystem::path(file).filename().string();
+        const std::string last = std::filesystem::path(file).filename().generic_string();
         if (file == name || last == name) return file;
         names.push_back(last);
     }
@@ -41,7 +41,7 @@ core::Result<std::string> file_named(PromptState& state, const std::string& name
     const auto sibling =
         std::filesystem::path(state.session.record().program_file).parent_path() / name;
     std::error_code failure;
-    if (std::filesystem::is_regular_file(sibling, failure)) return sibling.string();
+    if (std::filesystem::is_regular_file(sibling, failure)) return sibling.generic_string();
     return core::fail(ErrorCode::invalid_value,
                       fmt::format("there is no file {}; the nearest name is {}", name,
                                   core::nearest_name(name, names)));

@@ -16,7 +16,7 @@ namespace app {
 namespace {
 
 std::string file_name(const std::string& path) {
-    return std::filesystem::path(path).filename().string();
+    return std::filesystem::path(path).filename().generic_string();
 }
 
 const core::PairClearance* deciding_pair(const core::BlockResult& result) {

@@ -44,7 +44,7 @@ private:
         std::set<std::string> projects, unreadable;
         for (const core::Error& error : walk.unreadable) unreadable.insert(error.file);
         for (const fs::path& each : walk.folders)
-            if (!unreadable.contains(each.string()) && !owners_.of(each, each).empty())
+            if (!unreadable.contains(each.generic_string()) && !owners_.of(each, each).empty())
                 projects.insert(plain_path(owners_.of(each, each)));
         found.projects.insert(found.projects.end(), projects.begin(), projects.end());
         if (!has_programs && projects.empty() && walk.unreadable.empty())
@@ -166,7 +166,7 @@ constexpr std::string_view program_endings[] = {"nc",  "ngc", "tap", "cnc", "gco
                                                 "spf", "eia", "nct", "hnc", "gc"};
 
 std::string ending_of(const std::string& path) {
-    std::string ending = std::filesystem::path(path).extension().string();
+    std::string ending = std::filesystem::path(path).extension().generic_string();
     for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return ending.empty() ? ending : ending.substr(1);
 }
@@ -227,7 +227,7 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
         if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
             return std::optional<std::string>(kind.what);
     errno = 0;
-    std::ifstream file(path, std::ios::binary);
+    std::ifstream file(std::filesystem::path(path), std::ios::binary);
     if (!file)
         return tl::unexpected<core::Error>(
             {core::ErrorCode::io,

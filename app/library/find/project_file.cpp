@@ -104,11 +104,11 @@ std::string ProjectOwners::of(const std::filesystem::path& folder,
         if (here == top || above == here) return {};
         here = above;
     }
-    return (here / project_file_name).string();
+    return (here / project_file_name).generic_string();
 }
 
 bool ProjectOwners::contains_project(const std::filesystem::path& folder) {
-    const auto [known, is_new] = known_.try_emplace(folder.string());
+    const auto [known, is_new] = known_.try_emplace(folder.generic_string());
     if (is_new) known->second = core::is_there(folder / project_file_name);
     return known->second;
 }

@@ -17,7 +17,7 @@ std::string project_of(const std::string& word) {
     std::error_code ignored;
     if (fs::is_directory(word, ignored)) {
         const fs::path inside = fs::path(word) / project_file_name;
-        return core::is_there(inside) ? inside.string() : std::string();
+        return core::is_there(inside) ? inside.generic_string() : std::string();
     }
     const bool is_pattern = is_glob(word) && !core::is_there(word);
     return fs::path(word).extension() == ".toml" && !is_pattern ? word : std::string();

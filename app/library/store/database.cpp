@@ -109,9 +109,10 @@ core::Result<Database> Database::open(const std::string& path, Access access,
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* opened = nullptr;
     // With "./", no name can be mistaken for a URI or for a special name of SQLite.
-    const std::string name = path == in_memory       ? "file:/feeler?vfs=memdb"
-                             : path.starts_with('/') ? path
-                                                     : "./" + path;
+    const bool is_absolute = std::filesystem::path(path).is_absolute();
+    const std::string name = path == in_memory ? "file:/feeler?vfs=memdb"
+                             : is_absolute     ? path
+                                               : "./" + path;
     const int code = sqlite3_open_v2(name.c_str(), &opened,
                                      path == in_memory ? flags | SQLITE_OPEN_URI : flags, nullptr);
     Database database;

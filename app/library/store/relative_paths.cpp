@@ -34,7 +34,8 @@ std::string_view parent_of(std::string_view folder) {
 
 /// The absolute path without redundant parts; the root is an empty text.
 std::string absolute_path(const std::string& path, const std::string& working_folder) {
-    std::string plain = plain_path(path.starts_with('/') ? path : working_folder + "/" + path);
+    std::string plain =
+        plain_path(fs::path(path).is_absolute() ? path : working_folder + "/" + path);
     return plain == "/" ? std::string() : plain;
 }
 
@@ -47,17 +48,17 @@ std::array<FileStamp, 3> stamps_of(const std::array<std::string, 3>& folders) {
 
 std::string folder_of(const std::string& database) {
     const fs::path folder = fs::path(plain_path(database)).parent_path();
-    return (folder.filename() == ".feeler" ? folder.parent_path() : folder).string();
+    return (folder.filename() == ".feeler" ? folder.parent_path() : folder).generic_string();
 }
 
 } // namespace
 
 RelativePaths::RelativePaths(const std::string& database) {
     std::error_code failure;
-    working_folder_ = fs::current_path(failure).string();
+    working_folder_ = fs::current_path(failure).generic_string();
     named_folder_ = absolute_path(folder_of(database), working_folder_);
-    folder_ =
-        absolute_path(fs::weakly_canonical(named_folder_ + "/", failure).string(), working_folder_);
+    folder_ = absolute_path(fs::weakly_canonical(named_folder_ + "/", failure).generic_string(),
+                            working_folder_);
     stamps_ = stamps_of({working_folder_, named_folder_, folder_});
 }
 
@@ -85,7 +86,7 @@ std::string RelativePaths::relative(const std::string& path) const {
 }
 
 std::string RelativePaths::absolute(const std::string& relative_path) const {
-    if (relative_path.empty() || relative_path.starts_with('/')) return relative_path;
+    if (relative_path.empty() || fs::path(relative_path).is_absolute()) return relative_path;
     std::string_view folder = folder_, rest = relative_path;
     while (rest == ".." || rest.starts_with("../")) {
         folder = parent_of(folder);
@@ -167,7 +168,7 @@ std::set<std::string> paths_of(const CheckJob& job, const std::vector<InputFile>
     std::set<std::string> all;
     for (const std::string& path : paths) {
         all.insert(utf8_text(path));
-        all.insert(utf8_text(std::filesystem::path(path).parent_path().string()));
+        all.insert(utf8_text(std::filesystem::path(path).parent_path().generic_string()));
     }
     all.erase("");
     all.erase("/");

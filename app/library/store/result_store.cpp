@@ -98,7 +98,7 @@ core::Result<void> ResultStore::State::prepare() {
 std::string ResultStore::State::relative(const std::string& program) const {
     std::error_code failure;
     const auto whole = std::filesystem::weakly_canonical(program, failure);
-    return failure ? program : whole.lexically_relative(relative_paths.folder()).string();
+    return failure ? program : whole.lexically_relative(relative_paths.folder()).generic_string();
 }
 
 std::string ResultStore::State::content_of(const CheckJob& job) const {

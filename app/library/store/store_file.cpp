@@ -109,7 +109,7 @@ std::vector<std::string> stores_in(const std::filesystem::path& folder) {
         std::error_code failure;
         if (name.starts_with("results") && name.ends_with(".db")
             && std::filesystem::is_regular_file(folder / name, failure))
-            stores.push_back((folder / name).string());
+            stores.push_back((folder / name).generic_string());
     }
     return stores;
 }
@@ -119,7 +119,8 @@ std::vector<std::string> stores_in(const std::filesystem::path& folder) {
 std::string default_store_path(const std::string& folder, const std::optional<ShardId>& shard) {
     const std::string name =
         shard ? fmt::format("results-{}of{}.db", shard->i, shard->n) : "results.db";
-    return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler" / name).string();
+    return (std::filesystem::path(folder.empty() ? "." : folder) / ".feeler" / name)
+        .generic_string();
 }
 
 std::vector<std::string> sibling_stores(const std::string& path) {

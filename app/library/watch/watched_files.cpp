@@ -17,13 +17,13 @@ namespace fs = std::filesystem;
 std::string whole_path(const std::string& path) {
     std::error_code failure;
     const fs::path whole = fs::weakly_canonical(fs::absolute(path, failure), failure);
-    return failure ? path : whole.string();
+    return failure ? path : whole.generic_string();
 }
 
 /// The path of a file as it is, or will be once it is written.
 std::string written_path(const std::string& path) {
     const fs::path resolved = resolved_path(path);
-    return resolved.empty() ? path : resolved.string();
+    return resolved.empty() ? path : resolved.generic_string();
 }
 
 /// Why a file is not a program, see why_no_program; empty for a program, "?" if unreadable.
@@ -77,7 +77,8 @@ bool WatchedFiles::is_own(const std::string& path) const {
 std::string WatchedFiles::names_of(const std::string& folder) const {
     std::string names;
     for (const std::string& name : gcode::names_in(folder))
-        if (name[0] != '.' && !is_own((fs::path(folder) / name).string())) names += name + '\n';
+        if (name[0] != '.' && !is_own((fs::path(folder) / name).generic_string()))
+            names += name + '\n';
     return names;
 }
 
@@ -122,7 +123,7 @@ void WatchedFiles::note(const core::FileAccess& access) {
     using enum core::FileAccessKind;
     const bool is_named = access.question == in_folder;
     const std::string path =
-        is_named ? (fs::path(access.path) / access.name).string() : access.path;
+        is_named ? (fs::path(access.path) / access.name).generic_string() : access.path;
     if (path.empty()) return;
     const std::lock_guard lock(mutex_);
     if (is_own(path)) {

@@ -79,8 +79,9 @@ std::string coverage_text(const ProgramResult& program) {
 /// Folder and file name of a program, as attributes of its test case.
 std::string name_attributes(const std::string& program) {
     const std::filesystem::path path(program);
-    const std::string folder = path.parent_path().string();
-    return fmt::format("name=\"{}\" classname=\"{}\"", xml_attribute(path.filename().string()),
+    const std::string folder = path.parent_path().generic_string();
+    return fmt::format("name=\"{}\" classname=\"{}\"",
+                       xml_attribute(path.filename().generic_string()),
                        xml_attribute(folder.empty() ? "." : folder));
 }
 

@@ -244,8 +244,17 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_chose
 } // namespace
 
 std::string uri_of(const std::string& path) {
-    std::string uri = path.starts_with('/') ? "file://" : "";
-    for (const char c : path) {
+    std::string uri;
+    std::string_view rest = path;
+    if (path.starts_with("//")) { // a server of Windows
+        uri = "file:";
+    } else if (path.starts_with('/')) {
+        uri = "file://";
+    } else if (std::filesystem::path(path).is_absolute()) { // a drive of Windows
+        uri = "file:///" + path.substr(0, 2);
+        rest.remove_prefix(2);
+    }
+    for (const char c : rest) {
         const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
                               || (c >= '0' && c <= '9')
                               || std::string_view("-._~/").find(c) != std::string_view::npos;

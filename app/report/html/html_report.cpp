@@ -35,7 +35,7 @@ std::string uncovered_html(const CheckRun& run) {
 }
 
 std::string name_of_file(const std::string& path) {
-    const std::string name = std::filesystem::path(path).filename().string();
+    const std::string name = std::filesystem::path(path).filename().generic_string();
     return name.empty() ? path : name;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -269,7 +270,9 @@ void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
     const int u = (arc.normal + 1) % 3, v = (arc.normal + 2) % 3, w = arc.normal;
     const double du = from[u] - arc.centre[u], dv = from[v] - arc.centre[v];
     const int count =
-        1 + static_cast<int>(std::min(20.0, std::abs(arc.angle) / (2.0 * M_PI)) * steps_per_turn);
+        1
+        + static_cast<int>(std::min(20.0, std::abs(arc.angle) / (2.0 * std::numbers::pi))
+                           * steps_per_turn);
     for (int i = 1; i < count; ++i) {
         const double fraction = static_cast<double>(i) / count, angle = fraction * arc.angle;
         Vec3 p(0.0);

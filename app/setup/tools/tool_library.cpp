@@ -81,7 +81,7 @@ core::Result<ToolMap> tools_of_json(const std::filesystem::path& path) {
                     {},
                     "is not a tool library of FreeCAD or Fusion 360 (tools, data, "
                     "Tools or parameter is missing)",
-                    path.string()});
+                    path.generic_string()});
 }
 
 /// The comment after the semicolon in each line of a tool table, by tool number.
@@ -125,14 +125,16 @@ core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit 
 
 core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
     if (std::string why = core::why_no_file(path); !why.empty())
-        return tl::unexpected(core::Error{ErrorCode::io, {}, std::move(why), path.string()});
+        return tl::unexpected(
+            core::Error{ErrorCode::io, {}, std::move(why), path.generic_string()});
     const std::optional<std::string> bytes = core::file_bytes(path);
     if (!bytes)
-        return tl::unexpected(core::Error{ErrorCode::io, {}, "cannot be read", path.string()});
+        return tl::unexpected(
+            core::Error{ErrorCode::io, {}, "cannot be read", path.generic_string()});
     nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
     if (json.is_discarded())
         return tl::unexpected(
-            core::Error{ErrorCode::syntax, {}, "is not valid JSON", path.string()});
+            core::Error{ErrorCode::syntax, {}, "is not valid JSON", path.generic_string()});
     return json;
 }
 
@@ -152,8 +154,10 @@ core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
                             const std::filesystem::path& path) {
     const int number = core::value_of(tool.tool.number);
     const auto refuse = [&](const std::string& why) {
-        return tl::unexpected(core::Error{
-            ErrorCode::invalid_value, {}, fmt::format("tool {} {}", number, why), path.string()});
+        return tl::unexpected(core::Error{ErrorCode::invalid_value,
+                                          {},
+                                          fmt::format("tool {} {}", number, why),
+                                          path.generic_string()});
     };
     if (!(tool.tool.diameter > 0.0)) return refuse("has no diameter");
     if (!tools.emplace(tool.tool.number, tool).second) return refuse("is defined twice");
@@ -162,7 +166,7 @@ core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
 
 core::Result<std::map<ToolNumber, FoundTool>> read_tool_library(const std::string& path,
                                                                 gcode::LengthUnit unit) {
-    const std::string extension = std::filesystem::path(path).extension().string();
+    const std::string extension = std::filesystem::path(path).extension().generic_string();
     if (extension == ".json" || extension == ".fctl" || extension == ".fctb")
         return tools_of_json(path);
     if (extension == ".tbl") return tools_of_table(path, unit);
@@ -180,7 +184,7 @@ using core::ToolShape;
 using nlohmann::json;
 
 core::Error error(const std::filesystem::path& path, const std::string& why) {
-    return {ErrorCode::syntax, {}, why, path.string()};
+    return {ErrorCode::syntax, {}, why, path.generic_string()};
 }
 
 /// "5.0000 mm", "1/4 in", "60 °" or a plain number; lengths in mm.
@@ -240,7 +244,7 @@ void read_lengths(const json& parameters, ToolDescription& tool) {
 core::Result<FoundTool> tool_of_bit(const json& bit, int number,
                                     const std::filesystem::path& path) {
     FoundTool found;
-    found.source = path.string();
+    found.source = path.generic_string();
     found.tool.number = core::ToolNumber{number};
     found.tool.name = text_at(bit, "name");
     const std::string shape = text_at(bit, "shape");
@@ -286,7 +290,7 @@ FoundTool freecad_tool(const json& entry, int number, const std::filesystem::pat
     };
     const std::string type = text_at(entry, "tooltype");
     FoundTool found;
-    found.source = path.string();
+    found.source = path.generic_string();
     ToolDescription& tool = found.tool;
     tool.number = core::ToolNumber{number};
     tool.name = text_at(entry, "name");
@@ -436,7 +440,7 @@ std::optional<int> number_of(const json& tool) {
 FoundTool fusion_tool(const json& entry, int number, const std::filesystem::path& path) {
     const Reader reader{entry, text_at(entry, "unit") == "inches" ? core::mm_per_inch : 1.0};
     FoundTool found;
-    found.source = path.string();
+    found.source = path.generic_string();
     found.tool.number = core::ToolNumber{number};
     found.tool.name = text_at(entry, "description");
     found.tool.diameter = reader.size("DC").value_or(0.0);
@@ -467,8 +471,10 @@ core::Result<ToolMap> tools_of_fusion_library(const json& library,
         if (tool.tool.diameter > 0.0) tools.emplace(tool.tool.number, tool);
     }
     if (tools.empty())
-        return tl::unexpected(core::Error{
-            core::ErrorCode::syntax, {}, "contains no milling tool with a number", path.string()});
+        return tl::unexpected(core::Error{core::ErrorCode::syntax,
+                                          {},
+                                          "contains no milling tool with a number",
+                                          path.generic_string()});
     return tools;
 }
 

@@ -9,13 +9,14 @@ namespace app::viewer {
 namespace {
 
 bool has_ending(const std::string& path, std::initializer_list<const char*> endings) {
-    const std::string ending = core::lower_case(std::filesystem::path(path).extension().string());
+    const std::string ending =
+        core::lower_case(std::filesystem::path(path).extension().generic_string());
     return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
 }
 
 /// All texts between quotes, line by line.
 std::vector<std::string> quoted_in(const std::string& path) {
-    std::ifstream file(path);
+    std::ifstream file{std::filesystem::path(path)};
     std::vector<std::string> found;
     for (std::string line; std::getline(file, line);)
         for (const char quote : {'"', '\''})
@@ -44,7 +45,7 @@ std::vector<std::string> files_of_setup(const std::string& setup) {
         const std::filesystem::path folder = std::filesystem::path(files[i]).parent_path();
         for (const std::string& name : quoted_in(files[i])) {
             if (!is_mesh_file(name) && !is_setup_file(name)) continue;
-            const std::string path = (folder / name).string();
+            const std::string path = (folder / name).generic_string();
             if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
         }
     }

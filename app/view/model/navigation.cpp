@@ -171,7 +171,7 @@ std::string notes_key(const ViewModel& model) {
     if (!model.program) return {};
     std::error_code failure; // without a current folder the path stays relative
     const auto path = std::filesystem::absolute(model.program->program, failure);
-    return utf8_text(failure ? model.program->program : path.lexically_normal().string());
+    return utf8_text(failure ? model.program->program : path.lexically_normal().generic_string());
 }
 
 std::string note_at(const ViewModel& model, const StretchIndex& which) {

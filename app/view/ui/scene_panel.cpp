@@ -97,7 +97,7 @@ std::string warning_text(const Frame& frame) {
     std::string words;
     if (!frame.model.missing.empty())
         words = fmt::format("{}  {} is missing or empty: this is its last known state", sign,
-                            std::filesystem::path(frame.model.missing).filename().string());
+                            std::filesystem::path(frame.model.missing).filename().generic_string());
     if (!frame.model.stopped) return words;
     const core::Error& error = *frame.model.stopped;
     return words + (words.empty() ? "" : "\n")

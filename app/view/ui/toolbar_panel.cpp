@@ -25,9 +25,9 @@ void draw_name(Frame& frame, float width) {
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + frame.px(7));
     text(frame.fonts.text, frame.palette.color(Role::text), frame.fonts.icon(Icon::program));
     ImGui::SameLine();
-    const std::string name = model.program
-                                 ? std::filesystem::path(model.program->program).filename().string()
-                                 : "feeler";
+    const std::string name =
+        model.program ? std::filesystem::path(model.program->program).filename().generic_string()
+                      : "feeler";
     text(frame.fonts.strong, frame.palette.color(Role::text),
          shortened(frame.fonts.strong, name, 0.55F * width));
     if (!model.program) return;

@@ -269,7 +269,7 @@ void Window::save_picture() {
     glfwGetFramebufferSize(window_, &width, &height);
     const std::filesystem::path path = free_picture_name(job_.pictures);
     const auto written = render::write_png(screen_picture(width, height), path);
-    say(model, written ? "Saved " + path.string() : written.error().message, glfwGetTime());
+    say(model, written ? "Saved " + path.generic_string() : written.error().message, glfwGetTime());
     damage();
 }
 
@@ -484,7 +484,7 @@ std::string window_title(const ViewModel& model) {
     if (model.failure || (model.is_recorded && !model.has_rows()))
         return "Program could not be opened - feeler";
     if (!model.program) return "feeler";
-    std::string title = std::filesystem::path(model.program->program).filename().string();
+    std::string title = std::filesystem::path(model.program->program).filename().generic_string();
     const auto state_words = [](const BlockRow& row) -> std::string {
         if (!is_offending(row)) return {};
         return std::string(", ")

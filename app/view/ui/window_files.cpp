@@ -42,7 +42,7 @@ void keep_notes(ViewModel& model, const std::filesystem::path& path, const Setup
     std::filesystem::create_directories(path.parent_path(), ignored);
     model.notes =
         merged(notes_in(core::file_bytes(path).value_or("")), model.notes, notes_key(model));
-    const auto written = write(path, text_of(model.notes));
+    const auto written = write(path.generic_string(), text_of(model.notes));
     if (!written) say(model, "The comment could not be saved: " + written.error().message, now);
 }
 
