@@ -1,5 +1,27 @@
 # cmake --install: the program, its samples and presets, the manual, manual pages, completion scripts, and what
 # a desktop needs to list it and to open NC programs with it.
+
+# Windows: one folder that can lie anywhere, with everything that the program needs.
+if(WIN32)
+  set(fonts /usr/share/fonts)
+  install(TARGETS feeler RUNTIME DESTINATION .)
+  install(FILES assets/desktop/open-with.cmd README.md LICENSE DESTINATION .)
+  install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
+    DESTINATION share/feeler PATTERN "*.py" EXCLUDE)
+  install(FILES
+      ${fonts}/opentype/inter/Inter-Regular.otf ${fonts}/opentype/inter/Inter-SemiBold.otf
+      ${fonts}/opentype/inter/InterDisplay-SemiBold.otf ${fonts}/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf
+      ${fonts}/truetype/font-awesome/fontawesome-webfont.ttf
+    DESTINATION share/feeler/fonts)
+  install(DIRECTORY docs/manual docs/images DESTINATION doc)
+  install(FILES ${FEELER_DEPS_LICENCES} DESTINATION licences)
+  install(FILES core/base/libm/COPYRIGHT DESTINATION licences RENAME musl.txt)
+  foreach(font fonts-inter fonts-jetbrains-mono fonts-font-awesome)
+    install(FILES /usr/share/doc/${font}/copyright DESTINATION licences RENAME ${font}.txt)
+  endforeach()
+  return()
+endif()
+
 include(GNUInstallDirs)
 
 install(TARGETS feeler RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

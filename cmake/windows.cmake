@@ -7,8 +7,9 @@ set(CMAKE_RC_COMPILER x86_64-w64-mingw32-windres)
 
 # GCC aligns the stack to 16 bytes on Windows, but moves vectors of 32 as if aligned (GCC bug 54412).
 set(CMAKE_C_FLAGS_INIT "-Wa,-muse-unaligned-vector-move")
-# Every template has a section of its own, and there may be more than the usual 32768.
-set(CMAKE_CXX_FLAGS_INIT "-Wa,-muse-unaligned-vector-move,-mbig-obj")
+# Every template has a section of its own, and there may be more than the usual 32768. M_PI is there, as on
+# Linux, for all sources, because a precompiled header holds only for the same definitions.
+set(CMAKE_CXX_FLAGS_INIT "-Wa,-muse-unaligned-vector-move,-mbig-obj -D_USE_MATH_DEFINES")
 # Without DLLs: the libraries of the compiler and of its threads become part of the program.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-static")
 
@@ -19,7 +20,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 
-# Runs tests, and programs that the build itself runs; does not print, nor ask whether to fetch Mono and Gecko.
+# Runs tests, and programs that the build itself runs. Does not print, nor ask to fetch Mono and Gecko.
 find_program(FEELER_WINE wine)
 mark_as_advanced(FEELER_WINE)
 if(FEELER_WINE)

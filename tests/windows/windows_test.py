@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Tests feeler.exe under wine: the same verdicts and bits as on Linux, and what differs on Windows.
+
+    windows_test.py FEELER_EXE FEELER SOURCE_FOLDER [TEST ...]
+
+FEELER: the program for Linux, built from the same sources. Needs wine and Xvfb, since wine has OpenGL on a
+display only.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time  # clock: for patience
+import unittest
+
+EXE, LINUX, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
+PATIENCE = 300  # clock: s, for what hangs
+
+# Letters of several scripts, as in the names of programs.
+ANY_SCRIPT = "Täsche Пр 加工"
+
+# Programs and their set-ups, relative to the source folder.
+JOBS = [
+    ("assets/programs/TEST_G90.NC", "assets/setups/test_g90.toml"),
+    ("assets/programs/TEST_G90.NC", None),
+]
+
+
+def planted(count):
+    """Some of the planted programs: every n-th of those with a set-up next to them."""
+    programs = sorted(p for p in (SOURCE / "tests/planted").glob("*/*")
+                      if p.suffix != ".toml" and p.with_suffix(".toml").exists())
+    step = max(1, len(programs) // count)
+    return [(str(p.relative_to(SOURCE)), None) for p in programs[::step]]
+
+
+class Wine:
+    """A screen and a wine prefix of its own."""
+
+    def __init__(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="feeler-wine-"))
+        read, write = os.pipe()
+        self.screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1440x900x24"],
+                                       pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as pipe:
+            display = pipe.readline().strip()
+        self.env = {**os.environ, "DISPLAY": f":{display}", "WINEPREFIX": str(self.folder / "prefix"),
+                    "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml=", "LC_ALL": "C.UTF-8"}
+        # The server stays, so that not every call starts it.
+        (self.folder / "prefix").mkdir()
+        subprocess.run(["wineserver", "-p"], env=self.env, check=True)
+        subprocess.run(["wine", "wineboot", "--init"], env=self.env, check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL, timeout=PATIENCE)  # clock: for what hangs
+
+    def close(self):
+        subprocess.run(["wineserver", "-k"], env=self.env, check=False)
+        self.screen.terminate()
+        self.screen.wait()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def setUpModule():
+    global wine
+    wine = Wine()
+
+
+def tearDownModule():
+    wine.close()
+
+
+def without_times(report):
+    """A report without the times that it took and the drive of the source folder: all that may differ."""
+    report = re.sub(r'"seconds": ?(\{[^}]*\}|[-+.e0-9]+)', '"seconds"', report)
+    report = re.sub(r'\btime="[.0-9]+"', "time", report)  # of JUnit
+    report = re.sub(r"(MB; )[.0-9]+ s$", r"\1", report, flags=re.MULTILINE)  # of the model
+    report = re.sub(r"^  seconds +model .*$", "", report, flags=re.MULTILINE)  # of a distance
+    return report.replace("file:///Z:/", "file:///")
+
+
+def windows_path(path):
+    return "Z:" + str(path).replace("/", "\\")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="feeler-windows-")).resolve()
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def run_program(self, command, arguments, env=None, cwd=SOURCE, status=None):
+        done = subprocess.run([*command, *map(str, arguments)], cwd=cwd, env=env, capture_output=True,
+                              timeout=PATIENCE, check=False)  # clock: for what hangs
+        done.out, done.err = done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
+        if status is not None:
+            self.assertEqual(done.returncode, status, done.out + done.err)
+        return done
+
+    def windows(self, *arguments, **options):
+        return self.run_program(["wine", EXE], arguments, env=wine.env, **options)
+
+    def linux(self, *arguments, **options):
+        return self.run_program([LINUX], arguments, **options)
+
+    def copy(self, name, program="assets/programs/TEST_G90.NC", setup="assets/setups/test_g90.toml"):
+        """A copy of a program under another name, with its set-up next to it."""
+        target = self.folder / f"{name}.NC"
+        shutil.copy(SOURCE / program, target)
+        text = (SOURCE / setup).read_text(encoding="utf-8").replace("../", f"{SOURCE}/assets/")
+        target.with_suffix(".toml").write_text(text, encoding="utf-8")
+        return target
+
+
+class SameBits(Case):
+    def test_json_reports_are_equal(self):
+        for program, setup in JOBS + planted(60):
+            with self.subTest(program=program, setup=setup):
+                arguments = ["check", program, "--format", "json", "--blocks"]
+                if setup:
+                    arguments += ["--setup", setup]
+                here, there = self.linux(*arguments), self.windows(*arguments)
+                self.assertEqual(there.returncode, here.returncode, there.err)
+                self.assertEqual(without_times(there.out), without_times(here.out))
+                self.assertEqual(there.err, here.err)
+
+    def test_other_reports_are_equal(self):
+        for form in ("text", "sarif", "junit"):
+            with self.subTest(form=form):
+                arguments = ["check", JOBS[0][0], "--setup", JOBS[0][1], "--format", form]
+                self.assertEqual(without_times(self.windows(*arguments).out),
+                                 without_times(self.linux(*arguments).out))
+
+    def test_tolerances_are_equal(self):
+        arguments = ["check", JOBS[0][0], "--setup", JOBS[0][1], "--tolerances", "--format", "json"]
+        self.assertEqual(without_times(self.windows(*arguments).out), without_times(self.linux(*arguments).out))
+
+    def test_distances_are_equal(self):
+        arguments = ["distance", "sphere:3", "box:1,2,3"]
+        here = self.linux(*arguments)
+        self.assertEqual(here.returncode, 0, here.err)
+        self.assertEqual(without_times(self.windows(*arguments).out), without_times(here.out))
+
+
+class CommandLine(Case):
+    def test_help_and_version(self):
+        self.assertIn("feeler ", self.windows("--version", status=0).out)
+        self.assertEqual(self.windows("check", "--help", status=0).out.replace("feeler.exe", "feeler"),
+                         self.linux("check", "--help", status=0).out)
+
+    def test_misuse_has_status_2(self):
+        self.assertEqual(self.windows("check", "--no-such-option", status=2).out, "")
+
+    def test_names_in_any_script(self):
+        program = self.copy(ANY_SCRIPT)
+        report = self.windows("check", windows_path(program), "--format", "json")
+        self.assertIn(report.returncode, (0, 1), report.err)
+        self.assertEqual(json.loads(report.out)["program"]["file"].rsplit("/", 1)[-1], program.name)
+        output = self.folder / f"{ANY_SCRIPT}.json"
+        self.windows("check", windows_path(program), "--format", "json", "-o", windows_path(output))
+        self.assertEqual(without_times(output.read_text(encoding="utf-8")), without_times(report.out))
+
+    def test_backslashes_and_drive_letters(self):
+        plain = self.windows("check", "assets/programs/TEST_G90.NC", "--setup", "assets/setups/test_g90.toml",
+                             "--format", "json")
+        back = self.windows("check", r"assets\programs\TEST_G90.NC", "--setup", r"assets\setups\test_g90.toml",
+                            "--format", "json")
+        self.assertEqual(without_times(back.out), without_times(plain.out))
+        drive = self.windows("check", windows_path(SOURCE / "assets/programs/TEST_G90.NC"), "--setup",
+                             windows_path(SOURCE / "assets/setups/test_g90.toml"), "--format", "json")
+        self.assertEqual(drive.returncode, plain.returncode, drive.err)
+        self.assertEqual(json.loads(drive.out)["verdict"], json.loads(plain.out)["verdict"])
+
+    def test_long_paths(self):
+        deep = self.folder
+        while len(str(deep)) < 400:
+            deep = deep / "a_folder_with_a_long_name_0123456789"
+        deep.mkdir(parents=True)
+        program = self.copy("long")
+        for file in (program, program.with_suffix(".toml")):
+            shutil.copy(file, deep)
+        report = self.windows("check", windows_path(deep / program.name), "--format", "text")
+        self.assertEqual(report.returncode, 1, report.out + report.err)
+
+    def test_line_ends_of_windows(self):
+        program = self.copy("crlf")
+        before = self.windows("check", windows_path(program), "--format", "json").out
+        program.write_bytes(program.read_bytes().replace(b"\r\n", b"\n").replace(b"\n", b"\r\n"))
+        after = json.loads(self.windows("check", windows_path(program), "--format", "json").out)
+        self.assertEqual(after["verdict"], json.loads(before)["verdict"])
+        self.assertEqual(after.get("findings"), json.loads(before).get("findings"))
+
+    def test_missing_files_are_named(self):
+        missing = self.windows("check", r"no\such.nc", status=2)
+        self.assertIn("no/such.nc", missing.err)
+
+    def test_locked_reports_stay_whole(self):
+        output = self.folder / "locked.json"
+        holder = subprocess.Popen(["wine", "cmd", "/c", f"pause > {windows_path(output)}"], env=wine.env,
+                                  stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(holder.wait)
+        self.addCleanup(holder.kill)
+        end = time.monotonic() + PATIENCE  # clock: gives up on what hangs
+        while not output.exists() or output.stat().st_size == 0:
+            self.assertLess(time.monotonic(), end)  # clock: as above
+            time.sleep(0.1)  # clock: polls
+        before = output.read_bytes()
+        arguments = ["check", JOBS[0][0], "--setup", JOBS[0][1], "--format", "json", "-o", windows_path(output)]
+        refused = self.windows(*arguments, status=2)
+        self.assertIn("locked.json: cannot be replaced", refused.err)
+        self.assertEqual(output.read_bytes(), before)
+        self.assertEqual(list(self.folder.iterdir()), [output])
+        holder.communicate(b"\r\n")
+        self.windows(*arguments, status=1)
+        self.assertIn("feeler", json.loads(output.read_text(encoding="utf-8")))
+
+    def test_debugger_reads_standard_input(self):
+        done = subprocess.run(["wine", EXE, "debug", "assets/programs/TEST_G90.NC", "--setup",
+                               "assets/setups/test_g90.toml"], cwd=SOURCE, env=wine.env,
+                              input=b"info program\r\nquit\r\n", capture_output=True,
+                              timeout=PATIENCE, check=False)  # clock: for what hangs
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Batch(Case):
+    def test_checks_a_folder_and_keeps_results(self):
+        for name in ("a", "b", ANY_SCRIPT):
+            self.copy(name)
+        first = self.windows("check", windows_path(self.folder), "--format", "json", status=1)
+        self.assertTrue((self.folder / ".feeler").exists())
+        names = {pathlib.PurePosixPath(p["program"]).name for p in json.loads(first.out)["programs"]}
+        self.assertEqual(names, {"a.NC", "b.NC", f"{ANY_SCRIPT}.NC"})
+        second = self.windows("check", windows_path(self.folder), status=1)
+        self.assertIn("3 of 3 results come from earlier checks", second.out + second.err)
+        (self.folder / "a.NC").write_text("G21 G90\nG0 X0 Y0\nM30\n", encoding="utf-8")
+        third = self.windows("check", windows_path(self.folder))
+        self.assertIn("2 of 3 results come from earlier checks", third.out + third.err)
+
+    def test_patterns_ignore_case_as_the_file_system_does(self):
+        self.copy("a")
+        self.copy("b")
+        found = self.windows("check", windows_path(self.folder / "*.nc"), "--no-cache", "--format", "json")
+        self.assertEqual(len(json.loads(found.out)["programs"]), 2, found.err)
+
+    def test_watches(self):
+        program = self.copy("watched")
+        output = self.folder / "report.json"
+        watching = subprocess.Popen(["wine", EXE, "check", windows_path(program), "--watch", "--format", "json",
+                                     "-o", windows_path(output)], env=wine.env, stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.DEVNULL)
+        self.addCleanup(watching.wait)
+        self.addCleanup(watching.kill)
+        self.wait_for(lambda: output.exists() and output.stat().st_size > 0)
+        before = output.read_bytes()
+        program.write_bytes(b"G21 G90 G54\nG0 X0 Y0\nM30\n")
+        self.wait_for(lambda: output.exists() and output.read_bytes() not in (b"", before))
+
+    def wait_for(self, condition):
+        end = time.monotonic() + PATIENCE  # clock: gives up on what hangs
+        while not condition():
+            self.assertLess(time.monotonic(), end)  # clock: as above
+            time.sleep(0.1)  # clock: polls
+
+
+class Pictures(Case):
+    def test_shot(self):
+        picture = self.folder / f"{ANY_SCRIPT}.png"
+        self.windows("shot", JOBS[0][0], "--setup", JOBS[0][1], "--worst", "-o", windows_path(picture), status=0)
+        self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
+        self.assertGreater(picture.stat().st_size, 20000)
+
+    def test_html_report_has_pictures(self):
+        report = self.folder / "report.html"
+        self.windows("check", JOBS[0][0], "--setup", JOBS[0][1], "--format", "html", "-o", windows_path(report),
+                     status=1)
+        self.assertIn("data:image/", report.read_text(encoding="utf-8"))
+
+    def test_window_opens(self):
+        log = self.folder / "frames"
+        window = subprocess.Popen(["wine", EXE, "view", JOBS[0][0], "--setup", JOBS[0][1], "--frame-log",
+                                   windows_path(log)], cwd=SOURCE, env=wine.env, stderr=subprocess.PIPE)
+        self.addCleanup(window.stderr.close)
+        self.addCleanup(window.wait)
+        self.addCleanup(window.kill)
+        end = time.monotonic() + PATIENCE  # clock: gives up on what hangs
+        while not log.exists() or log.read_text(encoding="utf-8").count("frame") < 3:
+            self.assertIsNone(window.poll(), "the window has closed")
+            self.assertLess(time.monotonic(), end)  # clock: as above
+            time.sleep(0.1)  # clock: polls
+        if "FEELER_PICTURES" in os.environ:
+            subprocess.run(["import", "-window", "root", os.environ["FEELER_PICTURES"]], env=wine.env, check=True)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
