@@ -32,11 +32,12 @@ JOBS = [
 
 
 def planted(count):
-    """Some of the planted programs: every n-th of those with a set-up next to them."""
-    programs = sorted(p for p in (SOURCE / "tests/planted").glob("*/*")
-                      if p.suffix != ".toml" and p.with_suffix(".toml").exists())
-    step = max(1, len(programs) // count)
-    return [(str(p.relative_to(SOURCE)), None) for p in programs[::step]]
+    """Some of the planted programs with their set-ups: every n-th row of their table."""
+    lines = (SOURCE / "tests/planted/table.txt").read_text(encoding="utf-8").splitlines()
+    rows = [line.split() for line in lines if line and not line.startswith("#")]
+    folder = "tests/planted/"
+    jobs = [(folder + row[2], f"{folder}setups/{row[4]}.toml" if row[4] != "-" else None) for row in rows]
+    return jobs[::max(1, len(jobs) // count)]
 
 
 class Wine:
