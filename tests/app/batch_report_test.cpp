@@ -78,6 +78,14 @@ BatchResult batch_of_all_kinds() {
             .skipped = {{"notes.txt", "most of its lines are not NC blocks"}}};
 }
 
+TEST(Sarif, WritesAbsolutePathsAsUris) {
+    EXPECT_EQ(uri_of("jobs/a b.nc"), "jobs/a%20b.nc");
+    EXPECT_EQ(uri_of("/lib/a.nc"), "file:///lib/a.nc");
+    // Two slashes name a server on Windows only.
+    EXPECT_EQ(uri_of("//lib/a.nc"), "file:////lib/a.nc");
+    EXPECT_EQ(uri_of("C:/a.nc"), "C%3A/a.nc");
+}
+
 json sarif() { return json::parse(sarif_report(batch_of_all_kinds(), "/home/me/my shop")); }
 
 TEST(Sarif, HasWhatTheSchemaRequires) {

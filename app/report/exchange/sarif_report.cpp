@@ -244,17 +244,13 @@ Json invocation_json(const BatchResult& batch, const std::vector<bool>& is_chose
 } // namespace
 
 std::string uri_of(const std::string& path) {
-    std::string uri;
-    std::string_view rest = path;
-    if (path.starts_with("//")) { // a server of Windows
-        uri = "file:";
-    } else if (path.starts_with('/')) {
-        uri = "file://";
-    } else if (std::filesystem::path(path).is_absolute()) { // a drive of Windows
-        uri = "file:///" + path.substr(0, 2);
-        rest.remove_prefix(2);
-    }
-    for (const char c : rest) {
+    // On Windows a path may begin with a drive, "C:", or with a server, "//server".
+    const std::string root = std::filesystem::path(path).root_name().generic_string();
+    std::string uri = root.starts_with('/')   ? "file:" + root
+                      : !root.empty()         ? "file:///" + root
+                      : path.starts_with('/') ? "file://"
+                                              : "";
+    for (const char c : path.substr(root.size())) {
         const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
                               || (c >= '0' && c <= '9')
                               || std::string_view("-._~/").find(c) != std::string_view::npos;
