@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -152,10 +151,8 @@ TerminalStyle terminal_style(std::FILE* stream) {
     constexpr double narrowest = 40.0, widest = 500.0;
     TerminalStyle style;
     if (!core::platform::is_terminal(stream)) return style;
-    const char* const no_colour = std::getenv("NO_COLOR");
-    style.colour = !no_colour || *no_colour == '\0';
-    const char* const columns = std::getenv("COLUMNS");
-    double width = columns ? number_in(columns).value_or(0.0) : 0.0;
+    style.colour = core::platform::environment_variable("NO_COLOR").empty();
+    double width = number_in(core::platform::environment_variable("COLUMNS")).value_or(0.0);
     if (const auto known = core::platform::terminal_width(stream); known && width <= 0.0)
         width = static_cast<double>(*known);
     if (width > 0.0) style.width = static_cast<size_t>(std::clamp(width, narrowest, widest));

@@ -2,16 +2,15 @@
 #include <windows.h>
 
 // After windows.h.
-#include <array>
+#include <algorithm>
 
 #include <bcrypt.h>
-#include <fmt/format.h>
 
-#include "app/base/sha256_digest.h"
+#include "app/base/sha256.h"
 
 namespace app {
 
-struct Sha256Digest::State {
+struct Sha256::State {
     BCRYPT_ALG_HANDLE algorithm = nullptr;
     BCRYPT_HASH_HANDLE hash = nullptr;
     bool is_good = false;
@@ -29,10 +28,10 @@ struct Sha256Digest::State {
     }
 };
 
-Sha256Digest::Sha256Digest() : state_(std::make_unique<State>()) {}
-Sha256Digest::~Sha256Digest() = default;
+Sha256::Sha256() : state_(std::make_unique<State>()) {}
+Sha256::~Sha256() = default;
 
-void Sha256Digest::add(std::string_view bytes) {
+void Sha256::add(std::string_view bytes) {
     constexpr size_t most = 1U << 30U; // of one call, whose size is a ULONG
     for (; state_->is_good && !bytes.empty(); bytes.remove_prefix(std::min(most, bytes.size()))) {
         auto* const first = reinterpret_cast<PUCHAR>(const_cast<char*>(bytes.data()));
@@ -41,15 +40,12 @@ void Sha256Digest::add(std::string_view bytes) {
     }
 }
 
-std::string Sha256Digest::finish() {
+std::optional<std::array<unsigned char, 32>> Sha256::finish() {
     std::array<unsigned char, 32> digest{};
-    if (!state_->is_good
-        || ::BCryptFinishHash(state_->hash, digest.data(), static_cast<ULONG>(digest.size()), 0)
-               < 0)
-        return {};
-    std::string text;
-    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-    return text;
+    const auto size = static_cast<ULONG>(digest.size());
+    if (!state_->is_good || ::BCryptFinishHash(state_->hash, digest.data(), size, 0) < 0)
+        return std::nullopt;
+    return digest;
 }
 
 } // namespace app
