@@ -9,7 +9,8 @@
 
 namespace gcode {
 
-/// A parameter set by a block, with its previous value.
+/// A parameter set by a block, with its previous value: for those of the call level, since
+/// Parameters keeps the changes of those that all levels share.
 struct AssignmentUndo {
     bool is_named;
     double number;

@@ -69,8 +69,8 @@ core::Result<void> ask_operator(Execution& execution, const CodeWord& entry) {
     const int short_number = number > 10000 ? number - 10000 : number;
     if (short_number < 500 || short_number > 549)
         return core::fail(ErrorCode::invalid_value,
-                          fmt::format("M109 P{}: the answer goes to #500 to #549 or #10500 to "
-                                      "#10549",
+                          fmt::format("M109 P{}: P must be 500 to 549 or 10500 to 10549, the "
+                                      "variable for the answer",
                                       number),
                           entry.word->span);
     const auto& stated = execution.environment.control.values;

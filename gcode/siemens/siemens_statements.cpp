@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "gcode/language/expression_parser.h"
 #include "gcode/siemens/siemens_reader.h"
 
@@ -91,9 +92,9 @@ private:
         block_.flow.kind = kind;
         block_.flow.span = reader_.lexer.span_from(begin_);
         if (clean) return {};
-        return reader_.refuse(
-            fmt::format("'{}' must be in a block by itself", reader_.lexer.written_from(begin_)),
-            begin_);
+        return reader_.refuse(fmt::format("'{}' must be in a block by itself",
+                                          core::stripped(reader_.lexer.written_from(begin_))),
+                              begin_);
     }
 
     core::Result<void> rest() {

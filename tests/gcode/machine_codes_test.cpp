@@ -25,6 +25,71 @@ TEST(PrintStatements, MoveNothing) {
     EXPECT_EQ(trace("G21 G0 B5 D1\nP1"), trace("G21 G0 B5 D1"));
 }
 
+TEST(AnswersOfTheOperator, GoToTheVariablesOfTheControl) {
+    for (const char* number : {"500", "549", "10500", "10549"})
+        EXPECT_EQ(error_of("M109 P" + std::string(number) + " (GO ON?)", haas), "") << number;
+    for (const char* number : {"1", "499", "550", "10499", "10550"})
+        EXPECT_THAT(error_of("M109 P" + std::string(number), haas),
+                    HasSubstr("P must be 500 to 549 or 10500 to 10549"))
+            << number;
+}
+
+TEST(FailedBlocks, LeaveTheSharedVariablesAsTheyWere) {
+    // A machine code, assignments and a wear offset come before the error in their block.
+    constexpr std::pair<DialectId, const char*> programs[] = {
+        {haas, "#501=7.\nM109 P501 G53 G2 X1.\n"},
+        {linuxcnc, "#100=7\nM66 P1 L0 #100=9 #101=5 #100=11 G53 G2\n"},
+        {fanuc, "#500=7.\n#500=9. #500=11. #3000=1\n"},
+        {fanuc, "#500=7.\nG10 L11 P1 R0.5 G53 G2 X1.\n"},
+    };
+    for (const auto& [dialect, text] : programs) {
+        Environment environment;
+        environment.dialect = dialect;
+        environment.control.reports_premises = true;
+        const auto program = program_from_text(text);
+        ASSERT_TRUE(program);
+        ProgramLibrary library(*program, gcode::dialect(dialect), {});
+        InterpreterState state = initial_state(environment);
+        Interpreter interpreter(library, environment);
+        ASSERT_TRUE(interpreter.next(state)) << text;
+        const InterpreterState before = state;
+        EXPECT_FALSE(interpreter.next(state)) << text;
+        EXPECT_TRUE(state.parameters == before.parameters) << text;
+        EXPECT_EQ(state.parameters->digest(), before.parameters->digest()) << text;
+        EXPECT_EQ(digest_of(state), digest_of(before)) << text;
+    }
+}
+
+TEST(SharedVariables, TakeBackTheirChangesInReverse) {
+    Parameters parameters;
+    parameters.set_numbered(500, 7.0);
+    parameters.set_named("_depth", 2.0);
+    parameters.mark(501, true);
+    parameters.begin_changes();
+    const Parameters before = parameters;
+    EXPECT_FALSE(parameters.has_changes());
+    parameters.set_numbered(500, 8.0);
+    parameters.set_numbered(500, {});
+    parameters.set_numbered(600, 1.0);
+    parameters.set_named("_depth", 3.0);
+    parameters.set_named("_width", 4.0);
+    parameters.mark(501, false);
+    parameters.mark(502, true);
+    parameters.mark("_width", true);
+    parameters.mark("_width", true);
+    EXPECT_TRUE(parameters.has_changes());
+    EXPECT_FALSE(parameters == before);
+    parameters.take_back_changes();
+    EXPECT_TRUE(parameters == before);
+    EXPECT_EQ(parameters.digest(), before.digest());
+    EXPECT_EQ(parameters.numbered(500), 7.0);
+    EXPECT_EQ(parameters.named().at("_depth"), 2.0);
+    EXPECT_TRUE(parameters.is_unpredictable(501));
+    EXPECT_FALSE(parameters.is_unpredictable(502));
+    EXPECT_TRUE(parameters.unpredictable_names().empty());
+    EXPECT_FALSE(parameters.has_changes());
+}
+
 TEST(CodesOfOneGroup, TheLastCountsOnFanuc) {
     // G28 goes through Z0 of the program, not through where the tool is.
     const std::string_view text = "G21 G90 G0 Z10\nG91 G28 Z0 G90\n";

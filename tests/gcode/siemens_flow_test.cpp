@@ -38,6 +38,8 @@ TEST(SiemensJump, NamesATargetThatIsNotThere) {
     EXPECT_THAT(siemens_error("GOTOF\n"),
                 HasSubstr("1:1: 'GOTOF' must be followed by a label or a block number"));
     EXPECT_THAT(siemens_error("G0 X1 GOTOF GONE\n"), HasSubstr("must be in a block by itself"));
+    EXPECT_THAT(siemens_error("R1=5 EXTERN PART(REAL)\n"),
+                HasSubstr("1:6: 'EXTERN' must be in a block by itself"));
 }
 
 TEST(SiemensStructure, TakesOneBranch) {
