@@ -24,7 +24,7 @@ HWND make_window() {
     kind.lpfnWndProc = ::DefWindowProcW;
     kind.hInstance = program;
     kind.lpszClassName = class_name;
-    ::RegisterClassW(&kind); // fails if a context was made before, which is no matter
+    ::RegisterClassW(&kind); // fails where an earlier context did so: no matter
     return ::CreateWindowExW(0, class_name, L"", WS_OVERLAPPED, 0, 0, 16, 16, nullptr, nullptr,
                              program, nullptr);
 }
@@ -62,8 +62,7 @@ core::Result<Offscreen> Offscreen::make() {
     made->window = make_window();
     made->device = made->window ? ::GetDC(made->window) : nullptr;
     if (!made->device || !set_pixel_format(made->device))
-        return unsupported(
-            "Windows offers no OpenGL here: install the driver of the graphics card");
+        return unsupported("OpenGL is not available: install the driver of the graphics card");
     // Contexts of newer versions are created by a function that only an older context has.
     const HGLRC first = ::wglCreateContext(made->device);
     if (!first || !::wglMakeCurrent(made->device, first))

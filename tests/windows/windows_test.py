@@ -21,8 +21,8 @@ import unittest
 EXE, LINUX, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
 PATIENCE = 300  # clock: s, for what hangs
 
-# Letters of several scripts, as in the names of programs.
-ANY_SCRIPT = "Täsche Пр 加工"
+# Letters of several scripts, as in the names of programs; the last needs two units of UTF-16.
+ANY_SCRIPT = "Täsche Пр 加工 🔧"
 
 # Programs and their set-ups, relative to the source folder.
 JOBS = [
