@@ -1,19 +1,33 @@
 # cmake --install: the program, its samples and presets, the manual, manual pages, completion scripts, and what
-# a desktop needs to list it and to open NC programs with it.
-
-# Windows: one folder that can lie anywhere, with everything that the program needs.
+# a desktop needs to list it and to open NC programs with it. On Windows, one folder that can lie anywhere.
 if(WIN32)
-  set(fonts /usr/share/fonts)
-  install(TARGETS feeler RUNTIME DESTINATION .)
-  install(FILES assets/desktop/open-with.cmd README.md LICENSE DESTINATION .)
-  install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
-    DESTINATION share/feeler PATTERN "*.py" EXCLUDE)
-  install(FILES
-      ${fonts}/opentype/inter/Inter-Regular.otf ${fonts}/opentype/inter/Inter-SemiBold.otf
-      ${fonts}/opentype/inter/InterDisplay-SemiBold.otf ${fonts}/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf
-      ${fonts}/truetype/font-awesome/fontawesome-webfont.ttf
-    DESTINATION share/feeler/fonts)
-  install(DIRECTORY docs/manual docs/images DESTINATION doc)
+  set(bin .)
+  set(data share/feeler)
+  set(doc doc)
+  set(texts .)
+else()
+  include(GNUInstallDirs)
+  set(bin ${CMAKE_INSTALL_BINDIR})
+  set(data ${CMAKE_INSTALL_DATADIR}/feeler)
+  set(doc ${CMAKE_INSTALL_DOCDIR})
+  set(texts ${doc})
+endif()
+install(TARGETS feeler RUNTIME DESTINATION ${bin})
+install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
+  DESTINATION ${data} PATTERN "*.py" EXCLUDE)
+install(DIRECTORY docs/manual docs/images DESTINATION ${doc})
+install(FILES README.md LICENSE DESTINATION ${texts})
+
+# The fonts, for archives that need nothing installed.
+set(fonts /usr/share/fonts)
+install(FILES
+    ${fonts}/opentype/inter/Inter-Regular.otf ${fonts}/opentype/inter/Inter-SemiBold.otf
+    ${fonts}/opentype/inter/InterDisplay-SemiBold.otf ${fonts}/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf
+    ${fonts}/truetype/font-awesome/fontawesome-webfont.ttf
+  DESTINATION ${data}/fonts COMPONENT fonts EXCLUDE_FROM_ALL)
+
+if(WIN32)
+  install(FILES assets/desktop/open-with.cmd DESTINATION .)
   install(FILES ${FEELER_DEPS_LICENCES} DESTINATION licences)
   install(FILES core/base/libm/COPYRIGHT DESTINATION licences RENAME musl.txt)
   foreach(font fonts-inter fonts-jetbrains-mono fonts-font-awesome)
@@ -22,13 +36,6 @@ if(WIN32)
   return()
 endif()
 
-include(GNUInstallDirs)
-
-install(TARGETS feeler RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/feeler PATTERN "*.py" EXCLUDE)
-install(DIRECTORY docs/manual docs/images DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES assets/desktop/feeler.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(FILES assets/desktop/feeler.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES assets/desktop/feeler.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)

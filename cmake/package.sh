@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes a Debian package and an archive that can be unpacked anywhere, from an installed tree.
+# Makes a Debian package and an archive that can be unpacked anywhere, from an installed tree; of a build for Windows,
+# the archive alone.
 #
 #     package.sh BUILD_FOLDER OUTPUT_FOLDER
 set -euo pipefail
@@ -11,6 +12,23 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 umask 022
 mkdir -p "$out"
+
+# installed TREE: the program with the fonts that an archive brings along.
+installed() {
+    cmake --install "$build" --prefix "$1" --strip >/dev/null
+    cmake --install "$build" --prefix "$1" --component fonts >/dev/null
+}
+
+# --- Windows ---
+
+if [[ -e $build/app/feeler.exe ]]; then
+    name=feeler-$version-windows-x86_64
+    installed "$work/$name"
+    rm -f "$out/$name.zip"
+    (cd "$work" && zip -q -r -X "$out/$name.zip" "$name")
+    ls -l "$out/$name.zip"
+    exit
+fi
 
 # --- Debian package ---
 
@@ -58,8 +76,8 @@ dpkg-deb --root-owner-group --build "$tree" "$out/feeler_${version}_$architectur
 # Its program finds its libraries and fonts beside it. The C library and the graphics driver are the system's.
 name=feeler-$version-linux-$(uname -m)
 tree=$work/$name
-cmake --install "$build" --prefix "$tree" --strip >/dev/null
-mkdir -p "$tree/lib/feeler" "$tree/share/feeler/fonts"
+installed "$tree"
+mkdir -p "$tree/lib/feeler"
 ldd "$tree/bin/feeler" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' \
     | grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*|lib(GL|EGL|OpenGL|GLX|GLdispatch|gbm|drm))\.so' \
     | xargs -I{} cp -L {} "$tree/lib/feeler/"
@@ -67,10 +85,5 @@ ldd "$tree/bin/feeler" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' \
 patchelf --set-rpath '$ORIGIN/../lib/feeler' "$tree/bin/feeler"
 # shellcheck disable=SC2016
 for library in "$tree"/lib/feeler/*; do patchelf --set-rpath '$ORIGIN' "$library"; done
-for font in opentype/inter/Inter-Regular.otf opentype/inter/Inter-SemiBold.otf \
-    opentype/inter/InterDisplay-SemiBold.otf truetype/jetbrains-mono/JetBrainsMono-Regular.ttf \
-    truetype/font-awesome/fontawesome-webfont.ttf; do
-    cp "/usr/share/fonts/$font" "$tree/share/feeler/fonts/"
-done
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner -czf "$out/$name.tar.gz" "$name"
 ls -l "$out"
