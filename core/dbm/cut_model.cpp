@@ -227,7 +227,7 @@ const std::optional<Interval>& SquareCuts::segment(PieceCut& cut, int column, in
     return cut.at[at];
 }
 
-std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number) const {
+std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number, const Interval& left) const {
     const CutterSweep& sweep = cut.sweep->sweep;
     // The corner that is farthest from the move is the first to be missed.
     const int right = sweep.from.x + sweep.to.x < 2.0 * x(1) ? 1 : 0;
@@ -239,6 +239,7 @@ std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number) const {
             if (!corner) return std::nullopt;
             common.lower = std::max(common.lower, corner->lower);
             common.upper = std::min(common.upper, corner->upper);
+            if (common.lower >= left.upper || common.upper <= left.lower) return std::nullopt;
         }
     return safely_within(common);
 }
@@ -250,7 +251,7 @@ IntervalList SquareCuts::column(int number) {
         if (column.empty()) return column;
         const Interval left{column[0].lower, column[column.size() - 1].upper};
         if (!comes_to(*cut.sweep, part, left)) continue;
-        if (const auto gone = covered(cut, number)) column.subtract(*gone);
+        if (const auto gone = covered(cut, number, left)) column.subtract(*gone);
     }
     return column;
 }

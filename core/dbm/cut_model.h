@@ -187,7 +187,8 @@ private:
     double x(int column) const;
     double y(int row) const;
     const std::optional<Interval>& segment(PieceCut& cut, int column, int row) const;
-    std::optional<Interval> covered(PieceCut& cut, int quarter) const;
+    /// What a cut covers in a whole quarter; none if it covers nothing between the heights `left`.
+    std::optional<Interval> covered(PieceCut& cut, int quarter, const Interval& left) const;
 
     const CutModel* model_;
     Square square_;

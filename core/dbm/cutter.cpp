@@ -1,5 +1,7 @@
 #include "core/dbm/cutter.h"
 
+#include <bitset>
+
 #include "core/base/math.h"
 #include "core/dbm/solid.h"
 
@@ -33,12 +35,22 @@ Interval distances_from_axis(const CutterSweep& sweep, double x, double y) {
 }
 
 /// Calls `act` with the pieces of a convex profile, ordered by height, that may be the lowest or
-/// the highest one on a line at one of these distances from the axis.
+/// the highest one on a line at one of these distances from the axis. A piece that may be both is
+/// passed once if it is one of the first 64.
 template <typename Act>
 void for_outer_pieces(const RevolvedProfile& convex, const Interval& distances, const Act& act) {
     constexpr double slack = 1e-9; // mm
     const std::vector<ProfileElement>& pieces = convex.elements;
     const size_t count = pieces.size();
+    std::bitset<64> done;
+    const auto act_once = [&](const ProfileElement& piece) {
+        const auto number = static_cast<size_t>(&piece - pieces.data());
+        if (number < done.size()) {
+            if (done[number]) return;
+            done.set(number);
+        }
+        act(piece);
+    };
     const auto rim = [&](const ProfileElement& piece) { return std::max(piece.r0, piece.r1); };
     const auto visit = [&](const auto& nth, const auto& is_beyond) {
         // Out to this distance there is a piece that ends before the present one begins.
@@ -49,7 +61,7 @@ void for_outer_pieces(const RevolvedProfile& convex, const Interval& distances, 
             for (; passed < i && is_beyond(piece, nth(passed)); ++passed)
                 widest = std::max(widest, rim(nth(passed)));
             const double reach = rim(piece) + piece.margin;
-            if (reach > widest && reach + slack >= distances.lower) act(piece);
+            if (reach > widest && reach + slack >= distances.lower) act_once(piece);
         }
     };
     visit([&](size_t i) -> const ProfileElement& { return pieces[i]; },

@@ -103,7 +103,10 @@ std::optional<Interval> extent_with_root(const Linear& along, const Quadratic& u
                                          const Half& half, Range range) {
     if (range.empty() && range.first != range.last) return std::nullopt;
     Extent extent;
-    const auto offer = [&](double t) { extent.add(along(t) - half(t), along(t) + half(t)); };
+    const auto offer = [&](double t) {
+        const double middle = along(t), reach = half(t);
+        extent.add(middle - reach, middle + reach);
+    };
     offer(range.first);
     offer(range.last);
     // Stationary where (a t + b)^2 = k (a t^2 + 2 b t + c), k = by^2. The discriminant of this is k

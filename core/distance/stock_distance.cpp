@@ -98,11 +98,12 @@ private:
         return std::min(box_bound(below, limit), box_bound(above, limit));
     }
 
-    /// Distance of the nearest shape to a box, tight only where it is below `limit`.
-    Separation nearest(const Aabb& box, double limit) {
+    /// Distance of the nearest shape to a box, tight only where it is below `limit`, and only up to
+    /// `enough`.
+    Separation nearest(const Aabb& box, double limit, double enough = -infinity) {
         Separation best;
         double lower = infinity;
-        for (size_t i = 0; i < shapes_.size(); ++i) {
+        for (size_t i = 0; i < shapes_.size() && best.upper >= enough; ++i) {
             const ShapeOutline& mine = outlines_[i];
             const double bound =
                 mine.exact ? distance(mine.box, box) : distance_bound(mine, box, limit);
@@ -111,7 +112,7 @@ private:
                 continue;
             }
             ++result_.shape_tests;
-            const SeparationGoal goal{.tolerance = same, .limit = limit};
+            const SeparationGoal goal{.tolerance = same, .limit = limit, .enough = enough};
             const Separation found = mine.exact
                                          ? core::separation(mine.sweep, box, goal)
                                          : core::separation(shapes_[i], convex_body(box), goal);
@@ -257,12 +258,13 @@ private:
         return bound;
     }
 
-    double bound_of(const Square& square, const Interval& heights, double limit) {
+    double bound_of(const Square& square, const Interval& heights, double limit,
+                    double enough = -infinity) {
         const Aabb box{{square.x0, square.y0, heights.lower},
                        {square.x1, square.y1, heights.upper}};
         const double bound = box_bound(box, limit);
         if (bound >= limit) return bound;
-        return is_exact_ ? bound - same : nearest(box, limit).lower;
+        return is_exact_ ? bound - same : nearest(box, limit, enough).lower;
     }
 
     /// Material at this distance or farther does not matter to the refinement.
@@ -288,7 +290,7 @@ private:
     }
 
     void refine_cell(int i, int j, const Square& square) {
-        const Near near = near_part(square, stock_.columns.line(i, j));
+        const Near near = near_part(square, stock_.columns.line(i, j), ends_refining());
         if (near.bound >= near_enough()) return;
         if (ends_refining()) {
             refined_lower_ = std::min(refined_lower_, near.bound);
@@ -299,17 +301,19 @@ private:
         refine(SquareCuts(stock_, sweeps, square, near.heights));
     }
 
-    /// The part of a column that is too near, and its bound.
+    /// The part of a column that is too near, and its bound; tight only if that is kept.
     struct Near {
         double bound = infinity;
         Interval heights{infinity, -infinity};
     };
 
     template <typename Column>
-    Near near_part(const Square& square, const Column& column) {
+    Near near_part(const Square& square, const Column& column, bool is_last) {
+        // The bound of a square that is divided does not matter.
+        const double enough = is_last || is_finest(square) ? -infinity : near_enough();
         Near near;
         for (const Interval& matter : column) {
-            const double bound = bound_of(square, matter, near_enough());
+            const double bound = bound_of(square, matter, near_enough(), enough);
             if (bound >= near_enough()) continue;
             near.bound = std::min(near.bound, bound);
             near.heights.lower = std::min(near.heights.lower, matter.lower);
@@ -322,11 +326,14 @@ private:
         return near;
     }
 
+    bool is_finest(const Square& square) const {
+        return std::max(square.x1 - square.x0, square.y1 - square.y0) <= goal_.finest;
+    }
+
     /// Keeps the bound of a square that is too near, but is not divided any more; returns whether
     /// it is one.
     bool keeps_whole(const Square& square, const Near& near) {
-        const double side = std::max(square.x1 - square.x0, square.y1 - square.y0);
-        const bool finest = side <= goal_.finest;
+        const bool finest = is_finest(square);
         if (!finest && !ends_refining()) return false;
         refined_lower_ = std::min(refined_lower_, near.bound);
         result_.futile += finest && result_.futile == 0;
@@ -345,7 +352,7 @@ private:
             ++result_.refined;
             if (result_.futile > 0) ++result_.futile;
             const Square part = cuts.quarter(quarter);
-            const Near left = near_part(part, cuts.column(quarter));
+            const Near left = near_part(part, cuts.column(quarter), ends_refining());
             if (left.bound >= near_enough() || keeps_whole(part, left)) continue;
             refine(cuts.within(quarter, left.heights));
         }

@@ -192,12 +192,45 @@ ProfileElement cylinder_round(std::span<const Vec3> points, double margin) {
     return element;
 }
 
+void add_slab(ShapeOutline& outline, const ConvexShape& shape, const Vec3& direction) {
+    const double length = glm::length(direction);
+    if (!(length > 0.0)) return;
+    const Vec3 normal = direction / length;
+    outline.slabs[outline.slab_count++] = {
+        normal, glm::dot(normal, support(shape, -normal).point) - shape.margin,
+        glm::dot(normal, support(shape, normal).point) + shape.margin};
+}
+
+/// Slabs along the edges of a path of three or four places, seen from above, and one in the plane
+/// of the first three.
+void add_slabs(ShapeOutline& outline, const ConvexShape& shape) {
+    const size_t count = shape.position_count;
+    if (count < 3 || count > 4) return;
+    const auto edge = [&](size_t from, size_t to) {
+        return shape.positions[to].at - shape.positions[from].at;
+    };
+    for (size_t i = 0; i < count; ++i)
+        for (size_t j = i + 1; j < count; ++j)
+            add_slab(outline, shape, glm::cross(edge(i, j), Vec3(0.0, 0.0, 1.0)));
+    add_slab(outline, shape, glm::cross(edge(0, 1), edge(0, 2)));
+}
+
+/// A lower bound of the distance of a box from what is between the planes.
+double distance_bound(const ShapeOutline::Slab& slab, const Aabb& box) {
+    const double middle = glm::dot(slab.normal, box.center());
+    const double half = 0.5 * glm::dot(glm::abs(slab.normal), box.size());
+    return std::max(slab.low - (middle + half), (middle - half) - slab.high);
+}
+
 } // namespace
 
 ShapeOutline outline(const ConvexShape& shape) {
     ShapeOutline result{.box = bounds(shape)};
     result.straight = shape.position_count <= 2 && shape.upright;
-    if (!result.straight) return result;
+    if (!result.straight) {
+        add_slabs(result, shape);
+        return result;
+    }
     result.sweep.from = shape.positions[0].at;
     result.sweep.by = shape.positions[shape.position_count - 1U].at - shape.positions[0].at;
     result.exact = shape.core == ConvexShape::Core::cone;
@@ -209,7 +242,9 @@ ShapeOutline outline(const ConvexShape& shape) {
 }
 
 double distance_bound(const ShapeOutline& shape, const Aabb& box, double limit) {
-    const double by_boxes = distance(shape.box, box);
+    double by_boxes = distance(shape.box, box);
+    for (size_t i = 0; i < shape.slab_count && by_boxes < limit; ++i)
+        by_boxes = std::max(by_boxes, distance_bound(shape.slabs[i], box));
     if (!shape.straight || by_boxes >= limit) return by_boxes;
     return std::max(by_boxes, distance_bound(shape.sweep, box, limit));
 }

@@ -215,7 +215,7 @@ Separation search(const ConvexShape& a, const ConvexShape& b, const SeparationGo
             found.upper = upper;
             set_witness(found, simplex, v, a.margin, b.margin);
         }
-        if (found.upper == 0.0) break;
+        if (found.upper == 0.0 || found.upper < goal.enough) break;
 
         // All of A - B lies beyond the plane through w perpendicular to v: a bound for any v.
         const Simplex::Vertex w = support_pair(a, b, v);
@@ -264,7 +264,7 @@ void step_back(const ConvexShape& a, const ConvexShape& b, const SeparationGoal&
 
 Separation separation(const ConvexShape& a, const ConvexShape& b, const SeparationGoal& goal) {
     Separation found = search(a, b, goal);
-    const bool is_done = found.lower >= goal.limit
+    const bool is_done = found.lower >= goal.limit || found.upper < goal.enough
                          || found.upper - found.lower <= std::max(goal.tolerance, gjk_touching);
     if (!is_done) step_back(a, b, goal, found);
     return found;

@@ -93,8 +93,9 @@ struct Separation {
 
 /// When a search for the distance of two convex shapes may end.
 struct SeparationGoal {
-    double tolerance = 1e-7; // mm: ends when upper - lower is at most this
-    double limit = infinity; // mm: ends when lower reaches this; upper need not be tight then
+    double tolerance = 1e-7;   // mm: ends when upper - lower is at most this
+    double limit = infinity;   // mm: ends when lower reaches this; upper need not be tight then
+    double enough = -infinity; // mm: ends when upper is below this; lower need not be tight then
 };
 
 /// The distance between two convex shapes.

@@ -115,5 +115,65 @@ TEST(UprightSweep, FindsTheMomentOnASlope) {
     EXPECT_NEAR(found.point_a.z, 4.04, 1e-5);
 }
 
+/// A box as a convex shape; a point or a line as a segment.
+ConvexShape shape_of(const Aabb& box) {
+    const Vec3 size = box.size();
+    const int flat = int(size.x == 0.0) + int(size.y == 0.0) + int(size.z == 0.0);
+    return flat >= 2 ? convex_segment(box.min, box.max) : convex(box);
+}
+
+/// A piece, tilted or not, on a path with corners.
+ConvexShape on_a_bent_path(Dice& dice) {
+    ConvexShape piece = convex(dice.sweep().element);
+    if (dice.chance(3)) {
+        const double by = dice.position(1.5);
+        const Mat3 tilt(Vec3(std::cos(by), 0.0, std::sin(by)), Vec3(0.0, 1.0, 0.0),
+                        Vec3(-std::sin(by), 0.0, std::cos(by)));
+        piece = posed(piece, Transform(tilt, Vec3(0.0)));
+    }
+    std::vector<Vec3> path;
+    for (int i = dice.chance(2) ? 3 : 4; i > 0; --i)
+        path.emplace_back(dice.position(6.0), dice.position(6.0), dice.position(6.0));
+    if (dice.chance(5)) path[1] = path[0];
+    if (dice.chance(5)) path[2] = 2.0 * path[1] - path[0];
+    return swept(piece, path);
+}
+
+TEST(ShapeOutline, OfABentPathIsNoFartherFromABoxThanTheShape) {
+    Dice dice;
+    int sharper = 0, near_contact = 0;
+    for (int i = 0; i < 50'000; ++i) {
+        const ConvexShape shape = on_a_bent_path(dice);
+        const Aabb box = dice.box();
+        const ShapeOutline around = outline(shape);
+        const double bound = distance_bound(around, box, infinity);
+        const Separation found = separation(shape, shape_of(box));
+        ASSERT_LE(bound, found.upper + 1e-9) << i;
+        sharper += bound > distance(around.box, box) + 0.01;
+        near_contact += bound > 0.0 && bound > found.upper - 1e-3;
+        ASSERT_LT(distance_bound(around, box, 0.5 * found.upper), found.upper + 1e-9) << i;
+    }
+    EXPECT_GE(sharper, 15'000);
+    EXPECT_GE(near_contact, 1'000);
+}
+
+TEST(Separation, EndsOnceItIsBelowWhatIsEnough) {
+    Dice dice;
+    int loose = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const ConvexShape shape = on_a_bent_path(dice), box = shape_of(dice.box());
+        const double enough = dice.length(4.0);
+        const Separation whole = separation(shape, box);
+        const Separation early = separation(shape, box, {.enough = enough});
+        ASSERT_LE(early.lower, whole.upper + 1e-9) << i;
+        ASSERT_GE(early.upper, whole.lower - 1e-9) << i;
+        const bool is_close = std::abs(whole.upper - enough) <= 1e-6;
+        ASSERT_TRUE(is_close || (early.upper < enough) == (whole.upper < enough)) << i;
+        ASSERT_TRUE(early.upper < enough || early.upper == whole.upper) << i;
+        loose += early.upper > whole.upper + 1e-3;
+    }
+    EXPECT_GE(loose, 500);
+}
+
 } // namespace
 } // namespace core
