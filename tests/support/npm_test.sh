@@ -26,12 +26,20 @@ install_packages() {
         [[ ! -e $folder/package.json ]] || cp "$folder"/package.json "$folder"/package-lock.json "$work"
     done
     cd "$work" || exit 1
-    # clock: gives up after 10 min
-    timeout 600 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=2 \
-        >npm.log 2>&1 || {
+    # One npm at a time fills the cache. A registry now and then does not answer.
+    exec {npm_lock}>"${TMPDIR:-/tmp}/feeler-npm-$UID.lock"
+    flock "$npm_lock"
+    get_packages || get_packages || {
         tail npm.log
         skip 'npm could not get its packages'
     }
+    exec {npm_lock}>&-
+}
+
+get_packages() {
+    # clock: gives up after 5 min
+    timeout 300 npm ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=4 \
+        >npm.log 2>&1
 }
 
 # A report of `feeler check`, which must end with this status, or with a status below 2 for `any`.
