@@ -39,13 +39,21 @@ bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_p
     return stamp.is_there && last_change(stamp) > now.time_since_epoch() - tick_of(stamp);
 }
 
+std::filesystem::path whole_path(const std::filesystem::path& path, std::error_code& failure) {
+    const std::filesystem::path whole =
+        std::filesystem::weakly_canonical(std::filesystem::absolute(path, failure), failure);
+    return failure ? path : std::filesystem::path(core::platform::with_slashes(whole.string()));
+}
+
 std::filesystem::path resolved_path(const std::filesystem::path& path) {
     constexpr int most_links = 40; // limit of the system
     std::error_code ignored;
     std::filesystem::path target = std::filesystem::absolute(path, ignored);
     for (int i = 0; i < most_links && std::filesystem::is_symlink(target, ignored); ++i)
         target = target.parent_path() / std::filesystem::read_symlink(target, ignored);
-    return std::filesystem::weakly_canonical(target, ignored);
+    std::error_code failure;
+    const std::filesystem::path whole = whole_path(target, failure);
+    return failure ? std::filesystem::path() : whole;
 }
 
 std::string FileIdentities::of(const std::filesystem::path& path) {
@@ -54,8 +62,7 @@ std::string FileIdentities::of(const std::filesystem::path& path) {
     const auto [known, is_new] = folders_.try_emplace(folder);
     if (is_new) {
         std::error_code failure;
-        known->second = std::filesystem::canonical(folder, failure);
-        if (failure) known->second = folder;
+        known->second = whole_path(folder, failure);
     }
     return (known->second / plain.filename()).generic_string();
 }

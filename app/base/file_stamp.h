@@ -31,6 +31,10 @@ std::chrono::nanoseconds tick_of(const FileStamp& stamp);
 bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_point now =
                                                    std::chrono::system_clock::now());
 
+/// The absolute path without links, as far as the file or its folders exist, written with slashes
+/// on every system. The path itself on failure.
+std::filesystem::path whole_path(const std::filesystem::path& path, std::error_code& failure);
+
 /// The absolute path of a file that exists or will be written, with all links resolved. Empty if it
 /// cannot be determined, as for a loop of links.
 std::filesystem::path resolved_path(const std::filesystem::path& path);

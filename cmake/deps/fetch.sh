@@ -33,11 +33,13 @@ mkdir -p "$folder"
 work=$(mktemp -d "$folder/.fetch.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$work"/{lists,cache,source}
-cat >"$work/sources.list" <<LIST
-deb-src [signed-by=$keyring] $mirror/debian bookworm main
-deb-src [signed-by=$keyring] $mirror/debian bookworm-updates main
-deb-src [signed-by=$keyring] $mirror/debian-security bookworm-security main
+for kind in deb deb-src; do
+    cat <<LIST
+$kind [signed-by=$keyring] $mirror/debian bookworm main
+$kind [signed-by=$keyring] $mirror/debian bookworm-updates main
+$kind [signed-by=$keyring] $mirror/debian-security bookworm-security main
 LIST
+done >"$work/sources.list"
 # root cannot become _apt in a folder of a user, hence Sandbox. Hooks would act on the system.
 cat >"$work/apt.conf" <<CONF
 #clear APT::Update::Post-Invoke;
@@ -59,6 +61,15 @@ apt update || {
     grep '^[EW]:' "$work/log" | sort -u >&2 || true
     die "cannot read the lists of $mirror: is there a network? FEELER_DEBIAN_MIRROR names another mirror"
 }
+
+# Debian has the source of GCC, whose source package is large, in a package of its own, too.
+paths_of_gcc() {
+    apt download gcc-12-source && mkdir libstdc++ \
+        && dpkg-deb --fsys-tarfile gcc-12-source_*.deb \
+        | tar -xO --wildcards ./usr/src/gcc-12/gcc-\*.tar.xz \
+            | tar -xJ -C libstdc++ --strip-components=4 --wildcards '*/src/c++17/fs_path.cc'
+}
+
 for entry in "${missing[@]}"; do
     read -r package part <<<"$entry"
     say "fetching $package"
@@ -66,6 +77,8 @@ for entry in "${missing[@]}"; do
     cd "$work/source/$package"
     if [[ $part == orig ]]; then
         apt source --only-source --tar-only "$package" && tar -xf ./*.orig.tar.*
+    elif [[ $part == paths ]]; then
+        paths_of_gcc
     else
         apt source --only-source "$package"
     fi || {

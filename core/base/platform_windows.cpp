@@ -109,6 +109,13 @@ void prepare(std::FILE* stream) {
     std::setvbuf(stream, nullptr, _IOFBF, 1U << 16U);
 }
 
+/// A path on a network share with slashes, as all paths are shown.
+std::string with_share(std::string word) {
+    const bool is_share =
+        word.size() > 2 && word.starts_with("\\\\") && word[2] != '?' && word[2] != '.';
+    return is_share ? with_slashes(std::move(word)) : word;
+}
+
 } // namespace
 
 std::vector<std::string> begin_program(int, char**) {
@@ -120,9 +127,18 @@ std::vector<std::string> begin_program(int, char**) {
     int count = 0;
     wchar_t** const words = ::CommandLineToArgvW(::GetCommandLineW(), &count);
     std::vector<std::string> arguments;
-    for (int i = 0; i < count; ++i) arguments.push_back(utf8(words[i]));
+    for (int i = 0; i < count; ++i) arguments.push_back(with_share(utf8(words[i])));
     ::LocalFree(words);
     return arguments;
+}
+
+bool has_own_console() {
+    DWORD first = 0;
+    return ::GetConsoleProcessList(&first, 1) == 1;
+}
+
+void close_own_console() {
+    if (has_own_console()) ::FreeConsole();
 }
 
 std::filesystem::path program_path() {

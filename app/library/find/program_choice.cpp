@@ -114,7 +114,7 @@ bool ProgramChooser::is_nearest(const std::string& project, const std::string& p
     if (project.empty()) return false;
     std::error_code ignored;
     const auto folder = std::filesystem::absolute(program, ignored).parent_path();
-    const std::string nearest = owners_.of(std::filesystem::weakly_canonical(folder, ignored), "/");
+    const std::string nearest = owners_.of(whole_path(folder, ignored), "/");
     return !nearest.empty() && identities_.of(nearest) == identities_.of(project);
 }
 

@@ -57,8 +57,8 @@ RelativePaths::RelativePaths(const std::string& database) {
     std::error_code failure;
     working_folder_ = fs::current_path(failure).generic_string();
     named_folder_ = absolute_path(folder_of(database), working_folder_);
-    folder_ = absolute_path(fs::weakly_canonical(named_folder_ + "/", failure).generic_string(),
-                            working_folder_);
+    folder_ =
+        absolute_path(whole_path(named_folder_ + "/", failure).generic_string(), working_folder_);
     stamps_ = stamps_of({working_folder_, named_folder_, folder_});
 }
 

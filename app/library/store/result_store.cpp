@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/file_stamp.h"
 #include "app/base/sha256.h"
 #include "app/check/check_run.h"
 #include "app/library/store/database.h"
@@ -97,7 +98,7 @@ core::Result<void> ResultStore::State::prepare() {
 /// The path of a program relative to the folder, independent of the working folder.
 std::string ResultStore::State::relative(const std::string& program) const {
     std::error_code failure;
-    const auto whole = std::filesystem::weakly_canonical(program, failure);
+    const auto whole = whole_path(program, failure);
     return failure ? program : whole.lexically_relative(relative_paths.folder()).generic_string();
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/file_stamp.h"
 #include "gcode/language/program_folder.h"
 
 namespace app {
@@ -131,8 +132,8 @@ std::vector<std::string> sibling_stores(const std::string& path) {
 
 std::vector<std::string> stores_above(const std::string& program) {
     std::error_code failure;
-    std::filesystem::path folder = std::filesystem::weakly_canonical(
-        std::filesystem::absolute(program, failure).parent_path(), failure);
+    std::filesystem::path folder =
+        whole_path(std::filesystem::absolute(program, failure).parent_path(), failure);
     while (!failure) {
         std::vector<std::string> stores = stores_in(folder / ".feeler");
         if (!stores.empty() || folder == folder.parent_path()) return stores;

@@ -14,10 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The file to which a path leads; a broken link is its own target.
-std::string whole_path(const std::string& path) {
+std::string target_of(const std::string& path) {
     std::error_code failure;
-    const fs::path whole = fs::weakly_canonical(fs::absolute(path, failure), failure);
-    return failure ? path : whole.generic_string();
+    return whole_path(path, failure).generic_string();
 }
 
 /// The path of a file as it is, or will be once it is written.
@@ -38,7 +37,7 @@ std::vector<std::string> each_once(const std::vector<std::string>& paths) {
     std::vector<std::string> once;
     std::set<std::string> seen;
     for (const std::string& path : paths)
-        if (seen.insert(whole_path(path)).second) once.push_back(path);
+        if (seen.insert(target_of(path)).second) once.push_back(path);
     return once;
 }
 
