@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
@@ -78,11 +79,32 @@ int run(const std::vector<std::string>& words) {
     return static_cast<int>(exit_code);
 }
 
+/// Whether a file manager of Windows has opened this program: alone, with a file that was dropped
+/// on it, or as the program for a kind of file (assets/desktop/open-with.cmd).
+bool is_opened_by_file_manager(const std::vector<std::string>& words) {
+    if (!core::platform::has_own_console()) return false;
+    std::error_code ignored;
+    return words.size() < 2 || words[1] == "view"
+           || (words.size() == 2 && std::filesystem::is_regular_file(words[1], ignored));
+}
+
+/// Opens the window. If that fails, the console stays until the message has been read.
+int open_from_file_manager(std::vector<std::string> words) {
+    if (words.size() < 2 || words[1] != "view") words.insert(words.begin() + 1, "view");
+    const int status = run(words);
+    if (core::platform::has_own_console()) {
+        std::fputs("Press Enter to close this window.\n", stderr);
+        std::getchar();
+    }
+    return status;
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     try {
-        return run(core::platform::begin_program(argc, argv));
+        const std::vector<std::string> words = core::platform::begin_program(argc, argv);
+        return is_opened_by_file_manager(words) ? open_from_file_manager(words) : run(words);
     } catch (const std::bad_alloc&) {
         std::fputs("feeler: not enough memory: use a larger mesh size\n", stderr);
     } catch (const std::exception& error) {

@@ -4,10 +4,14 @@ setlocal
 set key=HKCU\Software\Classes
 set exe=%~dp0feeler.exe
 if /i "%~1"=="remove" goto remove
-reg add "%key%\Feeler.Program" /ve /d "NC program" /f >nul || goto failed
-reg add "%key%\Feeler.Program\DefaultIcon" /ve /d "\"%exe%\",0" /f >nul || goto failed
-reg add "%key%\Feeler.Program\shell\open\command" /ve /d "\"%exe%\" view \"%%1\"" /f >nul || goto failed
-for %%e in (nc ngc tap mpf spf eia min gcode h) do reg add "%key%\.%%e\OpenWithProgids" /v Feeler.Program /t REG_SZ /d "" /f >nul || goto failed
+reg add "%key%\Feeler.Program" /ve /d "NC program" /f >nul
+if errorlevel 1 goto failed
+reg add "%key%\Feeler.Program\DefaultIcon" /ve /d "\"%exe%\",0" /f >nul
+if errorlevel 1 goto failed
+reg add "%key%\Feeler.Program\shell\open\command" /ve /d "\"%exe%\" view \"%%1\"" /f >nul
+if errorlevel 1 goto failed
+for %%e in (nc ngc tap mpf spf eia min gcode h) do reg add "%key%\.%%e\OpenWithProgids" /v Feeler.Program /t REG_SZ /d "" /f >nul
+if errorlevel 1 goto failed
 echo Feeler is now listed under "Open with" for NC programs.
 exit /b 0
 

@@ -18,6 +18,13 @@ namespace core::platform {
 /// before anything is printed.
 std::vector<std::string> begin_program(int argc, char** argv);
 
+/// Whether the program has a console window of its own, because it was started from a file manager
+/// and not from a shell: only on Windows.
+bool has_own_console();
+
+/// Closes that window.
+void close_own_console();
+
 /// The path of this program; empty if it is unknown.
 std::filesystem::path program_path();
 

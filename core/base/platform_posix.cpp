@@ -24,6 +24,9 @@ namespace core::platform {
 
 std::vector<std::string> begin_program(int argc, char** argv) { return {argv, argv + argc}; }
 
+bool has_own_console() { return false; }
+void close_own_console() {}
+
 std::filesystem::path program_path() {
     std::error_code failure;
     std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", failure);

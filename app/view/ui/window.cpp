@@ -28,6 +28,7 @@
 #include "app/view/ui/imgui_backends.h"
 #include "app/view/ui/panels.h"
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 #include "render/image.h"
 #include "render/renderer.h"
 
@@ -444,6 +445,7 @@ core::Result<void> run_window(const WindowJob& job) {
     shown->model.notes = notes_in(core::file_bytes(job.notes_file).value_or(""));
     listen_to_keys(window.get());
     glfwSetWindowUserPointer(window.get(), shown.get());
+    core::platform::close_own_console(); // from here on, the window shows what there is to say
     shown->run();
     glfwSetWindowUserPointer(window.get(), nullptr);
     return {};
