@@ -10,7 +10,9 @@ display only.
 import json
 import os
 import pathlib
+import pty
 import re
+import select
 import shutil
 import subprocess
 import sys
@@ -224,6 +226,140 @@ class CommandLine(Case):
                               input=b"info program\r\nquit\r\n", capture_output=True,
                               timeout=PATIENCE, check=False)  # clock: for what hangs
         self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class Console(Case):
+    """With a terminal, as from a shell."""
+
+    def talk(self, arguments, answer=b"", after=b""):
+        """Status and output of feeler.exe in a terminal. `answer` is typed once it has printed `after`."""
+        process, terminal = pty.fork()
+        if process == 0:
+            os.chdir(SOURCE)
+            os.execvpe("wine", ["wine", str(EXE), *map(str, arguments)], wine.env)
+        self.addCleanup(os.close, terminal)
+        printed, end = b"", time.monotonic() + PATIENCE  # clock: gives up on what hangs
+        while True:
+            self.assertLess(time.monotonic(), end, printed)  # clock: as above
+            try:
+                piece = os.read(terminal, 65536) if select.select([terminal], [], [], 1.0)[0] else None
+            except OSError:  # the other side is closed
+                break
+            if piece == b"":
+                break
+            printed += piece or b""
+            if answer and after in printed:
+                os.write(terminal, answer)
+                answer = b""
+        return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]), printed
+
+    def test_colours(self):
+        status, printed = self.talk(["check", *JOBS[0][:1], "--setup", JOBS[0][1]])
+        self.assertEqual(status, 1, printed)
+        self.assertIn(b"\x1b[31merror\x1b[0m", printed)
+        self.assertNotIn("\x1b", self.windows("check", JOBS[0][0], "--setup", JOBS[0][1]).out)
+
+    def test_control_c_ends_watching(self):
+        program = self.copy("watched")
+        status, printed = self.talk(["check", windows_path(program), "--watch"], b"\x03", b"Ctrl-C ends it")
+        self.assertEqual(status, 1, printed)  # of the last check
+
+    def test_control_c_ends_a_batch_and_keeps_its_results(self):
+        self.copy("a")
+        (self.folder / "endless.nc").write_text("G21 G90\n" + "G1 X0 Y0 Z0 F100\nX1 Y1\nX0 Y0\n" * 300_000,
+                                                encoding="utf-8")
+        status, printed = self.talk(["check", windows_path(self.folder), "--jobs", "2"], b"\x03", b"a.NC")
+        self.assertNotIn(status, (0, 1), printed)
+        self.assertTrue((self.folder / ".feeler").exists())
+
+
+class Shares(Case):
+    """Network shares: wine has those that are folders in `dosdevices/unc`."""
+
+    def setUp(self):
+        super().setUp()
+        self.share = pathlib.Path(wine.env["WINEPREFIX"]) / "dosdevices/unc/server/share"
+        self.addCleanup(shutil.rmtree, self.share, ignore_errors=True)
+        (self.share / "job").mkdir(parents=True)
+        shutil.copytree(SOURCE / "assets", self.share / "assets")
+        for name in ("a", ANY_SCRIPT):
+            program = self.copy(name)
+            shutil.copy(program, self.share / "job")
+            text = program.with_suffix(".toml").read_text(encoding="utf-8").replace(f"{SOURCE}/assets", "../assets")
+            (self.share / "job" / f"{name}.toml").write_text(text, encoding="utf-8")
+
+    def test_reports_are_as_from_a_drive(self):
+        here = self.windows("check", r"\\server\share\job\a.NC", "--format", "json", status=1)
+        report = json.loads(here.out)
+        self.assertEqual(report["program"]["file"], "//server/share/job/a.NC")
+        there = self.linux("check", self.share / "job/a.NC", "--format", "json", status=1)
+        self.assertEqual(report["findings"], json.loads(there.out)["findings"])
+        slashes = self.windows("check", "//server/share/job/a.NC", "--format", "json", status=1)
+        self.assertEqual(without_times(slashes.out), without_times(here.out))
+
+    def test_files_are_written_there(self):
+        self.windows("check", r"\\server\share\job\a.NC", "--format", "sarif", "-o", r"\\server\share\out.sarif",
+                     status=1)
+        self.assertIn("file://server/share/job/a.NC", (self.share / "out.sarif").read_text(encoding="utf-8"))
+        self.windows("setup", rf"\\server\share\job\{ANY_SCRIPT}.NC", "-o", r"\\server\share\new.toml", status=0)
+        self.assertTrue((self.share / "new.toml").exists())
+
+    def test_batches_keep_their_results_there(self):
+        self.windows("check", r"\\server\share\job", status=1)
+        self.assertTrue((self.share / "job/.feeler/results.db").exists())
+        for folder in (r"\\server\share\job", "//server/share/job"):
+            again = self.windows("check", folder, status=1)
+            self.assertIn("2 of 2 results come from earlier checks", again.out + again.err)
+        history = self.windows("history", r"\\server\share\job\a.NC", status=0)
+        self.assertIn("//server/share/job/a.NC: 1 version", history.out)
+
+    def test_search_path_has_several_folders(self):
+        (self.share / "subs").mkdir()
+        (self.share / "subs/O2000.nc").write_text("O2000\nG1 X5. F100.\nM99\n", encoding="utf-8")
+        (self.folder / "main.nc").write_text("%\nO1\nG21 G90 G54\nM98 P2000\nM30\n%\n", encoding="utf-8")
+        arguments = ["check", windows_path(self.folder / "main.nc"), "--dialect", "fanuc", "--format", "json"]
+        self.windows(*arguments, status=2)
+        found = self.windows(*arguments, "--search-path", rf"{windows_path(self.folder)};\\server\share\subs")
+        self.assertIn(found.returncode, (0, 1), found.err)
+
+
+class FileManager(Case):
+    def windows_on_screen(self):
+        return subprocess.run(["xwininfo", "-root", "-tree"], env=wine.env, capture_output=True, text=True,
+                              check=True).stdout
+
+    def test_opens_the_window_and_closes_the_console(self):
+        for file in ([], [windows_path(SOURCE / JOBS[0][0])]):
+            with self.subTest(file=file):
+                opened = subprocess.Popen(["wine", "start", "/wait", "/unix", str(EXE), *file], env=wine.env)
+                title = '"TEST_G90.NC' if file else '"feeler"'
+                end = time.monotonic() + PATIENCE  # clock: gives up on what hangs
+                while title not in self.windows_on_screen() or "wineconsole" in self.windows_on_screen():
+                    self.assertIsNone(opened.poll(), "the window has closed")
+                    self.assertLess(time.monotonic(), end, self.windows_on_screen())  # clock: as above
+                    time.sleep(0.2)  # clock: polls
+                subprocess.run(["wine", "taskkill", "/f", "/im", "feeler.exe"], env=wine.env, check=True,
+                               stdout=subprocess.DEVNULL)
+                opened.wait(PATIENCE)  # clock: as above
+
+    def test_open_with_is_registered_and_removed(self):
+        script = EXE.parent / "open-with.cmd"
+        if not script.exists():
+            self.skipTest("only in the archive")
+
+        def query(key):
+            return subprocess.run(["wine", "reg", "query", rf"HKCU\Software\Classes\{key}", "/s"], env=wine.env,
+                                  capture_output=True, text=True, check=False)
+
+        subprocess.run(["wine", "cmd", "/c", windows_path(script)], env=wine.env, check=True,
+                       stdout=subprocess.DEVNULL)
+        self.assertIn(f'"{windows_path(EXE)}" view "%1"', query("Feeler.Program").stdout)
+        for ending in ("nc", "ngc", "mpf", "h"):
+            self.assertIn("Feeler.Program", query(rf".{ending}\OpenWithProgids").stdout)
+        subprocess.run(["wine", "cmd", "/c", windows_path(script), "remove"], env=wine.env, check=True,
+                       stdout=subprocess.DEVNULL)
+        self.assertNotEqual(query("Feeler.Program").returncode, 0)
+        self.assertNotIn("Feeler.Program", query(r".nc\OpenWithProgids").stdout)
 
 
 class Batch(Case):
