@@ -25,6 +25,12 @@ Aabb SweepLog::box(size_t i) const {
     return {path.min + body.min, path.max + body.max};
 }
 
+void SweepLog::cut_back(const Mark& mark) {
+    attitudes_.truncate(mark.attitudes);
+    positions_.truncate(mark.positions);
+    entries_.truncate(mark.entries);
+}
+
 LoggedSweep SweepLog::operator[](size_t i) const {
     const Entry& entry = entries_[i];
     const Attitude& attitude = attitudes_[entry.attitude];
@@ -38,6 +44,14 @@ void append(SharedLog<SweepRun>& runs, uint32_t number) {
         runs.replace_back({runs.back().first, number});
     else
         runs.push_back({number, number});
+}
+
+void remove_newest(SharedLog<SweepRun>& runs) {
+    const SweepRun newest = runs.back();
+    if (newest.first == newest.last)
+        runs.truncate(runs.size() - 1);
+    else
+        runs.replace_back({newest.first, newest.last - 1});
 }
 
 namespace {

@@ -13,7 +13,7 @@
 namespace core {
 
 template <typename T>
-/// An append-only list (only its last element can be replaced), stored in chunks that copies share:
+/// A list that changes only at its end, stored in chunks that copies share:
 /// a copy costs a pointer per chunk.
 class SharedLog {
 public:
@@ -35,6 +35,16 @@ public:
     void replace_back(const T& value) {
         own_last_chunk();
         chunks_.back()->back() = value;
+    }
+    /// Removes all elements from number `size` on.
+    void truncate(size_t size) {
+        chunks_.resize((size + chunk_size - 1) / chunk_size);
+        if (const size_t rest = size % chunk_size; rest != 0) {
+            own_last_chunk();
+            std::vector<T>& last = *chunks_.back();
+            last.erase(last.begin() + static_cast<std::ptrdiff_t>(rest), last.end());
+        }
+        size_ = size;
     }
 
 private:
@@ -59,6 +69,14 @@ class SweepLog {
 public:
     size_t size() const { return entries_.size(); }
     void push_back(const CutterSweep& sweep);
+
+    /// The sizes of the lists within, for cut_back().
+    struct Mark {
+        size_t attitudes, positions, entries;
+    };
+    Mark mark() const { return {attitudes_.size(), positions_.size(), entries_.size()}; }
+    /// Removes the moves since a mark.
+    void cut_back(const Mark& mark);
 
     LoggedSweep operator[](size_t i) const;
     uint32_t block(size_t i) const { return entries_[i].block; }
@@ -89,6 +107,9 @@ struct SweepRun {
 
 /// Adds the newest move to a list of runs.
 void append(SharedLog<SweepRun>& runs, uint32_t number);
+
+/// Removes the newest move from a list of runs.
+void remove_newest(SharedLog<SweepRun>& runs);
 
 /// A stock after some cuts: the discrete boundary model; an outer model that contains every point
 /// of the stock; and the cuts themselves, from which both can be recomputed at any finer mesh size.
@@ -138,6 +159,41 @@ double cut(CutModel& model, const CutterSweep& sweep);
 /// Result:  the same bits for any number of threads.
 /// Cost:    with hundreds of moves, two threads take about half of the time of one.
 std::vector<double> cut(CutModel& model, std::span<const CutterSweep> sweeps, unsigned threads);
+
+/// A cut that can be taken back, at a cost that depends on the tiles that it touches and not on the
+/// size of the model. Until it is decided, the model must not change otherwise; boxes around the
+/// cut are as before it, so searches are right.
+class TrialCut {
+public:
+    TrialCut(CutModel& model, const CutterSweep& sweep);
+    TrialCut(const TrialCut&) = delete;
+    TrialCut& operator=(const TrialCut&) = delete;
+    /// Takes the cut back unless it was kept.
+    ~TrialCut();
+
+    /// Whether the move comes near the stock.
+    bool is_near() const { return is_near_; }
+
+    /// Makes it a cut like any other; returns the removed volume, as cut().
+    double keep();
+
+private:
+    struct SavedTile {
+        int family;
+        size_t tile;
+        uint16_t stale;
+        std::shared_ptr<ScanTile> before;
+    };
+
+    CutModel* model_; // null once it is kept
+    bool is_near_ = false;
+    Aabb front_;
+    double beyond_ = 0.0, points_ = 0.0; // removed, see RemovalSums
+    CutterSweep last_before_;
+    SweepLog::Mark log_before_;
+    std::array<size_t, 4> stale_before_{}; // numbers of stale tiles
+    std::vector<SavedTile> tiles_;
+};
 
 /// Counts the box tests of a search, and refits the boxes around recent cuts once searches have
 /// spent as much on outdated ones as refitting costs. Does not change any result.

@@ -118,6 +118,10 @@ public:
     const ScanTile* tile(size_t index) const { return tiles_[index].get(); }
     /// Write access to a tile, cloned first if another snapshot shares it.
     ScanTile& edit_tile(size_t index);
+    /// The tile as it is now; it is cloned before the next change.
+    std::shared_ptr<ScanTile> share_tile(size_t index) const { return tiles_[index]; }
+    /// Puts a shared tile back in its place.
+    void put_back(size_t index, std::shared_ptr<ScanTile> tile) { tiles_[index] = std::move(tile); }
     /// Whether a snapshot shares the tile.
     bool is_shared(size_t index) const { return tiles_[index].use_count() > 1; }
     size_t tile_of(int u, int v) const {

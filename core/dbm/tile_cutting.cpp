@@ -1,6 +1,7 @@
 #include "core/dbm/tile_cutting.h"
 
 #include <thread>
+#include <utility>
 
 #include "core/base/math.h"
 
@@ -217,19 +218,22 @@ namespace {
 constexpr int column_family = 3; // after the three families of lines
 constexpr int families = 4;
 
+/// Calls `act` for the tiles of columns that a sweep may change.
+template <typename Act>
+void for_tiles_of_columns(const CutModel& model, const Aabb& front, const Act& act) {
+    for_tiles(cells_in(model, front), model.column_boxes, [&](size_t tile) {
+        if (overlaps(model.column_boxes.boxes[tile], front)) act(tile);
+    });
+}
+
 /// Records the sweep for all tiles of columns that it may change; false if there are none.
 bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
     const auto number = static_cast<uint32_t>(model.log.size());
     bool noted = model.columns.u_count() == 0;
-    const LineRange tiles = tiles_of(cells_in(model, front));
-    for (int v = tiles.v_first; v < tiles.v_last; ++v) {
-        for (int u = tiles.u_first; u < tiles.u_last; ++u) {
-            const auto tile = static_cast<size_t>(v * model.column_boxes.u_tiles + u);
-            if (!overlaps(model.column_boxes.boxes[tile], front)) continue;
-            append(model.history[tile], number);
-            noted = true;
-        }
-    }
+    for_tiles_of_columns(model, front, [&](size_t tile) {
+        append(model.history[tile], number);
+        noted = true;
+    });
     if (noted) model.log.push_back(sweep);
     return noted;
 }
@@ -260,6 +264,16 @@ TileBoxes& boxes_of(CutModel& model, int family) {
                                    : model.line_boxes[static_cast<size_t>(family)];
 }
 
+ScanLines& family_of(CutModel& model, int family) {
+    return family == column_family ? model.columns
+                                   : model.lines.families[static_cast<size_t>(family)];
+}
+
+/// The lines or columns of a family that a sweep may change.
+LineRange range_of(const CutModel& model, int family, const Aabb& front) {
+    return family == column_family ? cells_in(model, front) : lines_in(model, family, front);
+}
+
 /// Runs `act(family, tile, outcome)` for every tile of lines and columns that `mine(family, tile)`
 /// accepts, always in the same order, after cutting the tile.
 template <typename Mine, typename Act>
@@ -268,8 +282,7 @@ void cut_tiles(CutModel& model, const ReadySweep& ready, const Mine& mine, const
     for (int family = 0; family < families; ++family) {
         const bool columns = family == column_family;
         if (columns && model.columns.u_count() == 0) return;
-        const LineRange range =
-            columns ? cells_in(model, ready.front) : lines_in(model, family, ready.front);
+        const LineRange range = range_of(model, family, ready.front);
         for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
             const RevolvedProfile& profile = columns ? piece.within : piece.around;
             const LanePlan plan = lane_plan(profile, *ready.sweep, columns ? 2 : family, top);
@@ -375,20 +388,73 @@ private:
 
 } // namespace
 
+namespace {
+
+/// Cuts all tiles that a sweep may change.
+RemovalSums cut_all_tiles(CutModel& model, const ReadySweep& ready) {
+    RemovalSums sums;
+    cut_tiles(
+        model, ready, [](int, size_t) { return true; },
+        [&](int family, size_t tile, const TileOutcome& outcome) {
+            sums.beyond += outcome.removed.beyond;
+            sums.points += outcome.removed.points;
+            boxes_of(model, family).note(tile, outcome.blocks);
+        });
+    return sums;
+}
+
+} // namespace
+
 double cut(CutModel& model, const CutterSweep& sweep) {
     const std::optional<ReadySweep> ready = begin(model, sweep);
     RemovalSums sums;
     if (ready) {
-        cut_tiles(
-            model, *ready, [](int, size_t) { return true; },
-            [&](int family, size_t tile, const TileOutcome& outcome) {
-                sums.beyond += outcome.removed.beyond;
-                sums.points += outcome.removed.points;
-                boxes_of(model, family).note(tile, outcome.blocks);
-            });
+        sums = cut_all_tiles(model, *ready);
         fit_when_many_are_stale(model);
     }
     return reported(model, sums);
+}
+
+TrialCut::TrialCut(CutModel& model, const CutterSweep& sweep)
+    : model_(&model), last_before_(model.last), log_before_(model.log.mark()) {
+    const std::optional<ReadySweep> ready = begin(model, sweep);
+    if (!ready) return;
+    is_near_ = true;
+    front_ = ready->front;
+    for (int family = 0; family < families; ++family) {
+        if (family == column_family && model.columns.u_count() == 0) break;
+        const TileBoxes& boxes = boxes_of(model, family);
+        stale_before_[static_cast<size_t>(family)] = boxes.stale_tiles.size();
+        for_tiles(range_of(model, family, front_), boxes, [&](size_t tile) {
+            tiles_.push_back(
+                {family, tile, boxes.stale[tile], family_of(model, family).share_tile(tile)});
+        });
+    }
+    const RemovalSums sums = cut_all_tiles(model, *ready);
+    beyond_ = sums.beyond;
+    points_ = sums.points;
+}
+
+TrialCut::~TrialCut() {
+    if (!model_) return;
+    CutModel& model = *model_;
+    model.last = last_before_;
+    if (!is_near_) return;
+    for (SavedTile& saved : tiles_) {
+        family_of(model, saved.family).put_back(saved.tile, std::move(saved.before));
+        boxes_of(model, saved.family).stale[saved.tile] = saved.stale;
+    }
+    for (int family = 0; family < families; ++family)
+        if (family != column_family || model.columns.u_count() > 0)
+            boxes_of(model, family).stale_tiles.resize(stale_before_[static_cast<size_t>(family)]);
+    for_tiles_of_columns(model, front_, [&](size_t tile) { remove_newest(model.history[tile]); });
+    model.log.cut_back(log_before_);
+}
+
+double TrialCut::keep() {
+    CutModel& model = *std::exchange(model_, nullptr);
+    if (is_near_) fit_when_many_are_stale(model);
+    return reported(model, {beyond_, points_});
 }
 
 void note_search(CutModel& model, size_t box_tests) {

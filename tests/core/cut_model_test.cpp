@@ -293,5 +293,87 @@ TEST(CutModelColumns, HoldTheToleranceThatNoLineMeets) {
     });
 }
 
+bool holds_same(const SweepLog& a, const SweepLog& b) {
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const LoggedSweep one = a[i], other = b[i];
+        if (one.sweep.cutter != other.sweep.cutter || one.sweep.from != other.sweep.from
+            || one.sweep.to != other.sweep.to || one.sweep.orientation != other.sweep.orientation
+            || one.sweep.block != other.sweep.block || one.box.min != other.box.min
+            || one.box.max != other.box.max)
+            return false;
+    }
+    return true;
+}
+
+bool holds_same(const SharedLog<SweepRun>& a, const SharedLog<SweepRun>& b) {
+    if (a.size() != b.size()) return false;
+    for (size_t i = 0; i < a.size(); ++i)
+        if (a[i].first != b[i].first || a[i].last != b[i].last) return false;
+    return true;
+}
+
+void expect_same_state(const CutModel& a, const CutModel& b) {
+    EXPECT_TRUE(a.columns == b.columns);
+    EXPECT_TRUE(holds_same(a.log, b.log));
+    EXPECT_EQ(a.volume_owed, b.volume_owed);
+    for (size_t tile = 0; tile < a.history.size(); ++tile)
+        EXPECT_TRUE(holds_same(a.history[tile], b.history[tile])) << tile;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_TRUE(a.lines.families[axis] == b.lines.families[axis]);
+        EXPECT_EQ(a.line_boxes[axis].stale, b.line_boxes[axis].stale);
+        EXPECT_EQ(a.line_boxes[axis].stale_tiles, b.line_boxes[axis].stale_tiles);
+    }
+    EXPECT_EQ(a.column_boxes.stale, b.column_boxes.stale);
+}
+
+/// The cuts of a world, each in two moves of which the second continues the first.
+std::vector<CutterSweep> moves_of(const CutBox& world) {
+    std::vector<CutterSweep> moves;
+    for (size_t i = 0; i < world.cuts.size(); ++i) {
+        const CutterSweep whole = world.sweep(i);
+        const Vec3 middle = 0.4 * whole.from + 0.6 * whole.to;
+        moves.push_back(whole);
+        moves.back().to = middle;
+        moves.push_back(whole);
+        moves.back().from = middle;
+    }
+    return moves;
+}
+
+TEST(TrialCut, LeavesNoTraceUnlessItIsKept) {
+    std::mt19937 rng(25);
+    int near = 0, kept = 0;
+    double removed = 0.0;
+    for (int round = 0; round < 40; ++round) {
+        const CutBox world = random_cut_box(rng, 20, round % 3 ? 0.0 : 0.15);
+        const std::vector<CutterSweep> moves = moves_of(world);
+        CutModel tried = world.uncut(spacing), plain = tried;
+        CutModel snapshot = tried, plain_snapshot = tried;
+        for (const CutterSweep& move : moves) {
+            if (rng() % 8 == 0) snapshot = tried, plain_snapshot = plain;
+            for (unsigned others = rng() % 3; others > 0; --others) {
+                const TrialCut trial(tried, rng() % 2 ? move : moves[rng() % moves.size()]);
+                near += trial.is_near();
+            }
+            expect_same_state(tried, plain);
+            const double volume = cut(plain, move);
+            if (rng() % 2 == 0) {
+                EXPECT_EQ(TrialCut(tried, move).keep(), volume);
+                ++kept;
+            } else {
+                EXPECT_EQ(cut(tried, move), volume);
+            }
+            removed += volume;
+            expect_same_state(tried, plain);
+            ASSERT_FALSE(HasFailure()) << round;
+        }
+        expect_same_state(snapshot, plain_snapshot);
+    }
+    EXPECT_GT(near, 800);
+    EXPECT_GT(kept, 500);
+    EXPECT_GT(removed, 0.0);
+}
+
 } // namespace
 } // namespace core

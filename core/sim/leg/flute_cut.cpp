@@ -80,6 +80,14 @@ double FluteCut::along(const Leg& leg, CutModel& stock) {
     return cut(stock, sweep_on(way));
 }
 
+std::unique_ptr<TrialCut> FluteCut::try_along(const Leg& leg, CutModel& stock) {
+    assert(leg.straight);
+    if (context_.tool.parts.empty()) return nullptr;
+    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    ++context_.statistics.sweeps;
+    return std::make_unique<TrialCut>(stock, sweep_on(way));
+}
+
 CutterSweep FluteCut::sweep_on(const RelativeLeg& way) {
     return {.cutter = cutter_for(way),
             .from = way.positions.front(),

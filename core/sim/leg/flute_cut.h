@@ -18,6 +18,9 @@ public:
     /// Result: the volume removed, mm3.
     double along(const Leg& leg, CutModel& stock);
 
+    /// The same as a trial; none without a tool.
+    std::unique_ptr<TrialCut> try_along(const Leg& leg, CutModel& stock);
+
     /// Cuts the stock along any leg; halves the leg while the tool turns too far.
     double along_turning(const Leg& leg, CutModel& stock);
 

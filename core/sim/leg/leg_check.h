@@ -103,9 +103,8 @@ private:
                          std::vector<TrackedPair>& pairs);
     double check_not_cutting(const Leg& leg, double start, CutModel& stock,
                              std::vector<TrackedPair>& pairs);
-    /// Whether a body that is too near before the cut is clear after it.
-    bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
-                         const CutModel& stock);
+    /// Whether a body that is too near before the cut is clear of the stock after it.
+    bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg, const CutModel& cut);
     /// Adds the clearance of a body, now that the stock is cut; `cut`: anything was removed.
     void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
                   bool cut, std::vector<TrackedPair>& pairs);

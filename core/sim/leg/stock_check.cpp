@@ -60,7 +60,10 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         settled = settled && !open;
         checks.push_back({*body, before, verdict == Verdict::clear, open, known.upper});
     }
-    if (!settled && length(leg) > context_.setup.mesh_size && depends_on_time(checks, leg, stock)) {
+    std::unique_ptr<TrialCut> trial;
+    if (!settled && length(leg) > context_.setup.mesh_size) trial = flutes_.try_along(leg, stock);
+    if (trial && depends_on_time(checks, leg, stock)) {
+        trial.reset();
         bounds_.begin_leg(0.5 * bounds_.travel());
         double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
         if (!is_enough(context_.setup, pairs))
@@ -70,8 +73,8 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     }
     // A cut between scan lines removes no volume from them, but may have removed a witness.
     const size_t sweeps = stock.log.size();
-    const double removed = flutes_.along(leg, stock);
-    const bool cut = stock.log.size() > sweeps;
+    const double removed = trial ? trial->keep() : flutes_.along(leg, stock);
+    const bool cut = trial ? trial->is_near() : stock.log.size() > sweeps;
     for (const BodyCheck& check : checks) conclude(check, leg, start, stock, cut, pairs);
     for (const MovingBody* body : later) check_late(*body, leg, start, stock, pairs);
     return removed;
@@ -115,13 +118,11 @@ void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start
 }
 
 bool StockCheck::depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg,
-                                 const CutModel& stock) {
+                                 const CutModel& cut) {
     // A body that is too near both before and after the cut is so in any order of events.
-    CutModel cut_already = stock;
-    flutes_.along(leg, cut_already);
     for (const BodyCheck& check : checks) {
         if (!check.open) continue;
-        const StockObservation after = observe_after(check, leg, cut_already);
+        const StockObservation after = observe_after(check, leg, cut);
         if (probe_.clearance(check.body, leg, 0.0, after, after).verdict == Verdict::clear)
             return true;
     }
