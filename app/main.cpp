@@ -1,7 +1,9 @@
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <locale>
 #include <new>
 #include <string>
 #include <vector>
@@ -79,13 +81,12 @@ int run(const std::vector<std::string>& words) {
     return static_cast<int>(exit_code);
 }
 
-/// Whether a file manager of Windows has opened this program: alone, with a file that was dropped
-/// on it, or as the program for a kind of file (assets/desktop/open-with.cmd).
+/// Whether a file manager of Windows has opened this program: alone, with what was dropped on it,
+/// or as the program for a kind of file (assets/desktop/open-with.cmd).
 bool is_opened_by_file_manager(const std::vector<std::string>& words) {
     if (!core::platform::has_own_console()) return false;
     std::error_code ignored;
-    return words.size() < 2 || words[1] == "view"
-           || (words.size() == 2 && std::filesystem::is_regular_file(words[1], ignored));
+    return words.size() < 2 || words[1] == "view" || std::filesystem::exists(words[1], ignored);
 }
 
 /// Opens the window. If that fails, the console stays until the message has been read.
@@ -99,10 +100,21 @@ int open_from_file_manager(std::vector<std::string> words) {
     return status;
 }
 
+/// Fills tables of the locale that std::regex would fill from any thread, without a lock (GCC bug
+/// 77704).
+void fill_tables_of_locale() {
+    const auto& characters = std::use_facet<std::ctype<char>>(std::locale());
+    std::array<char, 256> all{}, same{};
+    for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<char>(i);
+    characters.narrow(all.data(), all.data() + all.size(), '\0', same.data());
+    characters.widen(all.data(), all.data() + all.size(), same.data());
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     try {
+        fill_tables_of_locale();
         const std::vector<std::string> words = core::platform::begin_program(argc, argv);
         return is_opened_by_file_manager(words) ? open_from_file_manager(words) : run(words);
     } catch (const std::bad_alloc&) {

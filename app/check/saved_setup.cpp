@@ -11,6 +11,7 @@
 #include "app/setup/setup_edits.h"
 #include "app/setup/setup_text.h"
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -20,11 +21,6 @@ namespace fs = std::filesystem;
 core::Result<std::string> text_of_file(const std::string& path) {
     if (std::optional<std::string> text = core::file_bytes(path)) return *std::move(text);
     return tl::unexpected<core::Error>({core::ErrorCode::io, {}, "can no longer be read", path});
-}
-
-bool are_one_file(const fs::path& a, const fs::path& b) {
-    std::error_code ignored; // a missing file equals no other
-    return fs::equivalent(a, b, ignored);
 }
 
 fs::path folder_of(const fs::path& path) {
@@ -57,11 +53,12 @@ core::Result<void> save_setup(const CheckJob& job, const std::string& path, bool
                               const FileWriter& write) {
     std::error_code failure;
     if (path.empty()) return core::fail_file(path, "the file name is empty");
-    if (are_one_file(path, job.program)) return core::fail_file(path, "is the program itself");
+    if (core::platform::is_same_file(path, job.program))
+        return core::fail_file(path, "is the program itself");
     if (!may_replace && fs::exists(path, failure)) return core::fail_file(path, "already exists");
     FEELER_TRY(const std::string text, setup_file_text(job));
     const bool is_elsewhere =
-        !job.setup.empty() && !are_one_file(folder_of(path), folder_of(job.setup));
+        !job.setup.empty() && !core::platform::is_same_file(folder_of(path), folder_of(job.setup));
     if (is_elsewhere && names_relative_files(text))
         return core::fail_file(
             path, fmt::format("the set-up names files by relative paths: save it in {}",

@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +11,7 @@
 #include "app/commands/progress.h"
 #include "app/commands/report_formats.h"
 #include "app/commands/suggestion.h"
+#include "app/library/find/folder_walk.h"
 #include "app/library/shard/shard.h"
 #include "app/library/store/result_key.h"
 #include "core/base/file_reads.h"
@@ -43,6 +45,21 @@ core::Result<Shard> read_shard(const std::string& file) {
              {}});
     shard->file = file;
     return shard;
+}
+
+/// The files that words of the command line name; shells of Windows leave patterns alone.
+std::vector<std::string> named_files(const std::vector<std::string>& words) {
+    std::vector<std::string> files;
+    for (const std::string& given : words) {
+        const std::string word = core::platform::with_slashes(given);
+        std::error_code ignored;
+        std::vector<std::string> found;
+        if (is_glob(word) && !std::filesystem::exists(word, ignored))
+            found = files_of_glob({}, word).files;
+        if (found.empty()) found = {word};
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
 }
 
 core::Result<std::vector<Shard>> read_shards(const std::vector<std::string>& files) {
@@ -86,9 +103,10 @@ core::Result<ExitCode> merge(const MergeOptions& options) {
     ReadFiles read;
     FEELER_TRY(const std::vector<ReportTarget> targets,
                targets_of(options.formats, options.outputs));
-    for (const std::string& file : options.files) read.add(file);
+    const std::vector<std::string> files = named_files(options.files);
+    for (const std::string& file : files) read.add(file);
     if (auto safe = read.check(paths_of(targets)); !safe) return tl::unexpected(safe.error());
-    FEELER_TRY(const std::vector<Shard> shards, read_shards(options.files));
+    FEELER_TRY(const std::vector<Shard> shards, read_shards(files));
     add_inputs(shards, read);
     if (auto safe = read.check(paths_of(targets)); !safe) return tl::unexpected(safe.error());
     FEELER_TRY(const BatchResult batch, merged(shards));

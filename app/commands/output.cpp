@@ -75,8 +75,9 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
                        "cannot be written: "
                            + (failure ? failure.message() : "its location cannot be determined"));
     if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
-    const bool replace = kind == std::filesystem::file_type::regular
+    const bool is_file = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
+    const bool replace = is_file && !core::platform::is_device(path);
     const std::string fresh =
         replace ? fmt::format("{}.{}.new", target.generic_string(), core::platform::process_id())
                 : path;
@@ -130,7 +131,7 @@ core::Result<void> check_output(const std::string& output,
     for (const std::string& input : read) {
         std::error_code ignored; // missing inputs are reported elsewhere
         if (output.empty() || !std::filesystem::is_regular_file(output, ignored)
-            || !std::filesystem::equivalent(output, input, ignored))
+            || !core::platform::is_same_file(output, input))
             continue;
         return tl::unexpected<core::Error>(
             {core::ErrorCode::invalid_value,

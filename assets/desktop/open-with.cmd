@@ -2,13 +2,15 @@
 rem Lists Feeler under "Open with" for NC programs, for this user. "open-with remove" takes it back.
 setlocal
 set key=HKCU\Software\Classes
-set exe=%~dp0feeler.exe
+set "exe=%~dp0feeler.exe"
+rem For folders with & and the like in their names.
+setlocal enabledelayedexpansion
 if /i "%~1"=="remove" goto remove
 reg add "%key%\Feeler.Program" /ve /d "NC program" /f >nul
 if errorlevel 1 goto failed
-reg add "%key%\Feeler.Program\DefaultIcon" /ve /d "\"%exe%\",0" /f >nul
+reg add "%key%\Feeler.Program\DefaultIcon" /ve /d "\"!exe!\",0" /f >nul
 if errorlevel 1 goto failed
-reg add "%key%\Feeler.Program\shell\open\command" /ve /d "\"%exe%\" view \"%%1\"" /f >nul
+reg add "%key%\Feeler.Program\shell\open\command" /ve /d "\"!exe!\" view \"%%1\"" /f >nul
 if errorlevel 1 goto failed
 for %%e in (nc ngc tap mpf spf eia min gcode h) do reg add "%key%\.%%e\OpenWithProgids" /v Feeler.Program /t REG_SZ /d "" /f >nul
 if errorlevel 1 goto failed

@@ -92,6 +92,12 @@ struct FileFacts {
 };
 std::optional<FileFacts> facts_of(const std::filesystem::path& path);
 
+/// Whether both paths lead to one file that exists, also through two drives or shares.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Whether a path names a device of the system and not a file: NUL, CON on Windows.
+bool is_device(const std::filesystem::path& path);
+
 /// As std::fopen.
 std::FILE* open_file(const std::filesystem::path& path, const char* mode);
 

@@ -176,6 +176,16 @@ std::optional<FileFacts> facts_of(const std::filesystem::path& path) {
                      .changed = nanoseconds(status.st_ctim)};
 }
 
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code ignored; // a missing file equals no other
+    return std::filesystem::equivalent(a, b, ignored);
+}
+
+bool is_device(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::is_character_file(path, ignored);
+}
+
 std::FILE* open_file(const std::filesystem::path& path, const char* mode) {
     return std::fopen(path.c_str(), mode);
 }

@@ -99,6 +99,12 @@ UINT code_page_before = 0;
 
 extern "C" void restore_console() { ::SetConsoleOutputCP(code_page_before); }
 
+/// Where no other handler takes an event, it ends the program at once, without std::atexit.
+BOOL WINAPI restore_at_control(DWORD) {
+    restore_console();
+    return FALSE;
+}
+
 /// Lets a console show UTF-8 and colours.
 void prepare(std::FILE* stream) {
     ::_setmode(::_fileno(stream), _O_BINARY);
@@ -109,11 +115,15 @@ void prepare(std::FILE* stream) {
     std::setvbuf(stream, nullptr, _IOFBF, 1U << 16U);
 }
 
-/// A path on a network share with slashes, as all paths are shown.
-std::string with_share(std::string word) {
+/// An argument; a path on a drive or a network share with slashes, as all paths are shown, and
+/// without the prefix of long paths, which are known without it.
+std::string argument(std::string word) {
+    if (word.starts_with(R"(\\?\UNC\)")) word.replace(0, 8, R"(\\)");
+    if (word.starts_with(R"(\\?\)") && word.size() > 5 && word[5] == ':') word.erase(0, 4);
     const bool is_share =
-        word.size() > 2 && word.starts_with("\\\\") && word[2] != '?' && word[2] != '.';
-    return is_share ? with_slashes(std::move(word)) : word;
+        word.size() > 2 && word.starts_with(R"(\\)") && word[2] != '?' && word[2] != '.';
+    const bool is_on_drive = word.size() > 2 && word[1] == ':' && word[2] == '\\';
+    return is_share || is_on_drive ? with_slashes(std::move(word)) : word;
 }
 
 } // namespace
@@ -123,11 +133,14 @@ std::vector<std::string> begin_program(int, char**) {
     prepare(stderr);
     ::_setmode(::_fileno(stdin), _O_BINARY);
     code_page_before = ::GetConsoleOutputCP();
-    if (code_page_before != 0 && ::SetConsoleOutputCP(CP_UTF8)) std::atexit(restore_console);
+    if (code_page_before != 0 && ::SetConsoleOutputCP(CP_UTF8)) {
+        std::atexit(restore_console);
+        ::SetConsoleCtrlHandler(restore_at_control, TRUE);
+    }
     int count = 0;
     wchar_t** const words = ::CommandLineToArgvW(::GetCommandLineW(), &count);
     std::vector<std::string> arguments;
-    for (int i = 0; i < count; ++i) arguments.push_back(with_share(utf8(words[i])));
+    for (int i = 0; i < count; ++i) arguments.push_back(argument(utf8(words[i])));
     ::LocalFree(words);
     return arguments;
 }
@@ -253,7 +266,10 @@ void catch_interrupts(Interrupts which, void (*note)(int)) {
     ::SetConsoleCtrlHandler(which == Interrupts::all ? handle_control : handle_keys, TRUE);
 }
 
-void end_by_interrupt(int) { ::ExitProcess(static_cast<UINT>(STATUS_CONTROL_C_EXIT)); }
+void end_by_interrupt(int) {
+    if (code_page_before != 0) restore_console();
+    ::ExitProcess(static_cast<UINT>(STATUS_CONTROL_C_EXIT));
+}
 
 void ignore_broken_pipes() {}
 
@@ -273,6 +289,19 @@ std::wstring quoted(const std::wstring& word) {
     return text.append(backslashes, L'\\') + L'"';
 }
 
+/// The path of a program in the folders of PATH alone: not in the current folder, which may belong
+/// to anybody. Empty if there is none.
+std::wstring on_path(const std::wstring& name) {
+    if (name.find_first_of(L"\\/:") != std::wstring::npos) return name;
+    const wchar_t* const folders = ::_wgetenv(L"PATH");
+    constexpr size_t longest = 32768;
+    std::wstring path(longest, L'\0');
+    const DWORD length =
+        folders ? ::SearchPathW(folders, name.c_str(), L".exe", longest, path.data(), nullptr) : 0;
+    path.resize(length < longest ? length : 0);
+    return path;
+}
+
 } // namespace
 
 std::optional<int> run_quietly(const std::vector<std::string>& words) {
@@ -288,8 +317,10 @@ std::optional<int> run_quietly(const std::vector<std::string>& words) {
     start.hStdInput = start.hStdOutput = nothing.get();
     start.hStdError = handle_of(stderr);
     PROCESS_INFORMATION process{};
-    if (!::CreateProcessW(nullptr, line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW, nullptr,
-                          nullptr, &start, &process))
+    const std::wstring program = words.empty() ? std::wstring() : on_path(wide(words[0]));
+    if (program.empty()
+        || !::CreateProcessW(program.c_str(), line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW,
+                             nullptr, nullptr, &start, &process))
         return std::nullopt;
     const Handle child(process.hProcess), thread(process.hThread);
     DWORD status = 0;
@@ -314,12 +345,31 @@ namespace {
 
 constexpr DWORD share_all = FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE;
 
-/// Nanoseconds since 1970, from steps of 100 ns since 1601.
+/// Nanoseconds since 1970, from steps of 100 ns since 1601; 0 where the file system stores no such
+/// time, as FAT for changes.
 int64_t nanoseconds(const LARGE_INTEGER& time) {
-    return (time.QuadPart - 116'444'736'000'000'000) * 100;
+    constexpr int64_t from = 116'444'736'000'000'000, century = 31'556'952'000'000'000;
+    return (std::clamp<int64_t>(time.QuadPart, from, from + 2 * century) - from) * 100;
 }
 
 uint64_t joined(DWORD high, DWORD low) { return uint64_t{high} << 32U | low; }
+
+/// The path by which the system knows an open file; empty if it does not say.
+std::wstring final_path(const Handle& file) {
+    constexpr DWORD longest = 32768;
+    std::wstring path(longest, L'\0');
+    const DWORD length = ::GetFinalPathNameByHandleW(file.get(), path.data(), longest, 0);
+    path.resize(length < longest ? length : 0);
+    return path;
+}
+
+/// The number of a file on its volume. Where the file system has none, the server says 0 or -1
+/// (MS-FSCC 2.4.22), and the path serves instead.
+uint64_t number_of(const Handle& file, const BY_HANDLE_FILE_INFORMATION& info) {
+    const uint64_t number = joined(info.nFileIndexHigh, info.nFileIndexLow);
+    return number != 0 && number != ~uint64_t{0} ? number
+                                                 : std::hash<std::wstring>()(final_path(file));
+}
 
 } // namespace
 
@@ -335,10 +385,23 @@ std::optional<FileFacts> facts_of(const std::filesystem::path& path) {
     return FileFacts{.is_folder = is_folder,
                      .is_file = !is_folder && ::GetFileType(file.get()) == FILE_TYPE_DISK,
                      .device = info.dwVolumeSerialNumber,
-                     .number = joined(info.nFileIndexHigh, info.nFileIndexLow),
+                     .number = number_of(file, info),
                      .size = joined(info.nFileSizeHigh, info.nFileSizeLow),
                      .modified = nanoseconds(times.LastWriteTime),
                      .changed = nanoseconds(times.ChangeTime)};
+}
+
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+    const auto one = facts_of(a), other = facts_of(b);
+    return one && other && one->device == other->device && one->number == other->number;
+}
+
+bool is_device(const std::filesystem::path& path) {
+    constexpr size_t longest = 32768;
+    std::wstring whole(longest, L'\0');
+    const DWORD length = ::GetFullPathNameW(path.c_str(), longest, whole.data(), nullptr);
+    whole.resize(length < longest ? length : 0);
+    return whole.starts_with(LR"(\\.\)");
 }
 
 std::FILE* open_file(const std::filesystem::path& path, const char* mode) {
@@ -365,6 +428,7 @@ std::error_code replace_file(const std::filesystem::path& fresh, const std::file
 
 std::string with_slashes(std::string path) {
     std::replace(path.begin(), path.end(), '\\', '/');
+    if (path.size() == 2 && path[1] == ':') path += '.'; // the current folder of a drive
     return path;
 }
 

@@ -188,6 +188,26 @@ class CommandLine(Case):
         report = self.windows("check", windows_path(deep / program.name), "--format", "text")
         self.assertEqual(report.returncode, 1, report.out + report.err)
 
+    def test_long_path_prefix(self):
+        program = self.copy("prefix")
+        plain = self.windows("check", windows_path(program), "--format", "json")
+        prefixed = self.windows("check", "\\\\?\\" + windows_path(program), "--format", "json")
+        self.assertEqual(without_times(prefixed.out), without_times(plain.out))
+
+    def test_devices_are_written_to(self):
+        self.windows("check", JOBS[0][0], "--setup", JOBS[0][1], "--format", "json", "-o", "NUL", status=1)
+        self.assertEqual([path for path in SOURCE.iterdir() if path.name.lower().startswith("nul")], [])
+
+    def test_ini_files_have_colons(self):
+        (self.folder / "subs").mkdir()
+        (self.folder / "subs/hole.ngc").write_text("o<hole> sub\nG1 X5 F100\no<hole> endsub\nM2\n", encoding="utf-8")
+        (self.folder / "main.ngc").write_text("G21 G90\no<hole> call\nM2\n", encoding="utf-8")
+        (self.folder / "mill.ini").write_text("[RS274NGC]\nSUBROUTINE_PATH = macros:subs\n", encoding="utf-8")
+        arguments = ["check", "main.ngc", "--dialect", "linuxcnc", "--ini", "mill.ini", "--format", "json"]
+        here = self.linux(*arguments, cwd=self.folder, status=0)
+        there = self.windows(*arguments, cwd=self.folder, status=0)
+        self.assertEqual(without_times(there.out), without_times(here.out))
+
     def test_line_ends_of_windows(self):
         program = self.copy("crlf")
         before = self.windows("check", windows_path(program), "--format", "json").out
@@ -304,6 +324,14 @@ class Shares(Case):
         self.windows("setup", rf"\\server\share\job\{ANY_SCRIPT}.NC", "-o", r"\\server\share\new.toml", status=0)
         self.assertTrue((self.share / "new.toml").exists())
 
+    def test_inputs_are_not_overwritten_by_another_name(self):
+        drive = windows_path(self.share / "job" / "a.NC")
+        before = (self.share / "job/a.NC").read_bytes()
+        for program, output in ((drive, r"\\server\share\job\a.NC"), (r"\\server\share\job\a.NC", drive)):
+            refused = self.windows("check", program, "--format", "json", "-o", output, status=2)
+            self.assertIn("is an input and would be overwritten", refused.err)
+            self.assertEqual((self.share / "job/a.NC").read_bytes(), before)
+
     def test_batches_keep_their_results_there(self):
         self.windows("check", r"\\server\share\job", status=1)
         self.assertTrue((self.share / "job/.feeler/results.db").exists())
@@ -343,20 +371,20 @@ class FileManager(Case):
                 opened.wait(PATIENCE)  # clock: as above
 
     def test_open_with_is_registered_and_removed(self):
-        script = EXE.parent / "open-with.cmd"
-        if not script.exists():
-            self.skipTest("only in the archive")
+        script = self.folder / "R&D (new)" / "open-with.cmd"
+        script.parent.mkdir()
+        shutil.copy(SOURCE / "assets/desktop/open-with.cmd", script)
 
         def query(key):
             return subprocess.run(["wine", "reg", "query", rf"HKCU\Software\Classes\{key}", "/s"], env=wine.env,
                                   capture_output=True, text=True, check=False)
 
-        subprocess.run(["wine", "cmd", "/c", windows_path(script)], env=wine.env, check=True,
+        subprocess.run(["wine", "cmd", "/c", script.name], cwd=script.parent, env=wine.env, check=True,
                        stdout=subprocess.DEVNULL)
-        self.assertIn(f'"{windows_path(EXE)}" view "%1"', query("Feeler.Program").stdout)
+        self.assertIn(f'"{windows_path(script.parent)}\\feeler.exe" view "%1"', query("Feeler.Program").stdout)
         for ending in ("nc", "ngc", "mpf", "h"):
             self.assertIn("Feeler.Program", query(rf".{ending}\OpenWithProgids").stdout)
-        subprocess.run(["wine", "cmd", "/c", windows_path(script), "remove"], env=wine.env, check=True,
+        subprocess.run(["wine", "cmd", "/c", script.name, "remove"], cwd=script.parent, env=wine.env, check=True,
                        stdout=subprocess.DEVNULL)
         self.assertNotEqual(query("Feeler.Program").returncode, 0)
         self.assertNotIn("Feeler.Program", query(r".nc\OpenWithProgids").stdout)
@@ -375,6 +403,15 @@ class Batch(Case):
         (self.folder / "a.NC").write_text("G21 G90\nG0 X0 Y0\nM30\n", encoding="utf-8")
         third = self.windows("check", windows_path(self.folder))
         self.assertIn("2 of 3 results come from earlier checks", third.out + third.err)
+
+    def test_shards_are_merged_by_a_pattern(self):
+        for name in ("a", "b"):
+            self.copy(name)
+        for i in (1, 2):
+            self.windows("check", ".", "--no-cache", "--shard", f"{i}/2", "--format", "shard", "-o", f"part-{i}.json",
+                         cwd=self.folder)
+        merged = self.windows("merge", "part-*.json", "--format", "json", cwd=self.folder, status=1)
+        self.assertEqual(len(json.loads(merged.out)["programs"]), 2)
 
     def test_patterns_ignore_case_as_the_file_system_does(self):
         self.copy("a")
