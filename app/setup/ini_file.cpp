@@ -19,6 +19,23 @@
 namespace app {
 namespace {
 
+/// Splits a list of folders as LinuxCNC does, at ':' on every system, because the file belongs to
+/// the machine. The ':' of a drive of Windows separates nothing there.
+std::vector<std::string> split_at_colons(const std::string& text) {
+    const bool has_drives = core::platform::list_separator() != ':';
+    std::istringstream stream(text);
+    std::vector<std::string> folders;
+    bool after_drive = false;
+    for (std::string folder; std::getline(stream, folder, ':');) {
+        if (after_drive && (folder.starts_with('/') || folder.starts_with('\\')))
+            folders.back() += ":" + folder;
+        else if (!folder.empty())
+            folders.push_back(folder);
+        after_drive = has_drives && folder.size() == 1;
+    }
+    return folders;
+}
+
 /// A value of LINEAR_UNITS as LinuxCNC interprets it: a name, or units per millimetre.
 std::optional<gcode::LengthUnit> unit_named(const std::string& name) {
     const auto per_mm = number_in(name);
@@ -120,7 +137,7 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
     } else if (name == "DISPLAY PROGRAM_PREFIX") {
         file.search_path.insert(file.search_path.begin(), resolved(value));
     } else if (name == "RS274NGC SUBROUTINE_PATH") {
-        for (const std::string& each : split_search_path(value))
+        for (const std::string& each : split_at_colons(value))
             file.search_path.push_back(resolved(each));
     } else if (name == "RS274NGC RS274NGC_STARTUP_CODE") {
         file.startup_code = value;

@@ -144,7 +144,9 @@ std::optional<UnknownValue> unknown_value(const Assigning& assigning, const Assi
 void note_unknown_offset(const Assigning& assigning, const Assignment& entry, double number) {
     const Environment& environment = assigning.parameters.environment();
     if (entry.is_named || assigning.parameters.unpredictable_reads().empty()) return;
-    if (!sets_the_machine(environment, static_cast<int>(std::lround(number)))) return;
+    constexpr double most = 1e9; // far above all numbers of parameters
+    const auto parameter = static_cast<int>(std::lround(std::clamp(number, -most, most)));
+    if (!sets_the_machine(environment, parameter)) return;
     report_unknown(assigning.parameters, assigning.result, entry.span,
                    fmt::format("{}{:g}", assigning.dialect.parameter_letter, number));
 }

@@ -194,12 +194,15 @@ private:
     void visit(const Vec3& position, double radius, Visit&& call) const {
         const double x = (position.x - box_.min.x) / cell_, y = (position.y - box_.min.y) / cell_;
         const double reach = std::max(0.75, radius / cell_);
-        const auto first = [](double v) { return std::max(0L, std::lround(std::floor(v))); };
-        const auto last = [](double v, long count) {
-            return std::min(count - 1, std::lround(std::floor(v)));
+        const auto first = [](double v, long count) {
+            return static_cast<long>(std::clamp(std::floor(v), 0.0, double(count)));
         };
-        for (long row = first(y - reach); row <= last(y + reach, rows_); ++row)
-            for (long column = first(x - reach); column <= last(x + reach, columns_); ++column)
+        const auto last = [](double v, long count) {
+            return static_cast<long>(std::clamp(std::floor(v), -1.0, double(count - 1)));
+        };
+        for (long row = first(y - reach, rows_); row <= last(y + reach, rows_); ++row)
+            for (long column = first(x - reach, columns_); column <= last(x + reach, columns_);
+                 ++column)
                 if (core::hypot(static_cast<double>(column) + 0.5 - x,
                                 static_cast<double>(row) + 0.5 - y)
                     <= reach)

@@ -28,7 +28,7 @@ using core::Vec3;
 
 /// The highest plane, to 0.1 mm, with much rapid travel: at least a fifth of that in the busiest
 /// plane.
-std::optional<double> plane_of(const std::map<long, double>& travel) {
+std::optional<double> plane_of(const std::map<int64_t, double>& travel) {
     constexpr double much = 0.2;
     double most = 0.0;
     for (const auto& [height, way] : travel) most = std::max(most, way);
@@ -39,14 +39,14 @@ std::optional<double> plane_of(const std::map<long, double>& travel) {
 
 /// Sideways travel by height, in tenths of a millimetre.
 struct Travel {
-    std::map<long, double> of_rapids, of_feeds;
+    std::map<int64_t, double> of_rapids, of_feeds;
     bool has_rapids = false;
 
     void note(bool rapid, const TipTrack& path) {
         has_rapids = has_rapids || rapid;
         const core::Vec3 &from = path.positions[0], &to = path.positions.back();
         if (!path.sideways || from.z != to.z) return;
-        (rapid ? of_rapids : of_feeds)[std::lround(10.0 * path.lowest())] +=
+        (rapid ? of_rapids : of_feeds)[std::llround(10.0 * path.lowest())] +=
             glm::distance(from, to);
     }
 
