@@ -18,10 +18,12 @@ using Shapes = std::vector<ConvexShape>;
 
 ProfileElement cylinder(double r, double z0, double z1) { return {z0, r, z1, r, 0.0}; }
 
-/// A shank and a holder, a ball, a rotated box or a triangle, at rest or moved straight.
+/// A shank and a holder, a ball, a rotated box or a triangle, at rest, moved straight or within the
+/// region of a corner.
 Shapes random_tool(std::mt19937& rng, const Aabb& near) {
     const Vec3 at = random_point(near, rng);
-    const Vec3 positions[] = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
+    std::vector<Vec3> positions = {Vec3(0.0), rng() % 3 ? Vec3(0.0) : random_point(near, rng) - at};
+    if (rng() % 4 == 0) positions.push_back(random_point(near, rng) - at);
     Shapes shapes;
     switch (rng() % 4) {
     case 0:
@@ -144,7 +146,7 @@ TEST(StockDistance, IsThatOfTheNearestColumnAndTheNearestLine) {
 TEST(StockDistance, LiesBetweenItsBoundsAfterRandomCuts) {
     std::mt19937 rng(71);
     Seen seen;
-    for (int i = 0; i < 36; ++i) {
+    for (int i = 0; i < 48; ++i) {
         const CutBox world = random_cut_box(rng, i % 12, 0.0);
         const CutModel model = world.model(0.7);
         for (int k = 0; k < 6; ++k) {
@@ -163,7 +165,7 @@ TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
     std::mt19937 rng(72);
     Seen seen;
     size_t refined = 0;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 42; ++i) {
         const CutBox world = random_cut_box(rng, 1 + i % 12, 0.0);
         const CutModel model = world.model(0.7);
         for (int k = 0; k < 6; ++k) {
@@ -185,6 +187,56 @@ TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
     EXPECT_GT(refined, 40u);
     EXPECT_GT(seen.clear, 25);
     EXPECT_GT(seen.violated, 10);
+}
+
+/// The distance to the boxes of all columns of squares that are divided once if they are wider than
+/// `finest`: `lower` after a refinement that ends there.
+double to_quarters(const Shapes& shapes, const CutModel& model, double finest) {
+    double least = infinity;
+    const auto add = [&](const Square& s, const auto& column) {
+        for (const Interval& z : column)
+            for (const ConvexShape& shape : shapes) {
+                const Aabb box{{s.x0, s.y0, z.lower}, {s.x1, s.y1, z.upper}};
+                least = std::min(least, separation(shape, convex(box)).lower);
+            }
+    };
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i) {
+            const Square s = cell_square(model, i, j);
+            if (std::max(s.x1 - s.x0, s.y1 - s.y0) <= finest) {
+                add(s, model.columns.line(i, j));
+                continue;
+            }
+            const double x = 0.5 * (s.x0 + s.x1), y = 0.5 * (s.y0 + s.y1);
+            for (const Square& quarter : {Square{s.x0, x, s.y0, y}, Square{x, s.x1, s.y0, y},
+                                          Square{s.x0, x, y, s.y1}, Square{x, s.x1, y, s.y1}})
+                add(quarter, fresh_column(model, i, j, quarter));
+        }
+    return least;
+}
+
+TEST(StockDistance, HasTheExactBoundOfSquaresThatAreDividedNoFurther) {
+    std::mt19937 rng(76);
+    int open = 0, better = 0;
+    for (int i = 0; i < 60; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 12, 0.0);
+        const CutModel model = world.model(0.7);
+        for (int k = 0; k < 6; ++k) {
+            const Shapes shapes = random_tool(rng, world.box.grown(2.0));
+            const Separation first = separation(shapes, model).separation;
+            if (!first.found()) continue;
+            const StockGoal goal{.threshold = first.lower + 0.9 * (first.upper - first.lower),
+                                 .finest = 0.36};
+            const Separation found = separation(shapes, model, goal).separation;
+            if (found.upper < goal.threshold || first.lower >= goal.threshold) continue;
+            const double wanted = std::min(to_quarters(shapes, model, goal.finest), goal.threshold);
+            EXPECT_NEAR(found.lower, wanted, 1e-6) << i << ' ' << k;
+            ++open;
+            better += wanted < goal.threshold && wanted > first.lower + 1e-3;
+        }
+    }
+    EXPECT_GT(open, 40);
+    EXPECT_GT(better, 15);
 }
 
 /// A plate in which two slots leave a wall of the given thickness at y = 0.13.
