@@ -19,14 +19,13 @@
 namespace app {
 namespace {
 
-/// Splits a list of folders as LinuxCNC does, at ':' on every system, because the file belongs to
-/// the machine. The ':' of a drive of Windows separates nothing there.
-std::vector<std::string> split_at_colons(const std::string& text) {
-    const bool has_drives = core::platform::list_separator() != ':';
+/// Splits a list of folders. On Windows, the ':' of a drive separates nothing.
+std::vector<std::string> split_folders(const std::string& text, char separator) {
+    const bool has_drives = separator == ':' && core::platform::list_separator() != ':';
     std::istringstream stream(text);
     std::vector<std::string> folders;
     bool after_drive = false;
-    for (std::string folder; std::getline(stream, folder, ':');) {
+    for (std::string folder; std::getline(stream, folder, separator);) {
         if (after_drive && (folder.starts_with('/') || folder.starts_with('\\')))
             folders.back() += ":" + folder;
         else if (!folder.empty())
@@ -137,7 +136,8 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
     } else if (name == "DISPLAY PROGRAM_PREFIX") {
         file.search_path.insert(file.search_path.begin(), resolved(value));
     } else if (name == "RS274NGC SUBROUTINE_PATH") {
-        for (const std::string& each : split_at_colons(value))
+        // The file belongs to the machine, so this is the separator of LinuxCNC on every system.
+        for (const std::string& each : split_folders(value, ':'))
             file.search_path.push_back(resolved(each));
     } else if (name == "RS274NGC RS274NGC_STARTUP_CODE") {
         file.startup_code = value;
@@ -283,11 +283,7 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
 }
 
 std::vector<std::string> split_search_path(const std::string& text) {
-    std::istringstream stream(text);
-    std::vector<std::string> folders;
-    for (std::string folder; std::getline(stream, folder, core::platform::list_separator());)
-        if (!folder.empty()) folders.push_back(std::move(folder));
-    return folders;
+    return split_folders(text, core::platform::list_separator());
 }
 
 } // namespace app

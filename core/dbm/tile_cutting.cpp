@@ -386,10 +386,6 @@ private:
     std::vector<std::vector<StoredOutcome>> kept_; // by thread
 };
 
-} // namespace
-
-namespace {
-
 /// Cuts all tiles that a sweep may change.
 RemovalSums cut_all_tiles(CutModel& model, const ReadySweep& ready) {
     RemovalSums sums;
