@@ -67,6 +67,15 @@ xdotool mousemove 640 810 mousedown 1 mousemove 500 810 mousemove 400 810 mouseu
 expect 'dragging scrubs back' 'block 1[23] of 45'
 frames # process the release before the mouse moves on
 press Home
+expect 'Home' 'block 0 of'
+xdotool mousemove 640 810 mousedown 1 mousemove 500 810
+expect 'dragging scrubs' 'block 1[56] of 45'
+kill -STOP "$view" # so that the end of the drag and the release arrive at once
+xdotool mousemove 400 810 mouseup 1
+kill -CONT "$view"
+expect 'a drag counts up to its end' 'block 1[23] of 45'
+frames
+press Home
 expect 'Home shows the beginning of the list' 'block 0 of'
 click 200 340
 expect 'a click in the list goes to its line' 'line 16 '

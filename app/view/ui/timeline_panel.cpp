@@ -230,8 +230,9 @@ void take_mouse(Frame& frame, const Area& area, bool& scrubbing) {
     const double at = std::clamp((io.MousePos.x - area.x) / area.width, 0.0F, 1.0F);
     const size_t blocks = model.rows.size();
     if (ImGui::IsItemActivated()) scrubbing = true;
-    if (!ImGui::IsItemActive()) scrubbing = false;
-    if (scrubbing) {
+    // The last motion and the release of the button can arrive in the same frame.
+    if (!ImGui::IsItemActive() && !ImGui::IsItemDeactivated()) scrubbing = false;
+    if (scrubbing && ImGui::IsMousePosValid()) {
         const size_t block = block_at(model.range, blocks, at);
         model.playback.running = false;
         if (block != model.cursor.block) go_to(model, block);
