@@ -42,7 +42,8 @@ bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_p
 std::filesystem::path whole_path(const std::filesystem::path& path, std::error_code& failure) {
     const std::filesystem::path whole =
         std::filesystem::weakly_canonical(std::filesystem::absolute(path, failure), failure);
-    return failure ? path : std::filesystem::path(core::platform::with_slashes(whole.string()));
+    if (failure) return path;
+    return core::platform::with_slashes(core::platform::in_stored_case(whole).string());
 }
 
 std::filesystem::path resolved_path(const std::filesystem::path& path) {
@@ -64,7 +65,7 @@ std::string FileIdentities::of(const std::filesystem::path& path) {
         std::error_code failure;
         known->second = whole_path(folder, failure);
     }
-    return (known->second / plain.filename()).generic_string();
+    return core::platform::in_stored_case(known->second / plain.filename()).generic_string();
 }
 
 std::string plain_path(const std::filesystem::path& path) {

@@ -32,7 +32,7 @@ bool may_change_unseen(const FileStamp& stamp, std::chrono::system_clock::time_p
                                                    std::chrono::system_clock::now());
 
 /// The absolute path without links, as far as the file or its folders exist, written with slashes
-/// on every system. The path itself on failure.
+/// on every system and in the case of the file system. The path itself on failure.
 std::filesystem::path whole_path(const std::filesystem::path& path, std::error_code& failure);
 
 /// The absolute path of a file that exists or will be written, with all links resolved. Empty if it

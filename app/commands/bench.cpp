@@ -45,7 +45,7 @@ void add_bench(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--format", options->format, "text or csv")
         ->check(one_of({"text", "csv"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the tables to this file");
+    add_path(command, "-o,--output", options->output, "Write the tables to this file");
     command.callback([options, &exit_code] { exit_code = run_bench(*options); });
 }
 

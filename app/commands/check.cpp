@@ -37,7 +37,6 @@
 #include "app/report/text/batch_text.h"
 #include "app/setup/coverage.h"
 #include "app/tolerance/tolerances.h"
-#include "core/base/platform.h"
 
 namespace app {
 
@@ -276,13 +275,13 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
         ->allow_extra_args(false)
         ->check(one_of(format_names(true)))
         ->default_str("text");
-    command.add_option("-o,--output", options.outputs, "Write the report to this file")
+    add_path(command, "-o,--output", options.outputs, "Write the report to this file")
         ->allow_extra_args(false);
-    command.add_option("--save-stock", options.stock,
-                       "Write the remaining stock to this file: .stl, .ply, or .feeler as the "
-                       "stock of a later set-up");
-    command.add_option("--save-comparison", options.comparison,
-                       "Write the remaining stock, coloured by its deviation from the part (.ply)");
+    add_path(command, "--save-stock", options.stock,
+             "Write the remaining stock to this file: .stl, .ply, or .feeler as the "
+             "stock of a later set-up");
+    add_path(command, "--save-comparison", options.comparison,
+             "Write the remaining stock, coloured by its deviation from the part (.ply)");
     command.add_flag("--blocks", options.blocks,
                      "Text report: add a table of all blocks that move");
     CLI::Option* quiet = command.add_flag(
@@ -295,10 +294,10 @@ void add_report_options(CLI::App& command, CheckOptions& options) {
 
 void add_batch_options(CLI::App& command, CheckOptions& options) {
     const OptionGroup group(command, "Many programs");
-    CLI::Option* cache = command.add_option(
-        "--cache", options.cache,
-        "Many programs: database of results; unchanged programs are not checked again. Default: "
-        ".feeler/results.db in the folder, or next to the project file");
+    CLI::Option* cache =
+        add_path(command, "--cache", options.cache,
+                 "Many programs: database of results; unchanged programs are not checked again. "
+                 "Default: .feeler/results.db in the folder, or next to the project file");
     command
         .add_flag("--no-cache", options.no_cache,
                   "Many programs: check all of them and store no results")
@@ -336,9 +335,8 @@ void add_watch(CLI::App& command, CheckOptions& options) {
 void add_check(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<CheckOptions>();
     CLI::App& command = *cli.add_subcommand("check", "Report the clearance of every block");
-    command
-        .add_option("program", options->programs,
-                    "NC programs: files, folders, patterns in quotes, project files (.toml)")
+    add_path(command, "program", options->programs,
+             "NC programs: files, folders, patterns in quotes, project files (.toml)")
         ->required();
     add_check_options(command, options->what);
     add_start_line(command, options->what);
@@ -377,11 +375,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--tolerances", options->tolerances,
                      "Also find how far each value of the set-up may deviate; takes some hundred "
                      "times as long");
-    command.callback([options, &exit_code] {
-        for (std::string& word : options->programs)
-            word = core::platform::with_slashes(std::move(word));
-        exit_code = check(*options);
-    });
+    command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 
 namespace {

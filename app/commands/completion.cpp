@@ -295,7 +295,7 @@ void add_completion(CLI::App& cli, ExitCode& exit_code) {
     CLI::App* pages = cli.add_subcommand("man-pages", "Write the manual pages to a folder");
     pages->group("");
     const auto folder = std::make_shared<std::string>();
-    pages->add_option("folder", *folder, "An existing folder")->required();
+    add_path(*pages, "folder", *folder, "An existing folder")->required();
     pages->callback([&cli, &exit_code, folder] {
         if (const auto written = write_pages(cli, *folder); !written) {
             print_error(written.error());

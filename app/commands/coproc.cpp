@@ -94,14 +94,14 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
         "coproc", "Run a program with an emulated coprocessor that permits each block");
     add_check_arguments(command, options->what)->required();
     add_start_line(command, options->what);
-    command.add_option("--config", options->config,
-                       "Device file (TOML): [device], [control], [energy]");
+    add_path(command, "--config", options->config,
+             "Device file (TOML): [device], [control], [energy]");
     command.add_option("--format", options->format, "text, json or csv")
         ->check(one_of({"text", "json", "csv"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the report to this file");
-    auto* vcd = command.add_option(
-        "--vcd", options->vcd, "Write the signals of the coprocessor to this file, for GTKWave");
+    add_path(command, "-o,--output", options->output, "Write the report to this file");
+    auto* vcd = add_path(command, "--vcd", options->vcd,
+                         "Write the signals of the coprocessor to this file, for GTKWave");
     auto* from = command.add_option("--from", options->from, "First block for --vcd")
                      ->needs(vcd)
                      ->check(CLI::NonNegativeNumber);

@@ -74,14 +74,14 @@ void add_diff(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand(
         "diff", "Compare two versions of a program, or of its set-up, block by block");
     add_check_arguments(command, options->what)->required();
-    command.add_option("later", options->later,
-                       "Later version of the program; default: the same file");
-    command.add_option("--setup-b", options->later_setup,
-                       "Set-up of the later version; default: that of the earlier one");
+    add_path(command, "later", options->later,
+             "Later version of the program; default: the same file");
+    add_path(command, "--setup-b", options->later_setup,
+             "Set-up of the later version; default: that of the earlier one");
     command.add_option("--format", options->format, "text or json")
         ->check(one_of({"text", "json"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the report to this file");
+    add_path(command, "-o,--output", options->output, "Write the report to this file");
     command.add_flag("--blocks", options->blocks, "Text report: all blocks instead of the worst");
     command.callback([options, &exit_code] { exit_code = diff(*options); });
 }

@@ -79,8 +79,8 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
     const char* body = "Mesh file, or sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin";
-    command.add_option("a", options->a, body)->required();
-    command.add_option("b", options->b, body)->required();
+    add_path(command, "a", options->a, body)->required();
+    add_path(command, "b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300))
         ->capture_default_str();
@@ -97,7 +97,7 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
     command.add_option("--format", options->format, "text or json")
         ->check(one_of({"text", "json"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the answer to this file");
+    add_path(command, "-o,--output", options->output, "Write the answer to this file");
     command.callback([options, &exit_code] { exit_code = distance(*options); });
 }
 

@@ -105,14 +105,13 @@ void add_history(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<HistoryOptions>();
     CLI::App& command = *cli.add_subcommand(
         "history", "Show how the results of a program changed from version to version");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option(
-        "--cache", options->cache,
-        "Database of results; default: .feeler/results.db in the nearest folder above");
+    add_path(command, "program", options->program, "NC program")->required();
+    add_path(command, "--cache", options->cache,
+             "Database of results; default: .feeler/results.db in the nearest folder above");
     command.add_option("--format", options->format, "text or json")
         ->check(one_of({"text", "json"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the report to this file");
+    add_path(command, "-o,--output", options->output, "Write the report to this file");
     command.callback([options, &exit_code] { exit_code = history(*options); });
 }
 

@@ -50,8 +50,7 @@ core::Result<Shard> read_shard(const std::string& file) {
 /// The files that words of the command line name; shells of Windows leave patterns alone.
 std::vector<std::string> named_files(const std::vector<std::string>& words) {
     std::vector<std::string> files;
-    for (const std::string& given : words) {
-        const std::string word = core::platform::with_slashes(given);
+    for (const std::string& word : words) {
         std::error_code ignored;
         std::vector<std::string> found;
         if (is_glob(word) && !std::filesystem::exists(word, ignored))
@@ -126,9 +125,8 @@ ExitCode merge_aloud(const MergeOptions& options) {
 void add_merge(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<MergeOptions>();
     CLI::App& command = *cli.add_subcommand("merge", "Join the results of check --shard");
-    command
-        .add_option("shard", options->files,
-                    "Files written by check --shard --format shard, one per shard")
+    add_path(command, "shard", options->files,
+             "Files written by check --shard --format shard, one per shard")
         ->required();
     command
         .add_option("--format", options->formats,
@@ -136,7 +134,7 @@ void add_merge(CLI::App& cli, ExitCode& exit_code) {
         ->allow_extra_args(false)
         ->check(one_of(format_names(false)))
         ->default_str("text");
-    command.add_option("-o,--output", options->outputs, "Write the report to this file")
+    add_path(command, "-o,--output", options->outputs, "Write the report to this file")
         ->allow_extra_args(false);
     CLI::Option* quiet = command.add_flag("--quiet", options->style.quiet,
                                           "List only programs with errors, and the summary");

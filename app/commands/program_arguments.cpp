@@ -10,7 +10,6 @@
 #include "app/commands/suggestion.h"
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
-#include "core/base/platform.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/modal_state.h"
 
@@ -47,10 +46,10 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
     command
         .add_option("--block-delete", arguments.block_delete, "on: skip blocks that begin with /")
         ->check(one_of({"on", "off"}));
-    command.add_option("--parameters", arguments.parameters, "LinuxCNC variables file");
-    command.add_option("--tool-table", arguments.tool_table, "LinuxCNC tool table");
-    command.add_option("--ini", arguments.ini,
-                       "LinuxCNC ini file: unit, variables, tool table and search path");
+    add_path(command, "--parameters", arguments.parameters, "LinuxCNC variables file");
+    add_path(command, "--tool-table", arguments.tool_table, "LinuxCNC tool table");
+    add_path(command, "--ini", arguments.ini,
+             "LinuxCNC ini file: unit, variables, tool table and search path");
     command
         .add_option("--machine-unit", arguments.machine_unit,
                     "Unit of lengths in the variables file and the tool table")
@@ -63,10 +62,9 @@ void add_program_arguments(CLI::App& command, ProgramArguments& arguments) {
         .add_option("--no-decimal-point", arguments.no_decimal_point,
                     "Fanuc, Haas: X1000 means 1000 units, or 1000 least input increments (steps)")
         ->check(one_of({"units", "steps"}));
-    command
-        .add_option("--search-path", arguments.search_path,
-                    "Folder with subprograms; separate several with ':' (Windows: ';') or repeat "
-                    "the option")
+    add_path(command, "--search-path", arguments.search_path,
+             "Folder with subprograms; separate several with ':' (Windows: ';') or repeat "
+             "the option")
         ->allow_extra_args(false);
     command
         .add_option("--max-blocks", arguments.max_blocks, "Stop a program after this many blocks")
@@ -87,9 +85,9 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
             arguments.units == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
     if (!arguments.no_decimal_point.empty())
         settings.counts_smallest_steps = arguments.no_decimal_point == "steps";
-    settings.parameters = core::platform::with_slashes(arguments.parameters);
-    settings.tool_table = core::platform::with_slashes(arguments.tool_table);
-    settings.ini = core::platform::with_slashes(arguments.ini);
+    settings.parameters = arguments.parameters;
+    settings.tool_table = arguments.tool_table;
+    settings.ini = arguments.ini;
     settings.max_blocks = arguments.max_blocks;
     for (const std::string& list : arguments.search_path) {
         for (const std::string& folder : split_search_path(list)) {
@@ -97,23 +95,23 @@ core::Result<ProgramSettings> settings_of(const ProgramArguments& arguments) {
             if (!std::filesystem::is_directory(folder, failure))
                 return core::fail(core::ErrorCode::io,
                                   fmt::format("--search-path: there is no folder {}", folder));
-            settings.search_path.push_back(core::platform::with_slashes(folder));
+            settings.search_path.push_back(folder);
         }
     }
     return settings;
 }
 
 CLI::Option* add_check_arguments(CLI::App& command, CheckArguments& arguments) {
-    CLI::Option* program = command.add_option("program", arguments.program, "NC program");
+    CLI::Option* program = add_path(command, "program", arguments.program, "NC program");
     add_check_options(command, arguments);
     return program;
 }
 
 void add_check_options(CLI::App& command, CheckArguments& arguments) {
     const OptionGroup group(command, "Set-up, clearances and limits");
-    command.add_option(
-        "--setup", arguments.setup,
-        "Set-up file (TOML); default: NAME.toml next to NAME.nc, else inferred from the program");
+    add_path(command, "--setup", arguments.setup,
+             "Set-up file (TOML); default: NAME.toml next to NAME.nc, else inferred from "
+             "the program");
     command
         .add_option("--allowance", arguments.allowance,
                     "Minimum clearance to fixtures, and of the holder to the stock, mm")
@@ -140,8 +138,8 @@ void add_start_line(CLI::App& command, CheckArguments& arguments) {
 core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     FEELER_TRY(ProgramSettings settings, settings_of(arguments.reading));
     CheckJob job;
-    job.program = core::platform::with_slashes(arguments.program);
-    job.setup = core::platform::with_slashes(arguments.setup);
+    job.program = arguments.program;
+    job.setup = arguments.setup;
     find_setup_next_to(job);
     job.allowance = arguments.allowance;
     job.mesh_size = arguments.mesh_size;
@@ -154,9 +152,8 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
 void add_device_arguments(CLI::App& command, DeviceArguments& arguments) {
     command.add_flag("--coprocessor", arguments.shown,
                      "Run the program with an emulated coprocessor and show its panel");
-    command
-        .add_option("--device", arguments.file,
-                    "Use this device file (TOML), as for coproc --config; implies --coprocessor")
+    add_path(command, "--device", arguments.file,
+             "Use this device file (TOML), as for coproc --config; implies --coprocessor")
         ->each([&arguments](const std::string&) { arguments.shown = true; });
 }
 

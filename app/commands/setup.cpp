@@ -7,6 +7,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/suggestion.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
@@ -52,8 +53,8 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<SetupOptions>();
     CLI::App& command =
         *cli.add_subcommand("setup", "Infer a set-up from a program and write it to a file");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option("-o,--output", options->output, "File for the set-up");
+    add_path(command, "program", options->program, "NC program")->required();
+    add_path(command, "-o,--output", options->output, "File for the set-up");
     command.add_flag("--force", options->force, "Replace the file if it is there already");
     add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] { exit_code = setup(*options); });

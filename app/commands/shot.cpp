@@ -379,10 +379,9 @@ void add_shot(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand("shot", "Take pictures of a program, without a window");
     add_check_arguments(command, options->what)->required();
     add_subject(command, *options);
-    command
-        .add_option("-o,--output", options->output,
-                    "Picture (.png), or film (.mp4 or another type that ffmpeg writes; without "
-                    "ffmpeg, numbered pictures)")
+    add_path(command, "-o,--output", options->output,
+             "Picture (.png), or film (.mp4 or another type that ffmpeg writes; without "
+             "ffmpeg, numbered pictures)")
         ->required();
     add_view_options(command, *options);
     add_device_arguments(command, options->device);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/base/platform.h"
 #include "core/base/text.h"
 
 namespace app {
@@ -28,6 +29,15 @@ bool is_in(const std::vector<std::string>& names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+CLI::Validator slashes() {
+    return CLI::Validator(
+        [](std::string& path) {
+            path = core::platform::with_slashes(std::move(path));
+            return std::string();
+        },
+        "");
+}
+
 } // namespace
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
@@ -47,6 +57,16 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
                        : fmt::format("{} not in {}{}", word, list, suggestion(word, words));
         },
         list);
+}
+
+CLI::Option* add_path(CLI::App& command, const std::string& name, std::string& path,
+                      const std::string& help) {
+    return command.add_option(name, path, help)->transform(slashes());
+}
+
+CLI::Option* add_path(CLI::App& command, const std::string& name, std::vector<std::string>& paths,
+                      const std::string& help) {
+    return command.add_option(name, paths, help)->transform(slashes());
 }
 
 OptionGroup::OptionGroup(CLI::App& command, const std::string& heading) : command_(command) {

@@ -6,6 +6,7 @@
 
 namespace CLI {
 class App;
+class Option;
 class Validator;
 } // namespace CLI
 
@@ -16,6 +17,13 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
 
 /// Accepts only these words; the message for any other one suggests the nearest.
 CLI::Validator one_of(const std::vector<std::string>& words);
+
+/// Adds an option that takes one path, or several. They get '/' between their parts, as paths are
+/// stored and shown.
+CLI::Option* add_path(CLI::App& command, const std::string& name, std::string& path,
+                      const std::string& help);
+CLI::Option* add_path(CLI::App& command, const std::string& name, std::vector<std::string>& paths,
+                      const std::string& help);
 
 /// Puts the options that are added to a command while this exists under a heading of its help.
 class OptionGroup {

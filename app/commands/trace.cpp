@@ -144,14 +144,14 @@ void add_trace(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<TraceOptions>();
     CLI::App& command =
         *cli.add_subcommand("trace", "Print what each block means, as canonical commands");
-    command.add_option("program", options->program, "NC program")->required();
-    command.add_option("--setup", options->setup,
-                       "Set-up file (TOML), for offsets, tool lengths and start position");
+    add_path(command, "program", options->program, "NC program")->required();
+    add_path(command, "--setup", options->setup,
+             "Set-up file (TOML), for offsets, tool lengths and start position");
     add_program_arguments(command, options->reading);
     command.add_option("--format", options->format, "text or jsonl")
         ->check(one_of({"text", "jsonl"}))
         ->capture_default_str();
-    command.add_option("-o,--output", options->output, "Write the trace to this file");
+    add_path(command, "-o,--output", options->output, "Write the trace to this file");
     command.callback([options, &exit_code] { exit_code = trace(*options); });
 }
 

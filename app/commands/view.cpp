@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/commands/suggestion.h"
 #include "app/view/ui/window.h"
 #include "core/base/platform.h"
 
@@ -59,7 +60,7 @@ void add_view(CLI::App& cli, ExitCode& exit_code) {
     add_check_arguments(command, options->what)
         ->description("NC program; it can also be dropped on the window");
     add_device_arguments(command, options->device);
-    command.add_option("--frame-log", options->frame_log)->group(""); // for measuring
+    add_path(command, "--frame-log", options->frame_log, "")->group(""); // for measuring
     command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 

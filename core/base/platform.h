@@ -114,6 +114,10 @@ std::filesystem::path make_temporary_folder(const char* name);
 /// A path that a user wrote, with '/' between its parts: as paths are stored and reported.
 std::string with_slashes(std::string path);
 
+/// A whole path with the upper and lower case of the file system, where names that differ only in
+/// case are one file. The path itself if there is no such file.
+std::filesystem::path in_stored_case(const std::filesystem::path& path);
+
 /// What separates the folders of a list of folders: ':', or ';' where ':' follows a drive.
 char list_separator();
 

@@ -209,6 +209,8 @@ std::filesystem::path make_temporary_folder(const char* name) {
 
 std::string with_slashes(std::string path) { return path; }
 
+std::filesystem::path in_stored_case(const std::filesystem::path& path) { return path; }
+
 char list_separator() { return ':'; }
 
 bool matches_pattern(const std::string& pattern, const std::string& name) {

@@ -352,6 +352,12 @@ int64_t nanoseconds(const LARGE_INTEGER& time) {
     return (std::clamp<int64_t>(time.QuadPart, from, from + 2 * century) - from) * 100;
 }
 
+/// Letters as file systems of Windows compare them.
+std::wstring folded(std::wstring text) {
+    ::CharLowerBuffW(text.data(), static_cast<DWORD>(text.size()));
+    return text;
+}
+
 uint64_t joined(DWORD high, DWORD low) { return uint64_t{high} << 32U | low; }
 
 /// The path by which the system knows an open file; empty if it does not say.
@@ -389,6 +395,23 @@ std::optional<FileFacts> facts_of(const std::filesystem::path& path) {
                      .size = joined(info.nFileSizeHigh, info.nFileSizeLow),
                      .modified = nanoseconds(times.LastWriteTime),
                      .changed = nanoseconds(times.ChangeTime)};
+}
+
+std::filesystem::path in_stored_case(const std::filesystem::path& path) {
+    const Handle file(::CreateFileW(path.c_str(), FILE_READ_ATTRIBUTES, share_all, nullptr,
+                                    OPEN_EXISTING, FILE_FLAG_BACKUP_SEMANTICS, nullptr));
+    if (!file.is_open()) return path;
+    // The system may know the file by another drive or share: then its last parts count.
+    const std::wstring own = path.generic_wstring();
+    const std::wstring stored = std::filesystem::path(final_path(file)).generic_wstring();
+    const std::wstring own_folded = folded(own), stored_folded = folded(stored);
+    size_t same = 0, whole_parts = 0;
+    while (same < std::min(own.size(), stored.size())
+           && own_folded[own.size() - 1 - same] == stored_folded[stored.size() - 1 - same]) {
+        ++same;
+        if (same == own.size() || own[own.size() - same] == L'/') whole_parts = same;
+    }
+    return own.substr(0, own.size() - whole_parts) + stored.substr(stored.size() - whole_parts);
 }
 
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -480,12 +503,6 @@ bool matches(const wchar_t* pattern, const wchar_t* name) {
         ++name;
     }
     return *name == L'\0';
-}
-
-/// Letters as file systems of Windows compare them.
-std::wstring folded(std::wstring text) {
-    ::CharLowerBuffW(text.data(), static_cast<DWORD>(text.size()));
-    return text;
 }
 
 } // namespace

@@ -410,6 +410,23 @@ class Batch(Case):
         third = self.windows("check", windows_path(self.folder))
         self.assertIn("2 of 3 results come from earlier checks", third.out + third.err)
 
+    def test_names_that_differ_in_case_are_one_program(self):
+        self.copy("a")
+        both = self.windows("check", "a.NC", "A.nc", "--no-cache", "--format", "json", cwd=self.folder)
+        self.assertNotIn('"programs"', both.out)
+        self.windows("check", ".", cwd=self.folder)
+        history = self.windows("history", windows_path(self.folder).upper() + "\\A.nc", "--format", "json", status=0)
+        self.assertEqual(len(json.loads(history.out)["versions"]), 1)
+
+    def test_paths_are_reported_with_slashes(self):
+        self.copy("a")
+        (self.folder / "sub").mkdir()
+        (self.folder / "sub" / "bad.nc").write_text("G21 G90\nG1 Xabc\n", encoding="utf-8")
+        for command in ("check", "trace", "diff"):
+            told = self.windows(command, "sub\\bad.nc", cwd=self.folder)
+            self.assertIn("sub/bad.nc", told.out + told.err)
+            self.assertNotIn("sub\\bad", told.out + told.err)
+
     def test_shards_are_merged_by_a_pattern(self):
         for name in ("a", "b"):
             self.copy(name)
