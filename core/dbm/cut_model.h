@@ -195,6 +195,9 @@ private:
     std::vector<SavedTile> tiles_;
 };
 
+/// A box around what the logged moves from number `first` on can have removed.
+Aabb box_of_cuts(const CutModel& model, size_t first);
+
 /// Counts the box tests of a search, and refits the boxes around recent cuts once searches have
 /// spent as much on outdated ones as refitting costs. Does not change any result.
 void note_search(CutModel& model, size_t box_tests);

@@ -1,6 +1,8 @@
 #include "core/dbm/lane_cut.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 // Targets between SSE2, which every x86-64 has, and AVX2 do not speed up these loops.
 #ifndef HWY_DISABLED_TARGETS

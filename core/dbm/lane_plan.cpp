@@ -100,12 +100,45 @@ AcrossLanes across_lanes(const CutterSweep& sweep, int axis, const ProfileElemen
 
 ElementLanes element_lanes(const CutterSweep& sweep, int axis, const ProfileElement& e,
                            bool sloped) {
-    ElementLanes lanes{e, {}, {}, sloped};
-    if (axis == 2)
+    ElementLanes lanes{e, {}, {}, sloped, {-infinity, infinity}};
+    if (axis == 2) {
         lanes.path = capsule(sweep, axis, 0.0, std::max(e.r0, e.r1) + e.margin);
-    else
+    } else {
         lanes.across = across_lanes(sweep, axis, e);
+        lanes.matters = {std::min(sweep.from.z, sweep.to.z) + e.z0 - e.margin,
+                         std::max(sweep.from.z, sweep.to.z) + e.z1 + e.margin};
+    }
     return lanes;
+}
+
+/// For each element of a convex profile, the distances from the axis at which it may be the lowest
+/// or the highest on a line along Z. Elements are ordered by height.
+std::vector<Interval> distances_that_matter(const std::vector<ProfileElement>& all) {
+    const size_t count = all.size();
+    std::vector<Interval> distances(count, Interval{infinity, -infinity});
+    const auto rim = [](const ProfileElement& e) { return std::max(e.r0, e.r1); };
+    const auto visit = [&](const auto& nth, const auto& is_beyond) {
+        // Out to this distance, an element that ends before the present one begins hides it.
+        double hidden = -infinity;
+        size_t passed = 0;
+        for (size_t i = 0; i < count; ++i) {
+            const ProfileElement& e = all[nth(i)];
+            for (; passed < i && is_beyond(e, all[nth(passed)]); ++passed)
+                hidden = std::max(hidden, rim(all[nth(passed)]));
+            const double reach = rim(e) + e.margin;
+            Interval& seen = distances[nth(i)];
+            if (reach > hidden) seen = {std::min(seen.lower, hidden), reach};
+        }
+    };
+    visit([](size_t i) { return i; },
+          [](const ProfileElement& e, const ProfileElement& lower) {
+              return lower.z1 <= e.z0 - e.margin;
+          });
+    visit([&](size_t i) { return count - 1 - i; },
+          [](const ProfileElement& e, const ProfileElement& higher) {
+              return higher.z0 >= e.z1 + e.margin;
+          });
+    return distances;
 }
 
 /// Whether a move is sloped by more than rounding.
@@ -146,6 +179,7 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
     const bool level = sweep.from.z == sweep.to.z;
     const bool upright = sweep.from.x == sweep.to.x && sweep.from.y == sweep.to.y;
     const bool sloped = is_sloped(sweep);
+    std::vector<Interval> distances;
     for (size_t i = 0; i < all.size(); ++i) {
         const ProfileElement& e = all[i];
         if (is_ball(e) && plan.balls < LanePlan::most) {
@@ -162,11 +196,16 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             open_up(c, lowest + e.z1, top);
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.sideways[plan.across++] = across_lanes(sweep, axis, e);
-        } else if ((level || upright || sloped) && plan.elements < LanePlan::most
+        } else if ((level || upright || sloped)
                    && (e.margin > 0.0 || (e.z0 < e.z1 && e.r0 != e.r1))) {
-            plan.element[plan.elements++] = element_lanes(sweep, axis, e, sloped);
+            plan.elements.push_back(element_lanes(sweep, axis, e, sloped));
+            if (axis == 2 && all.size() > 1) {
+                if (distances.empty()) distances = distances_that_matter(all);
+                plan.elements.back().matters = distances[i];
+            }
         } else {
-            plan.balls = plan.uprights = plan.across = plan.elements = 0;
+            plan.balls = plan.uprights = plan.across = 0;
+            plan.elements.clear();
             return plan;
         }
     }

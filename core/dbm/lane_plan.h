@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "core/dbm/cutter.h"
 
@@ -46,6 +47,8 @@ struct ElementLanes {
     CapsuleLanes path;  // for lines along Z
     AcrossLanes across; // for other lines; its radius is not used
     bool sloped;
+    Interval matters; // it can be left out for lines elsewhere: by their distance from the axis, or
+                      // by their height for lines along X and Y
 };
 
 /// Parameters for intersecting the sweep of a convex piece with the lines of one family, as the
@@ -55,10 +58,10 @@ struct LanePlan {
 
     int axis = 0;
     bool by_lanes = false; // else line by line, using `piece` and `sweep`
-    size_t balls = 0, uprights = 0, across = 0, elements = 0;
+    size_t balls = 0, uprights = 0, across = 0;
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
     std::array<AcrossLanes, most> sideways;       // cylinders met by lines along X and Y
-    std::array<ElementLanes, most> element;
+    std::vector<ElementLanes> elements;           // any number: a form tool has dozens
     const RevolvedProfile* piece = nullptr;
     const CutterSweep* sweep = nullptr;
 };

@@ -60,6 +60,41 @@ HWY_INLINE void add_element(const LanePlan& plan, const ElementLanes& element, b
         add_cone_across(element, u, v, all);
 }
 
+/// The least and the greatest distance of a chunk of lines along Z from the axis of the tool.
+HWY_ATTR Interval distances_from_axis(const CapsuleLanes& c, const Row& u, double v) {
+    const Row ou = u - c.from_u;
+    const double ov = v - c.from_v;
+    const Row g = ou * c.cos_u + row_of(ov * c.cos_v);
+    const Row aside = ou * c.cos_v - row_of(ov * c.cos_u);
+    const Row past = g - within_move(g * c.per_length) * c.length;
+    const Row ahead = g - c.length;
+    alignas(64) std::array<double, chunk> nearest, farthest;
+    store(aside * aside + past * past, nearest.data());
+    store(aside * aside + most(g * g, ahead * ahead), farthest.data());
+    return {std::sqrt(*std::min_element(nearest.begin(), nearest.end())),
+            std::sqrt(*std::max_element(farthest.begin(), farthest.end()))};
+}
+
+/// The distances from the axis, or the heights, of a chunk of lines (see ElementLanes::matters).
+HWY_INLINE Interval places_of(const LanePlan& plan, const double* u, const Row& at_u, double v) {
+    if (plan.axis == 2) return distances_from_axis(plan.elements[0].path, at_u, v);
+    if (plan.axis == 0) return {v, v};
+    const auto [low, high] = std::minmax_element(u, u + chunk);
+    return {*low, *high};
+}
+
+/// Adds what the cones and rounded corners of the plan sweep.
+HWY_INLINE void add_elements(const LanePlan& plan, bool loosely, const double* u, const Row& at_u,
+                             double v, Swept& all) {
+    if (plan.elements.empty()) return;
+    constexpr double slack = 1e-9; // mm
+    const Interval places = places_of(plan, u, at_u, v);
+    for (const ElementLanes& element : plan.elements)
+        if (element.matters.lower - slack <= places.upper
+            && element.matters.upper + slack >= places.lower)
+            add_element(plan, element, loosely, at_u, v, all);
+}
+
 /// What the plan sweeps, line by line, for shapes and moves without a lane version.
 HWY_ATTR Swept swept_one_by_one(const LanePlan& plan, const double* u, double v, uint32_t wanted) {
     alignas(64) std::array<double, chunk> lower, upper;
@@ -91,8 +126,7 @@ HWY_ATTR Swept swept_of(const LanePlan& plan, const double* u, double v, uint32_
     }
     for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
     for (size_t i = 0; i < plan.across; ++i) add_across(plan.sideways[i], at_u, v, all);
-    for (size_t i = 0; i < plan.elements; ++i)
-        add_element(plan, plan.element[i], false, at_u, v, all);
+    add_elements(plan, false, u, at_u, v, all);
     all.ends = {on_lattice(all.ends.lower), on_lattice(all.ends.upper)};
     return all;
 }
@@ -149,10 +183,9 @@ HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, con
     }
     for (size_t i = 0; i < plan.uprights; ++i) add(reach_of_upright(plan.upright[i], at_u, v));
     for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.sideways[i], at_u, v));
-    if (plan.elements == 0) return found;
+    if (plan.elements.empty()) return found;
     Swept loose = empty_sweep();
-    for (size_t i = 0; i < plan.elements; ++i)
-        add_element(plan, plan.element[i], true, at_u, v, loose);
+    add_elements(plan, true, u, at_u, v, loose);
     constexpr double slack = 1e-6;
     const Stretch wider{loose.ends.lower - slack, loose.ends.upper + slack};
     return found | holds([&](const Stretch& matter) HWY_ATTR { return overlap(wider, matter); });

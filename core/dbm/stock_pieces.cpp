@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "core/base/union_find.h"
 #include "core/dbm/cut_model.h"
@@ -34,34 +37,71 @@ const ScanLines& family(const CutModel& model, int axis) {
     return model.lines.families[static_cast<size_t>(axis)];
 }
 
-/// Whether material of line (u, v) along Z is connected to material of the next line along
-/// `towards`, X or Y.
-bool hang_together(const CutModel& model, int u, int v, int towards, const Interval& a,
-                   const Interval& b) {
-    const ScanGrid& grid = model.lines.grid;
-    const double lower = std::max(a.lower, b.lower), upper = std::min(a.upper, b.upper);
-    if (lower > upper) return false;
-    const auto [first, last] = lines_within(grid, 2, lower, upper, 0);
-    if (first > last) return true;
-    const int step = towards == 0 ? u : v;
-    const double here = grid.coordinate(towards, step), there = grid.coordinate(towards, step + 1);
-    for (int k = first; k <= last; ++k) {
-        const bool whole = towards == 0 ? covers(family(model, 0).line(v, k), here, there)
-                                        : covers(family(model, 1).line(k, u), here, there);
-        if (whole) return true;
+/// Calls `act(a, b)` for the segments of two lines that overlap or touch.
+template <typename Act>
+void for_overlaps(const LineView& one, const LineView& other, const Act& act) {
+    for (size_t a = 0, b = 0; a < one.size() && b < other.size();) {
+        if (one[a].lower <= other[b].upper && other[b].lower <= one[a].upper) act(a, b);
+        one[a].upper < other[b].upper ? ++a : ++b;
     }
-    return false;
 }
+
+/// Finds lines along X or Y that connect neighbouring lines along Z in one row of them. The
+/// connecting line found last is tried first, for it usually connects the next lines, too.
+class RowOfLines {
+public:
+    /// The lines (.., row) of the Z family if `towards` is X, (row, ..) if it is Y.
+    RowOfLines(const CutModel& model, int towards, int row)
+        : grid_(model.lines.grid),
+          across_(family(model, towards)),
+          places_(model.positions[static_cast<size_t>(towards)].data()),
+          towards_(towards),
+          row_(row) {}
+
+    /// Whether material of line number `step` is connected to material of the next one that
+    /// overlaps or touches it.
+    bool hang_together(int step, const Interval& a, const Interval& b) {
+        const double lower = std::max(a.lower, b.lower), upper = std::min(a.upper, b.upper);
+        const double here = places_[step], there = places_[step + 1];
+        for (const Bridge& bridge : bridges_)
+            if (bridge.height >= lower && bridge.height <= upper && bridge.matter.lower <= here
+                && bridge.matter.upper >= there)
+                return true;
+        const auto [first, last] = lines_within(grid_, 2, lower, upper, 0);
+        if (first > last) return true;
+        for (int k = first; k <= last; ++k)
+            for (const Interval& matter :
+                 towards_ == 0 ? across_.line(row_, k) : across_.line(k, row_))
+                if (matter.lower <= here && matter.upper >= there) {
+                    bridges_[next_] = {grid_.coordinate(2, k), matter};
+                    next_ = (next_ + 1) % bridges_.size();
+                    return true;
+                }
+        return false;
+    }
+
+private:
+    /// Material of a line along X or Y at a height.
+    struct Bridge {
+        double height = infinity;
+        Interval matter{infinity, -infinity};
+    };
+
+    const ScanGrid& grid_;
+    const ScanLines& across_;
+    const double* places_;
+    int towards_, row_;
+    std::array<Bridge, 2> bridges_; // one for the material below, one for what hangs above it
+    size_t next_ = 0;
+};
 
 } // namespace
 
-/// The material of a tile of lines along Z: its parts, and their connections to parts of the next
-/// tiles along X and Y.
+/// The material of a tile of lines along Z: its parts.
 struct PieceMap::Tile {
     std::vector<uint32_t> first;   // number of the first stretch of each line; one more at the end
     std::vector<uint32_t> part;    // part to which each stretch belongs
     std::vector<StockPiece> parts; // volume stored as length until they are joined
-    std::array<std::vector<std::pair<uint32_t, uint32_t>>, 2> links;
 };
 
 /// A map during an update.
@@ -74,14 +114,17 @@ public:
           u_tiles_((z_.u_count() + tile_side - 1) / tile_side),
           v_tiles_((z_.v_count() + tile_side - 1) / tile_side) {}
 
-    void update_pieces();
+    /// Brings the parts of changed tiles up to date; these tiles.
+    std::vector<uint32_t> update();
+    bool hangs_together_around(const std::vector<uint32_t>& changed) const;
     std::vector<StockPiece> put_together();
 
 private:
     using Tile = PieceMap::Tile;
 
-    size_t index(int tu, int tv) const { return static_cast<size_t>(tu + tv * u_tiles_); }
-    LineRange lines_of(int tu, int tv) const {
+    uint32_t index(int tu, int tv) const { return static_cast<uint32_t>(tu + tv * u_tiles_); }
+    LineRange lines_of(uint32_t tile) const {
+        const int tu = static_cast<int>(tile) % u_tiles_, tv = static_cast<int>(tile) / u_tiles_;
         return {tu * tile_side, std::min((tu + 1) * tile_side, z_.u_count()), tv * tile_side,
                 std::min((tv + 1) * tile_side, z_.v_count())};
     }
@@ -89,9 +132,22 @@ private:
         return static_cast<size_t>((u - range.u_first)
                                    + (v - range.v_first) * (range.u_last - range.u_first));
     }
-    std::shared_ptr<Tile> tile_parts(int tu, int tv) const;
+    /// The next tile along X or Y, if there is one.
+    std::optional<uint32_t> next(uint32_t tile, size_t towards) const {
+        const int tu = static_cast<int>(tile) % u_tiles_, tv = static_cast<int>(tile) / u_tiles_;
+        if (towards == 0) return tu + 1 < u_tiles_ ? std::optional(tile + 1) : std::nullopt;
+        return tv + 1 < v_tiles_ ? std::optional(index(tu, tv + 1)) : std::nullopt;
+    }
+    /// The tile before this one along X or Y, if there is one.
+    std::optional<uint32_t> previous(uint32_t tile, size_t towards) const {
+        const int tu = static_cast<int>(tile) % u_tiles_, tv = static_cast<int>(tile) / u_tiles_;
+        if (towards == 0) return tu > 0 ? std::optional(tile - 1) : std::nullopt;
+        return tv > 0 ? std::optional(index(tu, tv - 1)) : std::nullopt;
+    }
+    std::shared_ptr<Tile> parts_of(uint32_t tile) const;
     void number_parts(Tile& tile, const LineRange& range, UnionFind& groups) const;
-    void link(int tu, int tv, int towards);
+    void link(uint32_t tile, size_t towards);
+    bool is_crumb(const StockPiece& piece) const;
 
     const CutModel& model_;
     const ScanLines& z_;
@@ -99,103 +155,171 @@ private:
     int u_tiles_, v_tiles_;
 };
 
-std::shared_ptr<PieceMap::Tile> PieceWork::tile_parts(int tu, int tv) const {
+std::shared_ptr<PieceMap::Tile> PieceWork::parts_of(uint32_t number) const {
     const auto tile = std::make_shared<Tile>();
-    const LineRange range = lines_of(tu, tv);
-    size_t count = 0;
+    const LineRange range = lines_of(number);
+    const int width = range.u_last - range.u_first;
+    std::array<LineView, ScanTile::lines> lines;
+    uint32_t count = 0;
+    tile->first.reserve(ScanTile::lines + 1);
     for (int v = range.v_first; v < range.v_last; ++v)
         for (int u = range.u_first; u < range.u_last; ++u) {
-            tile->first.push_back(static_cast<uint32_t>(count));
-            count += z_.line(u, v).size();
+            const size_t at = line_index(range, u, v);
+            lines[at] = z_.line(u, v);
+            tile->first.push_back(count);
+            count += static_cast<uint32_t>(lines[at].size());
         }
-    tile->first.push_back(static_cast<uint32_t>(count));
+    tile->first.push_back(count);
     UnionFind groups(count);
-    for (int v = range.v_first; v < range.v_last; ++v)
-        for (int u = range.u_first; u < range.u_last; ++u)
-            for (int towards = 0; towards < 2; ++towards) {
-                const int u2 = u + (towards == 0), v2 = v + (towards == 1);
-                if (u2 >= range.u_last || v2 >= range.v_last) continue;
-                const auto& line = z_.line(u, v);
-                const auto& next = z_.line(u2, v2);
-                for (size_t a = 0; a < line.size(); ++a)
-                    for (size_t b = 0; b < next.size(); ++b)
-                        if (hang_together(model_, u, v, towards, line[a], next[b]))
-                            groups.join(
-                                static_cast<uint32_t>(tile->first[line_index(range, u, v)] + a),
-                                static_cast<uint32_t>(tile->first[line_index(range, u2, v2)] + b));
-            }
+    const auto join = [&](RowOfLines& row, int step, size_t at, size_t next) {
+        for_overlaps(lines[at], lines[next], [&](size_t a, size_t b) {
+            if (row.hang_together(step, lines[at][a], lines[next][b]))
+                groups.join(tile->first[at] + static_cast<uint32_t>(a),
+                            tile->first[next] + static_cast<uint32_t>(b));
+        });
+    };
+    for (int v = range.v_first; v < range.v_last; ++v) {
+        RowOfLines row(model_, 0, v);
+        for (int u = range.u_first; u + 1 < range.u_last; ++u) {
+            const size_t at = line_index(range, u, v);
+            join(row, u, at, at + 1);
+        }
+    }
+    for (int u = range.u_first; u < range.u_last; ++u) {
+        RowOfLines row(model_, 1, u);
+        for (int v = range.v_first; v + 1 < range.v_last; ++v) {
+            const size_t at = line_index(range, u, v);
+            join(row, v, at, at + static_cast<size_t>(width));
+        }
+    }
     number_parts(*tile, range, groups);
     return tile;
 }
 
 void PieceWork::number_parts(Tile& tile, const LineRange& range, UnionFind& groups) const {
-    std::vector<uint32_t> number(tile.first.back(), 0);
+    const double* const xs = model_.positions[0].data();
+    const double* const ys = model_.positions[1].data();
+    tile.part.resize(tile.first.back());
     uint32_t stretch = 0;
     for (int v = range.v_first; v < range.v_last; ++v)
         for (int u = range.u_first; u < range.u_last; ++u)
             for (const Interval& matter : z_.line(u, v)) {
                 const uint32_t root = groups.root(stretch);
-                const ScanGrid& grid = model_.lines.grid;
-                const Vec3 low = point_on_line(grid, 2, u, v, matter.lower);
-                const Vec3 high = point_on_line(grid, 2, u, v, matter.upper);
+                const Vec3 low(xs[u], ys[v], matter.lower), high(xs[u], ys[v], matter.upper);
                 if (root == stretch) { // the first of its group
-                    number[stretch] = static_cast<uint32_t>(tile.parts.size());
+                    tile.part[stretch] = static_cast<uint32_t>(tile.parts.size());
                     tile.parts.push_back({0.0, {}, 0.5 * (low + high)});
                 }
-                StockPiece& part = tile.parts[number[root]];
+                const uint32_t number = tile.part[root];
+                StockPiece& part = tile.parts[number];
                 part.volume += matter.length();
                 part.box.extend(low);
                 part.box.extend(high);
-                tile.part.push_back(number[root]);
-                ++stretch;
+                tile.part[stretch++] = number;
             }
 }
 
 /// Finds connections across the border to the next tile.
-void PieceWork::link(int tu, int tv, int towards) {
-    const int tu2 = tu + (towards == 0), tv2 = tv + (towards == 1);
-    if (tu < 0 || tv < 0 || tu2 >= u_tiles_ || tv2 >= v_tiles_) return;
-    const auto tile = std::make_shared<Tile>(*map_.tiles_[index(tu, tv)]);
-    const Tile& next = *map_.tiles_[index(tu2, tv2)];
-    const LineRange range = lines_of(tu, tv), beyond = lines_of(tu2, tv2);
-    auto& links = tile->links[static_cast<size_t>(towards)];
-    links.clear();
+void PieceWork::link(uint32_t number, size_t towards) {
+    const std::optional<uint32_t> neighbour = next(number, towards);
+    if (!neighbour) return;
+    const Tile& tile = *map_.tiles_[number];
+    const Tile& beyond = *map_.tiles_[*neighbour];
+    const LineRange range = lines_of(number), far = lines_of(*neighbour);
+    PieceMap::Links links;
     const int count = towards == 0 ? range.v_last - range.v_first : range.u_last - range.u_first;
     for (int i = 0; i < count; ++i) {
         const int u = towards == 0 ? range.u_last - 1 : range.u_first + i;
         const int v = towards == 1 ? range.v_last - 1 : range.v_first + i;
         const int u2 = u + (towards == 0), v2 = v + (towards == 1);
-        const auto& line = z_.line(u, v);
-        const auto& other = z_.line(u2, v2);
-        for (size_t a = 0; a < line.size(); ++a)
-            for (size_t b = 0; b < other.size(); ++b)
-                if (hang_together(model_, u, v, towards, line[a], other[b]))
-                    links.emplace_back(tile->part[tile->first[line_index(range, u, v)] + a],
-                                       next.part[next.first[line_index(beyond, u2, v2)] + b]);
+        const auto line = z_.line(u, v), other = z_.line(u2, v2);
+        RowOfLines row(model_, static_cast<int>(towards), towards == 0 ? v : u);
+        for_overlaps(line, other, [&](size_t a, size_t b) {
+            const std::pair joined{tile.part[tile.first[line_index(range, u, v)] + a],
+                                   beyond.part[beyond.first[line_index(far, u2, v2)] + b]};
+            if (std::find(links.rbegin(), links.rend(), joined) != links.rend()) return;
+            if (row.hang_together(towards == 0 ? u : v, line[a], other[b])) links.push_back(joined);
+        });
     }
     std::sort(links.begin(), links.end());
-    links.erase(std::unique(links.begin(), links.end()), links.end());
-    map_.tiles_[index(tu, tv)] = tile;
+    auto& known = map_.links_[towards][number];
+    if (!known || *known != links)
+        known = std::make_shared<const PieceMap::Links>(std::move(links));
 }
 
-void PieceWork::update_pieces() {
+std::vector<uint32_t> PieceWork::update() {
     const size_t count = index(0, v_tiles_);
     if (map_.tiles_.empty()) {
         map_.tiles_.resize(count);
         map_.changed_.assign(count, 1);
+        for (auto& links : map_.links_) links.resize(count);
+        map_.changed_tiles_.resize(count);
+        std::iota(map_.changed_tiles_.begin(), map_.changed_tiles_.end(), 0U);
     }
-    for (int tv = 0; tv < v_tiles_; ++tv)
-        for (int tu = 0; tu < u_tiles_; ++tu)
-            if (map_.changed_[index(tu, tv)]) map_.tiles_[index(tu, tv)] = tile_parts(tu, tv);
-    const auto changed = [&](int tu, int tv) {
-        return tu < u_tiles_ && tv < v_tiles_ && map_.changed_[index(tu, tv)] != 0;
-    };
-    for (int tv = 0; tv < v_tiles_; ++tv)
-        for (int tu = 0; tu < u_tiles_; ++tu) {
-            if (changed(tu, tv) || changed(tu + 1, tv)) link(tu, tv, 0);
-            if (changed(tu, tv) || changed(tu, tv + 1)) link(tu, tv, 1);
+    std::vector<uint32_t> changed = std::exchange(map_.changed_tiles_, {});
+    for (const uint32_t tile : changed) map_.tiles_[tile] = parts_of(tile);
+    for (const uint32_t tile : changed)
+        for (const size_t towards : {0U, 1U}) {
+            link(tile, towards);
+            const auto before = previous(tile, towards);
+            if (before && !map_.changed_[*before]) link(*before, towards);
         }
-    std::fill(map_.changed_.begin(), map_.changed_.end(), uint8_t{0});
+    for (const uint32_t tile : changed) map_.changed_[tile] = 0;
+    return changed;
+}
+
+bool PieceWork::is_crumb(const StockPiece& piece) const {
+    const double h = model_.lines.grid.spacing;
+    return piece.volume < 8.0 * h * h * h || glm::length(piece.box.size()) < 4.0 * h;
+}
+
+/// Whether all parts in the changed tiles and those next to them are connected there, crumbs within
+/// the changed ones aside. Then any connection elsewhere that led through changed material still
+/// exists: it enters and leaves these tiles in those next to the changed ones, which are as before.
+bool PieceWork::hangs_together_around(const std::vector<uint32_t>& changed) const {
+    std::vector<uint32_t> around = changed;
+    for (const uint32_t tile : changed)
+        for (const size_t towards : {0U, 1U})
+            for (const auto& neighbour : {next(tile, towards), previous(tile, towards)})
+                if (neighbour) around.push_back(*neighbour);
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    std::vector<uint32_t> first(1, 0);
+    for (const uint32_t tile : around)
+        first.push_back(first.back() + static_cast<uint32_t>(map_.tiles_[tile]->parts.size()));
+    UnionFind groups(first.back());
+    for (size_t i = 0; i < around.size(); ++i)
+        for (const size_t towards : {0U, 1U}) {
+            const auto neighbour = next(around[i], towards);
+            if (!neighbour) continue;
+            const auto at = std::lower_bound(around.begin(), around.end(), *neighbour);
+            if (at == around.end() || *at != *neighbour) continue;
+            const uint32_t beyond = first[static_cast<size_t>(at - around.begin())];
+            for (const auto& [a, b] : *map_.links_[towards][around[i]])
+                groups.join(first[i] + a, beyond + b);
+        }
+    struct Group {
+        StockPiece piece;
+        bool may_go_on = false; // beyond these tiles
+    };
+    std::vector<Group> all(first.back());
+    for (size_t i = 0; i < around.size(); ++i) {
+        const bool is_changed = std::binary_search(changed.begin(), changed.end(), around[i]);
+        for (size_t p = 0; p < map_.tiles_[around[i]]->parts.size(); ++p) {
+            const StockPiece& part = map_.tiles_[around[i]]->parts[p];
+            Group& group = all[groups.root(first[i] + static_cast<uint32_t>(p))];
+            group.piece.volume += part.volume;
+            group.piece.box.extend(part.box);
+            group.may_go_on |= !is_changed;
+        }
+    }
+    const double h = model_.lines.grid.spacing;
+    size_t count = 0;
+    for (Group& group : all) {
+        group.piece.volume *= h * h;
+        count += group.may_go_on || !is_crumb(group.piece);
+    }
+    return count <= 1;
 }
 
 std::vector<StockPiece> PieceWork::put_together() {
@@ -206,9 +330,9 @@ std::vector<StockPiece> PieceWork::put_together() {
     for (int tv = 0; tv < v_tiles_; ++tv)
         for (int tu = 0; tu < u_tiles_; ++tu)
             for (size_t towards = 0; towards < 2; ++towards)
-                for (const auto& [a, b] : map_.tiles_[index(tu, tv)]->links[towards])
-                    groups.join(first[index(tu, tv)] + a,
-                                first[index(tu + (towards == 0), tv + (towards == 1))] + b);
+                if (const auto neighbour = next(index(tu, tv), towards))
+                    for (const auto& [a, b] : *map_.links_[towards][index(tu, tv)])
+                        groups.join(first[index(tu, tv)] + a, first[*neighbour] + b);
     std::vector<StockPiece> whole(first.back());
     for (size_t t = 0; t < map_.tiles_.size(); ++t)
         for (size_t p = 0; p < map_.tiles_[t]->parts.size(); ++p) {
@@ -223,9 +347,7 @@ std::vector<StockPiece> PieceWork::put_together() {
     std::vector<uint32_t> order;
     for (uint32_t i = 0; i < whole.size(); ++i) {
         whole[i].volume *= h * h;
-        const bool is_crumb =
-            whole[i].volume < 8.0 * h * h * h || glm::length(whole[i].box.size()) < 4.0 * h;
-        if (groups.root(i) == i && !is_crumb) order.push_back(i);
+        if (groups.root(i) == i && !is_crumb(whole[i])) order.push_back(i);
     }
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return whole[a].volume > whole[b].volume; });
@@ -249,12 +371,23 @@ void PieceMap::note_cut(const CutModel& model, const Aabb& box) {
     const int u_tiles = (z.u_count() + tile_side - 1) / tile_side;
     for (int tv = v_first / tile_side; tv <= v_last / tile_side && v_first <= v_last; ++tv)
         for (int tu = u_first / tile_side; tu <= u_last / tile_side && u_first <= u_last; ++tu)
-            changed_[static_cast<size_t>(tu + tv * u_tiles)] = 1;
+            if (const auto tile = static_cast<uint32_t>(tu + tv * u_tiles); !changed_[tile]) {
+                changed_[tile] = 1;
+                changed_tiles_.push_back(tile);
+            }
+}
+
+bool PieceMap::may_have_separated(const CutModel& model) {
+    const bool is_new = tiles_.empty();
+    PieceWork work(model, *this);
+    std::vector<uint32_t> changed = work.update();
+    std::sort(changed.begin(), changed.end());
+    return is_new || !work.hangs_together_around(changed);
 }
 
 std::vector<StockPiece> PieceMap::pieces(const CutModel& model) {
     PieceWork work(model, *this);
-    work.update_pieces();
+    work.update();
     return work.put_together();
 }
 

@@ -238,16 +238,15 @@ bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
     return noted;
 }
 
-/// Whether the cutter is where the last move ended, so that it has already cut there.
-bool continues_last_sweep(const CutModel& model, const CutterSweep& sweep) {
-    const CutterSweep& last = model.last;
+/// Whether the cutter is where another move ended, so that it has already cut there.
+bool continues(const CutterSweep& sweep, const CutterSweep& last) {
     return last.cutter == sweep.cutter && last.to == sweep.from
            && last.orientation == sweep.orientation;
 }
 
 /// Prepares a sweep for cutting and adds it to the log; empty if it does not come near the stock.
 std::optional<ReadySweep> begin(CutModel& model, const CutterSweep& sweep) {
-    const bool on = continues_last_sweep(model, sweep);
+    const bool on = continues(sweep, model.last);
     if (model.last.cutter != sweep.cutter) model.last.cutter = sweep.cutter;
     model.last.to = sweep.to;
     model.last.orientation = sweep.orientation;
@@ -400,6 +399,18 @@ RemovalSums cut_all_tiles(CutModel& model, const ReadySweep& ready) {
 }
 
 } // namespace
+
+Aabb box_of_cuts(const CutModel& model, size_t first) {
+    Aabb box;
+    for (size_t i = first; i < model.log.size(); ++i) {
+        const LoggedSweep logged = model.log[i];
+        if (i > 0 && continues(logged.sweep, model.log[i - 1].sweep))
+            box.extend(front_bounds(logged.sweep, model.outer_box.max.z));
+        else
+            box.extend(logged.box);
+    }
+    return box;
+}
 
 double cut(CutModel& model, const CutterSweep& sweep) {
     const std::optional<ReadySweep> ready = begin(model, sweep);

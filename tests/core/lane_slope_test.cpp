@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include "core/base/math.h"
 #include "core/dbm/lane_cut.h"
 
 namespace {
@@ -16,18 +17,20 @@ struct Compared {
     double longest = -infinity, shortest = infinity; // excess of the lanes' interval at an end
 };
 
-/// Random moves up or down, some of them nearly level or nearly vertical.
+/// Random moves, most of them up or down, some of them nearly or exactly level or vertical.
 CutterSweep random_move(std::mt19937& rng, const std::shared_ptr<const Cutter>& cutter) {
     const auto within = [&](double reach) {
         return std::uniform_real_distribution<double>(-reach, reach)(rng);
     };
     CutterSweep sweep{cutter, {within(2), within(2), within(2)}, {}};
     Vec3 by(within(4), within(4), within(4));
-    const auto kind = rng() % 6;
+    const auto kind = rng() % 8;
     if (kind == 0) by.z *= 0.01;
     if (kind == 1) by.x *= 0.01, by.y *= 0.01;
     if (kind == 2) by.x = 0.0;
     if (kind == 3) by.y = 0.0;
+    if (kind == 4) by.z = 0.0;
+    if (kind == 5) by.x = by.y = 0.0;
     sweep.to = sweep.from + by;
     return sweep;
 }
@@ -97,6 +100,69 @@ TEST(LaneSlope, MeetsRoundedCornersAsLineByLine) {
     expect_equal({{{1, 2, 1, 2, 1}}}, 1e-6);
     expect_equal({{{0.2, 2.8, 0.2, 2.8, 0.2}}}, 1e-6);
     expect_equal({{{2.5, 0.5, 2.5, 0.5, 2.5}}}, 1e-6);
+}
+
+/// A ball of cones, its tip a little flat, and above its equator an undercut: what a ball nose with
+/// flutes that end below the top of the ball is made of.
+RevolvedProfile ball_of_cones(double radius, int cones, double up_to) {
+    RevolvedProfile ball;
+    double z0 = 0.0, r0 = 0.05;
+    for (int i = 1; i <= cones; ++i) {
+        const double angle = up_to * i / cones;
+        const double z1 = radius * (1.0 - core::cos(angle)), r1 = radius * core::sin(angle);
+        ball.elements.push_back({z0, r0, z1, r1, 0.0});
+        z0 = z1;
+        r0 = r1;
+    }
+    return ball;
+}
+
+TEST(LaneSlope, MeetsManyConesAsLineByLine) {
+    expect_equal(ball_of_cones(3.0, 20, 1.5707), 1e-7);
+    expect_equal(ball_of_cones(3.0, 20, 2.2), 1e-7);
+    RevolvedProfile form = ball_of_cones(2.0, 7, 1.4);
+    const ProfileElement last = form.elements.back();
+    form.elements.push_back({last.z1, last.r1, last.z1 + 3.0, last.r1 + 0.1, 0.0});
+    form.elements.push_back({last.z1 + 3.0, last.r1 + 0.1, last.z1 + 6.0, last.r1 + 0.1, 0.0});
+    form.elements.push_back({last.z1 + 6.0, last.r1 + 0.1, last.z1 + 7.0, last.r1 - 1.0, 0.0});
+    expect_equal(form, 1e-7);
+    expect_equal({{{1, 2, 1, 2, 1}, {1, 3, 5, 3, 0}, {5, 3, 6, 2.5, 0}, {6, 2.5, 7, 1.5, 0}}},
+                 1e-6);
+}
+
+TEST(LaneSlope, LeavesOutNoConeThatMatters) {
+    // With all cones, and with one at a time: the hull is the same.
+    const RevolvedProfile ball = ball_of_cones(3.0, 12, 2.5);
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(ball, 0.0));
+    ASSERT_EQ(cutter->pieces.size(), 1U);
+    std::mt19937 rng(5);
+    for (int round = 0; round < 300; ++round) {
+        const CutterSweep sweep = random_move(rng, cutter);
+        const int axis = round % 3;
+        std::array<double, CornerStretches::size> u;
+        for (size_t i = 0; i < u.size(); ++i) u[i] = -5.0 + 0.4 * static_cast<double>(i);
+        const double v = -2.0 + 0.02 * round;
+        CornerStretches all;
+        lane_cut().stretches(lane_plan(ball, sweep, axis), u.data(), v, 0xffffff, all);
+        CornerStretches hull;
+        hull.lower.fill(infinity);
+        hull.upper.fill(-infinity);
+        for (const ProfileElement& one : ball.elements) {
+            const RevolvedProfile alone{{one}};
+            CornerStretches part;
+            lane_cut().stretches(lane_plan(alone, sweep, axis), u.data(), v, 0xffffff, part);
+            for (size_t i = 0; i < u.size(); ++i) {
+                hull.lower[i] = std::min(hull.lower[i], part.lower[i]);
+                hull.upper[i] = std::max(hull.upper[i], part.upper[i]);
+            }
+        }
+        for (size_t i = 0; i < u.size(); ++i) {
+            ASSERT_EQ(all.lower[i] < all.upper[i], hull.lower[i] < hull.upper[i]);
+            if (!(hull.lower[i] < hull.upper[i])) continue;
+            EXPECT_NEAR(all.lower[i], hull.lower[i], 1e-9) << round << " " << i;
+            EXPECT_NEAR(all.upper[i], hull.upper[i], 1e-9) << round << " " << i;
+        }
+    }
 }
 
 /// A hash of what random moves of the cutter sweep; any changed bit changes it.

@@ -103,7 +103,7 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
     const auto between = [&](double low, double high) {
         return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);
     };
-    size_t parted = 0;
+    size_t parted = 0, doubts = 0;
     for (int round = 0; round < 8; ++round) {
         CutModel model = block_model(1.0);
         PieceMap followed;
@@ -116,6 +116,8 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
             mill(model, between(0.3, 2.0), from, to, k % 2 ? 30.0 : between(2.0, 6.0));
             const Aabb box = model.log.size() ? model.log[model.log.size() - 1].box : Aabb{};
             followed.note_cut(model, box);
+            PieceMap nearby = followed;
+            const bool doubtful = nearby.may_have_separated(model);
             PieceMap afresh;
             const auto pieces = followed.pieces(model), expected = afresh.pieces(model);
             ASSERT_EQ(pieces.size(), expected.size()) << round << ' ' << k;
@@ -130,6 +132,11 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
             if (is_still_connected(model, box)) {
                 EXPECT_LE(pieces.size(), before);
             }
+            if (!doubtful) {
+                EXPECT_LE(pieces.size(), before);
+            }
+            doubts += doubtful;
+            EXPECT_EQ(nearby.pieces(model).size(), pieces.size()) << "followed by the shorter way";
             before = pieces.size();
             // Compares nodes only: pieces without any are ignored by both.
             if (k % 6 == 5) {
@@ -144,6 +151,35 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
         parted += before > 1;
     }
     EXPECT_GT(parted, 4u);
+    EXPECT_LT(doubts, 150u); // of 200
+}
+
+TEST(StockPieces, AreNotInDoubtWhereARoofHangsOnTheSides) {
+    // A slot below the surface, as a T-slot cutter leaves it: a roof above every move.
+    CutModel model = block_model(0.5);
+    PieceMap map;
+    map.pieces(model);
+    for (int i = 0; i < 40; ++i) {
+        const Vec3 from(10.0 + i, 20.0, -12.0), to(11.0 + i, 20.0, -12.0);
+        const size_t first = model.log.size();
+        mill(model, 5.0, from, to, 4.0);
+        const Aabb box = box_of_cuts(model, first);
+        EXPECT_FALSE(is_still_connected(model, box));
+        map.note_cut(model, box);
+        EXPECT_FALSE(map.may_have_separated(model)) << i;
+    }
+    // Two cuts from above part the roof over a piece of the slot from the rest.
+    for (const double x : {15.0, 45.0}) {
+        mill(model, 1.0, {x, 5.0, -10.0}, {x, 35.0, -10.0});
+        map.note_cut(model, {{x - 1, 4, -10}, {x + 1, 36, 20}});
+        EXPECT_FALSE(map.may_have_separated(model));
+    }
+    for (const double y : {15.5, 24.5}) {
+        mill(model, 1.0, {15.0, y, -10.0}, {45.0, y, -10.0});
+        map.note_cut(model, {{14, y - 1, -10}, {46, y + 1, 20}});
+        EXPECT_EQ(map.may_have_separated(model), y > 20.0);
+    }
+    EXPECT_EQ(map.pieces(model).size(), 2u);
 }
 
 TEST(StockPieces, NeedNoLookWhereSolidMatterIsBelow) {

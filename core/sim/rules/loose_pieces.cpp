@@ -59,12 +59,6 @@ Finding finding_of(const Setup& setup, const StockPiece& piece, double spacing,
     return finding;
 }
 
-Aabb box_of_cuts(const CutModel& stock, size_t first) {
-    Aabb box;
-    for (size_t i = first; i < stock.log.size(); ++i) box.extend(stock.log.box(i));
-    return box;
-}
-
 } // namespace
 
 PieceTracker piece_tracker(const CutModel& stock) {
@@ -84,6 +78,8 @@ std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& m
     const Aabb box = box_of_cuts(stock, first);
     tracker.map.note_cut(stock, box);
     if (is_still_connected(stock, box)) return findings;
+    // With several pieces, one may have become a crumb.
+    if (tracker.known == 1 && !tracker.map.may_have_separated(stock)) return findings;
     const std::vector<StockPiece> pieces = tracker.map.pieces(stock);
     size_t fresh = pieces.size() > tracker.known ? pieces.size() - tracker.known : 0;
     tracker.known = pieces.size();
