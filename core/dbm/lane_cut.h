@@ -8,9 +8,9 @@ namespace core {
 
 /// The part of a tile that a sweep may change, and the positions of its lines.
 struct TileTask {
-    const double* u =
-        nullptr; // positions of the lines in a row, including those beyond the last one
-    const double* v = nullptr;       // positions of the rows
+    const double* u = nullptr; // positions of the lines in a row, including those beyond the last
+                               // one, in ascending order
+    const double* v = nullptr; // positions of the rows
     int row_first = 0, row_last = 0; // rows of the tile, first .. last - 1
     uint32_t lanes = 0;              // bit i: line i of a row may be affected
     double low = 0.0, high = 0.0;    // the cut is between these heights

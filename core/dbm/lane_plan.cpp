@@ -45,6 +45,8 @@ CapsuleLanes ball_lanes(const CutterSweep& sweep, int axis, const ProfileElement
     const double lean = whole > 0.0 ? c.by_a / whole * c.per_length : 0.0;
     c.low_by_half = -lean;
     c.high_by_half = lean;
+    constexpr double steepest = 16.0; // with a rough root, errors of the ends stay below 1e-10 mm
+    c.steep = c.length > 0.0 && whole > steepest * c.length;
     if (c.length == 0.0) {
         c.low_at = c.by_a < 0.0 ? 1.0 : 0.0;
         c.high_at = c.by_a > 0.0 ? 1.0 : 0.0;

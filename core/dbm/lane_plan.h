@@ -22,6 +22,7 @@ struct CapsuleLanes {
     double cos_u, cos_v, length, per_length;
     double low_by_half, low_at, high_by_half, high_at;
     double low_end, high_end;     // added to the ends of a cylinder's segment: its end faces
+    bool steep;                   // nearly along the lines, but not exactly
     bool opens_up;                // no stock above, so every segment may end at high_end
     double reach_low, reach_high; // bounds of the ball's centre or of the cylinder's ends
     double u_most, v_most;        // beyond these, another element covers this one

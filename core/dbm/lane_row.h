@@ -189,9 +189,14 @@ HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Swept& a
         return root(at.beyond - past * past);
     };
     // At the lowest or highest point of the surface, a small error in time has no effect on the
-    // height.
-    const Row half = rough_root(at.beyond);
-    const Row t = moment(c, at, half, c.low_by_half, c.low_at);
+    // height, unless the move is steep: then the line may even be outside the ball at that time.
+    const Row half = c.steep ? root(at.beyond) : rough_root(at.beyond);
+    const auto inside = [&](const Row& t) HWY_ATTR {
+        if (!c.steep) return t;
+        const Row past = at.g - t * c.length;
+        return choose(at_most(past * past, at.beyond), t, within_move(at.g * c.per_length));
+    };
+    const Row t = inside(moment(c, at, half, c.low_by_half, c.low_at));
     const double per_square = 1.0 / (c.radius * c.radius);
     const Row low = deep(t);
     unite_low(all, at.met, t * c.by_a + c.from_a - low, low * low * per_square);
@@ -199,7 +204,7 @@ HWY_INLINE void add_ball(const CapsuleLanes& c, const Row& u, double v, Swept& a
         unite_high(all, at.met, row_of(c.high_end), row_of(1.0));
         return;
     }
-    const Row last = moment(c, at, half, c.high_by_half, c.high_at);
+    const Row last = inside(moment(c, at, half, c.high_by_half, c.high_at));
     const Row high = deep(last);
     unite_high(all, at.met, last * c.by_a + c.from_a + high, high * high * per_square);
 }

@@ -157,7 +157,9 @@ HWY_ATTR void search_round(const RoundedCircles& circles, const Moments& within,
         low = choose(later, t, low);
         high = choose(later, high, t);
         const Row next = t - change / least(here.bend, row_of(-1e-300));
-        const RowMask good = here.inside & below(low, next) & below(next, high);
+        // At the edge of the circle the step is far too short.
+        const RowMask good = here.inside & below(row_of(1e-5 * circles.margin), here.half)
+                             & below(low, next) & below(next, high);
         const Row before = t;
         t = choose(good, next, (low + high) * 0.5);
         // A change of time this small has no effect along the line.

@@ -165,6 +165,33 @@ HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) 
                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z) + slack))};
 }
 
+/// Calls `act` with a reach of each ball and cylinder of the plan.
+template <typename Act>
+HWY_INLINE void for_reaches(const LanePlan& plan, const double* u, const Row& at_u, double v,
+                            const Act& act) {
+    for (size_t i = 0; i < plan.balls; ++i) {
+        const CapsuleLanes& c = plan.ball[i];
+        if (u[0] <= c.u_most && v <= c.v_most) act(reach_of_ball(c, at_u, v));
+    }
+    for (size_t i = 0; i < plan.uprights; ++i) act(reach_of_upright(plan.upright[i], at_u, v));
+    for (size_t i = 0; i < plan.across; ++i) act(reach_of_circles(plan.sideways[i], at_u, v));
+}
+
+/// What the plan sweeps at most, from its lowest to its highest end on each line: elements between
+/// them may have been left out.
+HWY_INLINE Stretch loose_hull(const LanePlan& plan, const double* u, const Row& at_u, double v) {
+    constexpr double slack = 1e-6;
+    Swept loose = empty_sweep();
+    add_elements(plan, true, u, at_u, v, loose);
+    for_reaches(plan, u, at_u, v, [&](const Reach& reach) HWY_ATTR {
+        const RowMask met = reach.met & at_most(row_of(-slack), reach.square);
+        const Row half = root(reach.square);
+        unite_low(loose, met, row_of(reach.low) - half, row_of(1.0));
+        unite_high(loose, met, half + reach.high, row_of(1.0));
+    });
+    return {loose.ends.lower - slack, loose.ends.upper + slack};
+}
+
 /// The lines of a chunk on which the plan may sweep material; `holds(test)` runs a test of a
 /// segment over all material.
 template <typename Holds>
@@ -172,23 +199,16 @@ HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, con
     const RowMask all = at_most(row_of(0.0), row_of(0.0));
     if (!plan.by_lanes) return all;
     const Row at_u = load(u);
+    if (!plan.elements.empty()) {
+        const Stretch hull = loose_hull(plan, u, at_u, v);
+        return holds([&](const Stretch& matter) HWY_ATTR { return overlap(hull, matter); });
+    }
     RowMask found = but_not(all, all);
-    const auto add = [&](const Reach& reach) HWY_ATTR {
+    for_reaches(plan, u, at_u, v, [&](const Reach& reach) HWY_ATTR {
         found =
             found | holds([&](const Stretch& matter) HWY_ATTR { return may_hold(reach, matter); });
-    };
-    for (size_t i = 0; i < plan.balls; ++i) {
-        const CapsuleLanes& c = plan.ball[i];
-        if (u[0] <= c.u_most && v <= c.v_most) add(reach_of_ball(c, at_u, v));
-    }
-    for (size_t i = 0; i < plan.uprights; ++i) add(reach_of_upright(plan.upright[i], at_u, v));
-    for (size_t i = 0; i < plan.across; ++i) add(reach_of_circles(plan.sideways[i], at_u, v));
-    if (plan.elements.empty()) return found;
-    Swept loose = empty_sweep();
-    add_elements(plan, true, u, at_u, v, loose);
-    constexpr double slack = 1e-6;
-    const Stretch wider{loose.ends.lower - slack, loose.ends.upper + slack};
-    return found | holds([&](const Stretch& matter) HWY_ATTR { return overlap(wider, matter); });
+    });
+    return found;
 }
 
 } // namespace

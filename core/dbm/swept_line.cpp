@@ -248,7 +248,9 @@ double lowest_beyond(double radius, double margin, double nearest, double slope)
         (excess > 0.0 ? high : low) = beyond;
         const double bend = along + beyond * part * part / (away * along) + slope * beyond / half;
         double next = beyond - excess / bend;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        // Where a root vanishes, the step is far too short.
+        const bool is_stuck = std::min(along, half / margin) < 1e-5;
+        if (is_stuck || !(next > low && next < high)) next = 0.5 * (low + high);
         if (std::abs(next - beyond) <= 1e-9 * margin) return next;
         beyond = next;
     }

@@ -1,6 +1,7 @@
 #include "gcode/lower/trace.h"
 
-#include <cmath>
+#include <initializer_list>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -10,143 +11,192 @@
 namespace gcode {
 namespace {
 
-/// Rounded to a millionth, without trailing zeros or negative zero.
-std::string number(double value) { return core::number_text(value, 6); }
+constexpr int decimals = 6; // numbers are rounded to a millionth
 
-std::string axes_text(const Position& position) {
-    std::string text;
-    // Axes other than X, Y and Z that are at zero usually do not exist.
-    for (size_t axis = 0; axis < axis_count; ++axis)
-        if (position[axis] && (axis < 3 || *position[axis] != 0.0))
-            text += fmt::format(" {}={}", lower(axis_letters[axis]), number(*position[axis]));
-        else if (!position[axis] && axis >= 3)
-            text += fmt::format(" {}=?", lower(axis_letters[axis]));
-    return text;
-}
+/// Appends key=value pairs to a text, each after a blank.
+class Pairs {
+public:
+    explicit Pairs(std::string& text) : text_(text) {}
 
-} // namespace
+    Pairs& add(std::string_view key, double value) {
+        begin(key);
+        core::append_number(text_, value, decimals);
+        return *this;
+    }
+    Pairs& add(std::string_view key, std::string_view value) {
+        begin(key);
+        text_ += value;
+        return *this;
+    }
+    Pairs& add(std::string_view key, const char* value) = delete; // it would become a bool
+    Pairs& add(std::string_view key, int64_t value) {
+        begin(key);
+        text_ += fmt::format_int(value).c_str();
+        return *this;
+    }
+    Pairs& add(std::string_view key, bool value) { return add(key, int64_t{value}); }
 
-namespace {
+    /// Several numbers, with commas between them.
+    Pairs& add(std::string_view key, std::initializer_list<double> values) {
+        begin(key);
+        for (const double& value : values) {
+            if (&value != values.begin()) text_ += ',';
+            core::append_number(text_, value, decimals);
+        }
+        return *this;
+    }
+
+    Pairs& add(const Position& position) {
+        // Axes other than X, Y and Z that are at zero usually do not exist.
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (position[axis] && (axis < 3 || *position[axis] != 0.0))
+                add(name(axis), *position[axis]);
+            else if (!position[axis] && axis >= 3)
+                add(name(axis), std::string_view("?"));
+        return *this;
+    }
+
+    Pairs& add(const char* word) {
+        text_ += ' ';
+        text_ += word;
+        return *this;
+    }
+
+    static std::string_view name(size_t axis) {
+        static constexpr std::string_view names = "xyzabcuvw"; // axis_letters in small letters
+        static_assert(names.size() == axis_letters.size());
+        return names.substr(axis, 1);
+    }
+
+private:
+    void begin(std::string_view key) {
+        text_ += ' ';
+        text_ += key;
+        text_ += '=';
+    }
+
+    std::string& text_;
+};
 
 std::string_view name_of(core::SpindleDirection direction) {
     if (direction == core::SpindleDirection::stopped) return "stopped";
     return direction == core::SpindleDirection::clockwise ? "clockwise" : "counterclockwise";
 }
 
-std::string frame(const ProgramFrame& frame) {
-    std::string text = " frame=";
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) text += number(frame.linear[column][row]) + ",";
-    return text + number(frame.shift.x) + "," + number(frame.shift.y) + "," + number(frame.shift.z);
-}
-
-/// The text after the name of a command.
+/// Appends the values of a command.
 struct Details {
-    std::string operator()(const StraightTraverse& command) const { return axes_text(command.end); }
-    std::string operator()(const StraightFeed& command) const {
-        return axes_text(command.end) + " feed=" + number(command.feed);
+    Pairs pairs;
+
+    void operator()(const StraightTraverse& command) { pairs.add(command.end); }
+    void operator()(const StraightFeed& command) {
+        pairs.add(command.end).add("feed", command.feed);
     }
-    std::string operator()(const ArcFeed& command) const {
-        return fmt::format("{} plane={} centre={},{} turns={} feed={}", axes_text(command.end),
-                           name_of(command.plane), number(command.centre[0]),
-                           number(command.centre[1]), command.turns, number(command.feed));
+    void operator()(const ArcFeed& command) {
+        pairs.add(command.end)
+            .add("plane", name_of(command.plane))
+            .add("centre", {command.centre[0], command.centre[1]})
+            .add("turns", int64_t{command.turns})
+            .add("feed", command.feed);
     }
-    std::string operator()(const Dwell& command) const {
-        return " seconds=" + number(command.seconds);
+    void operator()(const Dwell& command) { pairs.add("seconds", command.seconds); }
+    void operator()(const SelectTool& command) {
+        pairs.add("tool", int64_t{value_of(command.tool)});
     }
-    std::string operator()(const SelectTool& command) const {
-        return fmt::format(" tool={}", value_of(command.tool));
+    void operator()(const ChangeTool& command) {
+        pairs.add("tool", int64_t{command.tool ? value_of(*command.tool) : 0});
     }
-    std::string operator()(const ChangeTool& command) const {
-        return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
+    void operator()(const NameTool& command) {
+        pairs.add("tool", int64_t{command.tool ? value_of(*command.tool) : 0});
     }
-    std::string operator()(const NameTool& command) const {
-        return fmt::format(" tool={}", command.tool ? value_of(*command.tool) : 0);
+    void operator()(const Spindle& command) {
+        pairs.add("direction", name_of(command.direction)).add("speed", command.speed);
     }
-    std::string operator()(const Spindle& command) const {
-        return fmt::format(" direction={} speed={}", name_of(command.direction),
-                           number(command.speed));
+    void operator()(const Coolant& command) {
+        pairs.add("mist", command.mist).add("flood", command.flood);
     }
-    std::string operator()(const Coolant& command) const {
-        return fmt::format(" mist={} flood={}", int(command.mist), int(command.flood));
-    }
-    std::string operator()(const SelectPlane& command) const {
-        return fmt::format(" plane={}", name_of(command.plane));
-    }
-    std::string operator()(const SetOffset& command) const {
+    void operator()(const SelectPlane& command) { pairs.add("plane", name_of(command.plane)); }
+    void operator()(const SetOffset& command) {
         const Offsets& offsets = command.offsets;
         Position sum;
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (offsets.axis[axis])
                 sum[axis] = offsets.work.origin[axis] + offsets.local[axis] + *offsets.axis[axis];
-        const std::string turn = offsets.work.rotation_deg == 0.0
-                                     ? std::string()
-                                     : " rotation=" + number(offsets.work.rotation_deg);
-        return " offset=" + name_of_offset(offsets.active) + axes_text(sum) + turn
-               + (offsets.has_frame ? frame(offsets.frame) : std::string());
+        pairs.add("offset", std::string_view(name_of_offset(offsets.active))).add(sum);
+        if (offsets.work.rotation_deg != 0.0) pairs.add("rotation", offsets.work.rotation_deg);
+        if (!offsets.has_frame) return;
+        const auto& m = offsets.frame.linear;
+        const auto& shift = offsets.frame.shift;
+        pairs.add("frame", {m[0][0], m[1][0], m[2][0], m[0][1], m[1][1], m[2][1], m[0][2], m[1][2],
+                            m[2][2], shift.x, shift.y, shift.z});
     }
-    std::string operator()(const UseToolLengthOffset& command) const {
-        const std::string name =
-            command.number ? fmt::format(" number={}", value_of(*command.number)) : "";
-        std::string others;
+    void operator()(const UseToolLengthOffset& command) {
+        if (command.number) pairs.add("number", int64_t{value_of(*command.number)});
+        pairs.add("length", command.offset[2]);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (axis != 2 && command.offset[axis] != 0.0)
-                others +=
-                    fmt::format(" {}={}", lower(axis_letters[axis]), number(command.offset[axis]));
-        if (command.follows_tip) others += " follows_tip";
-        return name + " length=" + number(command.offset[2]) + others;
+                pairs.add(Pairs::name(axis), command.offset[axis]);
+        if (command.follows_tip) pairs.add("follows_tip");
     }
-    std::string operator()(const UseSpindleMode& command) const {
-        return fmt::format(" surface_speed={} speed={} fastest_speed={}",
-                           int(command.surface_speed), number(command.speed),
-                           number(command.fastest_speed));
+    void operator()(const UseSpindleMode& command) {
+        pairs.add("surface_speed", command.surface_speed)
+            .add("speed", command.speed)
+            .add("fastest_speed", command.fastest_speed);
     }
-    std::string operator()(const SetPathMode& command) const {
+    void operator()(const SetPathMode& command) {
         constexpr std::string_view names[] = {"exact_path", "exact_stop", "continuous"};
-        std::string text = fmt::format(" mode={} tolerance={} naive_tolerance={}",
-                                       names[static_cast<size_t>(command.mode)],
-                                       number(command.tolerance), number(command.naive_tolerance));
+        pairs.add("mode", names[static_cast<size_t>(command.mode)])
+            .add("tolerance", command.tolerance)
+            .add("naive_tolerance", command.naive_tolerance);
         const auto add = [&](const char* name, const std::optional<double>& value) {
-            if (value) text += fmt::format(" {}={}", name, number(*value));
+            if (value) pairs.add(name, *value);
         };
         add("distance", command.corners.distance);
         // In LinuxCNC's G64 P it is the tolerance.
         if (command.corners.rapid_tolerance != command.tolerance)
             add("rapid_tolerance", command.corners.rapid_tolerance);
         add("rapid_distance", command.corners.rapid_distance);
-        return text;
     }
-    std::string operator()(const EnableOverride& command) const {
+    void operator()(const EnableOverride& command) {
         constexpr std::string_view names[] = {"feed", "speed", "adaptive_feed", "feed_hold"};
-        return fmt::format(" kind={} enabled={}", names[static_cast<size_t>(command.kind)],
-                           int(command.enabled));
+        pairs.add("kind", names[static_cast<size_t>(command.kind)]).add("enabled", command.enabled);
     }
-    std::string operator()(const SetOutput& command) const {
-        return fmt::format(" number={} value={} analog={} with_motion={}", command.number,
-                           number(command.value), int(command.is_analog), int(command.with_motion));
+    void operator()(const SetOutput& command) {
+        pairs.add("number", int64_t{command.number})
+            .add("value", command.value)
+            .add("analog", command.is_analog)
+            .add("with_motion", command.with_motion);
     }
-    std::string operator()(const WaitForInput& command) const {
-        return fmt::format(" number={} analog={} seconds={}", command.number,
-                           int(command.is_analog), number(command.seconds));
+    void operator()(const WaitForInput& command) {
+        pairs.add("number", int64_t{command.number})
+            .add("analog", command.is_analog)
+            .add("seconds", command.seconds);
     }
-    std::string operator()(const Message& command) const { return " text=" + command.text; }
-    std::string operator()(const StraightProbe& command) const {
-        return fmt::format("{} feed={} towards={} must_succeed={}", axes_text(command.end),
-                           number(command.feed), int(command.towards), int(command.must_succeed));
+    void operator()(const Message& command) { pairs.add("text", std::string_view(command.text)); }
+    void operator()(const StraightProbe& command) {
+        pairs.add(command.end)
+            .add("feed", command.feed)
+            .add("towards", command.towards)
+            .add("must_succeed", command.must_succeed);
     }
-    std::string operator()(const ThreadFeed& command) const {
-        return fmt::format("{} pitch={} back_again={}", axes_text(command.end),
-                           number(command.pitch), int(command.back_again));
+    void operator()(const ThreadFeed& command) {
+        pairs.add(command.end).add("pitch", command.pitch).add("back_again", command.back_again);
     }
-    std::string operator()(const ProgramStop&) const { return {}; }
-    std::string operator()(const OptionalStop&) const { return {}; }
-    std::string operator()(const ProgramEnd&) const { return {}; }
+    void operator()(const ProgramStop&) {}
+    void operator()(const OptionalStop&) {}
+    void operator()(const ProgramEnd&) {}
 };
 
 } // namespace
 
+void append_text(const CanonicalCommand& command, std::string& text) {
+    text += command_name(command);
+    std::visit(Details{Pairs(text)}, command);
+}
+
 std::string to_text(const CanonicalCommand& command) {
-    return std::string(command_name(command)) + std::visit(Details{}, command);
+    std::string text;
+    append_text(command, text);
+    return text;
 }
 
 } // namespace gcode

@@ -10,4 +10,7 @@ namespace gcode {
 /// are rounded to a millionth; unknown coordinates are left out.
 std::string to_text(const CanonicalCommand& command);
 
+/// Appends to_text(command).
+void append_text(const CanonicalCommand& command, std::string& text);
+
 } // namespace gcode

@@ -1,5 +1,8 @@
 #include <cmath>
+#include <limits>
+#include <random>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,6 +25,30 @@ TEST(NumberText, HasNoTrailingZeros) {
     EXPECT_EQ(number_text(100.0, 0), "100");
     EXPECT_EQ(number_text(-1e-9, 6), "0");
     EXPECT_EQ(number_text(-0.00005, 6), "-0.00005");
+}
+
+TEST(NumberText, RoundsAsTheLibraryOfFormatsDoes) {
+    std::mt19937_64 random(20261126);
+    const auto check = [](double value, int decimals) {
+        std::string plain = without_trailing_zeros(fmt::format("{:.{}f}", value, decimals));
+        if (plain == "-0") plain = "0";
+        ASSERT_EQ(number_text(value, decimals), plain) << decimals;
+    };
+    for (const int decimals : {0, 1, 3, 4, 6, 9, 12}) {
+        for (int i = 0; i < 20'000; ++i) {
+            // Of any size, multiples of a tenth or an eighth of the last decimal, or next to one.
+            const double size = std::ldexp(1.0, static_cast<int>(random() % 80) - 40);
+            check(size * (static_cast<double>(random() >> 11U) * 0x1p-53 - 0.5), decimals);
+            double near = static_cast<double>(random() % 2'000'000) - 1e6;
+            for (int k = 0; k < decimals; ++k) near /= 10.0;
+            near /= random() % 2 ? 10.0 : 8.0;
+            for (const double value : {near, std::nextafter(near, 1e9), std::nextafter(near, -1e9)})
+                check(value, decimals);
+        }
+        for (const double value : {0.0, -0.0, 0.5, 1.5, 2.5, -0.5, 0.0000005, 1e300, -1e15,
+                                   999999.9999995, std::numeric_limits<double>::infinity()})
+            check(value, decimals);
+    }
 }
 
 TEST(BoundText, ShowsNoLowerBoundLargerThanItIs) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <random>
 
@@ -5,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "core/base/math.h"
+#include "core/dbm/cut_model.h"
 #include "core/dbm/lane_cut.h"
 
 namespace {
@@ -49,6 +51,7 @@ Compared compare(const RevolvedProfile& flutes, unsigned seed) {
         };
         std::array<double, CornerStretches::size> u;
         for (double& position : u) position = between(ua);
+        std::sort(u.begin(), u.end());
         const double v = between(va);
         CornerStretches found;
         for (const Cutter::Piece& piece : cutter->pieces) {
@@ -163,6 +166,108 @@ TEST(LaneSlope, LeavesOutNoConeThatMatters) {
             EXPECT_NEAR(all.upper[i], hull.upper[i], 1e-9) << round << " " << i;
         }
     }
+}
+
+/// The least and the greatest difference between what is left on the lines of a cut stock and what
+/// is left of the raw stock after removing what the move sweeps, line by line.
+Interval differences_after(const CutModel& model, const CutModel& raw, const CutterSweep& sweep) {
+    Interval found{0.0, 0.0};
+    for (int axis = 0; axis < 3; ++axis) {
+        const ScanLines& now = model.lines.families[static_cast<size_t>(axis)];
+        const ScanLines& before = raw.lines.families[static_cast<size_t>(axis)];
+        for (int v = 0; v < now.v_count(); ++v)
+            for (int u = 0; u < now.u_count(); ++u) {
+                IntervalList expected;
+                for (const Interval& matter : before.line(u, v)) expected.add(matter);
+                const Vec3 at = point_on_line(model.lines.grid, axis, u, v, 0.0);
+                for (const Cutter::Piece& piece : sweep.cutter->pieces)
+                    if (const auto gone = line_interval(piece.around, sweep, axis, at[u_axis(axis)],
+                                                        at[v_axis(axis)]))
+                        expected.subtract(*gone);
+                double left = 0.0, right = 0.0;
+                for (const Interval& matter : now.line(u, v)) left += matter.length();
+                for (const Interval& matter : expected) right += matter.length();
+                found.lower = std::min(found.lower, left - right);
+                found.upper = std::max(found.upper, left - right);
+            }
+    }
+    return found;
+}
+
+TEST(LaneSlope, CutsWhatElementsThatAreLeftOutSpan) {
+    // A thin sheet between the lowest element and the highest, at rest and on short moves.
+    std::vector<RevolvedProfile> shapes = {{{{0, 1, 1, 3, 0}, {1, 3, 5, 4, 0}, {5, 4, 10, 4, 0}}},
+                                           {{{1, 2, 1, 2, 1}, {1, 3, 5, 4, 0}, {5, 4, 10, 4, 0}}}};
+    shapes.push_back(ball_of_cones(3.0, 20, 1.5707));
+    shapes.back().elements.push_back({3.0, 3.0, 12.0, 3.0, 0.0});
+    std::mt19937 rng(3);
+    const auto within = [&](double reach) {
+        return std::uniform_real_distribution<double>(-reach, reach)(rng);
+    };
+    for (const RevolvedProfile& shape : shapes) {
+        const auto cutter = std::make_shared<const Cutter>(make_cutter(shape, 0.0));
+        for (int round = 0; round < 40; ++round) {
+            const double low = within(5.0) + 5.0;
+            const Solid sheet{SolidBox{{{-6, -6, low}, {6, 6, low + 0.6}}}, 0.0};
+            CutModel model = *make_cut_model(sheet, 0.4);
+            const CutModel raw = model;
+            const Vec3 from(within(1), within(1), within(1));
+            const Vec3 by = round % 4 == 0 ? Vec3(0.0) : Vec3(within(1), within(1), within(1));
+            const CutterSweep sweep{cutter, from, from + by};
+            cut(model, sweep);
+            const Interval off = differences_after(model, raw, sweep);
+            EXPECT_GT(off.lower, -1e-7) << round;
+            EXPECT_LT(off.upper, 2e-6) << round;
+        }
+    }
+}
+
+TEST(LaneSlope, MeetsBallsOnNearlyVerticalMovesAsLineByLine) {
+    const RevolvedProfile ball{{{3, 0, 3, 0, 3}}};
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(ball, 0.0));
+    std::mt19937 rng(9);
+    const auto within = [&](double reach) {
+        return std::uniform_real_distribution<double>(-reach, reach)(rng);
+    };
+    int met = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const double drift = std::ldexp(1.0, -static_cast<int>(rng() % 30));
+        const Vec3 from(within(2), within(2), within(2));
+        const CutterSweep sweep{cutter, from,
+                                from + Vec3(drift * within(1), drift * within(1), within(10))};
+        std::array<double, CornerStretches::size> u;
+        for (double& position : u) position = from.x + within(3.2);
+        std::sort(u.begin(), u.end());
+        const double v = from.y + within(3.2);
+        CornerStretches found;
+        lane_cut().stretches(lane_plan(ball, sweep, 2), u.data(), v, 0xffffff, found);
+        for (size_t i = 0; i < u.size(); ++i) {
+            if (!(found.lower[i] < found.upper[i])) continue;
+            // Some point of the move has the line inside the ball, up to a shift of 1e-12 mm.
+            const double shift = u[i] < from.x ? 1e-12 : -1e-12;
+            const auto truth = line_interval(ball, sweep, 2, u[i] + shift, v);
+            ASSERT_TRUE(truth) << round;
+            ++met;
+            EXPECT_GT(found.lower[i], truth->lower - 1e-8) << round << " " << drift;
+            EXPECT_LT(found.upper[i], truth->upper + 1e-8) << round << " " << drift;
+        }
+    }
+    EXPECT_GT(met, 10'000);
+}
+
+TEST(LaneSlope, FindsTheEndsWhereAFirstGuessIsAtTheEdgeOfTheCircle) {
+    constexpr double r = 0.32322775965981465, m = 0.037915565131352962;
+    const RevolvedProfile disc{{{m, r, m, r, m}}};
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(disc, 0.0));
+    const CutterSweep sweep{cutter,
+                            {-0.13620420886192397, 1.2547209504453845, 1.988957178051419},
+                            {2.7615482787691676, 1.2547209504453845, -3.6641583338149797}};
+    std::array<double, CornerStretches::size> u;
+    u.fill(-2.4368494403879661);
+    CornerStretches found;
+    lane_cut().stretches(lane_plan(disc, sweep, 1), u.data(), 1.7907291975555601, 0xffffff, found);
+    EXPECT_NEAR(found.lower[0], 1.197036303, 1e-6);
+    EXPECT_NEAR(found.upper[0], 1.312405598, 1e-6);
 }
 
 /// A hash of what random moves of the cutter sweep; any changed bit changes it.

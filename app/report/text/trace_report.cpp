@@ -146,8 +146,12 @@ void append_calls(const std::vector<uint32_t>& calls, JsonLine& json, std::strin
 } // namespace
 
 void append_trace_text(const gcode::BlockCommands& block, std::string& text) {
-    for (const gcode::CanonicalCommand& command : block.commands)
-        fmt::format_to(std::back_inserter(text), "{}: {}\n", block.line, gcode::to_text(command));
+    for (const gcode::CanonicalCommand& command : block.commands) {
+        text += fmt::format_int(block.line).c_str();
+        text += ": ";
+        gcode::append_text(command, text);
+        text += '\n';
+    }
 }
 
 void append_trace_json(const gcode::BlockCommands& block, std::string& text) {
