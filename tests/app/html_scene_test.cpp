@@ -146,10 +146,12 @@ TEST(PicturedRun, ShowsEachPairOfABlockAtItsOwnMoment) {
             scenes[view.moment.pair[0]] = view.scene;
     ASSERT_TRUE(scenes.contains("flutes") && scenes.contains("holder"));
     EXPECT_NE(scenes["flutes"], scenes["holder"]);
-    for (const auto& [part, text] : scenes)
-        for (const json& body : json::parse(text)["bodies"])
+    for (const auto& [part, text] : scenes) {
+        const json scene = json::parse(text);
+        for (const json& body : scene["bodies"])
             EXPECT_EQ(body.contains("state"), body["name"] == part || body["name"] == "jaw")
                 << part << " " << body["name"];
+    }
 }
 
 TEST(PicturedRun, EndsEarlyOnRequest) {
