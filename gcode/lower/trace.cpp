@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
-#include "gcode/language/lexer.h"
 
 namespace gcode {
 namespace {

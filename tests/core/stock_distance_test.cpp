@@ -161,29 +161,40 @@ TEST(StockDistance, LiesBetweenItsBoundsAfterRandomCuts) {
     EXPECT_GT(seen.far, 5);
 }
 
-TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
-    std::mt19937 rng(72);
-    Seen seen;
-    size_t refined = 0;
-    for (int i = 0; i < 42; ++i) {
+/// Calls `act(world, model, shapes, first, k)` for tools 0 .. 5 at each of many randomly cut boxes,
+/// where `first`, the distance without a goal, is within the limit. Ends at the first failure.
+template <typename Act>
+void for_near_tools(std::mt19937& rng, int boxes, const Act& act) {
+    for (int i = 0; i < boxes; ++i) {
         const CutBox world = random_cut_box(rng, 1 + i % 12, 0.0);
         const CutModel model = world.model(0.7);
         for (int k = 0; k < 6; ++k) {
             const Shapes shapes = random_tool(rng, world.box.grown(2.0));
             const Separation first = separation(shapes, model).separation;
-            if (!first.found()) continue;
-            const double fraction = k / 5.0;
-            const StockGoal goal{.threshold = first.lower + fraction * (first.upper - first.lower),
-                                 .finest = 0.02,
-                                 .work_limit = k == 3 ? 10u : 3000u};
-            const StockSeparation found = separation(shapes, model, goal);
-            refined += found.refined > 0;
-            EXPECT_GE(found.separation.lower, first.lower - 1e-6);
-            EXPECT_LE(found.separation.upper, first.upper);
-            expect_sound(world, shapes, found, goal, rng, seen);
-            ASSERT_FALSE(HasFailure()) << i << ' ' << k;
+            if (first.found()) act(world, model, shapes, first, k);
+            ASSERT_FALSE(testing::Test::HasFailure()) << i << ' ' << k;
         }
     }
+}
+
+TEST(StockDistance, IsNeverDecidedWronglyByRefinement) {
+    std::mt19937 rng(72);
+    Seen seen;
+    size_t refined = 0;
+    for_near_tools(rng, 42,
+                   [&](const CutBox& world, const CutModel& model, const Shapes& shapes,
+                       const Separation& first, int k) {
+                       const double fraction = k / 5.0;
+                       const StockGoal goal{.threshold = first.lower
+                                                         + fraction * (first.upper - first.lower),
+                                            .finest = 0.02,
+                                            .work_limit = k == 3 ? 10u : 3000u};
+                       const StockSeparation found = separation(shapes, model, goal);
+                       refined += found.refined > 0;
+                       EXPECT_GE(found.separation.lower, first.lower - 1e-6);
+                       EXPECT_LE(found.separation.upper, first.upper);
+                       expect_sound(world, shapes, found, goal, rng, seen);
+                   });
     EXPECT_GT(refined, 40u);
     EXPECT_GT(seen.clear, 25);
     EXPECT_GT(seen.violated, 10);
@@ -218,23 +229,19 @@ double to_quarters(const Shapes& shapes, const CutModel& model, double finest) {
 TEST(StockDistance, HasTheExactBoundOfSquaresThatAreDividedNoFurther) {
     std::mt19937 rng(76);
     int open = 0, better = 0;
-    for (int i = 0; i < 60; ++i) {
-        const CutBox world = random_cut_box(rng, 1 + i % 12, 0.0);
-        const CutModel model = world.model(0.7);
-        for (int k = 0; k < 6; ++k) {
-            const Shapes shapes = random_tool(rng, world.box.grown(2.0));
-            const Separation first = separation(shapes, model).separation;
-            if (!first.found()) continue;
+    for_near_tools(
+        rng, 60,
+        [&](const CutBox&, const CutModel& model, const Shapes& shapes, const Separation& first,
+            int) {
             const StockGoal goal{.threshold = first.lower + 0.9 * (first.upper - first.lower),
                                  .finest = 0.36};
             const Separation found = separation(shapes, model, goal).separation;
-            if (found.upper < goal.threshold || first.lower >= goal.threshold) continue;
+            if (found.upper < goal.threshold || first.lower >= goal.threshold) return;
             const double wanted = std::min(to_quarters(shapes, model, goal.finest), goal.threshold);
-            EXPECT_NEAR(found.lower, wanted, 1e-6) << i << ' ' << k;
+            EXPECT_NEAR(found.lower, wanted, 1e-6);
             ++open;
             better += wanted < goal.threshold && wanted > first.lower + 1e-3;
-        }
-    }
+        });
     EXPECT_GT(open, 40);
     EXPECT_GT(better, 15);
 }
