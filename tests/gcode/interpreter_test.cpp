@@ -185,6 +185,16 @@ TEST(Interpreter, StopsAreCommands) {
     EXPECT_EQ(to_text(run_text("M30").run.blocks[0].commands[0]), "program_end");
 }
 
+TEST(Trace, WritesAFrameRowByRowAndThenItsShift) {
+    SetOffset command;
+    command.offsets.has_frame = true;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            command.offsets.frame.linear[column][row] = 3 * row + column + 1;
+    command.offsets.frame.shift = {10.5, -11.0, 12.0};
+    EXPECT_THAT(to_text(command), testing::EndsWith(" frame=1,2,3,4,5,6,7,8,9,10.5,-11,12"));
+}
+
 TEST(Interpreter, SaysOnceThatUnitsWereAssumed) {
     const std::string warnings = warnings_of("G17\nG0 X1\nX2\nM30\n");
     EXPECT_THAT(warnings,
