@@ -135,12 +135,13 @@ public:
     /// Whether all lines hold the same material; marks are ignored.
     bool operator==(const ScanLines& other) const;
 
-private:
+    /// The slot of a line in its tile.
     static constexpr size_t slot_of(int u, int v) {
         return static_cast<size_t>(u % tile_side)
                + static_cast<size_t>(v % tile_side) * static_cast<size_t>(tile_side);
     }
 
+private:
     int axis_ = 0;
     int u_count_ = 0;
     int v_count_ = 0;

@@ -48,6 +48,78 @@ ConvexShape convex_body(const Aabb& box) {
     return flat >= 2 ? convex_segment(box.min, box.max) : convex(box);
 }
 
+/// Four neighbouring lines along Z, or columns: their extents along X, Y and Z.
+struct LineRow {
+    using Values = std::array<double, TileBoxes::block_side>;
+
+    Values u0, u1, bottom, top;
+    double v0 = 0.0, v1 = 0.0;
+
+    /// `slot`: of the first line in the tile.
+    LineRow(const ScanTile& tile, size_t slot) {
+        const auto four = [slot](const std::array<double, ScanTile::lines>& values) {
+            Values result;
+            std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(slot), result.size(),
+                        result.begin());
+            return result;
+        };
+        bottom = four(tile.layers[0].lower);
+        top = four(tile.layers[0].upper);
+        for (size_t k = 1; k < tile.layers.size(); ++k)
+            for (size_t i = 0; i < top.size(); ++i)
+                top[i] = std::max(top[i], tile.layers[k].upper[slot + i]);
+    }
+};
+
+/// An upright cylinder along a straight path, widened to the box around the path seen from above:
+/// it contains the sweep and is compared with a box in a few operations.
+class Tube {
+public:
+    explicit Tube(const UprightSweep& sweep)
+        : path_(Aabb{glm::min(sweep.from, sweep.from + sweep.by),
+                     glm::max(sweep.from, sweep.from + sweep.by)}),
+          radius_(std::max(sweep.element.r0, sweep.element.r1)),
+          margin_(sweep.element.margin) {
+        path_.min.z += sweep.element.z0;
+        path_.max.z += sweep.element.z1;
+        constexpr double short_path = 1.0; // mm
+        is_tight_ = sweep.element.r0 == sweep.element.r1
+                    && std::min(std::abs(sweep.by.x), std::abs(sweep.by.y)) <= short_path;
+    }
+
+    /// Whether its bound is about as good as that of the sweep.
+    bool is_tight() const { return is_tight_; }
+
+    /// A lower bound of the distance from the sweep to a box.
+    double bound(const Aabb& box) const {
+        const auto apart = [&](int axis) {
+            return std::max(
+                {0.0, box.min[axis] - path_.max[axis], path_.min[axis] - box.max[axis]});
+        };
+        const double x = apart(0), y = apart(1), z = apart(2);
+        const double across = std::max(0.0, std::sqrt(x * x + y * y) - radius_);
+        return std::max(0.0, std::sqrt(across * across + z * z) - margin_);
+    }
+
+    /// Adds to `near` the lines of a row that may be nearer than `limit`, which is positive.
+    void add_near(const LineRow& row, double limit,
+                  std::array<bool, TileBoxes::block_side>& near) const {
+        const double y = std::max({0.0, row.v0 - path_.max.y, path_.min.y - row.v1});
+        const double square = (limit + margin_) * (limit + margin_);
+        for (size_t i = 0; i < near.size(); ++i) {
+            const double x = std::max({0.0, row.u0[i] - path_.max.x, path_.min.x - row.u1[i]});
+            const double z = std::max({0.0, row.bottom[i] - path_.max.z, path_.min.z - row.top[i]});
+            const double across = std::max(0.0, std::sqrt(x * x + y * y) - radius_);
+            near[i] = near[i] || across * across + z * z < square;
+        }
+    }
+
+private:
+    Aabb path_; // of the axis; along Z, of the whole cylinder
+    double radius_, margin_;
+    bool is_tight_ = false;
+};
+
 /// One search: several shapes against one stock.
 class StockSearch {
 public:
@@ -57,17 +129,24 @@ public:
             outlines_.push_back(outline(shape));
             whole_.extend(outlines_.back().box);
             is_exact_ = is_exact_ && outlines_.back().exact;
+            if (!outlines_.back().straight) continue;
+            tubes_.emplace_back(outlines_.back().sweep);
+            are_tubes_tight_ = are_tubes_tight_ && tubes_.back().is_tight();
         }
+        if (tubes_.size() < outlines_.size()) tubes_.clear();
     }
 
     StockSeparation run() {
         if (goal_.first_line) search_line(*goal_.first_line);
-        const double found = std::min(upper_.upper, promised_.bound);
-        if (goal_.bound != StockBound::lower && found > goal_.enough)
-            for (int axis = 0; axis < 3; ++axis) search_lines(axis);
+        if (goal_.bound != StockBound::lower) search_lines(2);
         keep_promise();
         lower_ = 0.0;
         if (goal_.bound != StockBound::upper) search_columns();
+        if (goal_.bound != StockBound::lower && !is_narrow()) {
+            search_lines(0);
+            search_lines(1);
+            keep_promise();
+        }
         if (goal_.bound == StockBound::lower) search_lines_of_nearest_cell();
         if (goal_.bound != StockBound::upper && lower_ < goal_.threshold
             && upper_.upper >= goal_.threshold)
@@ -78,9 +157,18 @@ public:
     }
 
 private:
+    /// Whether the lines along X and Y need not be searched, because the bounds are close enough.
+    bool is_narrow() const {
+        const double lower = goal_.bound == StockBound::upper ? goal_.known_lower : lower_;
+        if (lower <= goal_.exact_within) return false;
+        return std::min(upper_.upper, goal_.limit) - lower
+               <= std::min(0.5 * stock_.lines.grid.spacing, 0.125 * lower);
+    }
+
+    /// A lower bound of the distance to a box; tight only where it may be below `limit`.
     double box_bound(const Aabb& box, double limit) {
         ++result_.box_tests;
-        double bound = distance(whole_, box);
+        double bound = quick_bound(box);
         if (bound >= limit) return bound;
         bound = infinity;
         for (const ShapeOutline& mine : outlines_)
@@ -88,14 +176,29 @@ private:
         return bound;
     }
 
-    /// box_bound() for a box with a gap around lines along `axis`.
-    double box_bound(const Aabb& box, const BoxGap& gap, int axis, double limit) {
-        const double whole = box_bound(box, limit);
+    /// A lower bound of the distance to a box in a few operations.
+    double quick_bound(const Aabb& box) const {
+        if (tubes_.empty()) return distance(whole_, box);
+        double bound = infinity;
+        for (const Tube& tube : tubes_) bound = std::min(bound, tube.bound(box));
+        return bound;
+    }
+
+    /// box_bound() for boxes around material of many lines, which need not be tight.
+    double rough_bound(const Aabb& box, double limit) {
+        if (tubes_.empty() || !are_tubes_tight_) return box_bound(box, limit);
+        ++result_.box_tests;
+        return quick_bound(box);
+    }
+
+    /// rough_bound() for a box with a gap around lines along `axis`.
+    double rough_bound(const Aabb& box, const BoxGap& gap, int axis, double limit) {
+        const double whole = rough_bound(box, limit);
         if (whole >= limit || gap.empty()) return whole;
         Aabb below = box, above = box;
         below.max[axis] = gap.from;
         above.min[axis] = gap.to;
-        return std::min(box_bound(below, limit), box_bound(above, limit));
+        return std::min(rough_bound(below, limit), rough_bound(above, limit));
     }
 
     /// Distance of the nearest shape to a box, tight only where it is below `limit`, and only up to
@@ -144,7 +247,7 @@ private:
                     static_cast<size_t>(v) * static_cast<size_t>(across) + static_cast<size_t>(u);
                 if (boxes[part].empty()) continue;
                 const BoxGap gap = level == 0 ? tiles.gaps[part] : BoxGap{};
-                near.add(box_bound(boxes[part], gap, axis, limit()), part, limit());
+                near.add(rough_bound(boxes[part], gap, axis, limit()), part, limit());
             }
         }
         near.in_order(limit, [&](size_t part) {
@@ -156,7 +259,8 @@ private:
     }
 
     double line_limit() const {
-        return std::min({goal_.limit, upper_.upper, promised_.bound}) - same;
+        const double found = std::min(upper_.upper, promised_.bound);
+        return found <= goal_.enough ? -infinity : std::min(goal_.limit, found) - same;
     }
 
     /// Calls `act` for the ranges of lines in a tile that may be within `limit`.
@@ -167,9 +271,36 @@ private:
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             const Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
             const BoxGap& gap = tiles.block_gaps[tile * TileBoxes::blocks_per_tile + block];
-            if (!box.empty()) near.add(box_bound(box, gap, lines.axis(), limit()), block, limit());
+            if (!box.empty())
+                near.add(rough_bound(box, gap, lines.axis(), limit()), block, limit());
         }
         near.in_order(limit, [&](size_t block) { act(lines_of_block(lines, tiles, tile, block)); });
+    }
+
+    /// Calls `act` for those lines along Z, or columns, of a block that may be within `limit`.
+    template <typename Limit, typename Act>
+    void for_near_lines(const ScanLines& lines, const LinePositions& positions,
+                        const LineRange& range, const Limit& limit, const Act& act) {
+        const ScanTile* tile = lines.tile(lines.tile_of(range.u_first, range.v_first));
+        const size_t wide = positions.cells ? 1 : 0;
+        const auto count = static_cast<size_t>(range.u_last - range.u_first);
+        for (int v = range.v_first; v < range.v_last; ++v) {
+            const double within = limit();
+            if (tile == nullptr || within <= 0.0) return;
+            std::array<bool, TileBoxes::block_side> near{};
+            if (tubes_.empty()) {
+                near.fill(true);
+            } else {
+                LineRow row(*tile, ScanLines::slot_of(range.u_first, v));
+                const double* const u = positions.u + range.u_first;
+                std::copy_n(u, count, row.u0.begin());
+                std::copy_n(u + wide, count, row.u1.begin());
+                row.v0 = positions.v[v], row.v1 = positions.v[v + int(wide)];
+                for (const Tube& tube : tubes_) tube.add_near(row, within, near);
+            }
+            for (size_t i = 0; i < count; ++i)
+                if (near[i]) act(range.u_first + static_cast<int>(i), v);
+        }
     }
 
     void search_lines(int axis) {
@@ -179,6 +310,14 @@ private:
         const auto limit = [&] { return line_limit(); };
         for_near_tiles(tiles, axis, limit, [&](size_t tile) {
             for_blocks(lines, tiles, tile, limit, [&](const LineRange& range) {
+                if (axis == 2) {
+                    const LinePositions positions{stock_.positions[0].data(),
+                                                  stock_.positions[1].data()};
+                    for_near_lines(lines, positions, range, limit, [&](int u, int v) {
+                        search_line({axis, u, v});
+                    });
+                    return;
+                }
                 for (int v = range.v_first; v < range.v_last; ++v)
                     for (int u = range.u_first; u < range.u_last; ++u) search_line({axis, u, v});
             });
@@ -187,16 +326,22 @@ private:
 
     void search_line(const LineId& id) {
         const double before = line_limit();
+        if (before <= 0.0) return;
+        const Aabb near = whole_.grown(before);
         const auto& [axis, u, v] = id;
-        for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v))
-            offer_matter(point_on_line(stock_.lines.grid, axis, u, v, matter.lower),
-                         point_on_line(stock_.lines.grid, axis, u, v, matter.upper));
+        const Vec3 a = point_on_line(stock_.lines.grid, axis, u, v, near.min[axis]);
+        if (distance_squared(a, near) > 0.0) return;
+        for (const Interval& matter : stock_.lines.families[static_cast<size_t>(axis)].line(u, v)) {
+            if (matter.upper < near.min[axis] || matter.lower > near.max[axis]) continue;
+            Vec3 lower = a, upper = a;
+            lower[axis] = matter.lower, upper[axis] = matter.upper;
+            offer_matter({lower, upper});
+        }
         if (line_limit() < before) result_.line = id;
     }
 
-    /// Material known to exist, from `a` to `b`.
-    void offer_matter(const Vec3& a, const Vec3& b) {
-        const Aabb matter{glm::min(a, b), glm::max(a, b)};
+    /// Material known to exist.
+    void offer_matter(const Aabb& matter) {
         const double bound = box_bound(matter, line_limit());
         if (bound >= line_limit()) return;
         if (is_exact_)
@@ -220,7 +365,10 @@ private:
     void search_columns() {
         lower_ = std::min(goal_.limit, upper_.upper); // a larger bound is useless
         // Ties are skipped, and the bound is lowered by the tolerance; not at the limit.
-        const auto limit = [&] { return lower_ < goal_.limit ? lower_ - same : lower_; };
+        const auto limit = [&] {
+            if (lower_ < goal_.coarse_below) return 0.0;
+            return lower_ < goal_.limit ? lower_ - same : lower_;
+        };
         for_near_tiles(stock_.column_boxes, 2, limit, [&](size_t tile) {
             for_columns(tile, limit, [&](int i, int j, const Square& square) {
                 const double bound = bound_of(square, stock_.columns.line(i, j), limit());
@@ -244,9 +392,10 @@ private:
     template <typename Limit, typename Act>
     void for_columns(size_t tile, const Limit& limit, const Act& act) {
         for_blocks(stock_.columns, stock_.column_boxes, tile, limit, [&](const LineRange& range) {
-            for (int j = range.v_first; j < range.v_last; ++j)
-                for (int i = range.u_first; i < range.u_last; ++i)
-                    if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+            const LinePositions corners{stock_.corners[0].data(), stock_.corners[1].data(), true};
+            for_near_lines(stock_.columns, corners, range, limit, [&](int i, int j) {
+                if (!stock_.columns.line(i, j).empty()) act(i, j, cell_square(stock_, i, j));
+            });
         });
     }
 
@@ -346,7 +495,7 @@ private:
         const Square& square = cuts.square();
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
         for (const Interval& matter : cuts.line_at_centre())
-            offer_matter({x, y, matter.lower}, {x, y, matter.upper});
+            offer_matter({{x, y, matter.lower}, {x, y, matter.upper}});
         keep_promise();
         for (int quarter = 0; quarter < 4; ++quarter) {
             ++result_.refined;
@@ -362,6 +511,8 @@ private:
     const CutModel& stock_;
     StockGoal goal_;
     std::vector<ShapeOutline> outlines_;
+    std::vector<Tube> tubes_; // around the shapes, if all are upright and move straight
+    bool are_tubes_tight_ = true;
     Aabb whole_;           // around all of them
     bool is_exact_ = true; // outline distances are exact up to rounding
     /// Material on a line at this distance according to the outlines.

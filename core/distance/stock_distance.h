@@ -17,7 +17,12 @@ enum class StockBound : uint8_t { both, lower, upper };
 struct StockGoal {
     double limit = 50.0; // mm: larger distances do not matter
     StockBound bound = StockBound::both;
-    double enough = 0.0;         // mm: an upper bound of at most this need not be improved
+    double enough = 0.0;      // mm: an upper bound of at most this need not be improved
+    double known_lower = 0.0; // mm: a lower bound that is known if only `upper` is computed
+    // mm: beyond this lower bound, `upper` may be that of the lines along Z alone, as long as the
+    // interval is at most half as wide as the mesh and an eighth of `lower`.
+    double exact_within = infinity;
+    double coarse_below = 0.0;   // mm: a lower bound below this may be given as 0
     double threshold = 0.0;      // mm: the interval is narrowed until it does not contain this
     double finest = 0.03;        // mm: squares are not divided below this side
     size_t work_limit = 100'000; // squares that may be recomputed
@@ -41,9 +46,10 @@ struct StockSeparation {
 ///
 /// Result:  lower <= distance to the stock as cut by the logged sweeps <= upper. `upper` is
 ///          infinite if no material on a scan line is within `goal.limit`; `lower` is at most the
-///          limit. While the interval contains `goal.threshold`, columns that are too near are
-///          divided and recomputed; it may still contain it when a limit of the goal or the finest
-///          square is reached.
+///          limit. Beyond `exact_within`, `upper` may be that of the lines along Z. While the
+///          interval contains `goal.threshold`, columns that are too near are divided and
+///          recomputed; it may still contain it when a limit of the goal or the finest square is
+///          reached.
 /// Source:  the column and corner rule, see README.md.
 StockSeparation separation(std::span<const ConvexShape> shapes, const CutModel& stock,
                            const StockGoal& goal = {});

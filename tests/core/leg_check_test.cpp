@@ -120,16 +120,48 @@ TEST(StockProbe, BoundsTheDistanceToTheStock) {
     EXPECT_EQ(pair.verdict, Verdict::clear);
     EXPECT_NEAR(pair.lower, 10.0, 1e-6);
     EXPECT_NEAR(pair.upper, 10.0, 1e-6);
-    EXPECT_NEAR(bench.probe.room_of_flutes(over, bench.stock, 50.0), 10.0, 1e-6);
-    EXPECT_NEAR(bench.probe.room_of_flutes(over, bench.stock, 3.0), 3.0, 1e-6);
+    EXPECT_TRUE(bench.probe.have_room(over, bench.stock, 9.999));
+    EXPECT_FALSE(bench.probe.have_room(over, bench.stock, 10.001));
+    // Room that is just proven counts, however the error of a chord is rounded.
+    Leg chord = over;
+    for (int i = 1; i < 50; ++i) {
+        chord.path_error = 1e-4 * i;
+        EXPECT_TRUE(bench.probe.have_room(chord, bench.stock, 0.5)) << i;
+    }
 }
 
 TEST(StockProbe, FindsTheFirstMomentOfAnOverlap) {
     Bench bench{block_setup()};
     const Leg through = bench.leg({-50, 50, -10}, {50, 50, -10});
+    const PairClearance pair{.pair = flutes_and_stock, .lower = 0.0};
     // The flutes, 10 mm wide, reach the face at X 0 when the tip is at X -5.
-    EXPECT_NEAR(bench.probe.earliest(through, flutes_and_stock, 0.0, bench.stock), 0.45, 1e-4);
-    EXPECT_NEAR(bench.probe.earliest(through, flutes_and_stock, 10.0, bench.stock), 0.35, 1e-4);
+    EXPECT_NEAR(bench.probe.earliest(through, pair, 0.0, bench.stock), 0.45, 1e-4);
+    EXPECT_NEAR(bench.probe.earliest(through, pair, 10.0, bench.stock), 0.35, 1e-4);
+}
+
+TEST(StockProbe, FindsTheFirstOfManyMomentsThatAreEquallyNear) {
+    Bench bench{block_setup()};
+    const Leg over = bench.leg({-50, 50, 10}, {150, 50, 10});
+    // The flutes, 10 mm wide, come over the first scan line, at X 0.25, when the tip is at X -4.75.
+    const PairClearance pair{
+        .pair = flutes_and_stock, .lower = 9.99, .on_body = Vec3(70.0, 50.0, 0.0)};
+    for (const std::optional<double> seen : {std::optional<double>(), {0.6}, {0.25}})
+        EXPECT_NEAR(bench.probe.earliest(over, pair, 10.0, bench.stock, seen), 0.22625, 2e-4);
+    EXPECT_EQ(bench.probe.earliest(over, pair, 10.0, bench.stock, 0.1), 0.1);
+}
+
+TEST(StockProbe, FindsTheMomentOfAToolThatIsNotUprightInTheFrameOfTheStock) {
+    core::Setup setup = block_setup();
+    setup.stock_mount.link_from_body.rotation =
+        rotation_xyz_deg({90, 0, 0}); // Y up, Z to the front
+    Bench bench{setup};
+    // Beside the edge along X, towards the end of that edge: nearest at the end.
+    const Leg towards = bench.leg({-19.75, -8, 103}, {0.25, -8, 103});
+    const MovingBody& flutes = bench.context.body_of(flutes_and_stock);
+    const StockObservation seen = bench.probe.observe(flutes, towards, bench.stock, infinity);
+    const PairClearance pair = bench.probe.clearance(flutes, towards, 0.0, seen, seen);
+    EXPECT_NEAR(pair.upper, std::hypot(3.0, 3.25), 1e-6);
+    EXPECT_NEAR(bench.probe.earliest(towards, pair, pair.upper, bench.stock, pair.time), 1.0, 1e-3);
 }
 
 TEST(FluteCut, RemovesWhatTheFlutesSweep) {

@@ -181,15 +181,15 @@ public:
     /// which that is least, mm; negative: it stays outside.
     double reach_into_raw_stock(const Pair& pair, const Leg& leg, const CutModel& stock) const;
 
-    /// StockProbe::room_of_flutes.
-    double room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
-        return probe_.room_of_flutes(leg, stock, limit);
+    /// Whether the flutes stay at least `room` away from the stock: StockProbe::have_room.
+    bool flutes_have_room(const Leg& leg, const CutModel& stock, double room) {
+        return probe_.have_room(leg, stock, room);
     }
 
     /// StockProbe::earliest.
-    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
-                    std::optional<double> seen = {}) {
-        return probe_.earliest(leg, pair, distance, stock, seen);
+    double earliest(const Leg& leg, const PairClearance& near, double distance,
+                    const CutModel& stock, std::optional<double> seen = {}) {
+        return probe_.earliest(leg, near, distance, stock, seen);
     }
 
 private:

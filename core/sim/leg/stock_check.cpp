@@ -138,8 +138,10 @@ StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& le
     after.plain = Separation{.lower = after.plain.lower};
     if (after.plain.lower >= limit) return after;
     const RelativeLeg relative = context_.against_stock(check.body, leg);
-    const StockGoal goal{
-        .limit = limit, .bound = StockBound::upper, .enough = after.plain.lower + resolution};
+    const StockGoal goal{.limit = limit,
+                         .bound = StockBound::upper,
+                         .enough = after.plain.lower + resolution,
+                         .known_lower = after.plain.lower};
     after.plain = widened(probe_.to_stock(check.body, relative, stock, goal), relative);
     return after;
 }
@@ -167,7 +169,7 @@ double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& sto
     const bool gouged = check_bodies(leg, start, stock, pairs);
     if (gouged) {
         TrackedPair& flutes = entry(pairs, {PartKind::flutes}, context_.setup);
-        const double fraction = probe_.earliest(leg, flutes.pair, 0.0, stock);
+        const double fraction = probe_.earliest(leg, flutes, 0.0, stock);
         flutes.time = std::min(flutes.time, start + leg.begin + fraction * (leg.end - leg.begin));
     }
     // Remove the material after the finding, so that one crash gives one finding.

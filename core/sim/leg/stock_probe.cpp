@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/dbm/covered_path.h"
+#include "core/distance/upright_sweep.h"
 #include "core/motion/path.h"
 #include "core/sim/setup.h"
 
@@ -27,6 +28,8 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
                        : shapes_of(*body.profile, leg);
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
+    const Allowance allowance = allowance_of(context_.setup, pair_of(body));
+    goal.exact_within = 2.0 * (deciding_distance(allowance) + bounds_.off_path(allowance));
     goal.threshold = std::min(goal.threshold, goal.limit);
     size_t& futile_left = futile_left_[static_cast<size_t>(body.kind)];
     goal.futile_limit = std::min({goal.futile_limit, futile_left, size_t{500}});
@@ -205,39 +208,73 @@ double StockProbe::distance_to_box(const MovingBody& body, const RelativeLeg& le
     return lower - leg.error;
 }
 
-double StockProbe::room_of_flutes(const Leg& leg, const CutModel& stock, double limit) {
-    if (context_.tool.parts.empty() || !leg.straight) return 0.0;
+bool StockProbe::have_room(const Leg& leg, const CutModel& stock, double room) {
+    if (context_.tool.parts.empty() || !leg.straight) return false;
     const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
-    if (way.error >= limit) return 0.0;
-    const StockGoal goal{.limit = limit + way.error, .bound = StockBound::lower};
-    return std::max(0.0, to_stock(context_.bodies[0], way, stock, goal).lower - way.error);
+    if (way.error >= room) return false;
+    const double needed = room + way.error;
+    const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
+    return to_stock(context_.bodies[0], way, stock, goal).lower >= needed;
 }
 
-double StockProbe::earliest(const Leg& leg, const Pair& pair, double distance,
+double StockProbe::earliest(const Leg& leg, const PairClearance& near, double distance,
                             const CutModel& stock, std::optional<double> seen) {
     if (!leg.straight || leg.positions.size() < 2) return 0.0;
+    const Pair& pair = near.pair;
     const MovingBody& body = context_.body_of(pair);
     const Mount& target =
         pair.fixture ? context_.setup.fixtures[*pair.fixture].mount : context_.setup.stock_mount;
-    const auto reached = [&](double fraction) {
-        const RelativeLeg moved =
-            relative_leg(context_.setup.machine, target, body.mover, stretch(leg, 0.0, fraction));
-        if (moved.error == infinity) return true;
-        const double limit = distance + moved.error + resolution;
-        const Separation found =
-            pair.fixture ? distance_over(moved, body, context_.setup.fixtures[*pair.fixture].body,
-                                         limit + resolution, context_.statistics.shape_tests)
-                         : to_stock(body, moved, stock, {.limit = limit + resolution});
-        return found.upper <= limit;
+    double after = 1.0; // the earliest known moment at which the pair is that near
+    const auto until = [&](double fraction) {
+        return relative_leg(context_.setup.machine, target, body.mover,
+                            stretch(leg, 0.0, fraction));
     };
-    // Usually it is at the witness and not before.
+    const auto reached = [&](double fraction) {
+        const RelativeLeg moved = until(fraction);
+        const double limit = distance + moved.error + resolution;
+        Separation found{.upper = 0.0};
+        if (moved.error < infinity)
+            found = pair.fixture
+                        ? distance_over(moved, body, context_.setup.fixtures[*pair.fixture].body,
+                                        limit + resolution, context_.statistics.shape_tests)
+                        : to_stock(body, moved, stock,
+                                   {.limit = limit + resolution,
+                                    .bound = StockBound::upper,
+                                    .enough = limit,
+                                    .known_lower = near.lower});
+        if (found.upper > limit) return false;
+        // The error is smaller on a shorter way, and the limit with it.
+        after = std::min(after, moved.error > 0.0 ? fraction : fraction * found.time_a);
+        return true;
+    };
+    // Usually it is at the witness and not before, or as soon as the witness is near enough.
     constexpr double step = 1e-4;
-    double before = 0.0, after = 1.0;
     if (seen && (*seen <= step || !reached(*seen - step))) return *seen;
+    if (seen && !pair.fixture && body.profile) {
+        const Aabb witness{near.on_body, near.on_body};
+        const auto is_near_witness = [&](double fraction) {
+            const RelativeLeg moved = until(fraction);
+            const double limit = distance + moved.error + resolution;
+            const std::vector<ConvexShape> shapes = shapes_of(*body.profile, moved);
+            return std::any_of(shapes.begin(), shapes.end(), [&](const ConvexShape& shape) {
+                const ShapeOutline around = outline(shape);
+                if (distance_bound(around, witness, limit + resolution) > limit) return false;
+                const ConvexShape point = convex_segment(near.on_body, near.on_body);
+                const SeparationGoal goal{.limit = limit + resolution};
+                return around.exact || separation(shape, point, goal).upper <= limit;
+            });
+        };
+        double before = 0.0, alone = *seen;
+        while (alone - before > step) {
+            const double middle = 0.5 * (before + alone);
+            (is_near_witness(middle) ? alone : before) = middle;
+        }
+        if (alone > step && after >= alone - step && !reached(alone - step)) return alone;
+    }
     if (reached(0.0)) return 0.0;
-    for (int i = 0; i < 24; ++i) {
+    for (double before = 0.0; after - before > step;) {
         const double middle = 0.5 * (before + after);
-        (reached(middle) ? after : before) = middle;
+        if (!reached(middle)) before = middle;
     }
     return after;
 }
@@ -247,7 +284,7 @@ void StockProbe::settle_time(PairClearance& now, const Leg& leg, double start,
     if (now.verdict == Verdict::clear || !now.found() || context_.setup.needs_only_verdict) return;
     const double begin = start + leg.begin, takes = leg.end - leg.begin;
     const double seen = takes > 0.0 ? (now.time - begin) / takes : 0.0;
-    now.time = begin + earliest(leg, now.pair, now.upper, stock, seen) * takes;
+    now.time = begin + earliest(leg, now, now.upper, stock, seen) * takes;
 }
 
 } // namespace core

@@ -44,9 +44,9 @@ public:
     /// Lower bound of the distance between a machine body and a box over a leg.
     double distance_to_box(const MovingBody& body, const RelativeLeg& leg, const Aabb& box);
 
-    /// Lower bound of the distance from the flutes to the stock over a leg, up to `limit`; 0 if the
-    /// leg's error is `limit` or more.
-    double room_of_flutes(const Leg& leg, const CutModel& stock, double limit);
+    /// Whether the flutes stay at least `room` away from the stock over a leg, as far as bounds
+    /// show.
+    bool have_room(const Leg& leg, const CutModel& stock, double room);
 
     /// Clearance of a body from the stock: lower bound before the cut, upper bound after it. Times
     /// are counted from `start`, seconds.
@@ -62,10 +62,11 @@ public:
     /// which the path is exact. False if it is not proven, and on a leg on which the body turns.
     bool is_clear(const MovingBody& body, const Leg& leg, const CutModel& stock);
 
-    /// Fraction of the leg at which the pair first comes within `distance`. `seen` is a fraction at
-    /// which it does, if one is known.
-    double earliest(const Leg& leg, const Pair& pair, double distance, const CutModel& stock,
-                    std::optional<double> seen = {});
+    /// Fraction of the leg, to within 1e-4, at which the pair first comes within `distance`. `near`
+    /// has a lower bound for the leg. `seen` is a fraction at which it is that near, by the witness
+    /// in `near`, if one is known.
+    double earliest(const Leg& leg, const PairClearance& near, double distance,
+                    const CutModel& stock, std::optional<double> seen = {});
 
     /// Sets the time of a pair that is not clear to the first moment at which it is equally near,
     /// so that the time does not depend on where the search began.

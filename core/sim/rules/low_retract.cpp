@@ -87,10 +87,9 @@ bool is_doubtful(const ExecutedLeg& link, const std::vector<TrackedPair>& known)
     if (!are_clear(known)) return true;
     CheckMemory memory;
     Statistics statistics;
-    return LegCheck(link.setup, link.tool, FluteUse::not_cutting, link.block, link.mounted_fixtures,
-                    memory, statistics)
-               .room_of_flutes(link.leg, link.stock, room)
-           < room;
+    return !LegCheck(link.setup, link.tool, FluteUse::not_cutting, link.block,
+                     link.mounted_fixtures, memory, statistics)
+                .flutes_have_room(link.leg, link.stock, room);
 }
 
 /// Increase in height at which the leg is clear of everything, to within `retract_step`, mm; empty

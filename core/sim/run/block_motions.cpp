@@ -359,7 +359,7 @@ void BlockRun::check_feed(const Motion& motion, const Path& path, double removed
     LegCheck check = leg_check(FluteUse::cutting);
     bool in_air = removed <= 0.0;
     for (const Leg& leg : path.legs)
-        in_air = in_air && check.room_of_flutes(leg, state.stock, air_gap) >= air_gap;
+        in_air = in_air && check.flutes_have_room(leg, state.stock, air_gap);
     if (in_air)
         add_air(state.rules.air, block.block, path.duration * motion.feed / 60.0);
     else

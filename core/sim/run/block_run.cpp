@@ -19,8 +19,7 @@ void settle_time(BlockRun& run, PairClearance& pair, double nearest) {
         if (pair.time <= begin || pair.time > end) continue;
         LegCheck check = run.leg_check(FluteUse::not_cutting);
         const double seen = end > begin ? (pair.time - begin) / (end - begin) : 0.0;
-        const double fraction =
-            check.earliest(timed.leg, pair.pair, nearest, run.state.stock, seen);
+        const double fraction = check.earliest(timed.leg, pair, nearest, run.state.stock, seen);
         pair.time = std::min(pair.time, begin + fraction * (end - begin));
         return;
     }
