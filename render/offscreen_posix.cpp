@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <initializer_list>
-
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 
@@ -17,21 +14,21 @@ bool has_extension(const char* list, const char* name) {
     return list != nullptr && std::string(list).find(name) != std::string::npos;
 }
 
-/// Whether the system has one of these libraries. libepoxy ends the program where it misses one.
-bool has_library(std::initializer_list<const char*> names) {
-    return std::any_of(names.begin(), names.end(), [](const char* name) {
-        return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr; // stays open for libepoxy
-    });
+/// Whether the system has a library. libepoxy and ImGui end the program where one is missing.
+bool has_library(const char* name) {
+    return dlopen(name, RTLD_LAZY | RTLD_LOCAL) != nullptr; // stays open for them
 }
 
 core::Result<EGLDisplay> open_display() {
-    if (!has_library({"libEGL.so.1"}) || !has_library({"libOpenGL.so.0", "libGL.so.1"}))
+    // ImGui draws through libGL.
+    if (!has_library("libEGL.so.1") || !has_library("libGL.so.1"))
         return unsupported(
-            "libEGL or libOpenGL is missing: install libegl1, libopengl0 and libgl1-mesa-dri");
+            "libEGL or libGL is missing: install libegl1, libgl1 and libgl1-mesa-dri");
     if (!has_extension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS),
                        "EGL_MESA_platform_surfaceless"))
         return unsupported(
-            "EGL cannot draw without a screen: install libegl-mesa0 and libgl1-mesa-dri");
+            "EGL cannot draw without a screen: install libegl-mesa0 and libgl1-mesa-dri. If they "
+            "are installed, EGL_LOG_LEVEL=debug in the environment says why they cannot be loaded");
     const EGLDisplay display =
         eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     EGLint major = 0, minor = 0;

@@ -3,20 +3,24 @@
 core/base/math.h belongs: results must have the same bits everywhere.
 
     math_functions.py ROOT            checks the tree at ROOT; prints each line found, exits with 1 if there is one
+    math_functions.py ROOT PROGRAM    also checks which functions the program takes from the C library
     math_functions.py --self-check    checks this script against a small tree with known lines
 """
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
-NAMES = ("a?(sin|cos|tan)h?", "atan2", "hypot", "pow", "exp2?", "expm1", "log(2|10|1p)?", "cbrt", "erfc?", "[lt]gamma")
+NAMES = ("a?(sin|cos|tan)h?", "atan2", "hypot", "pow", "exp2?", "expm1", "log(2|10|1p)?", "cbrt", "erfc?", "[lt]gamma", "fma")
 CALL = re.compile(r"(?:\bstd::|\bglm::|(?<![\w:.>]))(?:" + "|".join(NAMES) + r")[fl]?\s*\(")
 TURNS = re.compile(r"\bglm::(rotate|angleAxis|slerp|perspective\w*|eulerAngle\w*|polar|euclidean)\b")
 COMMENT = re.compile(r"//.*|\"(?:[^\"\\]|\\.)*\"")
 FOLDERS = ("app", "core", "gcode", "hwsim", "render")
 # Shaders only draw.
 OWN = ("core/base/math.h", "render/shaders.cpp")
+# Functions that calls of other names become, such as std::abs of a complex number. ImGui uses log and pow to draw.
+IMPORTS = re.compile(r" U ((?:cabs|carg|cexp|cpow|fma|a?(?:sin|cos|tan)h?|sincos|atan2|hypot|exp2?|log(?:2|10)|__divdc3)\b\S*)")
 
 
 def found_in(root):
@@ -31,6 +35,12 @@ def found_in(root):
                     yield f"{name}:{number}: {line.strip()}"
 
 
+def imported(program):
+    symbols = subprocess.run(["nm", "-D", "--undefined-only", program], capture_output=True, text=True, check=True)
+    for name in IMPORTS.findall(symbols.stdout):
+        yield f"{program} calls {name}"
+
+
 def self_check():
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)
@@ -38,9 +48,11 @@ def self_check():
             (root / name).mkdir()
         (root / "core/a.cpp").write_text(
             "x = std::sin(y);\nx = core::sin(y);\n// std::cos(y)\nx = atan2(y, x);\nx = a.exp(y);\n"
-            "x = glm::rotate(m, a);\nx = sin_cos(y);\nx = std::sqrt(y);\nx = powf(y, 2);\nx = \"tan(y)\";\n")
+            "x = glm::rotate(m, a);\nx = sin_cos(y);\nx = std::sqrt(y);\nx = powf(y, 2);\nx = \"tan(y)\";\nx = std::fma(x, y, z);\n")
         numbers = [int(line.split(":")[1]) for line in found_in(root)]
-        assert numbers == [1, 4, 6, 9], numbers
+        assert numbers == [1, 4, 6, 9, 11], numbers
+        assert IMPORTS.findall("                 U cabs@GLIBC_2.2.5\n   U sincosf@GLIBC_2\n   U fmaf@G\n") == \
+            ["cabs@GLIBC_2.2.5"]
     print("the self-check passes")
 
 
@@ -48,6 +60,8 @@ def main():
     if sys.argv[1:] == ["--self-check"]:
         return self_check()
     lines = list(found_in(pathlib.Path(sys.argv[1])))
+    for program in sys.argv[2:]:
+        lines += imported(program)
     for line in lines:
         print(line)
     return 1 if lines else 0

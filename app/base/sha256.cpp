@@ -1,12 +1,13 @@
 #include "app/base/sha256.h"
 
 #include <array>
-#include <filesystem>
-#include <fstream>
+#include <cstdio>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 
 namespace app {
 namespace {
@@ -28,13 +29,14 @@ std::string sha256_of(std::string_view bytes) {
 
 std::string sha256_of_file(const std::string& path) {
     if (!core::is_file(path)) return {};
-    std::ifstream file(std::filesystem::path(path), std::ios::binary);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+        core::platform::open_file(path, "rb"), std::fclose);
     if (!file) return {};
     Sha256 digest;
     std::array<char, 65536> chunk;
-    while (file.read(chunk.data(), chunk.size()) || file.gcount() > 0)
-        digest.add({chunk.data(), static_cast<size_t>(file.gcount())});
-    if (file.bad()) return {};
+    while (const size_t count = std::fread(chunk.data(), 1, chunk.size(), file.get()))
+        digest.add({chunk.data(), count});
+    if (std::ferror(file.get()) != 0) return {};
     return text_of(digest);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <map>
@@ -10,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/file_stamp.h"
 #include "app/base/stopwatch.h"
 #include "app/check/check_run.h"
 #include "app/commands/batch_ending.h"
@@ -71,17 +73,31 @@ private:
 
 namespace {
 
+/// Whether a folder belongs to an installation of this program: the package that put it there would
+/// not remove a database in it.
+bool is_installed(const std::filesystem::path& folder) {
+    std::error_code failure;
+    const std::filesystem::path prefix =
+        core::platform::program_path().parent_path().parent_path() / "share" / "feeler";
+    const std::filesystem::path own = whole_path(prefix, failure);
+    if (failure) return false;
+    const std::filesystem::path whole = whole_path(folder, failure);
+    return !failure
+           && std::mismatch(own.begin(), own.end(), whole.begin(), whole.end()).first == own.end();
+}
+
 /// Path of the database; empty if results are not stored.
 std::string path_of_store(const CheckOptions& options) {
     if (options.no_cache) return {};
     if (!options.cache.empty()) return options.cache;
     std::error_code ignored;
     for (const std::string& word : options.programs) {
-        if (std::filesystem::is_directory(word, ignored))
-            return default_store_path(word, options.shard);
         const std::filesystem::path path(word);
-        if (path.extension() == ".toml")
-            return default_store_path(path.parent_path().generic_string(), options.shard);
+        const bool is_folder = std::filesystem::is_directory(path, ignored);
+        if (!is_folder && path.extension() != ".toml") continue;
+        const std::filesystem::path folder = is_folder ? path : path.parent_path();
+        if (is_installed(folder.empty() ? "." : folder)) return {};
+        return default_store_path(folder.generic_string(), options.shard);
     }
     return {};
 }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <fstream>
+#include <cstdio>
+#include <memory>
 #include <utility>
+
+#include "core/base/platform.h"
 
 namespace core {
 namespace {
@@ -14,21 +17,25 @@ thread_local const FileAccessObserver* youngest = nullptr;
 std::optional<std::string> read_bytes(const std::filesystem::path& path, size_t limit) {
     std::error_code failure;
     const std::filesystem::file_status status = std::filesystem::status(path, failure);
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    const bool is_other =
+        std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+    if (is_other || platform::is_device(path)) {
         errno = std::filesystem::is_directory(status) ? EISDIR : ENOTSUP;
         return std::nullopt;
     }
     errno = 0;
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return std::nullopt;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(platform::open_file(path, "rb"),
+                                                               std::fclose);
+    if (!file) return std::nullopt;
     std::string bytes;
     std::array<char, 65536> chunk;
-    while (stream && bytes.size() <= limit) {
+    size_t count = 0;
+    do {
         const size_t wanted = std::min(chunk.size(), limit + 1 - bytes.size());
-        stream.read(chunk.data(), static_cast<std::streamsize>(wanted));
-        bytes.append(chunk.data(), static_cast<size_t>(stream.gcount()));
-    }
-    if (stream.bad()) return std::nullopt;
+        count = std::fread(chunk.data(), 1, wanted, file.get());
+        bytes.append(chunk.data(), count);
+    } while (count > 0 && bytes.size() <= limit);
+    if (std::ferror(file.get()) != 0) return std::nullopt;
     return bytes;
 }
 
@@ -77,7 +84,9 @@ std::optional<std::string_view> presence_of(const std::filesystem::path& path) {
     std::error_code failure;
     const std::filesystem::file_status status = std::filesystem::status(path, failure);
     std::optional<std::string_view> answer;
-    if (std::filesystem::is_regular_file(status))
+    if (platform::is_device(path))
+        answer = "other";
+    else if (std::filesystem::is_regular_file(status))
         answer = "file";
     else if (std::filesystem::is_directory(status))
         answer = "folder";

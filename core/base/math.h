@@ -22,8 +22,9 @@ namespace core {
 // The functions of <cmath> that the standard does not round exactly, with the same bits on every
 // system and processor: those of musl, within 1 ulp (`hypot`, `exp`, `log`, `pow`, `sin`, `cos`) or
 // 2 ulp. Those of a system differ from version to version, and where fused multiply-add is missing.
-// tests/math_functions.py refuses `std::sin` and the like elsewhere. `std::sqrt`, `std::fmod`,
-// `std::remainder`, `std::fma` and roundings are exact everywhere.
+// tests/math_functions.py refuses `std::sin` and the like elsewhere, `std::fma` (that of MinGW is
+// not exact), and a program that calls the absolute value of complex numbers. `std::sqrt`,
+// `std::fmod`, `std::remainder` and roundings are exact everywhere.
 //
 // Source: core/base/libm/README.md.
 

@@ -4,6 +4,7 @@
 // After windows.h.
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>
@@ -428,7 +429,18 @@ bool is_device(const std::filesystem::path& path) {
 }
 
 std::FILE* open_file(const std::filesystem::path& path, const char* mode) {
-    return ::_wfopen(path.c_str(), wide(mode).c_str());
+    if (std::string_view(mode) != "rb") return ::_wfopen(path.c_str(), wide(mode).c_str());
+    // _wfopen does not let other programs replace or delete the file meanwhile.
+    const HANDLE file = ::CreateFileW(path.c_str(), GENERIC_READ, share_all, nullptr, OPEN_EXISTING,
+                                      FILE_ATTRIBUTE_NORMAL, nullptr);
+    if (file == INVALID_HANDLE_VALUE) {
+        errno = last_error().default_error_condition().value();
+        return nullptr;
+    }
+    const int number = ::_open_osfhandle(reinterpret_cast<intptr_t>(file), _O_RDONLY | _O_BINARY);
+    if (number >= 0) return ::_fdopen(number, mode);
+    ::CloseHandle(file);
+    return nullptr;
 }
 
 bool write_through(std::FILE* file) { return ::_commit(::_fileno(file)) == 0; }

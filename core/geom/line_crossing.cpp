@@ -44,6 +44,15 @@ double crossing_depth(const ProjectedTriangle& triangle, const Vec2& p) {
 
 namespace {
 
+/// A number as the sum of two of at most 26 bits, so that products of such parts are exact; for
+/// numbers below 1e290. Source: Dekker, "A floating-point technique for extending the available
+/// precision" (1971).
+std::array<double, 2> split(double x) {
+    const double scaled = 134217729.0 * x; // 2^27 + 1
+    const double high = scaled - (scaled - x);
+    return {high, x - high};
+}
+
 /// A sum of doubles kept exactly: components that do not overlap, smallest first.
 class ExactSum {
 public:
@@ -61,8 +70,11 @@ public:
     }
 
     void add_product(double x, double y) {
+        // std::fma is not exact in every C library.
         const double product = x * y;
-        add(std::fma(x, y, -product));
+        const auto [a, b] = split(x);
+        const auto [c, d] = split(y);
+        add(((a * c - product) + a * d + b * c) + b * d);
         add(product);
     }
 

@@ -9,12 +9,16 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/result.h"
 
 namespace gcode {
 
 /// A point in the ZX plane, program units: Z is the real part, X the imaginary part.
 using ZxPoint = std::complex<double>;
+
+/// The length of a vector: std::abs() of a complex number has other bits on other systems.
+double length_of(ZxPoint p) { return core::hypot(p.real(), p.imag()); }
 
 /// A segment of an outline. A corner becomes a line (chamfer) or an arc (fillet) once its position
 /// is known.
@@ -179,7 +183,7 @@ void go(Roughing& roughing, ZxPoint end, bool rapid) {
 }
 
 void go_round(Roughing& roughing, const OutlinePiece& piece, ZxPoint end, bool unless_there) {
-    if (!unless_there || std::abs(roughing.at - end) > nearby) roughing.out.arc(piece, end);
+    if (!unless_there || length_of(roughing.at - end) > nearby) roughing.out.arc(piece, end);
     roughing.at = end;
 }
 
@@ -203,7 +207,7 @@ core::Result<PassResult> dive_along_line(Roughing& roughing, const OutlinePiece&
 
 PassResult dive_along_arc(Roughing& roughing, const OutlinePiece& piece, double level) {
     ZxPoint& at = roughing.at;
-    if (std::abs(at - piece.end) < zx_tolerance || (at - piece.end).real() <= zx_tolerance) {
+    if (length_of(at - piece.end) < zx_tolerance || (at - piece.end).real() <= zx_tolerance) {
         at = piece.end;
         return PassResult::done;
     }
@@ -234,7 +238,7 @@ core::Result<PassResult> dive(Roughing& roughing, double level) {
 /// The end of the rising part of an arc.
 ZxPoint top_of(const OutlinePiece& piece) {
     if (!piece.counterclockwise || piece.end.real() >= piece.centre.real()) return piece.end;
-    return piece.centre + ZxPoint(0, std::abs(piece.start - piece.centre));
+    return piece.centre + ZxPoint(0, length_of(piece.start - piece.centre));
 }
 
 /// Moves up along a segment from the tool position.
@@ -242,7 +246,7 @@ core::Result<PassResult> climb(Roughing& roughing) {
     const OutlinePiece& piece = roughing.pieces[roughing.piece];
     if (!piece.is_arc()) {
         if (piece.end.imag() + zx_tolerance < piece.start.imag()) return PassResult::not_this_way;
-        if (std::abs(roughing.at - piece.start) > zx_tolerance)
+        if (length_of(roughing.at - piece.start) > zx_tolerance)
             return core::fail(ErrorCode::invalid_value,
                               "the cycle cannot follow its contour: the segments do not meet");
         go(roughing, piece.end, false);
@@ -285,7 +289,7 @@ void cut_level(Roughing& roughing) {
         const double length = std::abs(z - from.real());
         if (length < zx_tolerance) {
             if (is_own) continue;
-            if (std::abs(from - roughing.pieces[i].start) < zx_tolerance)
+            if (length_of(from - roughing.pieces[i].start) < zx_tolerance)
                 roughing.piece = i;
             else
                 roughing.level -= roughing.depth;
@@ -447,8 +451,8 @@ constexpr double gap_for_arc = 1e-2; // program units: a wider gap at a corner g
 
 /// An offset by less than half of this does not move an arc past its centre.
 double size_of(const OutlinePiece& piece) {
-    const double length = std::abs(piece.start - piece.end);
-    return piece.is_arc() ? std::min(length, std::abs(piece.start - piece.centre)) : length;
+    const double length = length_of(piece.start - piece.end);
+    return piece.is_arc() ? std::min(length, length_of(piece.start - piece.centre)) : length;
 }
 
 template <typename Map>
@@ -465,34 +469,34 @@ void map_points(Outline& outline, Map map, bool mirrors) {
 /// outwards.
 void move_aside(OutlinePiece& piece, double distance) {
     if (piece.is_arc()) {
-        const double radius = std::abs(piece.start - piece.centre);
+        const double radius = length_of(piece.start - piece.centre);
         const double factor = (radius + (piece.counterclockwise ? distance : -distance)) / radius;
         piece.start = factor * (piece.start - piece.centre) + piece.centre;
         piece.end = factor * (piece.end - piece.centre) + piece.centre;
         return;
     }
     const ZxPoint back = piece.start - piece.end;
-    const ZxPoint aside = ZxPoint(0, 1) * distance * back / std::abs(back);
+    const ZxPoint aside = ZxPoint(0, 1) * distance * back / length_of(back);
     piece.start += aside;
     piece.end += aside;
 }
 
 /// Where a line crosses the circle through `on_circle`: the intersection nearer to `near`.
 ZxPoint line_and_circle(const OutlinePiece& line, ZxPoint centre, ZxPoint on_circle, ZxPoint near) {
-    const ZxPoint level = std::conj(line.start - line.end) / std::abs(line.start - line.end);
+    const ZxPoint level = std::conj(line.start - line.end) / length_of(line.start - line.end);
     const ZxPoint c = (centre - line.end) * level;
     const ZxPoint p = (on_circle - line.end) * level;
     const double half = std::sqrt(std::max(0.0, std::norm(c - p) - c.imag() * c.imag()));
-    const ZxPoint a = (c.real() + half) / level + line.end;
-    const ZxPoint b = (c.real() - half) / level + line.end;
-    return std::abs(near - a) < std::abs(near - b) ? a : b;
+    const ZxPoint a = (c.real() + half) * std::conj(level) + line.end;
+    const ZxPoint b = (c.real() - half) * std::conj(level) + line.end;
+    return length_of(near - a) < length_of(near - b) ? a : b;
 }
 
 /// Where two circles cross, to the left of the line from the second centre to the first.
 ZxPoint circle_and_circle(const OutlinePiece& first, const OutlinePiece& second) {
-    const double a = std::abs(second.start - second.centre);
-    const double b = std::abs(first.start - first.centre);
-    const double c = std::abs(second.centre - first.centre);
+    const double a = length_of(second.start - second.centre);
+    const double b = length_of(first.start - first.centre);
+    const double c = length_of(second.centre - first.centre);
     const double cosine = (c * c + a * a - b * b) / 2.0 / a / c;
     const ZxPoint turned(cosine, std::sqrt(1.0 - std::min(cosine * cosine, 1.0)));
     return turned * (first.centre - second.centre) / c * a + second.centre;
@@ -505,7 +509,7 @@ core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
         at = circle_and_circle(first, second);
     } else if (!first.is_arc() && !second.is_arc()) {
         const ZxPoint back = second.start - second.end;
-        const ZxPoint level = std::conj(back) / std::abs(back);
+        const ZxPoint level = std::conj(back) / length_of(back);
         const ZxPoint from = (first.start - second.end) * level;
         const ZxPoint to = (first.end - second.end) * level;
         if ((from - to).imag() == 0.0)
@@ -513,9 +517,9 @@ core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
                               "two consecutive lines of the contour are parallel and their offsets "
                               "do not meet: combine them into one line");
         const double t = from.imag() / (from - to).imag();
-        at = (from + t * (to - from)) / level + second.end;
+        at = (from + t * (to - from)) * std::conj(level) + second.end;
     } else {
-        if (std::abs(second.start - first.end) < zx_tolerance) return {};
+        if (length_of(second.start - first.end) < zx_tolerance) return {};
         at = first.is_arc() ? line_and_circle(second, first.centre, first.end, second.start)
                             : line_and_circle(first, second.centre, second.end, second.start);
     }
@@ -676,7 +680,7 @@ core::Result<void> offset_outline(Outline& outline, double distance) {
     OutlinePiece way_in = pieces.front();
     const ZxPoint in = way_in.end - way_in.start;
     const ZxPoint across = pieces.back().start - way_in.start;
-    if ((in / across).imag() < 0.0) distance = -distance;
+    if ((in * std::conj(across)).imag() < 0.0) distance = -distance;
     pieces.erase(pieces.begin());
     int steps = 0;
     for (double done = 0.0; done != distance;) {
@@ -710,7 +714,7 @@ std::vector<double> crossings(const OutlinePiece& piece, double x) {
         const double t = (x - from.imag()) / (to.imag() - from.imag());
         return {t * (to.real() - from.real()) + from.real()};
     }
-    const double radius = std::abs(from - piece.centre);
+    const double radius = length_of(from - piece.centre);
     const double height = x - piece.centre.imag();
     const double square = -(height - radius) * (height + radius);
     if (square < -zx_tolerance) return {};

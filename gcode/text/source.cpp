@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <system_error>
 
@@ -308,21 +309,22 @@ core::Result<Collector> collected(const std::string& path) {
     if (std::filesystem::is_directory(path, ignored))
         return tl::unexpected(
             cannot_read(path, "it is a directory; give the path of an NC program"));
+    if (core::platform::is_device(path))
+        return tl::unexpected(cannot_read(path, "it is a device; give the path of an NC program"));
     errno = 0;
-    std::ifstream stream(std::filesystem::path(path), std::ios::binary);
-    if (!stream)
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+        core::platform::open_file(path, "rb"), std::fclose);
+    if (!file)
         return tl::unexpected(
             cannot_read(path, std::error_code(errno, std::generic_category()).message()));
 
     Collector collector(path);
     std::array<char, chunk_size> chunk;
-    while (stream) {
-        stream.read(chunk.data(), chunk.size());
-        const auto count = static_cast<size_t>(stream.gcount());
+    while (const size_t count = std::fread(chunk.data(), 1, chunk.size(), file.get()))
         if (auto error = collector.add(std::string_view(chunk.data(), count)))
             return tl::unexpected(std::move(*error));
-    }
-    if (stream.bad()) return tl::unexpected(cannot_read(path, "the file system reports an error"));
+    if (std::ferror(file.get()) != 0)
+        return tl::unexpected(cannot_read(path, "the file system reports an error"));
     return collector;
 }
 

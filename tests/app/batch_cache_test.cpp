@@ -56,6 +56,20 @@ TEST(BatchCache, IsThatOfOneBuildAlsoWithoutABuildId) {
     }
 }
 
+TEST(BatchCache, IsNotCreatedInTheFoldersOfAnInstallation) {
+    const test_support::ScopedFolder folder;
+    for (const char* part : {"bin", "share", "share/feeler", "share/feeler/programs", "mine"})
+        std::filesystem::create_directory(folder / part);
+    const std::string feeler = folder / "bin/feeler";
+    std::filesystem::copy_file(FEELER_BINARY, feeler);
+    for (const std::string programs : {"share/feeler/programs", "mine"}) {
+        folder.write(programs + "/a.nc", clear_program);
+        const auto ran = test_support::run({feeler, "check", folder / programs});
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_EQ(std::filesystem::exists(folder / (programs + "/.feeler")), programs == "mine");
+    }
+}
+
 TEST(BatchCache, IsNotCreatedWithNoCache) {
     const test_support::ScopedFolder folder;
     fill(folder);

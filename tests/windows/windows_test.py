@@ -136,6 +136,18 @@ class SameBits(Case):
                 self.assertEqual(without_times(there.out), without_times(here.out))
                 self.assertEqual(there.err, here.err)
 
+    def test_reports_of_all_shared_programs_are_equal(self):
+        programs = "../shared/programs"
+        if not (SOURCE / programs).is_dir():
+            self.assertNotIn("FEELER_REQUIRE_SHARED", os.environ, "the shared programs are missing")
+            self.skipTest("the shared programs are missing")
+        arguments = ["check", programs, "--no-cache", "--format", "jsonl", "--jobs", "1"]
+        here, there = self.linux(*arguments), self.windows(*arguments)
+        self.assertEqual(there.returncode, here.returncode, there.err)
+        self.assertGreater(len(here.out.splitlines()), 100)
+        for mine, other in zip(here.out.splitlines(), there.out.splitlines(), strict=True):
+            self.assertEqual(without_times(other), without_times(mine))
+
     def test_other_reports_are_equal(self):
         for form in ("text", "sarif", "junit"):
             with self.subTest(form=form):
@@ -182,6 +194,11 @@ class CommandLine(Case):
                              windows_path(SOURCE / "assets/setups/test_g90.toml"), "--format", "json")
         self.assertEqual(drive.returncode, plain.returncode, drive.err)
         self.assertEqual(json.loads(drive.out)["verdict"], json.loads(plain.out)["verdict"])
+
+    def test_names_of_devices_are_not_opened(self):
+        for name in ("aux.nc", "CON", "com1.nc"):
+            report = self.windows("check", name, cwd=self.folder, status=2)
+            self.assertIn("device", report.err)
 
     def test_long_paths(self):
         deep = self.folder
@@ -377,9 +394,10 @@ class FileManager(Case):
                 opened.wait(PATIENCE)  # clock: as above
 
     def test_open_with_is_registered_and_removed(self):
-        script = self.folder / "R&D (new)" / "open-with.cmd"
+        script = self.folder / "R&D (new)! 2!" / "open-with.cmd"
         script.parent.mkdir()
-        shutil.copy(SOURCE / "assets/desktop/open-with.cmd", script)
+        shutil.copy(EXE.parent / "open-with.cmd", script)
+        (script.parent / "feeler.exe").touch()
 
         def query(key):
             return subprocess.run(["wine", "reg", "query", rf"HKCU\Software\Classes\{key}", "/s"], env=wine.env,
@@ -394,6 +412,16 @@ class FileManager(Case):
                        stdout=subprocess.DEVNULL)
         self.assertNotEqual(query("Feeler.Program").returncode, 0)
         self.assertNotIn("Feeler.Program", query(r".nc\OpenWithProgids").stdout)
+
+    def test_open_with_refuses_a_percent_sign(self):
+        script = self.folder / "100 %" / "open-with.cmd"
+        script.parent.mkdir()
+        shutil.copy(EXE.parent / "open-with.cmd", script)
+        (script.parent / "feeler.exe").touch()
+        done = subprocess.run(["wine", "cmd", "/c", script.name], cwd=script.parent, env=wine.env, check=False,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("may have % in its name", done.stdout)
 
 
 class Batch(Case):

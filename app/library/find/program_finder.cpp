@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -15,6 +16,7 @@
 #include "app/library/find/project_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 #include "gcode/text/program_text.h"
 
 namespace app {
@@ -226,8 +228,10 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
     for (const Kind& kind : foreign_kinds)
         if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
             return std::optional<std::string>(kind.what);
+    if (core::platform::is_device(path)) return std::optional<std::string>("is a device");
     errno = 0;
-    std::ifstream file(std::filesystem::path(path), std::ios::binary);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+        core::platform::open_file(path, "rb"), std::fclose);
     if (!file)
         return tl::unexpected<core::Error>(
             {core::ErrorCode::io,
@@ -235,8 +239,7 @@ core::Result<std::optional<std::string>> why_no_program(const std::string& path)
              "cannot be read: " + std::generic_category().message(errno),
              path});
     std::string text(sample_size, '\0');
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<size_t>(file.gcount()));
+    text.resize(std::fread(text.data(), 1, text.size(), file.get()));
     const bool is_named_so =
         std::find(std::begin(program_endings), std::end(program_endings), ending)
         != std::end(program_endings);
