@@ -1,22 +1,43 @@
-# cmake --install: the program, its samples and presets, the manual, manual pages, completion scripts, and what
-# a desktop needs to list it and to open NC programs with it. On Windows, one folder that can lie anywhere.
+# cmake --install: the program, its samples and presets, the manual, the licences, manual pages, completion scripts, and
+# what a desktop needs to list it and to open NC programs with it. On Windows, one folder that can lie anywhere.
 if(WIN32)
   set(bin .)
   set(data share/feeler)
-  set(doc doc)
   set(texts .)
+  set(licences licences)
 else()
   include(GNUInstallDirs)
   set(bin ${CMAKE_INSTALL_BINDIR})
   set(data ${CMAKE_INSTALL_DATADIR}/feeler)
-  set(doc ${CMAKE_INSTALL_DOCDIR})
-  set(texts ${doc})
+  set(texts ${CMAKE_INSTALL_DOCDIR})
+  set(licences ${texts}/licences)
 endif()
 install(TARGETS feeler RUNTIME DESTINATION ${bin})
 install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
   DESTINATION ${data} PATTERN "*.py" EXCLUDE)
-install(DIRECTORY docs/manual docs/images DESTINATION ${doc})
-install(FILES README.md LICENSE DESTINATION ${texts})
+install(FILES assets/README.md DESTINATION ${data})
+
+cmake_path(ABSOLUTE_PATH texts BASE_DIRECTORY /prefix NORMALIZE OUTPUT_VARIABLE from)
+cmake_path(ABSOLUTE_PATH data BASE_DIRECTORY /prefix NORMALIZE OUTPUT_VARIABLE to)
+file(RELATIVE_PATH samples ${from} ${to})
+set(documents ${PROJECT_BINARY_DIR}/documents)
+install(CODE "
+  execute_process(COMMAND \"${CMAKE_COMMAND}\" -D \"SOURCE=${PROJECT_SOURCE_DIR}\" -D \"OUTPUT=${documents}\"
+    -D \"SAMPLES=${samples}\" -P \"${PROJECT_SOURCE_DIR}/cmake/documents.cmake\" COMMAND_ERROR_IS_FATAL ANY)")
+install(DIRECTORY ${documents}/ DESTINATION ${texts})
+install(FILES LICENSE DESTINATION ${texts})
+
+# The licences of what is compiled into the program.
+install(FILES core/base/libm/COPYRIGHT DESTINATION ${licences} RENAME musl.txt)
+install(FILES ${PROJECT_BINARY_DIR}/app/report/html/view/node_modules/three/LICENSE
+  DESTINATION ${licences} RENAME three.js.txt OPTIONAL)
+if(WIN32)
+  install(FILES ${FEELER_DEPS_LICENCES} DESTINATION ${licences})
+else()
+  foreach(package libcli11-dev libexpected-dev libglm-dev libimgui-dev nlohmann-json3-dev)
+    install(FILES /usr/share/doc/${package}/copyright DESTINATION ${licences} RENAME ${package}.txt OPTIONAL)
+  endforeach()
+endif()
 
 # The fonts, for archives that need nothing installed.
 set(fonts /usr/share/fonts)
@@ -25,14 +46,13 @@ install(FILES
     ${fonts}/opentype/inter/InterDisplay-SemiBold.otf ${fonts}/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf
     ${fonts}/truetype/font-awesome/fontawesome-webfont.ttf
   DESTINATION ${data}/fonts COMPONENT fonts EXCLUDE_FROM_ALL)
+foreach(font fonts-inter fonts-jetbrains-mono fonts-font-awesome)
+  install(FILES /usr/share/doc/${font}/copyright
+    DESTINATION ${licences} RENAME ${font}.txt COMPONENT fonts EXCLUDE_FROM_ALL)
+endforeach()
 
 if(WIN32)
   install(FILES assets/desktop/open-with.cmd DESTINATION .)
-  install(FILES ${FEELER_DEPS_LICENCES} DESTINATION licences)
-  install(FILES core/base/libm/COPYRIGHT DESTINATION licences RENAME musl.txt)
-  foreach(font fonts-inter fonts-jetbrains-mono fonts-font-awesome)
-    install(FILES /usr/share/doc/${font}/copyright DESTINATION licences RENAME ${font}.txt)
-  endforeach()
   return()
 endif()
 

@@ -3,7 +3,21 @@
 # the archive alone.
 #
 #     package.sh BUILD_FOLDER OUTPUT_FOLDER
+#     package.sh --libraries PROGRAM           lists the libraries that the archive would contain
 set -euo pipefail
+
+# Left to the system are the C and C++ libraries and others that every system has: its graphics drivers use them, too,
+# and need its version of them.
+libraries() {
+    ldd "$1" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' \
+        | grep -vE '/lib(c|m|dl|pthread|rt|stdc\+\+|gcc_s|z|tinfo|GL|EGL|OpenGL|GLX|GLdispatch|gbm|drm)\.so'
+}
+
+if [[ $1 == --libraries ]]; then
+    libraries "$2"
+    exit
+fi
+
 build=$(realpath "$1") out=$(realpath -m "$2")
 source_folder=$(realpath "$(dirname "$0")/..")
 version=$(sed -n 's/^project(feeler VERSION \([0-9.]*\).*/\1/p' "$source_folder/CMakeLists.txt")
@@ -19,11 +33,21 @@ installed() {
     cmake --install "$build" --prefix "$1" --component fonts >/dev/null
 }
 
+# common_licences FOLDER: adds the texts to which the licences in it refer, and which only Debian has.
+common_licences() {
+    local name
+    mkdir "$1/common-licenses"
+    grep -rhoE 'common-licenses/[A-Za-z0-9]+(-[0-9]+(\.[0-9]+)?)?' "$1" | sort -u | while IFS=/ read -r _ name; do
+        cp -L "/usr/share/common-licenses/$name" "$1/common-licenses/"
+    done
+}
+
 # --- Windows ---
 
 if [[ -e $build/app/feeler.exe ]]; then
     name=feeler-$version-windows-x86_64
     installed "$work/$name"
+    common_licences "$work/$name/licences"
     rm -f "$out/$name.zip"
     (cd "$work" && zip -q -r -X "$out/$name.zip" "$name")
     ls -l "$out/$name.zip"
@@ -35,13 +59,35 @@ fi
 tree=$work/deb
 DESTDIR=$tree cmake --install "$build" --prefix /usr --strip >/dev/null
 doc=$tree/usr/share/doc/feeler
-mv "$doc/LICENSE" "$work/LICENSE"
+rm "$doc/LICENSE"
+sed -i 's/](LICENSE)/](copyright)/' "$doc/README.md"
+# As part of a paragraph of debian/copyright.
+indented() { sed -e 's/^$/./' -e 's/^/ /'; }
 {
-    printf 'Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/\n'
-    printf 'Upstream-Name: feeler\n\nFiles: *\nCopyright: the authors of Feeler\nLicense: Apache-2.0\n'
-    printf ' On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.\n\n'
-    printf 'Files: core/base/libm/*\nCopyright: the authors of musl; 1993 Sun Microsystems\nLicense: MIT\n'
-    sed -e 's/^$/./' -e 's/^/ /' "$source_folder/core/base/libm/COPYRIGHT"
+    cat <<COPYRIGHT
+Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: feeler
+Comment: The program contains code of Dear ImGui, GLM, tl::expected, CLI11 and
+ JSON for Modern C++. Their licences are in /usr/share/doc/feeler/licences.
+
+Files: *
+Copyright: the authors of Feeler
+License: Apache-2.0
+ On Debian systems, the full text is in /usr/share/common-licenses/Apache-2.0.
+
+Files: assets/programs/TEST_G90.NC assets/programs/PARALLEL.NC
+Copyright: 2025-2026 MaestroFusion360
+Comment: installed in /usr/share/feeler/programs
+License: Expat
+COPYRIGHT
+    sed -n 's/^> \{0,1\}//p' "$source_folder/assets/programs/README.md" | indented
+    printf '\nFiles: core/base/libm/*\nCopyright: the authors of musl; 1993 Sun Microsystems\nLicense: MIT\n'
+    indented <"$source_folder/core/base/libm/COPYRIGHT"
+    if [[ -e $doc/licences/three.js.txt ]]; then
+        printf '\nFiles: three.js\nCopyright: the authors of three.js\n'
+        printf 'Comment: a part of the program, for the 3D view of HTML reports\nLicense: MIT-three.js\n'
+        indented <"$doc/licences/three.js.txt"
+    fi
 } >"$doc/copyright"
 printf 'feeler (%s) stable; urgency=medium\n\n  * Version %s.\n\n -- Feeler <feeler@feeler.invalid>  %s\n' \
     "$version" "$version" "$(date -R -d "@${SOURCE_DATE_EPOCH:-$(date +%s)}")" \
@@ -58,7 +104,7 @@ Architecture: $architecture
 Maintainer: Feeler <feeler@feeler.invalid>
 Installed-Size: $(du -sk --exclude=DEBIAN "$tree" | cut -f1)
 Depends: $depends
-Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1-mesa-dri, libegl1, libopengl0
+Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1, libegl1, libopengl0, libgl1-mesa-dri
 Suggests: ffmpeg
 Section: science
 Priority: optional
@@ -73,17 +119,40 @@ dpkg-deb --root-owner-group --build "$tree" "$out/feeler_${version}_$architectur
 
 # --- archive ---
 
-# Its program finds its libraries and fonts beside it. The C library and the graphics driver are the system's.
+# Its program finds its libraries and fonts beside it.
 name=feeler-$version-linux-$(uname -m)
 tree=$work/$name
 installed "$tree"
-mkdir -p "$tree/lib/feeler"
-ldd "$tree/bin/feeler" | sed -n 's/.* => \(\/[^ ]*\) .*/\1/p' \
-    | grep -vE '/(libc|libm|libdl|libpthread|librt|ld-linux[^/]*|lib(GL|EGL|OpenGL|GLX|GLdispatch|gbm|drm))\.so' \
-    | xargs -I{} cp -L {} "$tree/lib/feeler/"
+mv "$tree/share/doc/feeler/licences" "$tree/licences"
+
+# Some libraries are in use only where the system has none: those of its graphics drivers, and OpenSSL, which it keeps
+# secure.
+own=$tree/lib/feeler
+mkdir -p "$own/fallback"
+libraries "$tree/bin/feeler" | while read -r library; do
+    folder=$own
+    [[ $library =~ /lib(X11|xcb|Xau|Xdmcp|bsd|md|edit|crypto)\.so ]] && folder=$own/fallback
+    cp -L "$library" "$folder/"
+    # In systems whose /lib is a link to /usr/lib, dpkg may know either path.
+    file=$(realpath "$library")
+    package=$({ dpkg-query -S "$file" || dpkg-query -S "${file#/usr}"; } 2>/dev/null | sed 's/:.*//')
+    cp -L "/usr/share/doc/$package/copyright" "$tree/licences/$package.txt"
+done
+common_licences "$tree/licences"
+system=$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+system=/lib/$system:/usr/lib/$system:/lib64:/usr/lib64:/usr/lib
 # shellcheck disable=SC2016
-patchelf --set-rpath '$ORIGIN/../lib/feeler' "$tree/bin/feeler"
+patchelf --set-rpath '$ORIGIN/../lib/feeler:'"$system"':$ORIGIN/../lib/feeler/fallback' "$tree/bin/feeler"
+for library in "$own"/*.so*; do
+    # shellcheck disable=SC2016
+    patchelf --set-rpath '$ORIGIN:'"$system"':$ORIGIN/fallback' "$library"
+done
+for library in "$own"/fallback/*; do
+    # shellcheck disable=SC2016
+    patchelf --set-rpath "$system"':$ORIGIN' "$library"
+done
+# It loads the graphics driver by name, in the order of the system.
 # shellcheck disable=SC2016
-for library in "$tree"/lib/feeler/*; do patchelf --set-rpath '$ORIGIN' "$library"; done
+patchelf --set-rpath '$ORIGIN' "$own"/libepoxy.so.*
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner -czf "$out/$name.tar.gz" "$name"
 ls -l "$out"

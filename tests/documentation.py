@@ -6,6 +6,8 @@ page names and every type in the glossary exists, and the pages that must stay s
     documentation.py ROOT FEELER    checks that the manual lists every subcommand, option, rule and dialect of the program
     documentation.py ROOT FEELER --update    first writes severity, meaning and cure of each rule, and the lists of
                                              dialects, into the manual
+    documentation.py --installed FOLDER      checks the links in an installed tree
+    documentation.py --install BUILD         installs a build into a temporary folder and checks the links there
     documentation.py --self-check   checks this script against a small tree with known mistakes
 """
 import json
@@ -142,7 +144,7 @@ def mistake_of(root, page, target, anchors_of):
     return None
 
 
-def mistakes(root):
+def wrong_links(root):
     known = {}
 
     def anchors_of(file):
@@ -150,16 +152,29 @@ def mistakes(root):
             known[file] = anchors(file.read_text(encoding="utf-8"))
         return known[file]
 
-    found, sources = [], sources_of(root)
+    found = []
+    for page in pages_of(root):
+        name = page.relative_to(root).as_posix()
+        for number, target in links(page.read_text(encoding="utf-8")):
+            mistake = mistake_of(root, page, target, anchors_of)
+            if mistake:
+                found.append(f"{name}:{number}: {mistake}")
+    return found
+
+
+def wrong_links_installed(build):
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(["cmake", "--install", build, "--prefix", folder], stdout=subprocess.DEVNULL, check=True)
+        return wrong_links(pathlib.Path(folder).resolve())
+
+
+def mistakes(root):
+    found, sources = wrong_links(root), sources_of(root)
     for page in pages_of(root):
         name = page.relative_to(root).as_posix()
         text = page.read_text(encoding="utf-8")
         for number, source in unknown_sources(text, sources):
             found.append(f"{name}:{number}: there is no {source}")
-        for number, target in links(text):
-            mistake = mistake_of(root, page, target, anchors_of)
-            if mistake:
-                found.append(f"{name}:{number}: {mistake}")
         if name in MAX_LINES and len(text.splitlines()) > MAX_LINES[name]:
             found.append(f"{name}: {len(text.splitlines())} lines; at most {MAX_LINES[name]} are allowed")
         if name in MAX_BYTES and len(text.encode()) > MAX_BYTES[name]:
@@ -329,11 +344,16 @@ def main(arguments):
     if arguments == ["--self-check"]:
         self_check()
         return 0
-    root = pathlib.Path(arguments[0] if arguments else ".").resolve()
-    if arguments[2:] == ["--update"]:
-        update_rules(root, arguments[1])
-        update_dialects(root, arguments[1])
-    found = unlisted(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
+    if arguments[:1] == ["--installed"]:
+        found = wrong_links(pathlib.Path(arguments[1]).resolve())
+    elif arguments[:1] == ["--install"]:
+        found = wrong_links_installed(arguments[1])
+    else:
+        root = pathlib.Path(arguments[0] if arguments else ".").resolve()
+        if arguments[2:] == ["--update"]:
+            update_rules(root, arguments[1])
+            update_dialects(root, arguments[1])
+        found = unlisted(root, arguments[1]) if len(arguments) > 1 else mistakes(root)
     for mistake in found:
         print(mistake)
     return 1 if found else 0
