@@ -17,8 +17,23 @@ namespace gcode {
 /// A point in the ZX plane, program units: Z is the real part, X the imaginary part.
 using ZxPoint = std::complex<double>;
 
-/// The length of a vector: std::abs() of a complex number has other bits on other systems.
+// The absolute value and the quotient of complex numbers come from the libraries of system and
+// compiler, with other bits on other systems.
+
 double length_of(ZxPoint p) { return core::hypot(p.real(), p.imag()); }
+
+/// Rounded as by the compiler of LinuxCNC, whose choice of a side depends on it where a quotient is
+/// nearly real. Source: Smith, "Algorithm 116: complex division" (1962).
+ZxPoint quotient(ZxPoint p, ZxPoint q) {
+    if (std::abs(q.real()) < std::abs(q.imag())) {
+        const double ratio = q.real() / q.imag();
+        const double size = q.real() * ratio + q.imag();
+        return {(p.real() * ratio + p.imag()) / size, (p.imag() * ratio - p.real()) / size};
+    }
+    const double ratio = q.imag() / q.real();
+    const double size = q.imag() * ratio + q.real();
+    return {(p.imag() * ratio + p.real()) / size, (p.imag() - p.real() * ratio) / size};
+}
 
 /// A segment of an outline. A corner becomes a line (chamfer) or an arc (fillet) once its position
 /// is known.
@@ -487,8 +502,8 @@ ZxPoint line_and_circle(const OutlinePiece& line, ZxPoint centre, ZxPoint on_cir
     const ZxPoint c = (centre - line.end) * level;
     const ZxPoint p = (on_circle - line.end) * level;
     const double half = std::sqrt(std::max(0.0, std::norm(c - p) - c.imag() * c.imag()));
-    const ZxPoint a = (c.real() + half) * std::conj(level) + line.end;
-    const ZxPoint b = (c.real() - half) * std::conj(level) + line.end;
+    const ZxPoint a = quotient(c.real() + half, level) + line.end;
+    const ZxPoint b = quotient(c.real() - half, level) + line.end;
     return length_of(near - a) < length_of(near - b) ? a : b;
 }
 
@@ -517,7 +532,7 @@ core::Result<void> join(OutlinePiece& first, OutlinePiece& second) {
                               "two consecutive lines of the contour are parallel and their offsets "
                               "do not meet: combine them into one line");
         const double t = from.imag() / (from - to).imag();
-        at = (from + t * (to - from)) * std::conj(level) + second.end;
+        at = quotient(from + t * (to - from), level) + second.end;
     } else {
         if (length_of(second.start - first.end) < zx_tolerance) return {};
         at = first.is_arc() ? line_and_circle(second, first.centre, first.end, second.start)
@@ -680,7 +695,7 @@ core::Result<void> offset_outline(Outline& outline, double distance) {
     OutlinePiece way_in = pieces.front();
     const ZxPoint in = way_in.end - way_in.start;
     const ZxPoint across = pieces.back().start - way_in.start;
-    if ((in * std::conj(across)).imag() < 0.0) distance = -distance;
+    if (quotient(in, across).imag() < 0.0) distance = -distance;
     pieces.erase(pieces.begin());
     int steps = 0;
     for (double done = 0.0; done != distance;) {
