@@ -260,7 +260,10 @@ private:
 
     double line_limit() const {
         const double found = std::min(upper_.upper, promised_.bound);
-        return found <= goal_.enough ? -infinity : std::min(goal_.limit, found) - same;
+        if (found <= goal_.enough) return -infinity;
+        // Contact and overlap differ, however small the difference.
+        const double reach = std::min(goal_.limit, found);
+        return reach > same ? reach - same : reach;
     }
 
     /// Calls `act` for the ranges of lines in a tile that may be within `limit`.

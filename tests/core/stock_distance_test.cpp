@@ -340,6 +340,16 @@ TEST(StockDistance, SeesAWallThinnerThanTheMeshSize) {
     }
 }
 
+TEST(StockDistance, FindsAnOverlapBesideAContact) {
+    const CutBox world{{{0, 0, -10}, {10, 10, 0}}, 0.0, {}};
+    const CutModel model = world.model(0.5);
+    // One piece almost touches lines along Z; a needle between these lines meets one along X.
+    const Shapes shapes = {posed(convex(cylinder(1.0, 0, 4)), translation({3, 3, 5e-11})),
+                           posed(convex(cylinder(0.05, -0.5, 4)), translation({7, 7.25, 0}))};
+    for (const double limit : {50.0, 1e-6, 6e-11})
+        EXPECT_EQ(separation(shapes, model, {.limit = limit}).separation.upper, 0.0) << limit;
+}
+
 TEST(StockDistance, IsBeyondTheLimitForBodiesFarAway) {
     const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {}};
     const CutModel model = world.model(1.0);
