@@ -52,7 +52,12 @@ StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, con
     StockObservation seen{.travel = relative.travel};
     const double threshold =
         deciding_distance(allowance) + bounds_.off_path(allowance) + (relative.turns ? error : 0.0);
-    seen.plain = to_stock(body, relative, stock, {.limit = limit, .threshold = threshold});
+    // Where bodies may touch, the shrunk body tells contact from overlap.
+    const bool is_contact_allowed = body.profile && allowance.distance <= resolution;
+    constexpr double contact = 1e-7;
+    const StockGoal goal{
+        .limit = limit, .enough = is_contact_allowed ? contact : 0.0, .threshold = threshold};
+    seen.plain = to_stock(body, relative, stock, goal);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
     if (may_touch && retraces(body, relative, stock, allowance)) {
         seen.shrunk.lower = infinity; // no stock where the shrunk part goes
