@@ -52,7 +52,7 @@ ConvexShape convex_body(const Aabb& box) {
 struct LineRow {
     using Values = std::array<double, TileBoxes::block_side>;
 
-    Values u0, u1, bottom, top;
+    Values u0{}, u1{}, bottom, top;
     double v0 = 0.0, v1 = 0.0;
 
     /// `slot`: of the first line in the tile.
@@ -142,6 +142,7 @@ public:
         keep_promise();
         lower_ = 0.0;
         if (goal_.bound != StockBound::upper) search_columns();
+        // Only now it is known how close the bounds are.
         if (goal_.bound != StockBound::lower && !is_narrow()) {
             search_lines(0);
             search_lines(1);
@@ -160,9 +161,9 @@ private:
     /// Whether the lines along X and Y need not be searched, because the bounds are close enough.
     bool is_narrow() const {
         const double lower = goal_.bound == StockBound::upper ? goal_.known_lower : lower_;
-        if (lower <= goal_.exact_within) return false;
-        return std::min(upper_.upper, goal_.limit) - lower
-               <= std::min(0.5 * stock_.lines.grid.spacing, 0.125 * lower);
+        if (goal_.along_z_only || lower >= goal_.limit) return true;
+        return upper_.upper < goal_.limit
+               && are_close(lower, upper_.upper, goal_.exact_within, stock_.lines.grid.spacing);
     }
 
     /// A lower bound of the distance to a box; tight only where it may be below `limit`.
@@ -347,7 +348,8 @@ private:
     void offer_matter(const Aabb& matter) {
         const double bound = box_bound(matter, line_limit());
         if (bound >= line_limit()) return;
-        if (is_exact_)
+        // The bound is up to 1e-7 too low: where that matters, the distance is computed at once.
+        if (is_exact_ && bound > goal_.enough + same)
             promised_ = {bound, matter}; // the witness is computed once, at the end
         else
             measure(matter, line_limit());

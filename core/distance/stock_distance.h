@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -19,9 +20,10 @@ struct StockGoal {
     StockBound bound = StockBound::both;
     double enough = 0.0;      // mm: an upper bound of at most this need not be improved
     double known_lower = 0.0; // mm: a lower bound that is known if only `upper` is computed
-    // mm: beyond this lower bound, `upper` may be that of the lines along Z alone, as long as the
-    // interval is at most half as wide as the mesh and an eighth of `lower`.
+    // mm: beyond this lower bound, `upper` may be that of the lines along Z alone, if it is close
+    // to `lower` (are_close).
     double exact_within = infinity;
+    bool along_z_only = false;   // search the lines along Z alone for `upper`
     double coarse_below = 0.0;   // mm: a lower bound below this may be given as 0
     double threshold = 0.0;      // mm: the interval is narrowed until it does not contain this
     double finest = 0.03;        // mm: squares are not divided below this side
@@ -31,6 +33,12 @@ struct StockGoal {
     size_t futile_limit = 100'000;
     std::optional<LineId> first_line; // searched first; the last answer is a good guess
 };
+
+/// Whether bounds beyond `exact_within` are so close that lines along X and Y need not be searched
+/// for a smaller upper one: within half the spacing of lines and an eighth of `lower`.
+inline bool are_close(double lower, double upper, double exact_within, double spacing) {
+    return lower > exact_within && upper - lower <= std::min(0.5 * spacing, 0.125 * lower);
+}
 
 /// The distance of a shape from a stock that is being cut.
 struct StockSeparation {

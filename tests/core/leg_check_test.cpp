@@ -150,6 +150,17 @@ TEST(StockProbe, FindsTheFirstOfManyMomentsThatAreEquallyNear) {
     EXPECT_EQ(bench.probe.earliest(over, pair, 10.0, bench.stock, 0.1), 0.1);
 }
 
+TEST(StockProbe, FindsTheFirstMomentBesideAWallThatOnlyLinesAcrossItShow) {
+    Bench bench{block_setup()};
+    const Leg down = bench.leg({-9, 50, 5}, {-9, 50, -18});
+    const MovingBody& flutes = bench.context.body_of(flutes_and_stock);
+    const StockObservation seen = bench.probe.observe(flutes, down, bench.stock, infinity);
+    const PairClearance pair = bench.probe.clearance(flutes, down, 0.0, seen, seen);
+    EXPECT_NEAR(pair.upper, 4.0, 0.01); // to a line along X, of which the first is at Z -0.25
+    for (const double at : {0.9, 0.6, pair.time})
+        EXPECT_NEAR(bench.probe.earliest(down, pair, pair.upper, bench.stock, at), 5.25 / 23, 3e-4);
+}
+
 TEST(StockProbe, FindsTheMomentOfAToolThatIsNotUprightInTheFrameOfTheStock) {
     core::Setup setup = block_setup();
     setup.stock_mount.link_from_body.rotation =

@@ -350,6 +350,25 @@ TEST(StockDistance, FindsAnOverlapBesideAContact) {
         EXPECT_EQ(separation(shapes, model, {.limit = limit}).separation.upper, 0.0) << limit;
 }
 
+TEST(StockDistance, FindsTheOverlapAtTheEndOfACutThatIsRepeatedAndLengthened) {
+    std::mt19937 rng(79);
+    const ProfileElement taper{0, 0.5, 6, 1.4, 0};
+    int overlapping = 0;
+    for (int i = 0; i < 80; ++i) {
+        const Aabb box{{-8, -8, -6}, {8, 8, 0}};
+        const Aabb within{{-5, -5, -3}, {5, 5, -1}};
+        const Vec3 from = random_point(within, rng), to = random_point(within, rng);
+        const CutBox world{box, 0.0, {{RevolvedProfile{{taper}}, from, to}}};
+        const CutModel model = world.model(0.4);
+        const Vec3 path[] = {from, to + 0.1 * (to - from)};
+        const Shapes shapes = {swept(convex(taper), path)};
+        if (to_lines(shapes, model) > 0.0) continue;
+        ++overlapping;
+        EXPECT_EQ(separation(shapes, model).separation.upper, 0.0) << i;
+    }
+    EXPECT_GT(overlapping, 40);
+}
+
 TEST(StockDistance, IsBeyondTheLimitForBodiesFarAway) {
     const CutBox world{{{0, 0, 0}, {10, 10, 10}}, 0.0, {}};
     const CutModel model = world.model(1.0);

@@ -17,6 +17,10 @@ double deciding_distance(const Allowance& allowance) {
 
 } // namespace
 
+double StockProbe::exact_within(const Allowance& allowance) const {
+    return 2.0 * (deciding_distance(allowance) + bounds_.off_path(allowance));
+}
+
 Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
                                 const CutModel& stock, StockGoal goal, double shrink) {
     // Most machine bodies are far away and have many triangles.
@@ -29,7 +33,7 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
-    goal.exact_within = 2.0 * (deciding_distance(allowance) + bounds_.off_path(allowance));
+    goal.exact_within = exact_within(allowance);
     goal.threshold = std::min(goal.threshold, goal.limit);
     size_t& futile_left = futile_left_[static_cast<size_t>(body.kind)];
     goal.futile_limit = std::min({goal.futile_limit, futile_left, size_t{500}});
@@ -52,16 +56,19 @@ StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, con
     StockObservation seen{.travel = relative.travel};
     const double threshold =
         deciding_distance(allowance) + bounds_.off_path(allowance) + (relative.turns ? error : 0.0);
-    // Where bodies may touch, the shrunk body tells contact from overlap.
-    const bool is_contact_allowed = body.profile && allowance.distance <= resolution;
+    // The shrunk body tells contact from overlap.
     constexpr double contact = 1e-7;
     const StockGoal goal{
-        .limit = limit, .enough = is_contact_allowed ? contact : 0.0, .threshold = threshold};
+        .limit = limit, .enough = body.profile ? contact : 0.0, .threshold = threshold};
     seen.plain = to_stock(body, relative, stock, goal);
     const bool may_touch = allowance.distance <= resolution && seen.plain.lower <= error;
+    const bool touches = seen.plain.upper <= contact;
     if (may_touch && retraces(body, relative, stock, allowance)) {
         seen.shrunk.lower = infinity; // no stock where the shrunk part goes
-    } else if (body.profile && (may_touch || seen.plain.upper == 0.0)) {
+    } else if (body.profile && touches && !may_touch
+               && retraces(body, relative, stock, allowance)) {
+        seen.plain.upper = std::max(seen.plain.upper, 1e-9); // contact, which the allowance forbids
+    } else if (body.profile && (may_touch || touches)) {
         const double just_apart = resolution + error;
         seen.shrunk =
             to_stock(body, relative, stock, {.limit = 2.0 * just_apart, .threshold = just_apart},
@@ -229,6 +236,11 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
     const MovingBody& body = context_.body_of(pair);
     const Mount& target =
         pair.fixture ? context_.setup.fixtures[*pair.fixture].mount : context_.setup.stock_mount;
+    // As for the distance itself, if that is to a line along Z.
+    const std::optional<LineId>& line = context_.memory.hints[static_cast<size_t>(body.kind)];
+    const bool along_z_only =
+        line && line->axis == 2
+        && are_close(near.lower, distance, exact_within(near.allowance), stock.lines.grid.spacing);
     double after = 1.0; // the earliest known moment at which the pair is that near
     const auto until = [&](double fraction) {
         return relative_leg(context_.setup.machine, target, body.mover,
@@ -246,7 +258,7 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
                                    {.limit = limit + resolution,
                                     .bound = StockBound::upper,
                                     .enough = limit,
-                                    .known_lower = near.lower});
+                                    .along_z_only = along_z_only});
         if (found.upper > limit) return false;
         // The error is smaller on a shorter way, and the limit with it.
         after = std::min(after, moved.error > 0.0 ? fraction : fraction * found.time_a);

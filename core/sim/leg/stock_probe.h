@@ -73,6 +73,8 @@ public:
     void settle_time(PairClearance& now, const Leg& leg, double start, const CutModel& stock);
 
 private:
+    /// Lower bound below which upper bounds use all lines: StockGoal::exact_within.
+    double exact_within(const Allowance& allowance) const;
     /// Measures at the body's position half way along the leg, which gives a witness that certainly
     /// exists.
     void observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
