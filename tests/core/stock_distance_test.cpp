@@ -125,56 +125,64 @@ double to_lines(const Shapes& shapes, const CutModel& model) {
     return least;
 }
 
+/// Tools up to `margin` beside randomly cut boxes.
+struct ToolsAround {
+    int boxes = 0, tools = 0; // of each box
+    double margin = 0.0;
+};
+
+/// Calls `act(model, shapes, k)` for each tool, number k of its box. Ends at the first failure.
+template <typename Act>
+void for_tools(std::mt19937& rng, const ToolsAround& around, const Act& act) {
+    for (int i = 0; i < around.boxes; ++i) {
+        const CutBox world = random_cut_box(rng, i % 12, 0.0);
+        const CutModel model = world.model(i % 2 ? 0.7 : 0.35); // one tile, or several
+        for (int k = 0; k < around.tools; ++k) {
+            act(model, random_tool(rng, world.box.grown(around.margin)), k);
+            ASSERT_FALSE(testing::Test::HasFailure()) << i << ' ' << k;
+        }
+    }
+}
+
 TEST(StockDistance, IsThatOfTheNearestColumnAndTheNearestLine) {
     std::mt19937 rng(74);
     int near = 0;
-    for (int i = 0; i < 40; ++i) {
-        const CutBox world = random_cut_box(rng, i % 12, 0.0);
-        const CutModel model = world.model(i % 2 ? 0.7 : 0.35); // one tile, or several
-        for (int k = 0; k < 3; ++k) {
-            const Shapes shapes = random_tool(rng, world.box.grown(4.0));
-            const Separation found = separation(shapes, model).separation;
-            const double columns = to_columns(shapes, model), lines = to_lines(shapes, model);
-            EXPECT_NEAR(found.lower, std::min(columns, 50.0), 1e-6) << i;
-            EXPECT_NEAR(std::min(found.upper, 50.0), std::min(lines, 50.0), 1e-6) << i;
-            near += lines > 0.0 && lines < 50.0;
-        }
-    }
+    for_tools(rng, {40, 3, 4.0}, [&](const CutModel& model, const Shapes& shapes, int) {
+        const Separation found = separation(shapes, model).separation;
+        const double columns = to_columns(shapes, model), lines = to_lines(shapes, model);
+        EXPECT_NEAR(found.lower, std::min(columns, 50.0), 1e-6);
+        EXPECT_NEAR(std::min(found.upper, 50.0), std::min(lines, 50.0), 1e-6);
+        near += lines > 0.0 && lines < 50.0;
+    });
     EXPECT_GT(near, 20);
 }
 
 TEST(StockDistance, IsNoWiderThanItMayBeWhereLinesAlongZAreEnough) {
     std::mt19937 rng(77);
     int wider = 0, exact = 0;
-    for (int i = 0; i < 60; ++i) {
-        const CutBox world = random_cut_box(rng, i % 12, 0.0);
-        const double h = i % 2 ? 0.7 : 0.35;
-        const CutModel model = world.model(h);
-        for (int k = 0; k < 6; ++k) {
-            const Shapes shapes = random_tool(rng, world.box.grown(8.0));
-            const Separation truth = separation(shapes, model).separation;
-            const double within = k % 2 ? 0.0 : truth.lower + 0.2;
-            const Separation found = separation(shapes, model, {.exact_within = within}).separation;
-            const Separation upper = separation(shapes, model,
-                                                {.bound = StockBound::upper,
-                                                 .known_lower = truth.lower,
-                                                 .exact_within = within})
-                                         .separation;
-            ASSERT_NEAR(found.lower, truth.lower, 1e-6);
-            if (!truth.found()) continue;
-            const double allowed = std::min(0.5 * h, 0.125 * truth.lower);
-            for (const double coarse : {found.upper, upper.upper}) {
-                ASSERT_GE(coarse, truth.upper - 1e-6);
-                if (truth.lower <= within || truth.upper - truth.lower > allowed) {
-                    ASSERT_NEAR(coarse, truth.upper, 1e-6);
-                    ++exact;
-                } else {
-                    ASSERT_LE(coarse, truth.lower + allowed + 1e-6);
-                    wider += coarse > truth.upper + 1e-3;
-                }
+    for_tools(rng, {60, 6, 8.0}, [&](const CutModel& model, const Shapes& shapes, int k) {
+        const Separation truth = separation(shapes, model).separation;
+        const double within = k % 2 ? 0.0 : truth.lower + 0.2;
+        const Separation found = separation(shapes, model, {.exact_within = within}).separation;
+        const Separation upper =
+            separation(
+                shapes, model,
+                {.bound = StockBound::upper, .known_lower = truth.lower, .exact_within = within})
+                .separation;
+        ASSERT_NEAR(found.lower, truth.lower, 1e-6);
+        if (!truth.found()) return;
+        const double allowed = std::min(0.5 * model.lines.grid.spacing, 0.125 * truth.lower);
+        for (const double coarse : {found.upper, upper.upper}) {
+            ASSERT_GE(coarse, truth.upper - 1e-6);
+            if (truth.lower <= within || truth.upper - truth.lower > allowed) {
+                ASSERT_NEAR(coarse, truth.upper, 1e-6);
+                ++exact;
+            } else {
+                ASSERT_LE(coarse, truth.lower + allowed + 1e-6);
+                wider += coarse > truth.upper + 1e-3;
             }
         }
-    }
+    });
     EXPECT_GT(wider, 10);
     EXPECT_GT(exact, 200);
 }
@@ -182,20 +190,14 @@ TEST(StockDistance, IsNoWiderThanItMayBeWhereLinesAlongZAreEnough) {
 TEST(StockDistance, MayBeZeroBelowALowerBoundThatIsNotNeeded) {
     std::mt19937 rng(78);
     int near = 0, far = 0;
-    for (int i = 0; i < 40; ++i) {
-        const CutBox world = random_cut_box(rng, i % 12, 0.0);
-        const CutModel model = world.model(0.5);
-        for (int k = 0; k < 6; ++k) {
-            const Shapes shapes = random_tool(rng, world.box.grown(4.0));
-            const double truth = separation(shapes, model).separation.lower;
-            const double needed = 1.0;
-            const StockGoal goal{
-                .limit = needed, .bound = StockBound::lower, .coarse_below = needed};
-            const double found = separation(shapes, model, goal).separation.lower;
-            ASSERT_EQ(found, truth >= needed - 1e-7 ? needed : 0.0) << truth;
-            ++(found > 0.0 ? far : near);
-        }
-    }
+    for_tools(rng, {40, 6, 4.0}, [&](const CutModel& model, const Shapes& shapes, int) {
+        const double truth = separation(shapes, model).separation.lower;
+        const double needed = 1.0;
+        const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
+        const double found = separation(shapes, model, goal).separation.lower;
+        ASSERT_EQ(found, truth >= needed - 1e-7 ? needed : 0.0) << truth;
+        ++(found > 0.0 ? far : near);
+    });
     EXPECT_GT(near, 40);
     EXPECT_GT(far, 40);
 }
