@@ -69,13 +69,10 @@ int run(const std::vector<std::string>& words) {
         // Help and version are no errors; every misuse is the same to a script.
         if (error.get_exit_code() == 0) return cli.exit(error);
         const std::string misspelt = app::misspelt_text(cli, arguments_of(words));
-        if (misspelt.empty())
-            cli.exit(error);
-        else
-            std::fputs(fmt::format("feeler: {}\nRun with --help for more information.\n",
-                                   app::printable(misspelt))
-                           .c_str(),
-                       stderr);
+        std::fputs(fmt::format("feeler: {}\nRun with --help for more information.\n",
+                               app::printable(misspelt.empty() ? error.what() : misspelt))
+                       .c_str(),
+                   stderr);
         return static_cast<int>(app::ExitCode::failed);
     }
     return static_cast<int>(exit_code);

@@ -35,6 +35,13 @@ ValueText value_of(const CLI::Option& option) {
     return value;
 }
 
+/// The words that the argument of a command may be; none if it is a file.
+std::vector<std::string> argument_choices(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_positional()) return value_of(*option).choices;
+    return {};
+}
+
 std::vector<const CLI::Option*> named_options(const CLI::App& command) {
     std::vector<const CLI::Option*> options;
     for (const CLI::Option* option : command.get_options())
@@ -74,12 +81,34 @@ std::string roff(std::string_view text) {
     return escaped;
 }
 
+/// The headings of manual pages are in capitals.
+std::string in_capitals(std::string text) {
+    for (char& letter : text)
+        if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
+    return text;
+}
+
+/// The options of a command by group, each group once, in the order of their first options.
+std::vector<const CLI::Option*> grouped_options(const CLI::App& command) {
+    std::vector<const CLI::Option*> options = named_options(command);
+    std::vector<std::string> groups;
+    for (const CLI::Option* option : options)
+        if (std::find(groups.begin(), groups.end(), option->get_group()) == groups.end())
+            groups.push_back(option->get_group());
+    const auto place_of = [&](const CLI::Option* option) {
+        return std::find(groups.begin(), groups.end(), option->get_group());
+    };
+    std::stable_sort(options.begin(), options.end(),
+                     [&](const auto* a, const auto* b) { return place_of(a) < place_of(b); });
+    return options;
+}
+
 std::string options_section(const CLI::App& command) {
     std::string text, group;
-    for (const CLI::Option* option : named_options(command)) {
+    for (const CLI::Option* option : grouped_options(command)) {
         if (const std::string& now = option->get_group(); now != group) {
             group = now;
-            text += fmt::format(".SH {}\n", roff(group));
+            text += fmt::format(".SH {}\n", roff(in_capitals(group)));
         }
         const ValueText value = value_of(*option);
         std::string name;
@@ -105,6 +134,21 @@ std::string usage_line(const CLI::App& command, const std::string& name) {
     return text;
 }
 
+/// The meaning of the exit status: docs/manual/exit-status-and-limits.md.
+const char* exit_status_of(const std::string& command) {
+    if (command == "check" || command == "merge")
+        return "0 if no finding is an error, 1 if one is, 2 if the check could not finish.";
+    if (command == "coproc")
+        return "0 if every block is permitted in time, 1 if a block is refused or a permit is "
+               "late, "
+               "2 if the command failed.";
+    if (command == "diff")
+        return "0 if the later version is not worse, 1 if it is, 2 if one of them could not be run "
+               "to its end.";
+    if (command == "feeler") return "That of the command; 2 for a wrong command or option.";
+    return "0, or 2 if the command failed.";
+}
+
 std::string manual_page(const CLI::App& command, const std::string& title, const std::string& usage,
                         const std::string& more) {
     std::string text =
@@ -120,9 +164,7 @@ std::string manual_page(const CLI::App& command, const std::string& title, const
     text += options_section(command) + more;
     if (const std::string footer = command.get_footer(); !footer.empty())
         text += fmt::format(".SH NOTES\n{}\n", roff(footer));
-    return text
-           + ".SH EXIT STATUS\n0 if no finding is an error, 1 if one is, 2 if the command did not "
-             "complete.\n";
+    return text + ".SH EXIT STATUS\n" + exit_status_of(command.get_name()) + "\n";
 }
 
 // --- shells ---
@@ -152,12 +194,21 @@ std::string bash_script(const CLI::App& cli) {
                     in_quotes(fmt::format("{}", fmt::join(value.choices, " "))));
         }
         commands.push_back(command->get_name());
-        cases += fmt::format("        {}) words={} ;;\n", command->get_name(),
-                             in_quotes(fmt::format("{}", fmt::join(words, " "))));
+        cases +=
+            fmt::format("        {}) words={} arguments={} ;;\n", command->get_name(),
+                        in_quotes(fmt::format("{}", fmt::join(words, " "))),
+                        in_quotes(fmt::format("{}", fmt::join(argument_choices(*command), " "))));
     }
     return fmt::format(R"(# bash completion of feeler
 _feeler() {{
-    local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} words=''
+    local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} words='' arguments=''
+    COMPREPLY=()
+    # The words of --format=json are --format, = and json.
+    if [[ $word == = ]]; then
+        word=''
+    elif [[ $before == = ]]; then
+        before=${{COMP_WORDS[COMP_CWORD - 2]}}
+    fi
     if ((COMP_CWORD == 1)); then
         COMPREPLY=($(compgen -W {} -- "$word"))
         return
@@ -168,12 +219,11 @@ _feeler() {{
 {}    esac
     if [[ $word == -* ]]; then
         COMPREPLY=($(compgen -W "$words" -- "$word"))
-    else
-        compopt -o filenames 2>/dev/null
-        mapfile -t COMPREPLY < <(compgen -f -- "$word")
-    fi
+    elif [[ -n $arguments ]]; then
+        COMPREPLY=($(compgen -W "$arguments" -- "$word"))
+    fi # else there is no reply, and bash completes the names of files
 }}
-complete -F _feeler feeler
+complete -o bashdefault -o default -F _feeler feeler
 )",
                        in_quotes(fmt::format("{} --help --version", fmt::join(commands, " "))),
                        values, cases);
@@ -206,7 +256,10 @@ std::string zsh_script(const CLI::App& cli) {
                          + in_quotes(fmt::format("{}[{}]{}", name,
                                                  zsh_text(option->get_description()), takes));
         }
-        cases += " \\\n        '*:file:_files' ;;\n";
+        const std::vector<std::string> choices = argument_choices(*command);
+        cases += choices.empty()
+                     ? " \\\n        '*:file:_files' ;;\n"
+                     : fmt::format(" \\\n        '1:argument:({})' ;;\n", fmt::join(choices, " "));
     }
     return fmt::format(R"(#compdef feeler
 local -a commands
@@ -242,6 +295,10 @@ std::string fish_script(const CLI::App& cli) {
                 text += " -r";
             text += " -d " + in_quotes(option->get_description()) + "\n";
         }
+        if (const auto choices = argument_choices(*command); !choices.empty())
+            text += fmt::format("complete -c feeler -n '__fish_seen_subcommand_from {}' -f -a {}\n",
+                                command->get_name(),
+                                in_quotes(fmt::format("{}", fmt::join(choices, " "))));
     }
     return text;
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/app/checked.h"
+#include "tests/support/terminal.h"
 
 namespace app_test {
 namespace {
@@ -51,7 +52,28 @@ TEST(Completion, WorksInBash) {
     EXPECT_EQ(completed("feeler check --tol"), "--tolerances ");
     EXPECT_EQ(completed("feeler check --dialect ha"), "haas ");
     EXPECT_THAT(completed("feeler check --format j"), HasSubstr("junit"));
-    EXPECT_EQ(completed("feeler check " + script.substr(0, script.size() - 2)), script + " ");
+    EXPECT_EQ(completed("feeler completion f"), "fish ");
+    EXPECT_EQ(completed("feeler check --dialect = ha"), "haas "); // bash splits --dialect=ha
+    EXPECT_THAT(completed("feeler check --format ="), HasSubstr("junit"));
+}
+
+TEST(Completion, CompletesNamesOfFilesAtAPromptOfBash) {
+    const test_support::ScopedFolder folder;
+    const std::string home = folder.path().string();
+    folder.write("two words.nc", "");
+    folder.write(".inputrc", "set enable-bracketed-paste off\n");
+    const std::string script = folder.write("feeler.bash", feeler({"completion", "bash"}).out);
+    test_support::Terminal terminal({"/bin/bash", "--norc", "--noprofile"}, home);
+    terminal.type("PS1='ready> '; source '" + script + "'; feeler() { printf '<%s>' \"$@\"; }\n");
+    terminal.until("\nready> ");
+    const auto words = [&](const std::string& keys) {
+        terminal.type(keys + "\n");
+        terminal.until("<check>");
+        return terminal.until("ready> ");
+    };
+    EXPECT_EQ(words("feeler check ~/tw\t"), "<" + home + "/two words.nc>ready> ");
+    EXPECT_EQ(words("feeler check \"" + home + "/tw\t"), "<" + home + "/two words.nc>ready> ");
+    EXPECT_EQ(words("feeler check --dialect=ha\t"), "<--dialect=haas>ready> ");
 }
 
 TEST(ManualPages, AreThoseOfAllCommandsAndReadable) {
@@ -64,6 +86,10 @@ TEST(ManualPages, AreThoseOfAllCommandsAndReadable) {
             EXPECT_THAT(page, HasSubstr(std::regex_replace(name, std::regex("-"), "\\-")));
     }
     EXPECT_THAT(test_support::bytes_of(folder / "feeler.1"), HasSubstr("feeler\\-check"));
+    const std::string shot = test_support::bytes_of(folder / "feeler-shot.1");
+    const std::string heading = ".SH OPTIONS\n";
+    EXPECT_NE(shot.find(heading), std::string::npos);
+    EXPECT_EQ(shot.find(heading), shot.rfind(heading));
     EXPECT_EQ(feeler({"man-pages", folder / "missing"}).status, 2);
 }
 
