@@ -18,7 +18,7 @@ double rounded(double steps, Rounding rounding) {
     case Rounding::nearest:
         break;
     }
-    return std::round(steps);
+    return core::round(steps);
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/base/math.h"
+
 namespace render {
 namespace {
 
@@ -30,13 +32,13 @@ constexpr Colors light = {hex(0xF3F5F8), hex(0xFFFFFF), hex(0xE9EDF2),      hex(
                           hex(0x0A1420), hex(0x1B2430)};
 
 uint8_t mix(uint8_t a, uint8_t b, double fraction) {
-    return static_cast<uint8_t>(std::lround(a + (b - a) * fraction));
+    return static_cast<uint8_t>(core::round_to_integer(a + (b - a) * fraction));
 }
 
 } // namespace
 
 Color with_alpha(Color color, double alpha) {
-    color.a = static_cast<uint8_t>(std::lround(255.0 * alpha));
+    color.a = static_cast<uint8_t>(core::round_to_integer(255.0 * alpha));
     return color;
 }
 

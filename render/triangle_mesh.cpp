@@ -103,7 +103,7 @@ std::array<int8_t, 3> packed_normal(const Vec3& normal) {
     std::array<int8_t, 3> packed{};
     for (int i = 0; i < 3; ++i)
         packed[static_cast<size_t>(i)] =
-            static_cast<int8_t>(std::lround(127.0 * std::clamp(normal[i], -1.0, 1.0)));
+            static_cast<int8_t>(core::round_to_integer(127.0 * std::clamp(normal[i], -1.0, 1.0)));
     return packed;
 }
 

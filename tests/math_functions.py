@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-NAMES = ("a?(sin|cos|tan)h?", "atan2", "hypot", "pow", "exp2?", "expm1", "log(2|10|1p)?", "cbrt", "erfc?", "[lt]gamma", "fma")
+NAMES = ("a?(sin|cos|tan)h?", "atan2", "hypot", "pow", "exp2?", "expm1", "log(2|10|1p)?", "cbrt", "erfc?", "[lt]gamma", "fma", "l?l?round")
 CALL = re.compile(r"(?:\bstd::|\bglm::|(?<![\w:.>]))(?:" + "|".join(NAMES) + r")[fl]?\s*\(")
 TURNS = re.compile(r"\bglm::(rotate|angleAxis|slerp|perspective\w*|eulerAngle\w*|polar|euclidean)\b")
 COMMENT = re.compile(r"//.*|\"(?:[^\"\\]|\\.)*\"")
@@ -20,7 +20,7 @@ FOLDERS = ("app", "core", "gcode", "hwsim", "render")
 # Shaders only draw.
 OWN = ("core/base/math.h", "render/shaders.cpp")
 # Functions that calls of other names become, such as std::abs of a complex number. ImGui uses log and pow to draw.
-IMPORTS = re.compile(r" U ((?:cabs|carg|cexp|cpow|fma|a?(?:sin|cos|tan)h?|sincos|atan2|hypot|exp2?|log(?:2|10)|__divdc3)\b\S*)")
+IMPORTS = re.compile(r" U ((?:cabs|carg|cexp|cpow|fma|a?(?:sin|cos|tan)h?|sincos|atan2|hypot|exp2?|log(?:2|10)|l?l?round|__divdc3)\b\S*)")
 
 
 def found_in(root):
@@ -48,9 +48,10 @@ def self_check():
             (root / name).mkdir()
         (root / "core/a.cpp").write_text(
             "x = std::sin(y);\nx = core::sin(y);\n// std::cos(y)\nx = atan2(y, x);\nx = a.exp(y);\n"
-            "x = glm::rotate(m, a);\nx = sin_cos(y);\nx = std::sqrt(y);\nx = powf(y, 2);\nx = \"tan(y)\";\nx = std::fma(x, y, z);\n")
+            "x = glm::rotate(m, a);\nx = sin_cos(y);\nx = std::sqrt(y);\nx = powf(y, 2);\nx = \"tan(y)\";\nx = std::fma(x, y, z);\n"
+            "x = std::lround(y);\nx = core::round(y);\n")
         numbers = [int(line.split(":")[1]) for line in found_in(root)]
-        assert numbers == [1, 4, 6, 9, 11], numbers
+        assert numbers == [1, 4, 6, 9, 11, 12], numbers
         assert IMPORTS.findall("                 U cabs@GLIBC_2.2.5\n   U sincosf@GLIBC_2\n   U fmaf@G\n") == \
             ["cabs@GLIBC_2.2.5"]
     print("the self-check passes")

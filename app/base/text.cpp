@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/base/file_reads.h"
+#include "core/base/math.h"
 #include "core/base/text.h"
 
 namespace app {
@@ -239,7 +240,7 @@ std::string duration_text(double seconds) {
     constexpr double longest = 3.6e9; // a million hours
     if (!std::isfinite(seconds)) return "unknown";
     if (seconds >= longest) return "more than 1,000,000 h";
-    const auto whole = static_cast<long long>(std::llround(seconds));
+    const int64_t whole = core::round_to_integer(seconds);
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
     return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);

@@ -11,6 +11,7 @@
 #include "app/check/prepared_check.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_text.h"
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "core/sim/rules/rules.h"
@@ -121,7 +122,7 @@ void read_comment(const std::string& comment, size_t line, CommentSizes& sizes) 
 /// A multiple of 1/64 that is not a round number of millimetres.
 bool is_only_an_inch_size(double size) {
     const auto is_multiple = [&](double of, double within) {
-        return std::abs(size / of - std::round(size / of)) * of < within;
+        return std::abs(size / of - core::round(size / of)) * of < within;
     };
     constexpr double rounding = 6e-4; // .0937 for 3/32
     return is_multiple(1.0 / 64.0, rounding) && !is_multiple(0.05, 1e-6);

@@ -6,6 +6,7 @@
 
 #include "app/check/block_events.h"
 #include "app/check/prepared_check.h"
+#include "core/base/math.h"
 #include "core/motion/machine.h"
 #include "core/motion/path.h"
 #include "gcode/exec/interpreter.h"
@@ -43,7 +44,7 @@ std::optional<core::AxisValues> shift_between(const core::AxisPosition& a,
         shift[axis] = (*b[axis] - *a[axis]) / by;
         if (core::is_rotary(axis) && std::abs(shift[axis]) > equal_shift) return std::nullopt;
         // Without this, rounding in the ninth decimal would become a displacement.
-        shift[axis] = std::round(shift[axis] * 1e7) * 1e-7;
+        shift[axis] = core::round(shift[axis] * 1e7) * 1e-7;
     }
     return shift;
 }

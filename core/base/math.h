@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 extern "C" {
 double feeler_acos(double);
@@ -23,8 +24,9 @@ namespace core {
 // system and processor: those of musl, within 1 ulp (`hypot`, `exp`, `log`, `pow`, `sin`, `cos`) or
 // 2 ulp. Those of a system differ from version to version, and where fused multiply-add is missing.
 // tests/math_functions.py refuses `std::sin` and the like elsewhere, `std::fma` (that of MinGW is
-// not exact), and a program that calls the absolute value of complex numbers. `std::sqrt`,
-// `std::fmod`, `std::remainder` and roundings are exact everywhere.
+// not exact), `std::round` (that of MinGW takes 0.49999999999999994 for 0.5), and a program that
+// calls the absolute value of complex numbers. `std::sqrt`, `std::fmod`, `std::remainder`,
+// `std::nearbyint`, `std::trunc`, `std::floor` and `std::ceil` are exact everywhere.
 //
 // Source: core/base/libm/README.md.
 
@@ -40,5 +42,17 @@ inline double log10(double x) { return feeler_log10(x); }
 inline double pow(double x, double y) { return feeler_pow(x, y); }
 inline double sin(double x) { return feeler_sin(x); }
 inline double tan(double x) { return feeler_tan(x); }
+
+/// The nearest whole number; a half is rounded away from zero.
+inline double round(double x) {
+    const double whole = std::trunc(x); // x - whole is exact
+    return std::abs(x - whole) < 0.5 ? whole : whole + std::copysign(1.0, x);
+}
+
+/// The same as an integer, at most 2^62 from 0; 0 for what is no number.
+inline int64_t round_to_integer(double x) {
+    constexpr double most = 0x1p62;
+    return x == x ? static_cast<int64_t>(std::fmin(std::fmax(round(x), -most), most)) : 0;
+}
 
 } // namespace core

@@ -134,7 +134,8 @@ public:
 
 private:
     int index(int axis, double at) const {
-        return static_cast<int>(std::lround((at - grid_.coordinate(axis, 0)) / grid_.spacing));
+        return static_cast<int>(
+            core::round_to_integer((at - grid_.coordinate(axis, 0)) / grid_.spacing));
     }
 
     void collect(double u, double v, double half) {

@@ -57,7 +57,7 @@ Vec3 tool_axis_at(const Machine& machine, const AxisValues& values) {
 
 /// The angle plus whole turns that is closest to `from`, within the limits if possible.
 double nearest_turn(const MachineAxis& axis, double from, double angle_deg) {
-    double best = angle_deg + 360.0 * std::round((from - angle_deg) / 360.0);
+    double best = angle_deg + 360.0 * core::round((from - angle_deg) / 360.0);
     while (axis.max && best > *axis.max + 1e-9) best -= 360.0;
     while (axis.min && best < *axis.min - 1e-9) best += 360.0;
     return best;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/error_rules.h"
@@ -145,7 +146,8 @@ void note_unknown_offset(const Assigning& assigning, const Assignment& entry, do
     const Environment& environment = assigning.parameters.environment();
     if (entry.is_named || assigning.parameters.unpredictable_reads().empty()) return;
     constexpr double most = 1e9; // far above all numbers of parameters
-    const auto parameter = static_cast<int>(std::lround(std::clamp(number, -most, most)));
+    const auto parameter =
+        static_cast<int>(core::round_to_integer(std::clamp(number, -most, most)));
     if (!sets_the_machine(environment, parameter)) return;
     report_unknown(assigning.parameters, assigning.result, entry.span,
                    fmt::format("{}{:g}", assigning.dialect.parameter_letter, number));

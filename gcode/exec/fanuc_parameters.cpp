@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/readings.h"
@@ -179,7 +180,7 @@ template <Part part>
 Value named_tool_part(const InterpreterState& state, int) {
     const double tool = state.parameters->numbered(tool_of_8000s).value_or(0.0);
     if (!(tool >= 1.0 && tool <= 200.0)) return {};
-    return tool_part<part>(state, static_cast<int>(std::lround(tool)) - 1);
+    return tool_part<part>(state, static_cast<int>(core::round_to_integer(tool)) - 1);
 }
 
 // --- the control ---

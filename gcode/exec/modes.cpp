@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/execution.h"
 #include "gcode/language/control.h"
 
@@ -333,11 +334,11 @@ std::optional<double> restored_feed(const ModalState& now, const ModalState& sav
     const double number = feed_number(saved);
     if (number == feed_number(now) && saved.feed_mode == now.feed_mode) return now.feed;
     if (now.feed_mode == FeedMode::inverse_time || number == feed_number(now)) return std::nullopt;
-    return to_mm(std::round(number * 10.0) / 10.0, saved.unit);
+    return to_mm(core::round(number * 10.0) / 10.0, saved.unit);
 }
 
 double restored_speed(const ModalState& now, const ModalState& saved) {
-    return saved.speed == now.speed ? now.speed : std::round(saved.speed);
+    return saved.speed == now.speed ? now.speed : core::round(saved.speed);
 }
 
 /// As on LinuxCNC: coolant that was on is switched on; coolant is switched off only if both were

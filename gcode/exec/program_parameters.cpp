@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/klartext_parameters.h"
 #include "gcode/exec/linuxcnc_parameters.h"
@@ -33,7 +34,7 @@ int stored_number(int number, const Dialect& dialect) {
 /// The number of a parameter. A computed number may be off by a rounding error.
 core::Result<int> parameter_number(double number, int lowest, const Dialect& dialect,
                                    core::SourceSpan where) {
-    const double whole = std::round(number);
+    const double whole = core::round(number);
     if (whole == 0.0 && std::abs(number) < 1e-4 && dialect.has_parameter_zero)
         return highest_parameter;
     if (std::abs(number - whole) > 1e-4 || !(whole >= lowest && whole <= highest_parameter))
@@ -470,7 +471,7 @@ bool sets_the_machine(const Environment& environment, int number) {
 }
 
 double converted_to(VariableType type, double value) {
-    if (type == VariableType::whole) return std::round(value);
+    if (type == VariableType::whole) return core::round(value);
     if (type == VariableType::truth) return value != 0.0 ? 1.0 : 0.0;
     return value;
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/lexer.h"
 
@@ -46,7 +47,7 @@ core::Result<void> add_unknown_m_code(Statement& statement, const Word& word,
                                       const Dialect& dialect, const Environment& environment) {
     const bool is_number = word.value >= 0.0 && word.value <= std::numeric_limits<int>::max();
     if (is_number && environment.known_m_codes.count(static_cast<int>(word.value))) return {};
-    if (!is_number || std::abs(word.value - std::round(word.value)) > 1e-6)
+    if (!is_number || std::abs(word.value - core::round(word.value)) > 1e-6)
         return core::fail(
             ErrorCode::unsupported,
             fmt::format("{}: an M code must be a whole number, not negative; correct or remove it",
@@ -201,7 +202,7 @@ std::string written(const Word& word) {
 }
 
 core::Result<int> whole_number(const Word& word, int lowest, int highest) {
-    const double rounded = std::round(word.value);
+    const double rounded = core::round(word.value);
     if (std::abs(word.value - rounded) > 1e-4 || !(rounded >= lowest && rounded <= highest))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: {} must be a whole number from {} to {}", written(word),

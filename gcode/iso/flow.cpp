@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/loop_detector.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/readings.h"
@@ -92,7 +93,7 @@ core::Result<void> Flowing::find_name() {
     FEELER_TRY(const Value value, evaluate(step_.block.pool, flow.label, line_, parameters_,
                                            step_.dialect.arithmetic));
     report_unknown(parameters_, step_.result, step_.block.flow.span, "the target");
-    name_ = label_of(std::round(value.value_or(0.0)));
+    name_ = label_of(core::round(value.value_or(0.0)));
     note_computed_target(step_.state);
     return {};
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/loop_detector.h"
 #include "gcode/exec/state_digest.h"
@@ -349,7 +350,7 @@ core::Result<void> read_system_datum(Execution& execution) {
     const Statement& statement = execution.statement;
     const auto number = [&](char letter) {
         const Word* word = statement.word(letter);
-        return word ? std::lround(std::clamp(word->value, -1.0, 1e6)) : 0L;
+        return word ? core::round_to_integer(std::clamp(word->value, -1.0, 1e6)) : 0;
     };
     const long group = number('I'), item = number('N'), index = number('K');
     const bool machine = group == 240, program = group == 270;

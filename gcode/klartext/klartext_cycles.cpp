@@ -121,7 +121,8 @@ void bore(KlartextHole& hole) {
     hole.dwell(hole.cycle.dwell_below);
     hole.turn_spindle(core::SpindleDirection::stopped);
     const Position centre = hole.execution.modal().position;
-    const int side = static_cast<int>(std::lround(std::clamp(hole.cycle.disengage, 0.0, 9.0)));
+    const int side =
+        static_cast<int>(core::round_to_integer(std::clamp(hole.cycle.disengage, 0.0, 9.0)));
     Position aside = centre;
     const size_t axis = side == 1 || side == 3 ? hole.axes.first : hole.axes.second;
     if (side >= 1 && side <= 4 && aside[axis]) {

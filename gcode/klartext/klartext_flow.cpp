@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "gcode/exec/loop_detector.h"
 #include "gcode/exec/readings.h"
 #include "gcode/klartext/klartext.h"
@@ -18,7 +19,7 @@ core::Result<std::string> label_name(const FlowStep& step) {
     const ProgramParameters parameters(step.state, step.environment);
     FEELER_TRY(const Value value, evaluate(step.block.pool, flow.label, step.block.line, parameters,
                                            step.dialect.arithmetic));
-    return label_of(std::round(value.value_or(0.0)));
+    return label_of(core::round(value.value_or(0.0)));
 }
 
 core::Result<uint32_t> line_of_label(const FlowStep& step) {

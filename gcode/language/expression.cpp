@@ -111,7 +111,7 @@ double of_one(Operation operation, double a) {
     case Operation::logarithm:
         return core::log(a);
     case Operation::round:
-        return std::round(a);
+        return core::round(a);
     case Operation::sine:
         return sine_of_degrees(a);
     case Operation::square_root:
@@ -390,7 +390,7 @@ public:
         if (!std::isfinite(result))
             return core::fail(ErrorCode::invalid_value, "the result is too large", where);
         if (operation == Operation::round && arithmetic_.steps_in_one != 1.0)
-            result = std::round(a * arithmetic_.steps_in_one) / arithmetic_.steps_in_one;
+            result = core::round(a * arithmetic_.steps_in_one) / arithmetic_.steps_in_one;
         if (arithmetic_.angles_have_no_sign && is_angle_of_turn(operation) && result < 0.0)
             result += 360.0;
         return push(result, where);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/base/units.h"
 #include "gcode/contour/contour.h"
@@ -660,7 +661,7 @@ core::Result<void> note_corner_style(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes())
         if (entry.code->number == g_code(450))
             writable_siemens(execution.state).corner_code =
-                static_cast<int>(std::lround(entry.word->value));
+                static_cast<int>(core::round_to_integer(entry.word->value));
     const SiemensKeywordUse* use = use_of(execution, corner_shape);
     if (!use) return {};
     FEELER_TRY(const double shape, value_of_argument(flow_step_of(execution), use->value));

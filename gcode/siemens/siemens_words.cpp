@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/readings.h"
@@ -177,7 +178,7 @@ core::Result<void> use_siemens_words(Execution& execution) {
 core::Result<void> select_siemens_offset(Execution& execution) {
     const CodeWord* entry = execution.statement.of(ModalGroup::work_offset);
     if (!entry) return {};
-    const int code = static_cast<int>(std::lround(entry->word->value));
+    const int code = static_cast<int>(core::round_to_integer(entry->word->value));
     Offsets offsets = execution.modal().offsets;
     // G505 is the fifth settable offset; G54 to G57 are the first four.
     offsets.active = code == 500  ? no_work_offset

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "core/base/math.h"
 #include "core/sim/verdict.h"
 
 namespace app {
@@ -119,6 +120,6 @@ int64_t clearance_um(double lower) { return std::max<int64_t>(um_below(lower), 0
 
 int64_t um_above(double mm) { return whole(core::units_above(mm, 3)); }
 
-int64_t steps_of(double value, double step) { return whole(std::round(value / step)); }
+int64_t steps_of(double value, double step) { return whole(core::round(value / step)); }
 
 } // namespace app

@@ -18,6 +18,7 @@
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/view_model.h"
+#include "core/base/math.h"
 #include "render/camera.h"
 #include "render/coarse_mesh.h"
 #include "render/offscreen.h"
@@ -43,7 +44,7 @@ const char* name_of(render::ClearanceState state) {
 
 /// Whole um, without trailing zeros.
 std::string number(double mm) {
-    const double rounded = std::round(1e3 * mm) / 1e3;
+    const double rounded = core::round(1e3 * mm) / 1e3;
     return fmt::format("{}", rounded == 0.0 ? 0.0 : rounded);
 }
 
@@ -108,8 +109,8 @@ std::string mesh_json(const render::TriangleMesh& mesh) {
     std::string bytes;
     for (const render::MeshVertex& vertex : mesh.vertices)
         for (int k = 0; k < 3; ++k)
-            append(bytes, static_cast<uint16_t>(
-                              std::lround((double(vertex.position[k]) - box.min[k]) / step[k])));
+            append(bytes, static_cast<uint16_t>(core::round_to_integer(
+                              (double(vertex.position[k]) - box.min[k]) / step[k])));
     for (const render::MeshVertex& vertex : mesh.vertices) {
         for (const int8_t part : vertex.normal) append(bytes, part);
         append(bytes, vertex.tint);

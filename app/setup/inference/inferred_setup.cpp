@@ -14,6 +14,7 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_library.h"
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
 #include "core/dbm/solid.h"
 #include "core/motion/kinematics.h"
@@ -313,7 +314,7 @@ void choose_mesh_size(SetupFile& file) {
     const double longest = std::max({size.x, size.y, size.z});
     const double shortest = std::min({size.x, size.y, size.z});
     const double steps = std::ceil(longest / least_cells / finest); // of a small stock
-    const double fine = std::min(usual, std::round(100.0 * steps * finest) / 100.0);
+    const double fine = std::min(usual, core::round(100.0 * steps * finest) / 100.0);
     const double coarse = std::ceil(10.0 * longest / cells) / 10.0;
     file.setup.mesh_size = std::max(fine, std::min(coarse, shortest / thin_cells));
 }

@@ -46,7 +46,7 @@ struct Travel {
         has_rapids = has_rapids || rapid;
         const core::Vec3 &from = path.positions[0], &to = path.positions.back();
         if (!path.sideways || from.z != to.z) return;
-        (rapid ? of_rapids : of_feeds)[std::llround(10.0 * path.lowest())] +=
+        (rapid ? of_rapids : of_feeds)[core::round_to_integer(10.0 * path.lowest())] +=
             glm::distance(from, to);
     }
 

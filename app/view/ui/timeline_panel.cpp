@@ -199,7 +199,7 @@ void draw_cursor(Frame& frame, ImDrawList& list, const Bars& bars, float bottom)
     const ViewModel& model = frame.model;
     const auto at = static_cast<float>(column_of(model.range, model.cursor.block));
     if (at < 0.0F || at > 1.0F) return;
-    const float x = std::round(bars.area.x + at * bars.area.width);
+    const auto x = static_cast<float>(core::round(bars.area.x + at * bars.area.width));
     const ImU32 color = frame.palette.color(Role::text);
     list.AddLine({x, bars.area.y - frame.px(5)}, {x, bottom}, color, frame.px(1.6));
     list.AddCircleFilled({x, bars.area.y - frame.px(6)}, frame.px(5), color);
