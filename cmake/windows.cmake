@@ -10,8 +10,9 @@ set(CMAKE_C_FLAGS_INIT "-Wa,-muse-unaligned-vector-move")
 # Every template has a section of its own, and there may be more than the usual 32768. M_PI is there, as on
 # Linux, for all sources, because a precompiled header holds only for the same definitions.
 set(CMAKE_CXX_FLAGS_INIT "-Wa,-muse-unaligned-vector-move,-mbig-obj -D_USE_MATH_DEFINES")
-# Without DLLs: the libraries of the compiler and of its threads become part of the program.
-set(CMAKE_EXE_LINKER_FLAGS_INIT "-static")
+# Without DLLs: the libraries of the compiler and of its threads become part of the program. Its stack is as large as on
+# Linux: parsers recurse.
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-static -Wl,--stack,8388608")
 
 # Nothing of the build machine except its programs.
 set(CMAKE_FIND_ROOT_PATH /usr/x86_64-w64-mingw32)

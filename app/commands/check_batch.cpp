@@ -51,8 +51,11 @@ public:
     /// Waits until all results are written.
     void flush();
 
-    /// Whether the database did not exist before.
-    bool is_new() const { return is_new_; }
+    /// Whether the database did not exist before, and now holds all results.
+    bool is_new() {
+        const std::scoped_lock lock(guard_);
+        return is_new_ && !is_announced_;
+    }
 
     /// The number of results found in the database.
     size_t found() const { return found_; }

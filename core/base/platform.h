@@ -48,7 +48,8 @@ double physical_memory();
 /// Returns freed memory to the system, which an allocator may keep.
 void release_free_memory();
 
-/// CPU time of the calling thread.
+/// CPU time of the calling thread; that of a steady clock where the system counts CPU time
+/// coarsely.
 double thread_cpu_seconds();
 
 /// Milliseconds of a steady clock; may be called while an interrupt is handled.
@@ -121,9 +122,12 @@ std::filesystem::path in_stored_case(const std::filesystem::path& path);
 /// What separates the folders of a list of folders: ':', or ';' where ':' follows a drive.
 char list_separator();
 
-/// Whether a file name matches a pattern with `*`, `?` and `[...]`. A leading dot has to be
-/// written. Upper and lower case differ where they do in file names.
-bool matches_pattern(const std::string& pattern, const std::string& name);
+/// A file name in one case where upper and lower case do not differ in file names.
+std::string case_folded(const std::string& name);
+
+/// The names of the files and folders in a folder, in any order. The reason is in `failure` if it
+/// cannot be listed.
+std::vector<std::string> names_in(const std::filesystem::path& folder, std::error_code& failure);
 
 /// A file that is read at any position. Other programs may replace or delete it meanwhile.
 class RandomAccessFile {

@@ -9,7 +9,6 @@
 #include <elf.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <fnmatch.h>
 #include <link.h>
 #include <malloc.h>
 #include <spawn.h>
@@ -213,8 +212,14 @@ std::filesystem::path in_stored_case(const std::filesystem::path& path) { return
 
 char list_separator() { return ':'; }
 
-bool matches_pattern(const std::string& pattern, const std::string& name) {
-    return ::fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0;
+std::string case_folded(const std::string& name) { return name; }
+
+std::vector<std::string> names_in(const std::filesystem::path& folder, std::error_code& failure) {
+    std::vector<std::string> names;
+    for (std::filesystem::directory_iterator at(folder, failure), end; !failure && at != end;
+         at.increment(failure))
+        names.push_back(at->path().filename().string());
+    return names;
 }
 
 std::optional<RandomAccessFile> RandomAccessFile::open(const std::filesystem::path& path,

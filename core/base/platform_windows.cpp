@@ -233,12 +233,11 @@ double physical_memory() {
 void release_free_memory() { ::_heapmin(); }
 
 double thread_cpu_seconds() {
-    FILETIME unused{}, kernel{}, user{};
-    ::GetThreadTimes(::GetCurrentThread(), &unused, &unused, &kernel, &user);
-    const auto ticks = [](const FILETIME& time) { // of 100 ns
-        return 4294967296.0 * time.dwHighDateTime + time.dwLowDateTime;
-    };
-    return 1e-7 * (ticks(kernel) + ticks(user));
+    // The times of a thread are counted in ticks of 15.6 ms.
+    LARGE_INTEGER ticks{}, per_second{};
+    ::QueryPerformanceCounter(&ticks);
+    ::QueryPerformanceFrequency(&per_second);
+    return static_cast<double>(ticks.QuadPart) / static_cast<double>(per_second.QuadPart);
 }
 
 int64_t steady_milliseconds() { return static_cast<int64_t>(::GetTickCount64()); }
@@ -481,47 +480,25 @@ std::filesystem::path make_temporary_folder(const char* name) {
     return {};
 }
 
-namespace {
+std::string case_folded(const std::string& name) { return utf8(folded(wide(name))); }
 
-/// Whether a character is in the set that begins after `[`; moves `pattern` behind its `]`. Without
-/// one, the bracket is a character of its own, and the pattern stays where it is.
-bool is_in_set(const wchar_t*& pattern, wchar_t c) {
-    const wchar_t* at = pattern;
-    const bool is_negated = *at == L'!' || *at == L'^';
-    if (is_negated) ++at;
-    bool is_in = false;
-    for (const wchar_t* const first = at; *at != L']' || at == first; ++at) {
-        if (*at == L'\0') return c == L'[';
-        const bool is_range = at[1] == L'-' && at[2] != L']' && at[2] != L'\0';
-        is_in = is_in || (is_range ? *at <= c && c <= at[2] : *at == c);
-        if (is_range) at += 2;
+std::vector<std::string> names_in(const std::filesystem::path& folder, std::error_code& failure) {
+    // That of the C++ library takes no more than 260 characters.
+    failure.clear();
+    std::vector<std::string> names;
+    WIN32_FIND_DATAW found{};
+    const HANDLE search = ::FindFirstFileW((folder / L"*").c_str(), &found);
+    if (search == INVALID_HANDLE_VALUE) {
+        if (::GetLastError() != ERROR_FILE_NOT_FOUND) failure = last_error();
+        return names;
     }
-    pattern = at + 1;
-    return is_in != is_negated;
-}
-
-bool matches(const wchar_t* pattern, const wchar_t* name) {
-    while (*pattern != L'\0') {
-        const wchar_t wanted = *pattern++;
-        if (wanted == L'*') {
-            for (;; ++name) {
-                if (matches(pattern, name)) return true;
-                if (*name == L'\0') return false;
-            }
-        }
-        if (*name == L'\0') return false;
-        if (wanted == L'[' ? !is_in_set(pattern, *name) : wanted != L'?' && wanted != *name)
-            return false;
-        ++name;
-    }
-    return *name == L'\0';
-}
-
-} // namespace
-
-bool matches_pattern(const std::string& pattern, const std::string& name) {
-    if (name.starts_with('.') && !pattern.starts_with('.')) return false;
-    return matches(folded(wide(pattern)).c_str(), folded(wide(name)).c_str());
+    do {
+        const std::wstring_view name = found.cFileName;
+        if (name != L"." && name != L"..") names.push_back(utf8(name));
+    } while (::FindNextFileW(search, &found));
+    if (::GetLastError() != ERROR_NO_MORE_FILES) failure = last_error();
+    ::FindClose(search);
+    return names;
 }
 
 std::optional<RandomAccessFile> RandomAccessFile::open(const std::filesystem::path& path,

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "core/base/file_reads.h"
+#include "core/base/platform.h"
 #include "gcode/language/lexer.h"
 
 namespace gcode {
@@ -39,10 +40,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }
 
 std::vector<std::string> names_in(const fs::path& folder, std::error_code& failure) {
-    std::vector<std::string> names;
-    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
-        names.push_back(entry->path().filename().generic_string());
+    std::vector<std::string> names = core::platform::names_in(folder, failure);
     std::sort(names.begin(), names.end());
     return names;
 }

@@ -99,26 +99,6 @@ TEST(Platform, ReplacesFiles) {
     EXPECT_EQ(content(old), "new\n");
 }
 
-TEST(Platform, MatchesPatternsOfNames) {
-    EXPECT_TRUE(matches_pattern("*", "part.nc"));
-    EXPECT_TRUE(matches_pattern("*.nc", "part.nc"));
-    EXPECT_TRUE(matches_pattern("p?rt.[nm]c", "part.nc"));
-    EXPECT_TRUE(matches_pattern("O[0-9]*", "O1000"));
-    EXPECT_TRUE(matches_pattern("[]x]", "]"));
-    EXPECT_TRUE(matches_pattern("a*b*c", "a-b-b-c"));
-    EXPECT_TRUE(matches_pattern("", ""));
-    EXPECT_TRUE(matches_pattern("**", ""));
-    EXPECT_FALSE(matches_pattern("*.nc", "part.txt"));
-    EXPECT_FALSE(matches_pattern("*.nc", ".nc"));
-    EXPECT_TRUE(matches_pattern(".*", ".nc"));
-    EXPECT_FALSE(matches_pattern("?", ""));
-    EXPECT_FALSE(matches_pattern("[!0-9]", "5"));
-    EXPECT_TRUE(matches_pattern("[!0-9]", "x"));
-    EXPECT_FALSE(matches_pattern("abc", "ab"));
-    EXPECT_FALSE(matches_pattern("ab", "abc"));
-    EXPECT_TRUE(matches_pattern("[a", "[a"));
-}
-
 TEST(Platform, KnowsItsProgram) {
     EXPECT_TRUE(fs::is_regular_file(program_path()));
     EXPECT_GE(build_id().size(), 32u);

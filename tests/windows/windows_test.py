@@ -148,8 +148,57 @@ class SameBits(Case):
         for mine, other in zip(here.out.splitlines(), there.out.splitlines(), strict=True):
             self.assertEqual(without_times(other), without_times(mine))
 
+    def test_functions_of_programs_are_equal(self):
+        """Coordinates from every function, also at the numbers next to a half, where roundings differ."""
+        numbers = ["0.7-0.2", "0.2-0.7", "2.5", "-2.5", "0.1*3.", "1/3.", "0.000000001", "77.7", "4503599.5"]
+        bracket = {"fanuc": "[{}]", "haas": "[{}]", "linuxcnc": "[{}]", "siemens": "({})"}
+        functions = {
+            "fanuc": "ROUND FIX FUP SIN COS TAN ATAN SQRT ABS EXP",
+            "haas": "ROUND FIX FUP SIN COS TAN ATAN SQRT ABS EXP",
+            "linuxcnc": "ROUND FIX FUP SIN COS TAN SQRT ABS EXP",
+            "siemens": "ROUND TRUNC SIN COS TAN SQRT ABS EXP",
+        }
+        for dialect, names in functions.items():
+            lines = ["G21 G90" if dialect != "siemens" else "G71 G90", "G0 X0 Y0 Z0"]
+            for name in names.split():
+                for number in numbers[:-1] if name == "EXP" else numbers:
+                    inner = bracket[dialect].format(number)
+                    if name == "SQRT":
+                        inner = bracket[dialect].format("ABS" + inner)
+                    value = name + inner
+                    if name == "ATAN":
+                        value += "/[3.]"
+                    value = bracket[dialect].format(f"{value}/7") if dialect != "siemens" else f"={value}/7"
+                    lines.append(f"G1 X{value} F100")
+            program = self.folder / f"functions.{'mpf' if dialect == 'siemens' else 'nc'}"
+            program.write_text("\n".join([*lines, "M30", ""]), encoding="utf-8")
+            with self.subTest(dialect=dialect):
+                arguments = ["trace", program.name, "--dialect", dialect, "--format", "jsonl"]
+                here, there = self.linux(*arguments, cwd=self.folder), self.windows(*arguments, cwd=self.folder)
+                self.assertEqual(here.returncode, 0, here.err)
+                self.assertEqual(there.out, here.out)
+
+    def test_other_commands_are_equal(self):
+        program, setup = "assets/programs/clamped_plate_low.nc", "assets/setups/clamped_plate.toml"
+        for arguments in (["coproc", program, "--setup", setup, "--format", "json"],
+                          ["setup", program],
+                          ["trace", program],
+                          ["diff", program, "assets/programs/clamped_plate.nc", "--setup", setup, "--format", "json"]):
+            with self.subTest(command=arguments[0]):
+                here, there = self.linux(*arguments), self.windows(*arguments)
+                self.assertLess(here.returncode, 2, here.err)
+                self.assertEqual(there.returncode, here.returncode, there.err)
+                self.assertEqual(without_times(there.out), without_times(here.out))
+
+    def test_benchmarks_have_times(self):
+        rows = self.windows("bench", "paper", "--format", "csv", status=0).out.splitlines()
+        times = [float(cell) for row in rows[1:] for name, cell in zip(rows[0].split(","), row.split(","))
+                 if "seconds" in name or name.endswith("_us") or name.endswith("_ms")]
+        self.assertTrue(times, rows[0])
+        self.assertGreater(min(times), 0.0)
+
     def test_other_reports_are_equal(self):
-        for form in ("text", "sarif", "junit"):
+        for form in ("text", "csv", "jsonl", "sarif", "junit"):
             with self.subTest(form=form):
                 arguments = ["check", JOBS[0][0], "--setup", JOBS[0][1], "--format", form]
                 self.assertEqual(without_times(self.windows(*arguments).out),
@@ -210,6 +259,32 @@ class CommandLine(Case):
             shutil.copy(file, deep)
         report = self.windows("check", windows_path(deep / program.name), "--format", "text")
         self.assertEqual(report.returncode, 1, report.out + report.err)
+
+    def test_folders_with_long_paths_are_listed(self):
+        deep = self.folder / "jobs"
+        while len(str(deep)) < 300:
+            deep = deep / "a_folder_with_a_long_name_0123456789"
+        deep.mkdir(parents=True)
+        program = self.copy("long")
+        for file in (program, program.with_suffix(".toml")):
+            shutil.copy(file, deep)
+        batch = self.windows("check", windows_path(self.folder / "jobs"), "--no-cache", status=1)
+        self.assertIn("long.NC", batch.out)
+        self.assertIn("1 program", batch.out)
+
+    def test_rooted_paths_without_a_drive(self):
+        self.copy("rooted")
+        for folder in (windows_path(self.folder)[2:], str(self.folder)):
+            batch = self.windows("check", folder, cwd=self.folder.parent, status=1)
+            self.assertEqual(batch.err, "")
+            self.assertTrue((self.folder / ".feeler/results.db").is_file())
+            shutil.rmtree(self.folder / ".feeler")
+
+    def test_patterns_count_characters(self):
+        self.copy("\u00fc")
+        for program in (self.linux, self.windows):
+            batch = program("check", "?.NC", "--no-cache", cwd=self.folder, status=1)
+            self.assertIn("\u00fc.NC", batch.out)
 
     def test_long_path_prefix(self):
         program = self.copy("prefix")

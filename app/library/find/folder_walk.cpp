@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/file_reads.h"
+#include "core/base/name_pattern.h"
 #include "core/base/platform.h"
 #include "gcode/language/program_folder.h"
 
@@ -48,25 +49,22 @@ private:
         found.folders.push_back(folder);
         core::notify_file_access({core::FileAccessKind::listing, folder.generic_string(), {}, {}});
         std::error_code failure;
-        std::vector<fs::directory_entry> entries;
-        for (fs::directory_iterator at(folder, failure), end; !failure && at != end;
-             at.increment(failure))
-            if (at->path().filename().generic_string().front() != '.') entries.push_back(*at);
-        // The choice among several links to a folder must not depend on the order on disk.
-        std::sort(entries.begin(), entries.end());
-        for (const fs::directory_entry& entry : entries) sort_in(entry);
+        // Sorted, as the choice among several links to a folder must not depend on the order on
+        // disk.
+        for (const std::string& name : gcode::names_in(folder, failure))
+            if (!name.starts_with('.')) sort_in(folder / name);
         if (failure) found.unreadable.push_back(unreadable_folder(folder, failure));
     }
 
-    void sort_in(const fs::directory_entry& entry) {
+    void sort_in(const fs::path& path) {
         std::error_code failure;
-        if (!entry.is_directory(failure))
-            found.sort_in(entry.path());
-        else if (entry.is_symlink(failure)) {
-            note_presence(entry.path());
-            linked_.push_back(entry.path());
-        } else if (is_new(entry.path()))
-            real_.push_back(entry.path());
+        if (!fs::is_directory(path, failure))
+            found.sort_in(path);
+        else if (fs::is_symlink(path, failure)) {
+            note_presence(path);
+            linked_.push_back(path);
+        } else if (is_new(path))
+            real_.push_back(path);
     }
 
     std::deque<fs::path> real_, linked_;
@@ -147,8 +145,7 @@ private:
         if (part == "**") return expand_below(folder, i);
         if (!is_glob(part.generic_string())) return go_on(folder / part, i);
         for (const std::string& name : names_of(folder.empty() ? fs::path(".") : folder))
-            if (core::platform::matches_pattern(part.generic_string(), name))
-                go_on(folder / name, i);
+            if (core::matches_pattern(part.generic_string(), name)) go_on(folder / name, i);
     }
 
     std::vector<std::string> names_of(const fs::path& folder) {

@@ -108,11 +108,14 @@ core::Result<Database> Database::open(const std::string& path, Access access,
     const int flags = access == Access::read_only ? SQLITE_OPEN_READONLY
                                                   : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
     sqlite3* opened = nullptr;
-    // With "./", no name can be mistaken for a URI or for a special name of SQLite.
-    const bool is_absolute = std::filesystem::path(path).is_absolute();
+    // With "./", no name can be mistaken for a URI or for a special name of SQLite. On Windows, a
+    // path with a root need not be absolute: D:jobs, \jobs.
+    const std::filesystem::path stated(path);
+    std::error_code ignored;
     const std::string name = path == in_memory ? "file:/feeler?vfs=memdb"
-                             : is_absolute     ? path
-                                               : "./" + path;
+                             : stated.has_root_path()
+                                 ? std::filesystem::absolute(stated, ignored).generic_string()
+                                 : "./" + path;
     const int code = sqlite3_open_v2(name.c_str(), &opened,
                                      path == in_memory ? flags | SQLITE_OPEN_URI : flags, nullptr);
     Database database;

@@ -34,8 +34,11 @@ std::string_view parent_of(std::string_view folder) {
 
 /// The absolute path without redundant parts; the root is an empty text.
 std::string absolute_path(const std::string& path, const std::string& working_folder) {
+    std::error_code ignored;
+    const fs::path stated(path); // on Windows, D:jobs and \jobs have a root, but are not absolute
     std::string plain =
-        plain_path(fs::path(path).is_absolute() ? path : working_folder + "/" + path);
+        plain_path(stated.has_root_path() ? fs::absolute(stated, ignored).generic_string()
+                                          : working_folder + "/" + path);
     return plain == "/" ? std::string() : plain;
 }
 
@@ -86,7 +89,7 @@ std::string RelativePaths::relative(const std::string& path) const {
 }
 
 std::string RelativePaths::absolute(const std::string& relative_path) const {
-    if (relative_path.empty() || fs::path(relative_path).is_absolute()) return relative_path;
+    if (relative_path.empty() || fs::path(relative_path).has_root_path()) return relative_path;
     std::string_view folder = folder_, rest = relative_path;
     while (rest == ".." || rest.starts_with("../")) {
         folder = parent_of(folder);
