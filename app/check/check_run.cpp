@@ -90,8 +90,8 @@ std::string tightest_words(const core::BlockResult& result, ClearanceStyle style
                        core::at_most(pair.allowance.distance));
 }
 
-const CheckedBlock* tightest_block(const CheckRun& run) {
-    const CheckedBlock* tightest = nullptr;
+std::optional<CheckedBlock> tightest_block(const CheckRun& run) {
+    std::optional<CheckedBlock> tightest;
     const auto is_tighter = [](const CheckedBlock& block, const CheckedBlock& than) {
         const bool touches = is_permitted_contact(block.result);
         const bool other_touches = is_permitted_contact(than.result);
@@ -102,7 +102,7 @@ const CheckedBlock* tightest_block(const CheckRun& run) {
                                              : pair.margin() < other.margin();
     };
     for (const CheckedBlock& block : run.blocks)
-        if (block.result.deciding && (!tightest || is_tighter(block, *tightest))) tightest = &block;
+        if (block.result.deciding && (!tightest || is_tighter(block, *tightest))) tightest = block;
     return tightest;
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +44,96 @@ struct CheckedBlock {
     std::string file;            // file of a subprogram; empty for the main program
     std::vector<uint32_t> calls; // lines of the calls, the outermost first
     core::BlockResult result;
+};
+
+/// The blocks of a check in the order in which they are executed, packed: a block with a measured
+/// pair takes about 130 bytes, a quarter of a CheckedBlock. Nothing is rounded.
+///
+/// Blocks are returned by value. An iterator unpacks into a block of its own: a reference from it
+/// is valid until it is incremented.
+///
+/// Cost:    O(1) for each block read, appended or replaced; growing does not move what is there.
+class CheckedBlocks {
+public:
+    class Iterator {
+    public:
+        using iterator_category = std::input_iterator_tag;
+        using value_type = CheckedBlock;
+        using difference_type = std::ptrdiff_t;
+        using pointer = const CheckedBlock*;
+        using reference = const CheckedBlock&;
+
+        Iterator(const CheckedBlocks& all, size_t at) : all_(&all), at_(at) { unpack(); }
+        const CheckedBlock& operator*() const { return here_; }
+        const CheckedBlock* operator->() const { return &here_; }
+        Iterator& operator++() {
+            ++at_;
+            unpack();
+            return *this;
+        }
+        bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+    private:
+        void unpack() {
+            if (at_ < all_->size()) all_->unpack(at_, here_);
+        }
+
+        const CheckedBlocks* all_;
+        size_t at_;
+        CheckedBlock here_;
+    };
+
+    size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    CheckedBlock operator[](size_t i) const;
+    CheckedBlock front() const { return (*this)[0]; }
+    CheckedBlock back() const { return (*this)[size_ - 1]; }
+    Iterator begin() const { return {*this, 0}; }
+    Iterator end() const { return {*this, size_}; }
+
+    void push_back(const CheckedBlock& block);
+    void replace(size_t i, const CheckedBlock& block);
+    /// Replaces a block by what `act` makes of it.
+    template <typename Act>
+    void change(size_t i, const Act& act) {
+        CheckedBlock block = (*this)[i];
+        act(block);
+        replace(i, block);
+    }
+    /// Likewise every block, from the first to the last.
+    template <typename Act>
+    void change_all(const Act& act) {
+        for (size_t i = 0; i < size_; ++i) change(i, act);
+    }
+    /// Removes the last blocks, so that this many remain.
+    void truncate(size_t size);
+
+private:
+    static constexpr size_t chunk_size = 256; // blocks
+
+    struct Chunk {
+        std::vector<uint8_t> bytes;
+        std::vector<uint32_t> starts; // of the blocks in `bytes`
+    };
+    /// What is the same in many blocks: a pair of bodies with its allowance.
+    struct PairKind {
+        core::Pair pair;
+        core::Allowance allowance;
+    };
+
+    void unpack(size_t i, CheckedBlock& block) const;
+    void pack(const CheckedBlock& block, size_t i, std::vector<uint8_t>& bytes);
+    void pack_pair(const core::PairClearance& pair, std::vector<uint8_t>& bytes);
+    uint64_t kind_of(const core::PairClearance& pair);
+
+    std::vector<Chunk> chunks_;
+    size_t size_ = 0;
+    std::vector<PairKind> kinds_;
+    std::vector<std::string> files_;           // of subprograms
+    std::vector<std::vector<uint32_t>> calls_; // each list of calls once
+    std::map<std::vector<uint32_t>, size_t> call_numbers_;
+    std::map<size_t, std::vector<core::Finding>> findings_; // of the few blocks that have some
+    std::vector<uint8_t> scratch_;
 };
 
 /// An error that occurs with another reading of an open premise, but not with the assumed one.
@@ -104,7 +198,7 @@ struct CheckInput {
 struct CheckRecord {
     std::vector<InputFile> inputs; // files that were read or looked for, also by the run
     std::vector<std::string> later_assumptions; // those that the run adds to the input's
-    std::vector<CheckedBlock> blocks;
+    CheckedBlocks blocks;
     std::vector<core::Finding> findings; // after the run in the order of the blocks
     core::Verdict verdict = core::Verdict::clear;
     std::vector<ReadingResult> readings; // other readings of open premises
@@ -158,8 +252,8 @@ ShownClearance shown_clearance(const core::Setup& setup, const core::BlockResult
 bool is_permitted_contact(const core::BlockResult& result);
 
 /// The block whose deciding pair has the worst verdict, and of those the least margin; permitted
-/// contact counts only if there is nothing else. Null if no pair decides any block.
-const CheckedBlock* tightest_block(const CheckRun& run);
+/// contact counts only if there is nothing else. Empty if no pair decides any block.
+std::optional<CheckedBlock> tightest_block(const CheckRun& run);
 
 /// What the tightest block keeps: "3.605 mm (minimum 2.000 mm)"; "permitted contact only".
 std::string tightest_words(const core::BlockResult& result, ClearanceStyle style);

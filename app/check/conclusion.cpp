@@ -30,17 +30,17 @@ namespace {
 
 /// Reports a program of which no motion could be judged: it has not been checked.
 void require_judged_motion(CheckRecord& record) {
-    const CheckedBlock* first = nullptr;
+    std::optional<core::BlockIndex> first;
     for (const CheckedBlock& block : record.blocks) {
         if (block.result.motion == core::BlockMotion::none) continue;
         if (block.result.checked) return;
-        if (!first) first = &block;
+        if (!first) first = block.block;
     }
     if (!first) return;
     core::Finding finding;
     finding.rule = core::rule_id("undecided");
     finding.severity = core::Severity::error;
-    finding.block = first->block;
+    finding.block = first;
     finding.message = "No motion of the program could be checked.";
     const bool is_lost =
         std::any_of(record.findings.begin(), record.findings.end(),
@@ -137,7 +137,7 @@ bool take(std::string_view& text, std::string_view word) {
 bool comes_of_a_collision(const CheckInput& input, const CheckRecord& record,
                           const core::Finding& finding) {
     if (finding.rule == core::rule_id("collision")) return true;
-    const core::BlockResult& block = record.blocks[core::value_of(*finding.block)].result;
+    const core::BlockResult block = record.blocks[core::value_of(*finding.block)].result;
     return std::any_of(block.pairs.begin(), block.pairs.end(),
                        [&](const core::PairClearance& pair) {
                            return pair.verdict == core::Verdict::collision
@@ -148,7 +148,7 @@ bool comes_of_a_collision(const CheckInput& input, const CheckRecord& record,
 
 bool is_allowed(const CheckRecord& record, const core::Finding& finding) {
     if (!finding.block) return false;
-    const std::string& text = record.blocks[core::value_of(*finding.block)].text;
+    const std::string text = record.blocks[core::value_of(*finding.block)].text;
     if (text.find_first_of("(;") == std::string::npos) return false;
     const std::vector<AllowedRule> rules = allowed_rules(text);
     return std::any_of(rules.begin(), rules.end(),

@@ -123,7 +123,7 @@ void check_distances(Findings& findings, const FeedFacts& facts) {
 }
 
 /// The first block that removes material faster than any machine can.
-const CheckedBlock* too_greedy(const CheckRecord& record) {
+std::optional<CheckedBlock> too_greedy(const CheckRecord& record) {
     constexpr double seconds = 60.0;
     const auto is_greedy = [](const CheckedBlock& block) {
         const core::BlockResult& result = block.result;
@@ -133,12 +133,13 @@ const CheckedBlock* too_greedy(const CheckRecord& record) {
                && result.removed * seconds > most_rate * result.duration;
     };
     const auto found = std::find_if(record.blocks.begin(), record.blocks.end(), is_greedy);
-    return found == record.blocks.end() ? nullptr : &*found;
+    if (found == record.blocks.end()) return std::nullopt;
+    return *found;
 }
 
 void check_volume(Findings& findings, const CheckRecord& record) {
     constexpr double litre = 1e6, minute = 60.0;
-    if (const CheckedBlock* block = too_greedy(record)) {
+    if (const auto block = too_greedy(record)) {
         const double rate = block->result.removed / block->result.duration * minute / litre;
         findings.add(block->block,
                      fmt::format("This block removes {:.1f} litres of material at {:.0f} l/min; no "

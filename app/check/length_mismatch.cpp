@@ -91,7 +91,7 @@ std::string listed(const std::set<std::string>& names) {
 
 /// Whether the block of a finding collides.
 bool collides_in(const CheckRecord& record, const core::Finding& finding) {
-    const core::BlockResult& block = record.blocks[core::value_of(*finding.block)].result;
+    const core::BlockResult block = record.blocks[core::value_of(*finding.block)].result;
     return block.verdict == core::Verdict::collision;
 }
 

@@ -27,17 +27,18 @@ FindingKey key_of(const core::Finding& finding, const std::string& file, uint32_
     return {finding.rule, file, line, finding.pair[0], finding.pair[1]};
 }
 
-/// The block of a finding; null if it is about the program as a whole.
-const CheckedBlock* block_of(const core::Finding& finding, const CheckRecord& record) {
-    if (!finding.block || core::value_of(*finding.block) >= record.blocks.size()) return nullptr;
-    return &record.blocks[core::value_of(*finding.block)];
+/// The block of a finding; empty if it is about the program as a whole.
+std::optional<CheckedBlock> block_of(const core::Finding& finding, const CheckRecord& record) {
+    if (!finding.block || core::value_of(*finding.block) >= record.blocks.size())
+        return std::nullopt;
+    return record.blocks[core::value_of(*finding.block)];
 }
 
 std::set<FindingKey> errors_of(const CheckRecord& record) {
     std::set<FindingKey> keys;
     for (const core::Finding& finding : record.findings) {
         if (finding.severity != core::Severity::error) continue;
-        const CheckedBlock* block = block_of(finding, record);
+        const auto block = block_of(finding, record);
         keys.insert(block ? key_of(finding, block->file, block->line) : key_of(finding, {}, 0));
     }
     return keys;
@@ -48,9 +49,9 @@ std::set<FindingKey> errors_of(const CheckRecord& record) {
 std::optional<ReadingError> avoided_by(const std::set<FindingKey>& errors,
                                        const ReadingResult& result, const CheckRecord& record) {
     for (const core::Finding& finding : record.findings) {
-        const CheckedBlock* block = block_of(finding, record);
-        if (finding.severity != core::Severity::error || !block || *finding.block < result.block)
-            continue;
+        if (finding.severity != core::Severity::error) continue;
+        const auto block = block_of(finding, record);
+        if (!block || *finding.block < result.block) continue;
         if (!errors.contains(key_of(finding, block->file, block->line)))
             return ReadingError{block->line, block->file, finding};
     }

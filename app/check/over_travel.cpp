@@ -29,10 +29,10 @@ std::string line_text(const CheckedBlock& block) {
 
 /// "line 7", "lines 7, 9-12"; of the program or of one subprogram. Empty if they are in several.
 std::string lines_text(const CheckRecord& record, const std::vector<core::BlockIndex>& blocks) {
-    const CheckedBlock& first = record.blocks[core::value_of(blocks.front())];
+    const CheckedBlock first = record.blocks[core::value_of(blocks.front())];
     std::vector<uint32_t> lines;
     for (const core::BlockIndex index : blocks) {
-        const CheckedBlock& block = record.blocks[core::value_of(index)];
+        const CheckedBlock block = record.blocks[core::value_of(index)];
         if (block.file != first.file) return {};
         if (lines.empty() || lines.back() != block.line) lines.push_back(block.line);
     }

@@ -300,7 +300,8 @@ std::vector<LengthMismatch> ProgramRunner::length_mismatches() const {
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     for (const core::BlockTime& time : timed) {
         if (core::value_of(time.block) < first_to_time_) continue;
-        core::settle_time(record_.blocks[core::value_of(time.block)].result, time);
+        record_.blocks.change(core::value_of(time.block),
+                              [&](CheckedBlock& block) { core::settle_time(block.result, time); });
         if (on_timed) on_timed(time);
     }
 }
@@ -374,7 +375,7 @@ bool ProgramRunner::advance() {
     }
     if (runner_->setup().detail != core::Detail::every_pair) drop_unreported(checked.result);
     if (checked.file.empty()) last_line_ = checked.line;
-    record_.blocks.push_back(std::move(checked));
+    record_.blocks.push_back(checked);
     enter((**step).timed);
     return true;
 }
@@ -394,7 +395,7 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
     correction_.reset();
     std::erase_if(corrections_,
                   [&](const LengthMismatch& done) { return core::value_of(done.first) >= blocks; });
-    record_.blocks.resize(blocks);
+    record_.blocks.truncate(blocks);
     record_.findings.resize(findings);
     record_.stopped.reset();
     readings_->forget_from(blocks);
@@ -428,7 +429,7 @@ void ProgramRunner::end() {
 }
 
 void ProgramRunner::stop_here() {
-    const CheckedBlock& last = record_.blocks.back();
+    const CheckedBlock last = record_.blocks.back();
     record_.stopped = core::in_file(
         {core::ErrorCode::io,
          {.line = last.line, .column = 1},

@@ -55,7 +55,10 @@ struct Checked {
     const ReadFiles& read;
 };
 
-std::string report_text(const ReportTarget& target, const Checked& checked) {
+/// Writes a report piece by piece: that of a long program is larger than its record.
+core::Result<void> write_report(const ReportTarget& target, const Checked& checked) {
+    if (auto safe = checked.read.check(target.path); !safe) return safe;
+    FEELER_TRY(OutputStream stream, OutputStream::open(target.path));
     ProgramReport report = checked.report;
     if (!target.path.empty()) {
         report.shown_assumptions.clear(); // a file lists all assumptions
@@ -64,7 +67,12 @@ std::string report_text(const ReportTarget& target, const Checked& checked) {
         report.width = style.width;
         report.colour = style.colour;
     }
-    return report_format(target.format).of_program(report);
+    core::Result<void> written;
+    report_format(target.format).of_program(report, [&](std::string_view piece) {
+        if (written) written = stream.write(piece);
+    });
+    if (!written) return written;
+    return stream.finish();
 }
 
 /// Checks before the run, as far as possible, that the output files can be written.
@@ -134,7 +142,7 @@ bool write_reports(const CheckOptions& options, const Checked& checked,
     if (written.size() < targets.size() && !is_on_screen) written.push_back({"text", {}});
     bool all = true;
     for (const ReportTarget& target : written) {
-        const auto done = write_output(target.path, report_text(target, checked), checked.read);
+        const auto done = write_report(target, checked);
         if (!done) print_error(done.error());
         all = all && done.has_value();
     }

@@ -28,31 +28,40 @@ std::string sarif_of(const BatchResult& batch) {
 
 constexpr ReportFormat formats[] = {
     {"text", "",
-     [](const ProgramReport& report) {
-         return text_report(report.run, {.blocks = report.blocks || report.pairs,
-                                         .shown_assumptions = report.shown_assumptions,
-                                         .width = report.width,
-                                         .colour = report.colour});
+     [](const ProgramReport& report, const TextSink& out) {
+         out(text_report(report.run, {.blocks = report.blocks || report.pairs,
+                                      .shown_assumptions = report.shown_assumptions,
+                                      .width = report.width,
+                                      .colour = report.colour}));
      },
      [](const BatchResult& batch, const BatchStyle& style) {
          return batch_text(batch, {.quiet = style.quiet, .verbose = style.verbose});
      }},
-    {"json", "", [](const ProgramReport& report) { return json_report(report.run, report.pairs); },
+    {"json", "",
+     [](const ProgramReport& report, const TextSink& out) {
+         json_report(report.run, report.pairs, out);
+     },
      [](const BatchResult& batch, const BatchStyle&) { return batch_json_report(batch); }},
     {"jsonl", "one object per line",
-     [](const ProgramReport& report) { return json_lines_report(report.run, report.pairs); },
+     [](const ProgramReport& report, const TextSink& out) {
+         json_lines_report(report.run, report.pairs, out);
+     },
      [](const BatchResult& batch, const BatchStyle&) { return batch_lines_report(batch); }},
     {"csv", "one row per block, or for many programs one per program",
-     [](const ProgramReport& report) { return csv_report(report.run); },
+     [](const ProgramReport& report, const TextSink& out) { csv_report(report.run, out); },
      [](const BatchResult& batch, const BatchStyle&) { return batch_csv_report(batch); },
      UnfinishedReport::never},
     {"html", "a page, for one program with pictures and a 3D view",
-     [](const ProgramReport& report) { return html_report(report.run, report.views); },
+     [](const ProgramReport& report, const TextSink& out) {
+         out(html_report(report.run, report.views));
+     },
      [](const BatchResult& batch, const BatchStyle&) { return batch_html_report(batch); }},
-    {"sarif", "", [](const ProgramReport& report) { return sarif_of(batch_of(report)); },
+    {"sarif", "",
+     [](const ProgramReport& report, const TextSink& out) { out(sarif_of(batch_of(report))); },
      [](const BatchResult& batch, const BatchStyle&) { return sarif_of(batch); },
      UnfinishedReport::always},
-    {"junit", "", [](const ProgramReport& report) { return junit_report(batch_of(report)); },
+    {"junit", "",
+     [](const ProgramReport& report, const TextSink& out) { out(junit_report(batch_of(report))); },
      [](const BatchResult& batch, const BatchStyle&) { return junit_report(batch); },
      UnfinishedReport::always},
     {"shard", "for feeler merge", nullptr, nullptr},

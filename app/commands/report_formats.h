@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "app/report/json/json_report.h"
+
 namespace app {
 
 struct BatchResult;
@@ -36,7 +38,7 @@ struct ReportFormat {
     const char* name;
     const char* help; // in the list of formats that `check --help` shows; may be empty
     // Null: the caller writes this format itself.
-    std::string (*of_program)(const ProgramReport& report);
+    void (*of_program)(const ProgramReport& report, const TextSink& out);
     std::string (*of_batch)(const BatchResult& batch, const BatchStyle& style);
     UnfinishedReport unfinished = UnfinishedReport::when_watching;
 };

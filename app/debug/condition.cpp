@@ -42,7 +42,7 @@ void add_findings(const CheckRun& record, BlockFacts& facts) {
 } // namespace
 
 BlockFacts facts_of(const CheckRun& record, size_t block, const RequiredFacts& wanted) {
-    const CheckedBlock& checked = record.blocks[block];
+    const CheckedBlock checked = record.blocks[block];
     const core::BlockResult& result = checked.result;
     BlockFacts facts;
     facts.block = block;

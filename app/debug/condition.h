@@ -24,8 +24,8 @@ struct CheckRun;
 struct BlockFacts {
     size_t block = 0;
     uint32_t line = 0;
-    size_t depth = 0;            // of subprogram calls
-    std::string_view text, file; // views; the strings must outlive this struct
+    size_t depth = 0; // of subprogram calls
+    std::string text, file;
     core::BlockMotion motion = core::BlockMotion::none;
     std::optional<core::ToolNumber> tool;
     std::optional<core::Verdict> verdict; // empty: not checked yet

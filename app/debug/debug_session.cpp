@@ -174,7 +174,7 @@ bool SessionWalk::is_interrupted() const {
 bool SessionWalk::stops_before(const Breakpoint& breakpoint, size_t block,
                                const gcode::InterpreterState* control) {
     const CheckRun& record = session_.record();
-    const CheckedBlock& at = record.blocks[block];
+    const CheckedBlock at = record.blocks[block];
     if (!breakpoint.enabled) return false;
     if (breakpoint.line && (at.line != *breakpoint.line || at.file != breakpoint.file))
         return false;
@@ -511,7 +511,7 @@ core::Result<uint32_t> DebugSession::line_with_block(uint32_t line) const {
 core::Result<size_t> DebugSession::find_line(const std::string& line) {
     FEELER_TRY(const uint32_t number, gcode::line_meant(program(), environment().dialect, line));
     const auto is_there = [&](size_t block) {
-        const CheckedBlock& at = record().blocks[block];
+        const CheckedBlock at = record().blocks[block];
         return at.line == number && at.file.empty();
     };
     for (size_t block = at_;; ++block) {

@@ -66,7 +66,7 @@ struct OneBlock {
 
 TEST(Condition, KnowsNoClearanceOfABlockThatWasNotJudged) {
     OneBlock one;
-    one.record.blocks[1].result.checked = false;
+    one.record.blocks.change(1, [](app::CheckedBlock& block) { block.result.checked = false; });
     for (const char* text : {"clearance > 1", "upper > 1", "margin > 0", "clearance < 1"})
         EXPECT_FALSE(one.holds(text, 1)) << text;
     EXPECT_EQ(app::evaluate("clearance", {one.record, 1})->text, "unknown");

@@ -71,10 +71,10 @@ TEST(HtmlText, KeepsNumbersThatAPageHoldsExactly) {
 TEST(HtmlReport, LetsNoTimeAndNoVolumeOverflow) {
     CheckRun run = clamped_plate();
     double time = 1.0;
-    for (CheckedBlock& block : run.blocks) {
+    run.blocks.change_all([&](CheckedBlock& block) {
         block.result.time = time *= 1e4;
         block.result.removed = time;
-    }
+    });
     run.cycle_time = time;
     const json data = json::parse(blocks_json(run));
     for (const char* column : {"time", "removed"})
@@ -147,22 +147,22 @@ TEST(HtmlBlocks, AgreeWithTheRun) {
     EXPECT_EQ(data["found"].size(), 4U);
 }
 
-/// The deciding pair of the first block that has one, and the index of that block.
-std::pair<core::PairClearance*, size_t> first_deciding(CheckRun& run) {
-    for (size_t i = 0; i < run.blocks.size(); ++i) {
-        core::BlockResult& result = run.blocks[i].result;
-        if (result.deciding) return {&result.pairs[*result.deciding], i};
-    }
-    return {nullptr, 0};
+/// The index of the first block with a deciding pair.
+size_t first_with_pair(const CheckRun& run) {
+    size_t i = 0;
+    while (!run.blocks[i].result.deciding) ++i;
+    return i;
 }
 
 TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
     CheckRun run = clamped_plate();
-    const auto [pair, block] = first_deciding(run);
-    ASSERT_NE(pair, nullptr);
-    const auto bounds = [&, at = block](double lower, double upper) {
-        pair->lower = lower;
-        pair->upper = upper;
+    const size_t at = first_with_pair(run);
+    const auto bounds = [&](double lower, double upper) {
+        run.blocks.change(at, [&](CheckedBlock& block) {
+            core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+            pair.lower = lower;
+            pair.upper = upper;
+        });
         const json data = json::parse(blocks_json(run));
         return std::pair(data["lower"][at].get<int64_t>(), data["width"][at].get<int64_t>());
     };
@@ -174,16 +174,15 @@ TEST(HtmlBlocks, RoundClearancesDownAndUpperBoundsUp) {
 TEST(HtmlReport, ShowsNoLowerBoundLargerThanItIs) {
     CheckRun run = clamped_plate();
     run.findings.clear();
-    const CheckedBlock* nearest = tightest_block(run);
-    ASSERT_NE(nearest, nullptr);
-    const size_t at = core::value_of(nearest->block);
-    core::BlockResult& result = run.blocks[at].result;
-    core::PairClearance& pair = result.pairs[*result.deciding];
-    pair.lower = pair.allowance.distance - 0.0004;
-    pair.upper = pair.allowance.distance + 0.0003;
-    for (CheckedBlock& block : run.blocks)
-        if (core::value_of(block.block) != at) block.result.deciding.reset();
-    const double keep = pair.allowance.distance;
+    const auto nearest = tightest_block(run);
+    ASSERT_TRUE(nearest);
+    const double keep = nearest->result.pairs[*nearest->result.deciding].allowance.distance;
+    run.blocks.change_all([&](CheckedBlock& block) {
+        if (block.block != nearest->block) return block.result.deciding.reset();
+        core::PairClearance& pair = block.result.pairs[*block.result.deciding];
+        pair.lower = keep - 0.0004;
+        pair.upper = keep + 0.0003;
+    });
     const std::string shown =
         fmt::format("{:.3f} to {:.3f} mm (minimum {:.3f} mm)", keep - 0.001, keep + 0.001, keep);
     EXPECT_EQ(count_of(html_report(run, {}), shown), 2U) << "in the summary and in the card";
@@ -234,8 +233,8 @@ TEST(HtmlReport, HoldsWhatAProgramSaysAsTextOnly) {
     const std::string evil =
         "</script><script>alert(1)</script><img src=x onerror=alert(2)>{{cards}}";
     run.program_file = evil;
-    run.blocks.front().text = evil;
-    run.blocks[38].text = evil + every_byte();
+    run.blocks.change(0, [&](CheckedBlock& block) { block.text = evil; });
+    run.blocks.change(38, [&](CheckedBlock& block) { block.text = evil + every_byte(); });
     run.findings.front().message = evil;
     run.findings.front().cure = evil;
     run.assumptions.push_back(evil);

@@ -123,8 +123,8 @@ TEST(Csv, HasNoTextThatASpreadsheetCarriesOut) {
 
 TEST(Csv, LeavesNumbersAloneButQuotesTextsThatWouldBeFormulas) {
     CheckRun run = clamped_plate(core::Detail::deciding_pair);
-    CheckedBlock& block = run.blocks.back();
-    for (CheckedBlock& each : run.blocks)
+    CheckedBlock block = run.blocks.back();
+    for (const CheckedBlock& each : run.blocks)
         if (each.result.deciding) block.result = each.result;
     ASSERT_TRUE(block.result.deciding);
     core::PairClearance& pair = block.result.pairs[*block.result.deciding];
@@ -133,6 +133,7 @@ TEST(Csv, LeavesNumbersAloneButQuotesTextsThatWouldBeFormulas) {
     run.setup.fixtures[0].name = "@vise";
     block.file = "-sub.nc";
     block.text = "=cmd|' /C calc'!A0";
+    run.blocks.replace(run.blocks.size() - 1, block);
     const auto rows = lines_of(csv_report(run));
     const auto names = cells_of(rows[0]), cells = cells_of(rows.back());
     const auto cell = [&](const std::string& name) {

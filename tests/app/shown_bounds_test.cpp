@@ -23,13 +23,13 @@ CheckRun with_bounds(double lower, double upper, double keep) {
     CheckRun run = *run_check({.program = folder + "programs/clamped_plate_low.nc",
                                .setup = folder + "setups/clamped_plate.toml",
                                .detail = core::Detail::deciding_pair});
-    for (CheckedBlock& block : run.blocks) {
-        if (!block.result.deciding) continue;
+    run.blocks.change_all([&](CheckedBlock& block) {
+        if (!block.result.deciding) return;
         core::PairClearance& pair = block.result.pairs[*block.result.deciding];
         pair.lower = lower;
         pair.upper = upper;
         pair.allowance.distance = keep;
-    }
+    });
     return run;
 }
 
@@ -80,11 +80,11 @@ TEST(TextReport, RoundsLowerBoundsDownAndUpperBoundsUp) {
 
 TEST(TextReport, SaysNoMoreThanTheSearchWentThrough) {
     CheckRun run = with_bounds(1.0, 1.0, 2.0);
-    for (CheckedBlock& block : run.blocks) {
+    run.blocks.change_all([](CheckedBlock& block) {
         block.result.deciding.reset();
         block.result.pairs.clear();
         block.result.checked = true;
-    }
+    });
     run.setup.search_limit = 49.6;
     EXPECT_THAT(text_report(run, {.blocks = true}), HasSubstr(" >= 49.600 "));
 }

@@ -47,6 +47,30 @@ TEST(Streaming, NeedsNoMoreMemoryForALongProgram) {
     EXPECT_NE(text.find("\"text\":\"N300000 G1"), std::string::npos);
 }
 
+/// As stated in docs/manual/exit-status-and-limits.md.
+TEST(Streaming, NeedsLittleMemoryForABlockOfACheckWithItsReport) {
+    constexpr int few = 10000, more = 60000, bytes_per_block = 200;
+    const ScopedFolder folder;
+    const std::string setup = folder.write("s.toml", R"(
+mesh_size = 5
+program.dialect = "fanuc"
+machine.rapid = "straight"
+stock.box = [[0, 0, -20], [990, 80, 0]]
+tool = [{ number = 1, shape = "flat", diameter = 10, flute_length = 30, stick_out = 50, holder = "BT40-ER32" }]
+fixture = [{ name = "clamp", box = [[400, 95, -20], [440, 130, 10]] }]
+)");
+    const auto check = [&](int count) {
+        return usage_of({FEELER_BINARY, "check", long_program(folder, count), "--setup", setup,
+                         "--format", "json", "-o", folder / "report.json"},
+                        "/dev/null");
+    };
+    const Usage shorter = check(few), longer = check(more);
+    ASSERT_LT(longer.status, 2);
+    EXPECT_LT((longer.kib - shorter.kib) * 1024 / (more - few), bytes_per_block);
+    const std::string text = test_support::bytes_of(folder / "report.json");
+    EXPECT_NE(text.find("\"text\": \"N60000 G1"), std::string::npos);
+}
+
 TEST(Streaming, WritesWhatCameBeforeAnError) {
     const ScopedFolder folder;
     const std::string program = long_program(folder, 60000, "G777\n");

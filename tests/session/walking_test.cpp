@@ -14,7 +14,7 @@ protected:
         ASSERT_TRUE(opened) << opened.error().message;
         session = *std::move(opened);
     }
-    const app::CheckedBlock& next() const { return session->record().blocks[session->at()]; }
+    app::CheckedBlock next() const { return session->record().blocks[session->at()]; }
 
     ProgramFiles files{"walked.ngc", walked_program(), walked_setup()};
     std::unique_ptr<app::DebugSession> session;
@@ -227,7 +227,7 @@ TEST(WalkingToAnError, FindsTheBlockOfAnAlarm) {
     app::DebugSession& session = **opened;
     EXPECT_EQ(session.next_finding().reason, app::StopReason::found);
     const size_t alarm = session.at();
-    EXPECT_EQ(session.record().blocks.at(alarm).line, 6U);
+    EXPECT_EQ(session.record().blocks[alarm].line, 6U);
     EXPECT_EQ(session.next_finding().reason, app::StopReason::error);
     ASSERT_TRUE(session.go_to(0));
     EXPECT_EQ(session.until(*app::Condition::read("line = 6")).reason, app::StopReason::found);

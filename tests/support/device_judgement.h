@@ -25,7 +25,7 @@ struct DeviceJudgement {
 /// A program whose blocks were submitted to a device one after the other.
 struct JudgedProgram {
     std::vector<app::BlockPermit> permits;
-    std::vector<app::CheckedBlock> blocks; // from the exact engine
+    app::CheckedBlocks blocks; // from the exact engine
 };
 
 /// Errors: those of the check and of the driver.

@@ -11,8 +11,9 @@ namespace test_support {
 /// A run with `count` blocks, made from blocks 8 to 29 of another one. Each block has its own text
 /// and numbers.
 inline app::CheckRun lengthened(app::CheckRun run, size_t count) {
-    const std::vector<app::CheckedBlock> blocks(run.blocks.begin() + 8, run.blocks.begin() + 30);
-    run.blocks.clear();
+    std::vector<app::CheckedBlock> blocks;
+    for (size_t i = 8; i < 30; ++i) blocks.push_back(run.blocks[i]);
+    run.blocks.truncate(0);
     for (size_t i = 0; i < count; ++i) {
         app::CheckedBlock block = blocks[i % blocks.size()];
         const auto step = static_cast<double>(i);
@@ -26,7 +27,7 @@ inline app::CheckRun lengthened(app::CheckRun run, size_t count) {
             pair.lower = std::fmod(0.0173 * step, 20.0);
             pair.upper = pair.lower + std::fmod(0.0031 * step, 0.2);
         }
-        run.blocks.push_back(std::move(block));
+        run.blocks.push_back(block);
     }
     for (core::Finding& finding : run.findings) finding.block = core::BlockIndex{7};
     return run;

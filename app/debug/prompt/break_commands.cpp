@@ -78,7 +78,7 @@ core::Result<Breakpoint> breakpoint_in(PromptState& state, const std::string& ar
     } else if (!condition) {
         if (!has_block(state))
             return core::fail(ErrorCode::invalid_value, "the program has ended: name a line");
-        const CheckedBlock& block = state.session.record().blocks[state.session.at()];
+        const CheckedBlock block = state.session.record().blocks[state.session.at()];
         breakpoint.line = block.line;
         breakpoint.file = block.file;
     }

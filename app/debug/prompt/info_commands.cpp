@@ -101,7 +101,7 @@ CommandResult show_fixtures(PromptState& state, const std::string&) {
 CommandResult show_block(PromptState& state, const std::string&) {
     std::string text = location_text(state);
     if (!has_block(state)) return text;
-    const core::BlockResult& result = state.session.record().blocks[state.session.at()].result;
+    const core::BlockResult result = state.session.record().blocks[state.session.at()].result;
     const core::Setup& setup = state.session.setup_at(state.session.at());
     text +=
         fmt::format("    begins at {:.2f} s, removes {:.1f} mm3\n", result.time, result.removed);
@@ -207,7 +207,7 @@ CommandResult show_findings(PromptState& state, const std::string&) {
 
 CommandResult show_calls(PromptState& state, const std::string&) {
     if (!has_block(state)) return std::string("the program has ended: no block is left\n");
-    const CheckedBlock& block = state.session.record().blocks[state.session.at()];
+    const CheckedBlock block = state.session.record().blocks[state.session.at()];
     const auto& frames = control_of(state).frames;
     std::string text = fmt::format("#0  {}: {}\n", line_text(block), trimmed(block.text));
     size_t level = 0;
@@ -233,12 +233,12 @@ std::map<uint32_t, size_t> worst_blocks(const CheckRun& record, const std::strin
                                         uint32_t first, uint32_t last) {
     std::map<uint32_t, size_t> worst;
     const auto rank = [&](size_t block) {
-        const core::BlockResult& result = record.blocks[block].result;
+        const core::BlockResult result = record.blocks[block].result;
         const double margin = result.deciding ? result.pairs[*result.deciding].margin() : 1e9;
         return std::pair(-static_cast<int>(result.verdict), margin);
     };
     for (size_t block = 0; block < record.blocks.size(); ++block) {
-        const CheckedBlock& at = record.blocks[block];
+        const CheckedBlock at = record.blocks[block];
         if (at.line < first || at.line > last || at.file != file) continue;
         if (at.result.motion == core::BlockMotion::none) continue;
         const auto [known, is_new] = worst.try_emplace(at.line, block);
@@ -249,7 +249,7 @@ std::map<uint32_t, size_t> worst_blocks(const CheckRun& record, const std::strin
 
 /// The clearance of a block as a column: "0.420 !".
 std::string clearance_column(const PromptState& state, size_t block) {
-    const core::BlockResult& result = state.session.record().blocks[block].result;
+    const core::BlockResult result = state.session.record().blocks[block].result;
     const std::string text = clearance_text(shown_clearance(state.session.setup_at(block), result),
                                             ClearanceStyle::lower_bound);
     return text + (result.verdict == core::Verdict::clear && result.checked ? "  " : " !");
@@ -266,8 +266,8 @@ CommandResult listed(PromptState& state, const std::string& file, uint32_t first
     FEELER_TRY(const gcode::Program* program, program_of(state, file));
     const CheckRun& record = state.session.record();
     const auto worst = worst_blocks(record, file, first, last);
-    const bool has_next = has_block(state);
-    const CheckedBlock* next = has_next ? &record.blocks[state.session.at()] : nullptr;
+    std::optional<CheckedBlock> next;
+    if (has_block(state)) next = record.blocks[state.session.at()];
     std::string text;
     for (uint32_t line = first; line <= last; ++line) {
         FEELER_TRY(const auto written, program->find_line(line));
@@ -312,14 +312,14 @@ CommandResult list_lines(PromptState& state, const std::string& arguments) {
         return listed(state, state.listed_file, state.listed_to + 1,
                       state.listed_to + lines_at_once);
     if (has_block(state)) {
-        const CheckedBlock& block = state.session.record().blocks[state.session.at()];
+        const CheckedBlock block = state.session.record().blocks[state.session.at()];
         return listed_round(state, {block.line, block.file});
     }
     const auto& stopped = state.session.record().stopped;
     if (stopped && stopped->file == state.session.program().file)
         return listed_round(state, {std::max(1U, stopped->where.line), {}});
     if (state.session.at() == 0) return listed_round(state, {1, {}});
-    const CheckedBlock& last = state.session.record().blocks[state.session.at() - 1];
+    const CheckedBlock last = state.session.record().blocks[state.session.at() - 1];
     return listed_round(state, {last.line, last.file});
 }
 

@@ -93,7 +93,7 @@ core::Result<Location> location_in(PromptState& state, const std::string& text) 
 core::Result<size_t> position_of(PromptState& state, const Location& location) {
     DebugSession& session = state.session;
     const auto is_there = [&](size_t block) {
-        const CheckedBlock& at = session.record().blocks[block];
+        const CheckedBlock at = session.record().blocks[block];
         return at.line == location.line && at.file == location.file;
     };
     for (size_t block = session.at();; ++block) {

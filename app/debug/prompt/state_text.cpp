@@ -128,7 +128,7 @@ std::string displays_text(PromptState& state) {
 std::string location_text(PromptState& state) {
     state.listed_to = 0;
     if (!has_block(state)) return end_text(state) + displays_text(state);
-    const CheckedBlock& block = state.session.record().blocks[state.session.at()];
+    const CheckedBlock block = state.session.record().blocks[state.session.at()];
     return block_text(state, block) + findings_here(state) + displays_text(state);
 }
 

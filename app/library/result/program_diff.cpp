@@ -94,7 +94,8 @@ void compare(ProgramDiff& diff, BlockMeasure before, BlockMeasure after) {
 /// Adds the moving blocks in from .. to - 1, which have no match.
 void take_alone(const CheckRun& run, size_t from, size_t to, std::vector<BlockMeasure>& alone) {
     for (; from < to; ++from)
-        if (moves(run.blocks[from])) alone.push_back(measure_of(run, run.blocks[from]));
+        if (const CheckedBlock block = run.blocks[from]; moves(block))
+            alone.push_back(measure_of(run, block));
 }
 
 /// Compares findings. Those of matching blocks are at the same place, even in rewritten blocks.
@@ -149,7 +150,7 @@ ProgramDiff diff_of(const CheckRun& before, const CheckRun& after, const std::st
     for (const auto& [next_x, next_y] : pairs) {
         take_alone(before, x, next_x, diff.removed);
         take_alone(after, y, next_y, diff.added);
-        const CheckedBlock &was = before.blocks[next_x], &is = after.blocks[next_y];
+        const CheckedBlock was = before.blocks[next_x], is = after.blocks[next_y];
         if (moves(was) && moves(is))
             compare(diff, measure_of(before, was), measure_of(after, is));
         else {

@@ -41,7 +41,7 @@ StoredFinding stored(const core::Finding& finding, const CheckRun& run, FileByte
     made.cure = utf8_text(finding.cure);
     made.pair = {utf8_text(finding.pair[0]), utf8_text(finding.pair[1])};
     if (!finding.block) return made;
-    const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
+    const CheckedBlock block = run.blocks[core::value_of(*finding.block)];
     made.line = block.line;
     made.file = shown_name(block.file, bytes);
     made.text = utf8_text(block.text);
@@ -49,7 +49,7 @@ StoredFinding stored(const core::Finding& finding, const CheckRun& run, FileByte
 }
 
 std::optional<Tightest> tightest_of(const CheckRun& run) {
-    const CheckedBlock* nearest = tightest_block(run);
+    const auto nearest = tightest_block(run);
     if (!nearest) return {};
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
     Tightest tightest{.block = core::value_of(nearest->block),

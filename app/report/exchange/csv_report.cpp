@@ -45,21 +45,24 @@ std::string clearance_cells(const CheckRun& run, const core::BlockResult& result
 
 } // namespace
 
-std::string csv_report(const CheckRun& run) {
-    auto rules = rules_of_blocks(run);
-    std::string text = block_column_names;
+void csv_report(const CheckRun& run, const TextSink& out) {
+    const RulesByBlock rules = rules_of_blocks(run);
+    out(block_column_names);
     for (const CheckedBlock& block : run.blocks) {
         const core::BlockResult& result = block.result;
         const std::string tool =
             result.tool ? fmt::format("{}", core::value_of(*result.tool)) : std::string();
-        text += fmt::format("{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{}\r\n",
-                            core::value_of(block.block), csv_cell(block.file), block.line,
-                            joined(block.calls), csv_cell(block.text), core::name_of(result.motion),
-                            tool, result.time, result.duration, result.removed,
-                            clearance_cells(run, result), core::name_of(result.verdict),
-                            cell_of(rules[block.block]));
+        out(fmt::format("{},{},{},{},{},{},{},{:.6f},{:.6f},{:.6f},{},{},{}\r\n",
+                        core::value_of(block.block), csv_cell(block.file), block.line,
+                        joined(block.calls), csv_cell(block.text), core::name_of(result.motion),
+                        tool, result.time, result.duration, result.removed,
+                        clearance_cells(run, result), core::name_of(result.verdict),
+                        cell_of(rules_of(block.block, rules))));
     }
-    return text;
+}
+
+std::string csv_report(const CheckRun& run) {
+    return text_of([&](const TextSink& out) { csv_report(run, out); });
 }
 
 } // namespace app

@@ -3,14 +3,18 @@
 #include <string>
 
 #include "app/library/result/batch_result.h"
+#include "app/report/json/json_report.h"
 
 namespace app {
 
 struct CheckRun;
 
-/// The blocks of a check as comma-separated values (RFC 4180), one row per block, under a row of
-/// column names. The columns are the JSON fields of a block; a cell is empty where JSON has null.
-/// `rules` lists the rules of the block's findings, worst first, separated by blanks.
+/// Writes the blocks of a check as comma-separated values (RFC 4180), one row per block, under a
+/// row of column names. The columns are the JSON fields of a block; a cell is empty where JSON has
+/// null. `rules` lists the rules of the block's findings, worst first, separated by blanks.
+void csv_report(const CheckRun& run, const TextSink& out);
+
+/// The same as a text.
 std::string csv_report(const CheckRun& run);
 
 /// A batch in JUnit's XML format: a test case for each program, with its errors as a failure. A

@@ -63,7 +63,7 @@ std::string clearance_of(const FindingStretch& stretch) {
 
 std::string location_button(const CheckRun& run, const FindingStretch& stretch,
                             const std::string& target) {
-    const CheckedBlock &first = run.blocks[stretch.first], &last = run.blocks[stretch.last];
+    const CheckedBlock first = run.blocks[stretch.first], last = run.blocks[stretch.last];
     std::string lines = line_of(first);
     if (last.line != first.line) lines += fmt::format("\xE2\x80\x93{}", last.line);
     return fmt::format(R"(<li><button type="button" {}>{}{}</button></li>)", target, lines,
@@ -105,7 +105,7 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
                        + heading_of(group);
     if (group.stretches.empty()) return card + said(group.message, group.cure) + "</article>\n";
     const FindingStretch& worst = group.stretches[group.worst];
-    const CheckedBlock& block = run.blocks[worst.worst];
+    const CheckedBlock block = run.blocks[worst.worst];
     const ShownMoment moment{worst.worst, group.pair};
     card += picture_of(run, group.rule, moment, views) + said(worst.message, worst.cure);
     card += fmt::format(R"(<p class="where"><button type="button" {}>Block {}, {}{}</button> )"
@@ -119,7 +119,7 @@ std::string card_of(const CheckRun& run, const FindingGroup& group, const Report
 
 /// Card of the tightest block, for a program without findings.
 std::string tightest_card(const CheckRun& run, const ReportViews& views) {
-    const CheckedBlock* nearest = tightest_block(run);
+    const auto nearest = tightest_block(run);
     if (!nearest) return "";
     const ShownMoment moment{core::value_of(nearest->block), {}};
     const core::PairClearance& pair = nearest->result.pairs[*nearest->result.deciding];
@@ -149,7 +149,7 @@ std::vector<ShownMoment> moments_of_cards(const CheckRun& run) {
     for (const FindingGroup& group : finding_groups(run))
         if (!group.stretches.empty())
             add_new(moments, {group.stretches[group.worst].worst, group.pair});
-    const CheckedBlock* nearest = tightest_block(run);
+    const auto nearest = tightest_block(run);
     if (moments.empty() && nearest) moments.push_back({core::value_of(nearest->block), {}});
     return moments;
 }

@@ -33,7 +33,7 @@ std::string term(const std::string& name, const std::string& size, const std::st
 }
 
 std::string tightest_text(const CheckRun& run) {
-    const CheckedBlock* block = tightest_block(run);
+    const auto block = tightest_block(run);
     if (!block) return "no pair of bodies within the search limit";
     const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
     return fmt::format("{}: {} / {} in block {}, line {}",

@@ -1,7 +1,9 @@
 #include "app/report/json/json_report.h"
 
 #include <algorithm>
+#include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/base/version.h"
@@ -268,46 +270,103 @@ Json record(const char* name, Json values) {
 
 } // namespace
 
-std::string json_report(const CheckRun& run, bool pairs) {
-    Json json = heading_json(run);
-    auto rules = rules_of_blocks(run);
-    json["blocks"] = Json::array();
-    for (const CheckedBlock& block : run.blocks)
-        json["blocks"].push_back(block_json(run, block, rules[block.block], pairs));
-    json["findings"] = Json::array();
-    for (const core::Finding& finding : run.findings)
-        json["findings"].push_back(finding_json(run, finding));
-    add_ending(json, run);
-    return json_text(json, 1) + "\n";
+namespace {
+
+/// The members of an object, without its braces, as they are in an object that is not within
+/// another.
+std::string members_text(const Json& json) {
+    const std::string text = json_text(json, 1); // "{\n members\n}"
+    return text.substr(1, text.size() - 3);
 }
 
-std::string json_lines_report(const CheckRun& run, bool pairs) {
-    std::string lines = line_text(record("program", heading_json(run)));
-    auto rules = rules_of_blocks(run);
+/// An object as an entry of a list that is a member of the outermost object.
+std::string entry_text(const Json& json) {
+    std::string entry = "\n  ";
+    for (const char letter : json_text(json, 1)) { // no text within has a line end
+        entry += letter;
+        if (letter == '\n') entry += "  ";
+    }
+    return entry;
+}
+
+/// Writes a list of objects, one at a time, as a member of the outermost object.
+class ListWriter {
+public:
+    ListWriter(std::string_view name, const TextSink& out) : out_(out) {
+        out_(fmt::format(",\n \"{}\": [", name));
+    }
+    void add(const Json& json) {
+        if (std::exchange(is_empty_, false))
+            out_(entry_text(json));
+        else
+            out_("," + entry_text(json));
+    }
+    void end() { out_(is_empty_ ? "]" : "\n ]"); }
+
+private:
+    const TextSink& out_;
+    bool is_empty_ = true;
+};
+
+} // namespace
+
+void json_report(const CheckRun& run, bool pairs, const TextSink& out) {
+    out("{" + members_text(heading_json(run)));
+    const RulesByBlock rules = rules_of_blocks(run);
+    ListWriter blocks("blocks", out);
     for (const CheckedBlock& block : run.blocks)
-        lines += line_text(record("block", block_json(run, block, rules[block.block], pairs)));
+        blocks.add(block_json(run, block, rules_of(block.block, rules), pairs));
+    blocks.end();
+    ListWriter findings("findings", out);
+    for (const core::Finding& finding : run.findings) findings.add(finding_json(run, finding));
+    findings.end();
+    Json ending = Json::object();
+    add_ending(ending, run);
+    out("," + members_text(ending) + "\n}\n");
+}
+
+std::string json_report(const CheckRun& run, bool pairs) {
+    return text_of([&](const TextSink& out) { json_report(run, pairs, out); });
+}
+
+void json_lines_report(const CheckRun& run, bool pairs, const TextSink& out) {
+    out(line_text(record("program", heading_json(run))));
+    const RulesByBlock rules = rules_of_blocks(run);
+    for (const CheckedBlock& block : run.blocks)
+        out(line_text(
+            record("block", block_json(run, block, rules_of(block.block, rules), pairs))));
     for (const core::Finding& finding : run.findings)
-        lines += line_text(record("finding", finding_json(run, finding)));
+        out(line_text(record("finding", finding_json(run, finding))));
     Json ending = {{"record", "end"}, {"verdict", core::name_of(run.verdict)}};
     if (run.stopped) ending["error"] = error_json(*run.stopped);
     add_ending(ending, run);
-    return lines + line_text(ending);
+    out(line_text(ending));
 }
 
-std::map<core::BlockIndex, std::vector<std::string>> rules_of_blocks(const CheckRun& run) {
+std::string json_lines_report(const CheckRun& run, bool pairs) {
+    return text_of([&](const TextSink& out) { json_lines_report(run, pairs, out); });
+}
+
+RulesByBlock rules_of_blocks(const CheckRun& run) {
     std::vector<const core::Finding*> all;
     for (const auto* findings : {&run.findings, &run.combined_findings})
         for (const core::Finding& finding : *findings)
             if (finding.block) all.push_back(&finding);
     std::stable_sort(all.begin(), all.end(),
                      [](const auto* a, const auto* b) { return a->severity > b->severity; });
-    std::map<core::BlockIndex, std::vector<std::string>> rules;
+    RulesByBlock rules;
     for (const core::Finding* finding : all) {
         std::vector<std::string>& some = rules[*finding->block];
         if (std::find(some.begin(), some.end(), finding->rule) == some.end())
             some.push_back(finding->rule);
     }
     return rules;
+}
+
+const std::vector<std::string>& rules_of(core::BlockIndex block, const RulesByBlock& rules) {
+    static const std::vector<std::string> none;
+    const auto found = rules.find(block);
+    return found == rules.end() ? none : found->second;
 }
 
 } // namespace app

@@ -46,7 +46,7 @@ std::string title_of(const CheckRun& run, const core::Finding& finding,
     constexpr size_t least_text = 12, most_text = 40;
     std::string title = finding_title(finding, 8);
     if (finding.block) {
-        const CheckedBlock& block = run.blocks[core::value_of(*finding.block)];
+        const CheckedBlock block = run.blocks[core::value_of(*finding.block)];
         title += ", " + location_of(run, block) + ": ";
         const size_t room = options.width - std::min(options.width, title.size());
         const size_t most =
@@ -188,7 +188,7 @@ std::string summary_text(const CheckRun& run, const TextOptions& options) {
     text += fmt::format("  findings   {}\n", counts_text(run));
     text += fmt::format("  blocks     {}, {} with motion; dialect {}\n", run.blocks.size(), moving,
                         gcode::dialect(run.dialect).name);
-    if (const CheckedBlock* block = tightest_block(run)) {
+    if (const auto block = tightest_block(run)) {
         const core::PairClearance& pair = block->result.pairs[*block->result.deciding];
         const std::string tightest =
             fmt::format("line {}: {} / {}, {}", block->line, core::part_name(run.setup, pair.pair),

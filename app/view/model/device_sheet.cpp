@@ -25,7 +25,7 @@ struct Subject {
 
     const DeviceBlock& block() const { return study.result->run.blocks[index]; }
     const BlockTiming& timing() const { return study.result->timing.blocks[index]; }
-    const core::BlockResult& exact() const { return study.result->run.check.blocks[index].result; }
+    core::BlockResult exact() const { return study.result->run.check.blocks[index].result; }
     DeviceAnswer answer() const { return answer_of(&study, index); }
     DeviceTotals before() const {
         return index == 0 ? DeviceTotals() : study.result->run.blocks[index - 1].after;

@@ -180,7 +180,7 @@ size_t SessionPublisher::first_changed(const CheckRun& run) const {
     size_t first = durations_.size(), motions_after = 0;
     if (is_whole_) return first;
     for (size_t i = first; i-- > 0 && motions_after <= core::look_ahead;) {
-        const core::BlockResult& result = run.blocks[i].result;
+        const core::BlockResult result = run.blocks[i].result;
         if (durations_[i] != result.duration) first = i;
         if (result.motion != core::BlockMotion::none) ++motions_after;
     }
@@ -195,8 +195,9 @@ void SessionPublisher::add_rows(const DebugSession& session, SessionUpdate& news
     durations_.resize(update.first);
     states_.resize(std::min(states_.size(), update.first));
     for (size_t i = update.first; i < run.blocks.size(); ++i) {
-        update.rows.push_back(row_of(session.setup_at(i), run.blocks[i]));
-        durations_.push_back(run.blocks[i].result.duration);
+        const CheckedBlock block = run.blocks[i];
+        update.rows.push_back(row_of(session.setup_at(i), block));
+        durations_.push_back(block.result.duration);
         states_.push_back(state_of(update.rows.back()));
     }
     rows_ = std::max(rows_, run.blocks.size());
