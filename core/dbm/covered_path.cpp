@@ -1,6 +1,5 @@
 #include "core/dbm/covered_path.h"
 
-#include "core/base/math.h"
 #include "core/dbm/cut_model.h"
 
 namespace core {
@@ -40,7 +39,8 @@ bool passes(const Move& move, const Vec3& p) {
     const Vec3 q = move.from, by = move.to - move.from;
     const double length = glm::dot(by, by);
     const double t = length > 0.0 ? std::clamp(glm::dot(p - q, by) / length, 0.0, 1.0) : 0.0;
-    return glm::distance(p, q + t * by) <= move.near;
+    const Vec3 apart = p - (q + t * by);
+    return glm::dot(apart, apart) <= move.near * move.near;
 }
 
 /// Whether the tip at `p` is in the cut of the move: above a position that is near enough.
@@ -55,34 +55,29 @@ bool covers(const Move& move, const Vec3& p) {
     const double length = by.x * by.x + by.y * by.y;
     const double along = (p.x - q.x) * by.x + (p.y - q.y) * by.y;
     const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
-    return core::hypot(p.x - q.x - t * by.x, p.y - q.y - t * by.y) <= move.near;
+    const double x = p.x - q.x - t * by.x, y = p.y - q.y - t * by.y;
+    return x * x + y * y <= move.near * move.near;
 }
 
 /// A search among the candidate moves.
 struct Search {
     std::vector<Move> moves;
 
-    bool over(const Move& move, const Vec3& p) const {
-        return passes(move, p) || (move.open && covers(move, p));
-    }
-
-    /// Whether both ends are above one move: as both are straight, everything between is too.
+    /// Whether both ends meet the same one of two criteria of a move: as it and the path are
+    /// straight, everything between does too. Otherwise both halves must, so each end some move's.
     bool covered(const Vec3& a, const Vec3& b, int depth) const {
-        bool ends_covered = false;
-        for (const Move& move : moves) {
-            const bool at_a = over(move, a), at_b = over(move, b);
-            if (at_a && at_b && one_way(move, a, b)) return true;
-            ends_covered = ends_covered || at_a || at_b;
-        }
-        if (!ends_covered || depth == deepest_division) return false;
+        bool is_a_covered = false, is_b_covered = false;
+        for (const Move& move : moves)
+            for (const auto criterion : {passes, covers}) {
+                if (criterion == covers && !move.open) continue;
+                const bool at_a = criterion(move, a), at_b = criterion(move, b);
+                if (at_a && at_b) return true;
+                is_a_covered = is_a_covered || at_a;
+                is_b_covered = is_b_covered || at_b;
+            }
+        if (!is_a_covered || !is_b_covered || depth == deepest_division) return false;
         const Vec3 middle = 0.5 * (a + b);
         return covered(a, middle, depth + 1) && covered(middle, b, depth + 1);
-    }
-
-    /// Whether both ends meet the same one of two criteria: each holds between its ends.
-    bool one_way(const Move& move, const Vec3& a, const Vec3& b) const {
-        const bool passed = passes(move, a) && passes(move, b);
-        return passed || (move.open && covers(move, a) && covers(move, b));
     }
 };
 
@@ -139,7 +134,7 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 up = question.orientation[2];
     const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
-    const auto numbers = sweeps_near(stock, path.grown(question.sideways));
+    const auto numbers = tips_near(stock, path.grown(question.sideways));
     return is_covered(search_among(stock.log, numbers, question, top_along(stock.outer_box, up)),
                       question);
 }
@@ -150,7 +145,7 @@ bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& ques
     const Aabb path = over_and_under(question.from, question.to, up, box).grown(question.sideways);
     std::vector<uint32_t> numbers;
     for (uint32_t number = 0; number < log.size(); ++number)
-        if (overlaps(log.box(number), path)) numbers.push_back(number);
+        if (overlaps(log.path_box(number), path)) numbers.push_back(number);
     return is_covered(search_among(log, numbers, question, top_along(box, up)), question);
 }
 

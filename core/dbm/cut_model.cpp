@@ -16,12 +16,17 @@ void SweepLog::push_back(const CutterSweep& sweep) {
                         static_cast<uint32_t>(attitudes_.size() - 1), sweep.block});
 }
 
-Aabb SweepLog::box(size_t i) const {
+Aabb SweepLog::path_box(size_t i) const {
     const Entry& entry = entries_[i];
     Aabb path;
     path.extend(positions_[entry.end - 1]);
     path.extend(positions_[entry.end]);
-    const Aabb& body = attitudes_[entry.attitude].body;
+    return path;
+}
+
+Aabb SweepLog::box(size_t i) const {
+    const Aabb path = path_box(i);
+    const Aabb& body = attitudes_[entries_[i].attitude].body;
     return {path.min + body.min, path.max + body.max};
 }
 
@@ -39,11 +44,16 @@ LoggedSweep SweepLog::operator[](size_t i) const {
             box(i)};
 }
 
-void append(SharedLog<SweepRun>& runs, uint32_t number) {
-    if (!runs.empty() && runs.back().last + 1 == number)
-        runs.replace_back({runs.back().first, number});
-    else
-        runs.push_back({number, number});
+void append(SharedLog<SweepRun>& runs, uint32_t number, const Aabb& path) {
+    if (runs.empty() || runs.back().last + 1 != number) {
+        runs.push_back({number, number, path});
+        return;
+    }
+    SweepRun longer = runs.back();
+    longer.last = number;
+    longer.paths.extend(path.min);
+    longer.paths.extend(path.max);
+    runs.replace_back(longer);
 }
 
 void remove_newest(SharedLog<SweepRun>& runs) {
@@ -51,7 +61,7 @@ void remove_newest(SharedLog<SweepRun>& runs) {
     if (newest.first == newest.last)
         runs.truncate(runs.size() - 1);
     else
-        runs.replace_back({newest.first, newest.last - 1});
+        runs.replace_back({newest.first, newest.last - 1, newest.paths});
 }
 
 namespace {
@@ -109,14 +119,16 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
     return model;
 }
 
-std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box) {
+std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box) {
     std::vector<uint32_t> numbers;
     if (model.columns.u_count() == 0) return numbers;
     for_tiles(cells_in(model, box), model.column_boxes, [&](size_t tile) {
         const SharedLog<SweepRun>& runs = model.history[tile];
-        for (size_t k = 0; k < runs.size(); ++k)
+        for (size_t k = 0; k < runs.size(); ++k) {
+            if (!overlaps(runs[k].paths, box)) continue;
             for (uint32_t number = runs[k].first; number <= runs[k].last; ++number)
-                if (overlaps(model.log.box(number), box)) numbers.push_back(number);
+                if (overlaps(model.log.path_box(number), box)) numbers.push_back(number);
+        }
     });
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());

@@ -82,6 +82,8 @@ public:
     uint32_t block(size_t i) const { return entries_[i].block; }
     /// The box of what move `i` may have removed.
     Aabb box(size_t i) const;
+    /// The box of the tip's path in move `i`.
+    Aabb path_box(size_t i) const;
 
 private:
     /// A cutter and its orientation; `body` is its box relative to the tip.
@@ -100,13 +102,14 @@ private:
     SharedLog<Entry> entries_;
 };
 
-/// The moves first .. last of a log.
+/// The moves first .. last of a log, and a box around the paths of their tips.
 struct SweepRun {
     uint32_t first = 0, last = 0;
+    Aabb paths;
 };
 
-/// Adds the newest move to a list of runs.
-void append(SharedLog<SweepRun>& runs, uint32_t number);
+/// Adds the newest move to a list of runs; `path` is the box of its tip's path.
+void append(SharedLog<SweepRun>& runs, uint32_t number, const Aabb& path);
 
 /// Removes the newest move from a list of runs.
 void remove_newest(SharedLog<SweepRun>& runs);
@@ -262,7 +265,8 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 /// The material on a line along Z through cell (i, j), recomputed from the log.
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y);
 
-/// The numbers of the logged sweeps that may have reached into a box, in order.
-std::vector<uint32_t> sweeps_near(const CutModel& model, const Aabb& box);
+/// The numbers of the logged sweeps that came near the columns at a box and whose tip may have come
+/// into it, in order.
+std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box);
 
 } // namespace core

@@ -229,9 +229,12 @@ void for_tiles_of_columns(const CutModel& model, const Aabb& front, const Act& a
 /// Records the sweep for all tiles of columns that it may change; false if there are none.
 bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
     const auto number = static_cast<uint32_t>(model.log.size());
+    Aabb path;
+    path.extend(sweep.from);
+    path.extend(sweep.to);
     bool noted = model.columns.u_count() == 0;
     for_tiles_of_columns(model, front, [&](size_t tile) {
-        append(model.history[tile], number);
+        append(model.history[tile], number, path);
         noted = true;
     });
     if (noted) model.log.push_back(sweep);
