@@ -31,7 +31,7 @@ bool CheckRun::has_errors() const {
 Coverage CheckRun::full_coverage() const {
     Coverage full = coverage ? *coverage : Coverage();
     std::set<core::ToolNumber> feeding;
-    for (const CheckedBlock& block : blocks) {
+    for (const CheckedBlock& block : blocks.without_texts()) {
         const core::BlockMotion motion = block.result.motion;
         full.moves = full.moves || motion != core::BlockMotion::none;
         const bool feeds = motion != core::BlockMotion::none && motion != core::BlockMotion::rapid;
@@ -101,8 +101,15 @@ std::optional<CheckedBlock> tightest_block(const CheckRun& run) {
         return pair.verdict != other.verdict ? pair.verdict > other.verdict
                                              : pair.margin() < other.margin();
     };
-    for (const CheckedBlock& block : run.blocks)
-        if (block.result.deciding && (!tightest || is_tighter(block, *tightest))) tightest = block;
+    size_t at = 0, i = 0;
+    for (const CheckedBlock& block : run.blocks.without_texts()) {
+        if (block.result.deciding && (!tightest || is_tighter(block, *tightest))) {
+            tightest = block;
+            at = i;
+        }
+        ++i;
+    }
+    if (tightest) tightest = run.blocks[at];
     return tightest;
 }
 

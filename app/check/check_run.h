@@ -18,6 +18,7 @@
 #include "core/sim/verdict.h"
 
 namespace core {
+struct BlockTime;
 struct CutModel;
 struct PartComparison;
 struct StockMesh;
@@ -63,7 +64,10 @@ public:
         using pointer = const CheckedBlock*;
         using reference = const CheckedBlock&;
 
-        Iterator(const CheckedBlocks& all, size_t at) : all_(&all), at_(at) { unpack(); }
+        Iterator(const CheckedBlocks& all, size_t at, bool with_texts)
+            : all_(&all), at_(at), with_texts_(with_texts) {
+            unpack();
+        }
         const CheckedBlock& operator*() const { return here_; }
         const CheckedBlock* operator->() const { return &here_; }
         Iterator& operator++() {
@@ -75,12 +79,19 @@ public:
 
     private:
         void unpack() {
-            if (at_ < all_->size()) all_->unpack(at_, here_);
+            if (at_ < all_->size()) all_->unpack(at_, here_, with_texts_);
         }
 
         const CheckedBlocks* all_;
         size_t at_;
+        bool with_texts_;
         CheckedBlock here_;
+    };
+    /// All blocks, but with empty texts: half the work.
+    struct WithoutTexts {
+        const CheckedBlocks& all;
+        Iterator begin() const { return {all, 0, false}; }
+        Iterator end() const { return {all, all.size(), false}; }
     };
 
     size_t size() const { return size_; }
@@ -88,8 +99,9 @@ public:
     CheckedBlock operator[](size_t i) const;
     CheckedBlock front() const { return (*this)[0]; }
     CheckedBlock back() const { return (*this)[size_ - 1]; }
-    Iterator begin() const { return {*this, 0}; }
-    Iterator end() const { return {*this, size_}; }
+    Iterator begin() const { return {*this, 0, true}; }
+    Iterator end() const { return {*this, size_, true}; }
+    WithoutTexts without_texts() const { return {*this}; }
 
     void push_back(const CheckedBlock& block);
     void replace(size_t i, const CheckedBlock& block);
@@ -105,6 +117,8 @@ public:
     void change_all(const Act& act) {
         for (size_t i = 0; i < size_; ++i) change(i, act);
     }
+    /// core::settle_time for the result of a block.
+    void settle_time(size_t i, const core::BlockTime& time);
     /// Removes the last blocks, so that this many remain.
     void truncate(size_t size);
 
@@ -121,7 +135,7 @@ private:
         core::Allowance allowance;
     };
 
-    void unpack(size_t i, CheckedBlock& block) const;
+    void unpack(size_t i, CheckedBlock& block, bool with_text) const;
     void pack(const CheckedBlock& block, size_t i, std::vector<uint8_t>& bytes);
     void pack_pair(const core::PairClearance& pair, std::vector<uint8_t>& bytes);
     uint64_t kind_of(const core::PairClearance& pair);

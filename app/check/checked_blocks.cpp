@@ -1,11 +1,12 @@
-#include "app/check/check_run.h"
-
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstring>
 #include <string_view>
 #include <type_traits>
+
+#include "app/check/check_run.h"
+#include "core/sim/run/block_clock.h"
 
 namespace app {
 namespace {
@@ -110,6 +111,8 @@ public:
         if (is_half) ++at_;
     }
 
+    const uint8_t* at() const { return at_; }
+
 private:
     const uint8_t* at_;
 };
@@ -167,7 +170,6 @@ void CheckedBlocks::pack(const CheckedBlock& block, size_t i, std::vector<uint8_
     put(bytes, result.time);
     put(bytes, result.duration);
     put_number(bytes, block.line);
-    put_text(bytes, block.text);
     if (core::value_of(block.block) != i) put_number(bytes, core::value_of(block.block));
     if (result.tool) put(bytes, *result.tool);
     if (!are_same(result.removed, 0.0)) put(bytes, result.removed);
@@ -188,9 +190,10 @@ void CheckedBlocks::pack(const CheckedBlock& block, size_t i, std::vector<uint8_
     put_number(bytes, result.pairs.size());
     for (const core::PairClearance& pair : result.pairs) pack_pair(pair, bytes);
     if (result.deciding) put_number(bytes, *result.deciding);
+    put_text(bytes, block.text); // last, so that settle_time need not read it
 }
 
-void CheckedBlocks::unpack(size_t i, CheckedBlock& block) const {
+void CheckedBlocks::unpack(size_t i, CheckedBlock& block, bool with_text) const {
     assert(i < size_);
     const Chunk& chunk = chunks_[i / chunk_size];
     Reader from(&chunk.bytes[chunk.starts[i % chunk_size]]);
@@ -202,7 +205,6 @@ void CheckedBlocks::unpack(size_t i, CheckedBlock& block) const {
     result.time = from.take<double>();
     result.duration = from.take<double>();
     block.line = static_cast<uint32_t>(from.take_number());
-    from.take_text(block.text);
     block.block = core::BlockIndex{
         static_cast<uint32_t>(has_bits(content, has_own_index) ? from.take_number() : i)};
     result.tool.reset();
@@ -230,11 +232,15 @@ void CheckedBlocks::unpack(size_t i, CheckedBlock& block) const {
     }
     result.deciding.reset();
     if (has_bits(content, has_deciding)) result.deciding = static_cast<size_t>(from.take_number());
+    if (with_text)
+        from.take_text(block.text);
+    else
+        block.text.clear();
 }
 
 CheckedBlock CheckedBlocks::operator[](size_t i) const {
     CheckedBlock block;
-    unpack(i, block);
+    unpack(i, block, true);
     return block;
 }
 
@@ -267,6 +273,48 @@ void CheckedBlocks::replace(size_t i, const CheckedBlock& block) {
         for (size_t later = slot + 1; later < chunk.starts.size(); ++later)
             chunk.starts[later] += longer;
     }
+}
+
+void CheckedBlocks::settle_time(size_t i, const core::BlockTime& time) {
+    assert(i < size_);
+    Chunk& chunk = chunks_[i / chunk_size];
+    uint8_t* const begin = &chunk.bytes[chunk.starts[i % chunk_size]];
+    uint8_t* const times = begin + 2; // start and duration
+    const uint8_t content = begin[1];
+    core::BlockResult result; // of what depends on the time
+    std::memcpy(&result.duration, times + sizeof(double), sizeof(double));
+    Reader from(times + 2 * sizeof(double));
+    from.take_number(); // the line
+    if (has_bits(content, has_own_index)) from.take_number();
+    if (has_bits(content, has_tool)) from.take<core::ToolNumber>();
+    if (has_bits(content, has_removed)) from.take<double>();
+    if (has_bits(content, has_file)) from.take_number();
+    if (has_bits(content, has_calls)) from.take_number();
+    result.pairs.resize(static_cast<size_t>(from.take_number()));
+    std::vector<uint8_t*> places; // of the times of pairs
+    for (core::PairClearance& pair : result.pairs) {
+        const auto bits = from.take<uint8_t>();
+        from.take_number();
+        from.take<double>();
+        places.push_back(nullptr);
+        if (!has_bits(bits, has_witness)) continue;
+        if (!has_bits(bits, is_exact)) from.take<double>();
+        from.take<core::Vec3>();
+        from.take<core::Vec3>();
+        places.back() = begin + (from.at() - begin);
+        pair.time = from.take<double>();
+    }
+    core::settle_time(result, time);
+    for (size_t k = 0; k < places.size(); ++k) {
+        const double settled = result.pairs[k].time;
+        // Without a witness there is no place for a time.
+        if (!places[k] && !are_same(settled, 0.0))
+            return change(i, [&](CheckedBlock& block) { core::settle_time(block.result, time); });
+    }
+    std::memcpy(times, &result.time, sizeof(double));
+    std::memcpy(times + sizeof(double), &result.duration, sizeof(double));
+    for (size_t k = 0; k < places.size(); ++k)
+        if (places[k]) std::memcpy(places[k], &result.pairs[k].time, sizeof(double));
 }
 
 void CheckedBlocks::truncate(size_t size) {

@@ -132,9 +132,9 @@ std::optional<CheckedBlock> too_greedy(const CheckRecord& record) {
         return feeds && result.removed > least_rate_volume
                && result.removed * seconds > most_rate * result.duration;
     };
-    const auto found = std::find_if(record.blocks.begin(), record.blocks.end(), is_greedy);
-    if (found == record.blocks.end()) return std::nullopt;
-    return *found;
+    for (const CheckedBlock& block : record.blocks.without_texts())
+        if (is_greedy(block)) return block;
+    return std::nullopt;
 }
 
 void check_volume(Findings& findings, const CheckRecord& record) {

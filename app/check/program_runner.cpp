@@ -300,8 +300,7 @@ std::vector<LengthMismatch> ProgramRunner::length_mismatches() const {
 void ProgramRunner::enter(const std::vector<core::BlockTime>& timed) {
     for (const core::BlockTime& time : timed) {
         if (core::value_of(time.block) < first_to_time_) continue;
-        record_.blocks.change(core::value_of(time.block),
-                              [&](CheckedBlock& block) { core::settle_time(block.result, time); });
+        record_.blocks.settle_time(core::value_of(time.block), time);
         if (on_timed) on_timed(time);
     }
 }
@@ -403,7 +402,7 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
     record_.verdict = core::Verdict::clear;
     record_.removed = 0.0;
     last_line_ = 0;
-    for (const CheckedBlock& block : record_.blocks) {
+    for (const CheckedBlock& block : record_.blocks.without_texts()) {
         record_.verdict = std::max(record_.verdict, block.result.verdict);
         record_.removed += block.result.removed;
         if (block.file.empty()) last_line_ = block.line;

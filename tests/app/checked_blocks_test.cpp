@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_run.h"
+#include "core/sim/run/block_clock.h"
 
 namespace app {
 namespace {
@@ -58,6 +59,14 @@ CheckedBlock some_block(Random& random) {
         result.findings.push_back(
             {"collision", core::Severity::error, {}, "too near", "", {}, 0.5});
     return block;
+}
+
+core::BlockTime some_time(Random& random) {
+    core::BlockTime time{.start = some_number(random), .duration = some_number(random)};
+    for (size_t n = random() % 3; n > 0; --n)
+        time.stretches.push_back(
+            {0.5 * n, {.duration = 0.7 * n, .length = maybe(random, 2) ? 3.0 : 0.0}});
+    return time;
 }
 
 /// As text, to the last bit of each number.
@@ -124,11 +133,16 @@ TEST(CheckedBlocks, CanBeChangedAnywhereAndCutBack) {
             const size_t i = random() % blocks.size();
             blocks[i] = some_block(random);
             packed.replace(i, blocks[i]);
-        } else if (what < 99) {
+        } else if (what < 88) {
             const size_t i = random() % blocks.size();
             blocks[i].result.time = blocks[i].result.duration = 1.5;
             packed.change(
                 i, [](CheckedBlock& block) { block.result.time = block.result.duration = 1.5; });
+        } else if (what < 99) {
+            const size_t i = random() % blocks.size();
+            const core::BlockTime time = some_time(random);
+            core::settle_time(blocks[i].result, time);
+            packed.settle_time(i, time);
         } else {
             const size_t last = blocks.size() - random() % (blocks.size() / 8 + 1);
             blocks.resize(last);

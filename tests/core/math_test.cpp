@@ -90,5 +90,27 @@ TEST(Math, IsExactWhereTheResultIs) {
     EXPECT_EQ(atan2(0.0, -1.0), std::acos(-1.0));
 }
 
+/// Rounding is exact, so that of glibc is right.
+TEST(Math, RoundsAsTheStandardSays) {
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 200'000; ++i) {
+        const double any = std::bit_cast<double>(random());
+        const double half = static_cast<double>(random() % 2'000'000) * 0.5 - 500'000.0;
+        for (const double x : {any, half, std::nextafter(half, 1e9), std::nextafter(half, -1e9)}) {
+            if (std::isnan(x)) continue;
+            ASSERT_EQ(std::bit_cast<uint64_t>(round(x)), std::bit_cast<uint64_t>(std::round(x)))
+                << x;
+            if (std::abs(x) < 1e18) {
+                ASSERT_EQ(round_to_integer(x), std::llround(x)) << x;
+            }
+        }
+    }
+    EXPECT_EQ(round(0.7 - 0.2), 0.0);
+    EXPECT_TRUE(std::isnan(round(NAN)));
+    EXPECT_EQ(round_to_integer(NAN), 0);
+    EXPECT_EQ(round_to_integer(INFINITY), int64_t{1} << 62);
+    EXPECT_EQ(round_to_integer(-1e300), -(int64_t{1} << 62));
+}
+
 } // namespace
 } // namespace core

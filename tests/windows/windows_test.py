@@ -161,7 +161,7 @@ class SameBits(Case):
         for dialect, names in functions.items():
             lines = ["G21 G90" if dialect != "siemens" else "G71 G90", "G0 X0 Y0 Z0"]
             for name in names.split():
-                for number in numbers[:-1] if name == "EXP" else numbers:
+                for number in numbers[:-2] if name == "EXP" else numbers:
                     inner = bracket[dialect].format(number)
                     if name == "SQRT":
                         inner = bracket[dialect].format("ABS" + inner)

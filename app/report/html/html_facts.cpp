@@ -46,7 +46,7 @@ std::string tightest_text(const CheckRun& run) {
 /// measured.
 std::optional<double> widest_interval(const CheckRun& run) {
     std::optional<double> widest;
-    for (const CheckedBlock& block : run.blocks) {
+    for (const CheckedBlock& block : run.blocks.without_texts()) {
         if (!block.result.deciding) continue;
         const core::PairClearance& pair = block.result.pairs[*block.result.deciding];
         if (pair.found()) widest = std::max(widest.value_or(0.0), pair.upper - pair.lower);

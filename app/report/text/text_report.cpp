@@ -179,7 +179,7 @@ std::string tolerances_text(const Tolerances& tolerances, const TextOptions& opt
 
 std::string summary_text(const CheckRun& run, const TextOptions& options) {
     size_t moving = 0;
-    for (const CheckedBlock& block : run.blocks)
+    for (const CheckedBlock& block : run.blocks.without_texts())
         moving += block.result.motion != core::BlockMotion::none;
     std::string text;
     if (run.stopped) text += row_text("stopped", error_text(*run.stopped), options);
