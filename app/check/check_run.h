@@ -97,6 +97,8 @@ public:
     size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     CheckedBlock operator[](size_t i) const;
+    /// The line of a block, without unpacking the rest.
+    uint32_t line(size_t i) const;
     CheckedBlock front() const { return (*this)[0]; }
     CheckedBlock back() const { return (*this)[size_ - 1]; }
     Iterator begin() const { return {*this, 0, true}; }

@@ -244,6 +244,14 @@ CheckedBlock CheckedBlocks::operator[](size_t i) const {
     return block;
 }
 
+uint32_t CheckedBlocks::line(size_t i) const {
+    assert(i < size_);
+    const Chunk& chunk = chunks_[i / chunk_size];
+    constexpr size_t before = 2 + 2 * sizeof(double); // kinds, content, time and duration
+    return static_cast<uint32_t>(
+        Reader(&chunk.bytes[chunk.starts[i % chunk_size] + before]).take_number());
+}
+
 void CheckedBlocks::push_back(const CheckedBlock& block) {
     if (size_ % chunk_size == 0) {
         if (!chunks_.empty()) chunks_.back().bytes.shrink_to_fit();

@@ -245,7 +245,7 @@ void apply_allowed_rules(const CheckInput& input, CheckRecord& record, bool comm
     std::map<std::string, std::vector<uint32_t>> allowed, refused; // lines, by message
     const auto judge = [&](const core::Finding& finding) {
         if (!is_allowed(record, finding)) return false;
-        const uint32_t line = record.blocks[core::value_of(*finding.block)].line;
+        const uint32_t line = record.blocks.line(core::value_of(*finding.block));
         const bool collides = comes_of_a_collision(input, record, finding);
         if (comments_count && !collides)
             allowed[finding.rule].push_back(line);

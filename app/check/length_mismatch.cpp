@@ -117,7 +117,7 @@ struct Consequences {
 /// "The tool is 95.000 mm lower than intended and collides with the stock in 14 blocks from ...".
 std::string sentence(const CheckRecord& record, const Consequences& all, double too_low) {
     const auto line = [&](core::BlockIndex block) {
-        return record.blocks[core::value_of(block)].line;
+        return record.blocks.line(core::value_of(block));
     };
     const std::string where =
         all.blocks.size() == 1
@@ -151,7 +151,7 @@ void add_sentence(CheckRecord& record, const core::Finding& cause, const Consequ
         return;
     }
     first->message += fmt::format(" Cause: the length offset, see {} in line {}. {}", cause.rule,
-                                  record.blocks[core::value_of(*cause.block)].line, what);
+                                  record.blocks.line(core::value_of(*cause.block)), what);
     first->cure = cause.cure + " Then check again.";
     record.findings.insert(at + 1, *std::move(first));
 }

@@ -137,7 +137,9 @@ std::string usage_line(const CLI::App& command, const std::string& name) {
 /// The meaning of the exit status: docs/manual/exit-status-and-limits.md.
 const char* exit_status_of(const std::string& command) {
     if (command == "check" || command == "merge")
-        return "0 if no finding is an error, 1 if one is, 2 if the check could not finish.";
+        return "0 if no finding is an error, 1 if one is (with --require coverage, also if the "
+               "set-up lacks something), "
+               "2 if the check could not finish.";
     if (command == "coproc")
         return "0 if every block is permitted in time, 1 if a block is refused or a permit is "
                "late, "
@@ -149,8 +151,9 @@ const char* exit_status_of(const std::string& command) {
     return "0, or 2 if the command failed.";
 }
 
+/// A manual page. `list`: a section after the options; `see_also`: another page, or empty.
 std::string manual_page(const CLI::App& command, const std::string& title, const std::string& usage,
-                        const std::string& more) {
+                        const std::string& list, const std::string& see_also) {
     std::string text =
         fmt::format(".TH {} 1 \"\" \"Feeler {}\" \"User Commands\"\n.SH NAME\n{} \\- {}\n"
                     ".SH SYNOPSIS\n{}\n",
@@ -161,10 +164,12 @@ std::string manual_page(const CLI::App& command, const std::string& title, const
             arguments += fmt::format(".TP\n\\fI{}\\fR\n{}\n", roff(option->get_name()),
                                      roff(option->get_description()));
     if (!arguments.empty()) text += ".SH ARGUMENTS\n" + arguments;
-    text += options_section(command) + more;
+    text += options_section(command) + list;
+    text += fmt::format(".SH EXIT STATUS\n{}\n", exit_status_of(command.get_name()));
     if (const std::string footer = command.get_footer(); !footer.empty())
         text += fmt::format(".SH NOTES\n{}\n", roff(footer));
-    return text + ".SH EXIT STATUS\n" + exit_status_of(command.get_name()) + "\n";
+    if (!see_also.empty()) text += fmt::format(".SH SEE ALSO\n\\fB{}\\fR(1)\n", see_also);
+    return text;
 }
 
 // --- shells ---
@@ -186,12 +191,15 @@ std::string bash_script(const CLI::App& cli) {
             const std::vector<std::string> names = spellings(*option);
             words.insert(words.end(), names.begin(), names.end());
             const ValueText value = value_of(*option);
-            if (!value.choices.empty())
-                values += fmt::format(
-                    "        {0}:{1}) COMPREPLY=($(compgen -W {2} -- \"$word\")); "
-                    "return ;;\n",
-                    command->get_name(), fmt::join(names, fmt::format("|{}:", command->get_name())),
-                    in_quotes(fmt::format("{}", fmt::join(value.choices, " "))));
+            if (value.name.empty() && value.choices.empty()) continue;
+            const std::string reply =
+                value.choices.empty()
+                    ? std::string() // the name of a file, or something of the user's own
+                    : fmt::format("COMPREPLY=($(compgen -W {} -- \"$word\")); ",
+                                  in_quotes(fmt::format("{}", fmt::join(value.choices, " "))));
+            values +=
+                fmt::format("        {}:{}) {}return ;;\n", command->get_name(),
+                            fmt::join(names, fmt::format("|{}:", command->get_name())), reply);
         }
         commands.push_back(command->get_name());
         cases +=
@@ -312,13 +320,13 @@ std::vector<std::pair<std::string, std::string>> manual_pages(const CLI::App& cl
         const std::string name = command->get_name(), title = "feeler-" + name;
         list +=
             fmt::format(".TP\n\\fB{}\\fR(1)\n{}\n", roff(title), roff(command->get_description()));
-        pages.emplace_back(title + ".1",
-                           manual_page(*command, title, usage_line(*command, "feeler " + name),
-                                       ".SH SEE ALSO\n\\fBfeeler\\fR(1)\n"));
+        pages.emplace_back(
+            title + ".1",
+            manual_page(*command, title, usage_line(*command, "feeler " + name), "", "feeler"));
     }
     pages.emplace_back(
         "feeler.1",
-        manual_page(cli, "feeler", "\\fBfeeler\\fR \\fIcommand\\fR [\\fIoptions\\fR]", list));
+        manual_page(cli, "feeler", "\\fBfeeler\\fR \\fIcommand\\fR [\\fIoptions\\fR]", list, ""));
     return pages;
 }
 

@@ -174,10 +174,10 @@ bool SessionWalk::is_interrupted() const {
 bool SessionWalk::stops_before(const Breakpoint& breakpoint, size_t block,
                                const gcode::InterpreterState* control) {
     const CheckRun& record = session_.record();
-    const CheckedBlock at = record.blocks[block];
     if (!breakpoint.enabled) return false;
-    if (breakpoint.line && (at.line != *breakpoint.line || at.file != breakpoint.file))
-        return false;
+    if (breakpoint.line && record.blocks.line(block) != *breakpoint.line) return false;
+    const CheckedBlock at = record.blocks[block];
+    if (breakpoint.line && at.file != breakpoint.file) return false;
     // With a condition, any block with the tool may meet it; a tool change has no clearance.
     const bool only_at_change = breakpoint.tool && !breakpoint.condition;
     if (only_at_change && !changes_tool(block)) return false;

@@ -12,9 +12,16 @@ namespace {
 
 /// Length of the character that begins with this byte of UTF-8; 1 if none does.
 size_t length_of_character(uint8_t first) {
-    if (first >= 0xF0 && first < 0xF8) return 4;
-    if (first >= 0xE0) return first < 0xF0 ? 3 : 1;
+    if (first >= 0xF0) return first <= 0xF4 ? 4 : 1;
+    if (first >= 0xE0) return 3;
     return first >= 0xC2 ? 2 : 1;
+}
+
+/// Whether this may be the second byte: no form that is too long, no surrogate, at most U+10FFFF.
+bool may_follow(uint8_t first, uint8_t second) {
+    const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
+    const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
+    return least <= second && second <= most;
 }
 
 std::u32string characters_of(std::string_view text) {
@@ -25,7 +32,8 @@ std::u32string characters_of(std::string_view text) {
         const bool goes_on = std::all_of(whole.begin() + 1, whole.end(), [](char byte) {
             return (static_cast<uint8_t>(byte) & 0xC0U) == 0x80U;
         });
-        if (whole.size() < 2 || whole.size() != length_of_character(first) || !goes_on) {
+        if (whole.size() < 2 || whole.size() != length_of_character(first) || !goes_on
+            || !may_follow(first, static_cast<uint8_t>(whole[1]))) {
             // Above all characters, so that a wrong byte is equal to itself only.
             characters += first < 0x80 ? first : static_cast<char32_t>(0x110000U + first);
             ++at;

@@ -9,7 +9,7 @@ namespace core {
 /// `[[:digit:]]`, of ASCII letters. A leading dot has to be written. Upper and lower case differ
 /// where they do in file names. Both are UTF-8; a byte that is not counts as a character.
 ///
-/// Cost:    at most the product of the lengths.
+/// Cost:    the product of the lengths, unless the pattern has a `[` that is not closed.
 bool matches_pattern(const std::string& pattern, const std::string& name);
 
 } // namespace core

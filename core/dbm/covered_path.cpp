@@ -86,14 +86,16 @@ double top_along(const Aabb& box, const Vec3& up) {
     return glm::dot(glm::max(box.min * up, box.max * up), Vec3(1.0));
 }
 
-/// Everything that may have been cut over or under a path, along `up`.
-Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb& stock) {
+/// The box of a path and of everything below and above it, along `up`, from where flutes of this
+/// height may have cut through to the top of the stock.
+Aabb over_and_under(const Vec3& from, const Vec3& to, const Vec3& up, const Aabb& stock,
+                    double height) {
     Aabb path;
     path.extend(from);
     path.extend(to);
     Aabb all = path;
     all.extend(stock);
-    const Vec3 far = glm::length(all.size()) * up;
+    const Vec3 far = (glm::length(all.size()) + height) * up;
     for (const Vec3& position : {from, to}) {
         path.extend(position + far);
         path.extend(position - far);
@@ -133,7 +135,8 @@ bool is_covered(const Search& search, const PathQuery& question) {
 bool runs_in_own_cut(const CutModel& stock, const PathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 up = question.orientation[2];
-    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box);
+    const Aabb path = over_and_under(question.from, question.to, up, stock.outer_box,
+                                     bounds(question.flutes).max.z);
     const auto numbers = tips_near(stock, path.grown(question.sideways));
     return is_covered(search_among(stock.log, numbers, question, top_along(stock.outer_box, up)),
                       question);
@@ -142,7 +145,9 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuery& question) {
 bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 up = question.orientation[2];
-    const Aabb path = over_and_under(question.from, question.to, up, box).grown(question.sideways);
+    const Aabb path =
+        over_and_under(question.from, question.to, up, box, bounds(question.flutes).max.z)
+            .grown(question.sideways);
     std::vector<uint32_t> numbers;
     for (uint32_t number = 0; number < log.size(); ++number)
         if (overlaps(log.path_box(number), path)) numbers.push_back(number);

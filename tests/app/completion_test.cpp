@@ -53,6 +53,7 @@ TEST(Completion, WorksInBash) {
     EXPECT_EQ(completed("feeler check --dialect ha"), "haas ");
     EXPECT_THAT(completed("feeler check --format j"), HasSubstr("junit"));
     EXPECT_EQ(completed("feeler completion f"), "fish ");
+    EXPECT_EQ(completed("feeler bench -o p"), " ") << "the name of a file, not the argument";
     EXPECT_EQ(completed("feeler check --dialect = ha"), "haas "); // bash splits --dialect=ha
     EXPECT_THAT(completed("feeler check --format ="), HasSubstr("junit"));
 }

@@ -50,6 +50,16 @@ TEST(OwnCut, ContinuesFromOneMoveToTheNext) {
     EXPECT_FALSE(slot.holds({30, 50, -5}, {60, 80, -5}));
 }
 
+/// The tip may have been farther below the path than the stock is large.
+TEST(OwnCut, HoldsAboveADeepTip) {
+    const RevolvedProfile mill{{{0.0, 2.0, 20.0, 2.0, 0.0}}};
+    CutModel thin = *make_cut_model({SolidBox{{{0, 0, -3}, {10, 10, 0}}}, 0.0}, 0.5);
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(mill, 0.0));
+    cut(thin, {cutter, {-5, 5, -18}, {15, 5, -18}});
+    EXPECT_TRUE(runs_in_own_cut(thin, {mill, {6, 5, -1}, {4, 5, -1}, 0.02}));
+    EXPECT_TRUE(runs_in_own_cut(thin, {mill, {6, 5, 1}, {4, 5, 1}, 0.02}));
+}
+
 TEST(OwnCut, IsThatOfTheSameFlutesOnly) {
     EXPECT_FALSE(Slot(slimmer).holds({60, 50, -5}, {0, 50, -5}));
 }

@@ -35,6 +35,9 @@ TEST(NamePattern, CountsCharactersAndNotBytes) {
     EXPECT_TRUE(matches_pattern("\xfc", "\xfc"));
     EXPECT_FALSE(matches_pattern("?", "\xfc\xfc"));
     EXPECT_TRUE(matches_pattern("\xe6\x96?", "\xe6\x96z")) << "ends within a character";
+    EXPECT_FALSE(matches_pattern("?", "\xc0\xaf")) << "longer than need be";
+    EXPECT_FALSE(matches_pattern("?", "\xed\xa0\x80")) << "a surrogate";
+    EXPECT_FALSE(matches_pattern("?", "\xf4\x90\x82\x80")) << "beyond U+10FFFF";
 }
 
 TEST(NamePattern, KnowsClassesAndEscapes) {

@@ -94,7 +94,7 @@ Json finding_json(const CheckRun& run, const core::Finding& finding) {
     json["line"] = nullptr;
     if (finding.block) {
         json["block"] = core::value_of(*finding.block);
-        json["line"] = run.blocks[core::value_of(*finding.block)].line;
+        json["line"] = run.blocks.line(core::value_of(*finding.block));
     }
     if (!finding.pair[0].empty()) json["pair"] = finding.pair;
     json["message"] = finding.message;
@@ -176,7 +176,7 @@ Json part_json(const CheckRun& run) {
         entry["at"] = array_of(region.position);
         entry["area"] = region.area;
         entry["block"] = region.block ? Json(*region.block) : Json(nullptr);
-        entry["line"] = region.block ? Json(run.blocks[*region.block].line) : Json(nullptr);
+        entry["line"] = region.block ? Json(run.blocks.line(*region.block)) : Json(nullptr);
         json["regions"].push_back(std::move(entry));
     }
     return json;

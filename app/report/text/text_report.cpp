@@ -23,7 +23,7 @@ namespace {
 std::vector<uint32_t> lines_of(const CheckRun& run, const GroupOf<core::Finding>& group) {
     std::vector<uint32_t> lines;
     for (const core::Finding* finding : group.findings)
-        if (finding->block) lines.push_back(run.blocks[core::value_of(*finding->block)].line);
+        if (finding->block) lines.push_back(run.blocks.line(core::value_of(*finding->block)));
     return lines;
 }
 
