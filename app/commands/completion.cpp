@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/suggestion.h"
+#include "core/base/text.h"
 
 namespace app {
 namespace {
@@ -81,13 +82,6 @@ std::string roff(std::string_view text) {
     return escaped;
 }
 
-/// The headings of manual pages are in capitals.
-std::string in_capitals(std::string text) {
-    for (char& letter : text)
-        if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
-    return text;
-}
-
 /// The options of a command by group, each group once, in the order of their first options.
 std::vector<const CLI::Option*> grouped_options(const CLI::App& command) {
     std::vector<const CLI::Option*> options = named_options(command);
@@ -108,7 +102,7 @@ std::string options_section(const CLI::App& command) {
     for (const CLI::Option* option : grouped_options(command)) {
         if (const std::string& now = option->get_group(); now != group) {
             group = now;
-            text += fmt::format(".SH {}\n", roff(in_capitals(group)));
+            text += fmt::format(".SH {}\n", roff(core::upper_case(group)));
         }
         const ValueText value = value_of(*option);
         std::string name;
@@ -138,12 +132,10 @@ std::string usage_line(const CLI::App& command, const std::string& name) {
 const char* exit_status_of(const std::string& command) {
     if (command == "check" || command == "merge")
         return "0 if no finding is an error, 1 if one is (with --require coverage, also if the "
-               "set-up lacks something), "
-               "2 if the check could not finish.";
+               "set-up lacks something), 2 if the check could not finish.";
     if (command == "coproc")
         return "0 if every block is permitted in time, 1 if a block is refused or a permit is "
-               "late, "
-               "2 if the command failed.";
+               "late, 2 if the command failed.";
     if (command == "diff")
         return "0 if the later version is not worse, 1 if it is, 2 if one of them could not be run "
                "to its end.";

@@ -60,6 +60,18 @@ TEST(OwnCut, HoldsAboveADeepTip) {
     EXPECT_TRUE(runs_in_own_cut(thin, {mill, {6, 5, 1}, {4, 5, 1}, 0.02}));
 }
 
+/// Moves that follow each other are found as one, wherever on them the path is.
+TEST(OwnCut, HoldsOnTheLastOfManyMoves) {
+    Slot slot;
+    const auto cutter = std::make_shared<const Cutter>(make_cutter(end_mill, 0.0));
+    cut(slot.stock, {cutter, {60, 50, -5}, {60, 53, -5}});
+    cut(slot.stock, {cutter, {60, 53, -5}, {63, 53, -5}});
+    cut(slot.stock, {cutter, {63, 53, -5}, {63, 50, -5}});
+    EXPECT_TRUE(slot.holds({63, 52, -5}, {63, 51, -5}));
+    EXPECT_TRUE(slot.holds({61, 53, -5}, {62, 53, 0}));
+    EXPECT_FALSE(slot.holds({64, 52, -5}, {64, 51, -5}));
+}
+
 TEST(OwnCut, IsThatOfTheSameFlutesOnly) {
     EXPECT_FALSE(Slot(slimmer).holds({60, 50, -5}, {0, 50, -5}));
 }
