@@ -31,19 +31,27 @@ Lead lead_of(unsigned char byte) {
     return {};
 }
 
-/// Length in bytes of the first character of a text; 0 if it is invalid.
-size_t character_length(std::string_view text) {
+/// The first character of a text, and its length in bytes; the length is 0 if it is invalid.
+struct Character {
+    size_t length = 0;
+    uint32_t code = 0;
+};
+
+Character first_character(std::string_view text) {
     const Lead lead = lead_of(static_cast<unsigned char>(text[0]));
-    if (lead.length == 0 || lead.length > text.size()) return 0;
+    if (lead.length == 0 || lead.length > text.size()) return {};
     uint32_t code = lead.bits;
     for (size_t i = 1; i < lead.length; ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
-        if (byte >> 6 != 0x02) return 0;
+        if (byte >> 6 != 0x02) return {};
         code = code << 6 | (byte & 0x3fU);
     }
     const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-    return code < lead.least || code > 0x10ffff || is_surrogate ? 0 : lead.length;
+    if (code < lead.least || code > 0x10ffff || is_surrogate) return {};
+    return {lead.length, code};
 }
+
+size_t character_length(std::string_view text) { return first_character(text).length; }
 
 } // namespace
 
@@ -51,6 +59,18 @@ size_t characters_in(std::string_view text) {
     size_t count = 0;
     for (; !text.empty(); ++count) text.remove_prefix(std::max<size_t>(character_length(text), 1));
     return count;
+}
+
+std::u32string code_points(std::string_view text) {
+    constexpr uint32_t above_all = 0x110000;
+    std::u32string codes;
+    while (!text.empty()) {
+        const Character first = first_character(text);
+        codes += static_cast<char32_t>(
+            first.length > 0 ? first.code : above_all + static_cast<unsigned char>(text[0]));
+        text.remove_prefix(std::max<size_t>(first.length, 1));
+    }
+    return codes;
 }
 
 std::string utf8_text(std::string_view text) {

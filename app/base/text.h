@@ -19,6 +19,10 @@ std::string utf8_text(std::string_view text);
 /// The number of characters of utf8_text(text).
 size_t characters_in(std::string_view text);
 
+/// The code points of a text; for a byte that is not UTF-8, a number above all of them, which no
+/// other byte has.
+std::u32string code_points(std::string_view text);
+
 /// The lines of a small text file, without line ends.
 ///
 /// Errors: io, with the file, if it cannot be read or is too large for a table.

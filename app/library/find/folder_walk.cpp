@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <set>
 
+#include "app/library/find/name_pattern.h"
 #include "core/base/file_reads.h"
-#include "core/base/name_pattern.h"
 #include "core/base/platform.h"
 #include "gcode/language/program_folder.h"
 
@@ -145,7 +145,7 @@ private:
         if (part == "**") return expand_below(folder, i);
         if (!is_glob(part.generic_string())) return go_on(folder / part, i);
         for (const std::string& name : names_of(folder.empty() ? fs::path(".") : folder))
-            if (core::matches_pattern(part.generic_string(), name)) go_on(folder / name, i);
+            if (matches_pattern(part.generic_string(), name)) go_on(folder / name, i);
     }
 
     std::vector<std::string> names_of(const fs::path& folder) {

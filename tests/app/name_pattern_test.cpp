@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "core/base/name_pattern.h"
+#include "app/library/find/name_pattern.h"
 
-namespace core {
+namespace app {
 namespace {
 
 TEST(NamePattern, MatchesNames) {
@@ -59,4 +59,4 @@ TEST(NamePattern, TakesLittleTimeForManyStars) {
 }
 
 } // namespace
-} // namespace core
+} // namespace app

@@ -1,52 +1,14 @@
-#include "core/base/name_pattern.h"
+#include "app/library/find/name_pattern.h"
 
-#include <algorithm>
-#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "app/base/text.h"
 #include "core/base/platform.h"
 
-namespace core {
+namespace app {
 namespace {
-
-/// Length of the character that begins with this byte of UTF-8; 1 if none does.
-size_t length_of_character(uint8_t first) {
-    if (first >= 0xF0) return first <= 0xF4 ? 4 : 1;
-    if (first >= 0xE0) return 3;
-    return first >= 0xC2 ? 2 : 1;
-}
-
-/// Whether this may be the second byte: no form that is too long, no surrogate, at most U+10FFFF.
-bool may_follow(uint8_t first, uint8_t second) {
-    const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
-    const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
-    return least <= second && second <= most;
-}
-
-std::u32string characters_of(std::string_view text) {
-    std::u32string characters;
-    for (size_t at = 0; at < text.size();) {
-        const auto first = static_cast<uint8_t>(text[at]);
-        const std::string_view whole = text.substr(at, length_of_character(first));
-        const bool goes_on = std::all_of(whole.begin() + 1, whole.end(), [](char byte) {
-            return (static_cast<uint8_t>(byte) & 0xC0U) == 0x80U;
-        });
-        if (whole.size() < 2 || whole.size() != length_of_character(first) || !goes_on
-            || !may_follow(first, static_cast<uint8_t>(whole[1]))) {
-            // Above all characters, so that a wrong byte is equal to itself only.
-            characters += first < 0x80 ? first : static_cast<char32_t>(0x110000U + first);
-            ++at;
-            continue;
-        }
-        char32_t character = first & (0x7FU >> whole.size());
-        for (const char byte : whole.substr(1))
-            character = character << 6U | (static_cast<uint8_t>(byte) & 0x3FU);
-        characters += character;
-        at += whole.size();
-    }
-    return characters;
-}
 
 bool is_in_class(std::u32string_view name, char32_t c) {
     const auto is_within = [c](char32_t first, char32_t last) { return first <= c && c <= last; };
@@ -127,8 +89,8 @@ bool matches(std::u32string_view pattern, std::u32string_view name) {
 bool matches_pattern(const std::string& pattern, const std::string& name) {
     const bool has_dot = pattern.starts_with('.') || pattern.starts_with("\\.");
     if (name.starts_with('.') && !has_dot) return false;
-    return matches(characters_of(platform::case_folded(pattern)),
-                   characters_of(platform::case_folded(name)));
+    return matches(code_points(core::platform::case_folded(pattern)),
+                   code_points(core::platform::case_folded(name)));
 }
 
-} // namespace core
+} // namespace app

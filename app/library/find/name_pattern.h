@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace core {
+namespace app {
 
 /// Whether a file name matches a pattern with `*`, `?`, `[...]` and, before a character that is
 /// meant as it is, `\`. Sets contain characters, ranges and the classes of POSIX, such as
@@ -12,4 +12,4 @@ namespace core {
 /// Cost:    the product of the lengths, unless the pattern has a `[` that is not closed.
 bool matches_pattern(const std::string& pattern, const std::string& name);
 
-} // namespace core
+} // namespace app
