@@ -168,7 +168,7 @@ void BrickContour::cross(int axis, const GridNode& node, std::vector<BrickMemory
         const BrickMemory::Known& known = memory_.edges[next];
         if (known.edge == number && known.along == crossing.along && known.found
             && known.upper == crossing.end.upper
-            && known.crossing.sweep == core::sweep_at(model_.lines, crossing.end)) {
+            && known.crossing.sweep == core::sweep_at(model_, crossing.end)) {
             now.push_back(known);
             return;
         }

@@ -11,6 +11,7 @@
 #include "app/check/dog_legs.h"
 #include "app/check/over_travel.h"
 #include "app/check/prepared_check.h"
+#include "app/check/run_ahead.h"
 #include "app/check/run_state.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
@@ -65,6 +66,7 @@ BlockRunner::BlockRunner(const PreparedCheck& check)
 BlockRunner::~BlockRunner() = default;
 
 void BlockRunner::use(const core::Setup& setup) {
+    work_alone();
     setup_ = &setup;
     dog_legs_.reset();
 }
@@ -125,23 +127,73 @@ core::PathCertainty BlockRunner::certainty(const gcode::BlockCommands& block,
     return certainty;
 }
 
+void BlockRunner::use_threads(unsigned threads, size_t first) {
+    work_alone();
+    threads_ = threads;
+    first_pause_ = pause_ = first;
+}
+
+void BlockRunner::work_alone() {
+    if (!ahead_) return;
+    ahead_.reset();
+    is_ahead_over_ = false;
+    alone_ = 0;
+    // Where little can be foreseen, try less often.
+    constexpr size_t longest = 1 << 16;
+    pause_ = served_ > 4 * pause_ ? first_pause_ : std::min(2 * pause_, longest);
+}
+
+ReadBlock* BlockRunner::read_ahead(RunState& state) {
+    if (threads_ < 2) return nullptr;
+    if (is_ahead_over_ || (ahead_ && ahead_of_ != &state)) work_alone();
+    if (!ahead_) {
+        const bool is_plain = state.machine.spread.none() && !state.lengths.is_open;
+        if (++alone_ <= pause_ || !is_plain) return nullptr;
+        ahead_ = std::make_unique<RunAhead>(check_, *setup_, state, threads_);
+        ahead_of_ = &state;
+        served_ = 0;
+    }
+    ReadBlock* block = ahead_->next(state.machine.stock);
+    if (!block) {
+        work_alone();
+        return nullptr;
+    }
+    ++served_;
+    ++foreseen_;
+    return block;
+}
+
 core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
+    auto done = run_next(state);
+    if (!done || !*done) work_alone();
+    return done;
+}
+
+core::Result<std::optional<BlockStep>> BlockRunner::run_next(RunState& state) {
     const auto failed = [&](core::Error error) {
         return tl::unexpected(core::in_file(std::move(error), check_.program->file));
     };
-    next_ = state.control;
-    const auto read = interpreter_.next(next_);
-    if (after_reading && next_.readings->met.size() > state.control.readings->met.size())
-        after_reading(state, next_);
+    ReadBlock* const ahead = read_ahead(state);
+    gcode::InterpreterState& after = ahead ? ahead->control : next_;
+    core::Result<const gcode::BlockCommands*> read = nullptr;
+    if (ahead) {
+        read = &ahead->block;
+    } else {
+        after = state.control;
+        read = interpreter_.next(after);
+    }
+    if (after_reading && after.readings->met.size() > state.control.readings->met.size())
+        after_reading(state, after);
     if (!read) return failed(read.error());
     if (!*read) {
-        std::swap(state.control, next_);
+        std::swap(state.control, after);
         return std::nullopt;
     }
     const gcode::BlockCommands& block = **read;
-    gcode::Lowering lowering = state.lowering;
-    const std::vector<core::Event> events =
-        events_of(*setup_, block, lowering, check_.file.speed_by_hand);
+    gcode::Lowering lowering = ahead ? ahead->lowering : state.lowering;
+    std::vector<core::Event> own_events;
+    if (!ahead) own_events = events_of(*setup_, block, lowering, check_.file.speed_by_hand);
+    const std::vector<core::Event>& events = ahead ? ahead->events : own_events;
     if (auto refused = refusal(block, lowering)) return failed(*std::move(refused));
     auto judged = judge ? judge(events, state.machine) : core::Judgement();
     if (!judged)
@@ -165,15 +217,22 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
                                      path,
                                      judge ? &*judged : nullptr};
     track_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
+    if (state.lengths.is_open && ahead) { // another run of the block may read the program
+        ahead_->halt();
+        is_ahead_over_ = true;
+    }
     if (before_block) before_block(block, state);
-    std::swap(state.control, next_);
+    std::swap(state.control, after);
     state.lowering = lowering;
     std::optional<core::BlockResult> bent;
     if (follows_dog_legs) {
         if (!dog_legs_) dog_legs_ = std::make_unique<const DogLegTrial>(*setup_);
         bent = dog_legs_->run(of_block, state.machine);
     }
-    step.checked.result = core::run_block(*setup_, of_block, state.machine);
+    core::BlockEvents with_cuts = of_block;
+    if (ahead) with_cuts.replay = &ahead_->cuts(state.machine.stock);
+    step.checked.result = core::run_block(*setup_, with_cuts, state.machine);
+    is_ahead_over_ = is_ahead_over_ || (ahead && !ahead_->went_as_foreseen());
     if (bent) step.as_dog_legs = worse_than(step.checked.result, *bent);
     cure_machine_moves(step.checked.result.findings, block, check_.file.environment,
                        lowering.offsets);
@@ -190,6 +249,7 @@ core::Result<std::optional<BlockStep>> BlockRunner::step(RunState& state) {
 
 void BlockRunner::visit_ahead(gcode::InterpreterState control, gcode::Lowering lowering,
                               const BlockVisit& visit) {
+    work_alone();
     while (true) {
         const auto next = interpreter_.next(control);
         if (!next || !*next) return;

@@ -18,7 +18,9 @@ struct Lowering;
 namespace app {
 
 class DogLegTrial;
+class RunAhead;
 struct PreparedCheck;
+struct ReadBlock;
 struct RunState;
 
 /// The finding for a warning of the interpreter, with its severity in the set-up.
@@ -61,9 +63,19 @@ public:
     /// Uses another set-up from the next block on. It must outlive the runner.
     void use(const core::Setup& setup);
 
+    /// Lets step() use other threads, too, if it runs many blocks one after the other on the same
+    /// state, which nobody else changes. Between two calls of step(), other threads may then read
+    /// the program's library: call work_alone() before using it.
+    /// Other threads start after `first` blocks, since that takes as long as a few hundred.
+    void use_threads(unsigned threads, size_t first);
+    /// Ends the work of other threads for now.
+    void work_alone();
+    /// Number of blocks that other threads have read and cut.
+    size_t foreseen_blocks() const { return foreseen_; }
+
     /// Runs the next block; empty at the end of the program.
     ///
-    /// Result: bit-identical for the same state.
+    /// Result: bit-identical for the same state, whatever the number of threads.
     /// Errors: alarms of the control, and blocks that the machine cannot run. The state is then
     ///         unchanged.
     core::Result<std::optional<BlockStep>> step(RunState& state);
@@ -74,6 +86,10 @@ public:
                      const BlockVisit& visit);
 
 private:
+    /// The next block if another thread has read it; null if it must be read now.
+    ReadBlock* read_ahead(RunState& state);
+    core::Result<std::optional<BlockStep>> run_next(RunState& state);
+
     std::optional<core::Error> refusal(const gcode::BlockCommands& block,
                                        const gcode::Lowering& lowering) const;
     /// How far the motions of a block are known. Reports the first block in which an axis that no
@@ -90,6 +106,15 @@ private:
     std::unique_ptr<const DogLegTrial> dog_legs_; // under this set-up, once it is needed
     gcode::Interpreter interpreter_;
     gcode::InterpreterState next_; // after the block; a member to avoid an allocation per block
+
+    unsigned threads_ = 1;
+    std::unique_ptr<RunAhead> ahead_; // of the run with the state `ahead_of_`
+    const RunState* ahead_of_ = nullptr;
+    bool is_ahead_over_ = false;
+    size_t alone_ = 0;  // blocks since the last such run
+    size_t served_ = 0; // blocks of this one
+    size_t foreseen_ = 0;
+    size_t first_pause_ = 0, pause_ = 0; // blocks before the next one
 };
 
 } // namespace app

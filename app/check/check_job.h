@@ -39,6 +39,7 @@ struct CheckJob {
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace those under [program] of the set-up
     Engine engine = Engine::exact;
+    unsigned threads = 1;            // to use; the result does not depend on it
     SetupEdits edits = {};           // replace what is stated or inferred
     core::RuleSeverities rules = {}; // replace those of the set-up, rule by rule
     bool setup_was_found = false;    // it was not named, but is next to the program

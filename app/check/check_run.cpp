@@ -161,6 +161,7 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     const Stopwatch checking;
     ProgramRunner runner(check);
     runner.after_block = job.after_block;
+    runner.use_threads(job.threads);
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
         FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.machine().stock));

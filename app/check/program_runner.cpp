@@ -179,9 +179,22 @@ ProgramRunner::ProgramRunner(PreparedCheck& check)
 
 ProgramRunner::~ProgramRunner() = default;
 
+void ProgramRunner::use_threads(unsigned threads, size_t first) {
+    runner_->use_threads(threads, first);
+}
+
+void ProgramRunner::work_alone() { runner_->work_alone(); }
+
+size_t ProgramRunner::foreseen_blocks() const { return runner_->foreseen_blocks(); }
+
 void ProgramRunner::use_judge(BlockJudge judge) {
     runner_->judge = std::move(judge);
     runner_->before_block = {};
+}
+
+RunState& ProgramRunner::mutable_state() {
+    runner_->work_alone();
+    return *state_;
 }
 
 const core::SimulatorState& ProgramRunner::machine() const { return state_->machine; }
@@ -389,6 +402,7 @@ void ProgramRunner::keep_readings() { readings_->may_go_back = true; }
 
 void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t findings) {
     assert(!state.lengths.is_open);
+    runner_->work_alone();
     *state_ = state;
     first_to_time_ = blocks;
     correction_.reset();
@@ -428,6 +442,7 @@ void ProgramRunner::end() {
 }
 
 void ProgramRunner::stop_here() {
+    runner_->work_alone();
     const CheckedBlock last = record_.blocks.back();
     record_.stopped = core::in_file(
         {core::ErrorCode::io,
@@ -444,6 +459,7 @@ void ProgramRunner::run_to_end() {
 }
 
 void ProgramRunner::conclude(bool needs_surface) {
+    runner_->work_alone();
     readings_->follow(record_, state_->control,
                       [this] { return !after_block || after_block(progress()); });
     app::conclude(check_, state_->machine, length_mismatches(), needs_surface);

@@ -40,6 +40,14 @@ public:
     // Called for each block, in order, when its start and duration are final.
     std::function<void(const core::BlockTime&)> on_timed;
 
+    /// Uses up to so many threads, this one included. Until the run has ended, nobody else may
+    /// change its state or use the program's library. They start after `first` blocks.
+    void use_threads(unsigned threads, size_t first = 256);
+    /// Ends the work of other threads for now.
+    void work_alone();
+    /// Number of blocks that other threads have read and cut.
+    size_t foreseen_blocks() const;
+
     /// Judges blocks by `judge` in place of the distance core. Findings caused by a wrong tool
     /// length are then reported for each block.
     void use_judge(BlockJudge judge);
@@ -73,7 +81,7 @@ public:
     /// Uses another set-up from the next block on. It must outlive the runner.
     void use(const core::Setup& setup);
     /// The state from which the run continues.
-    RunState& mutable_state() { return *state_; }
+    RunState& mutable_state();
 
     /// Prepares for going back after the end: keeps the states from which other readings branch
     /// off.

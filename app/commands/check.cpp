@@ -168,6 +168,7 @@ core::Result<CheckJob> one_job(const CheckOptions& options) {
     CheckOptions one = options;
     one.what.program = options.programs[0];
     FEELER_TRY(CheckJob job, job_of(one));
+    if (options.jobs) job.threads = *options.jobs;
     job.needs_surface = !options.stock.empty() || !options.comparison.empty();
     job.before_model = say_memory;
     job.is_stopped = is_interrupted;
@@ -322,7 +323,8 @@ void add_batch_options(CLI::App& command, CheckOptions& options) {
             "I/N"));
     command
         .add_option("-j,--jobs", options.jobs,
-                    "Many programs: number that run in parallel; default one per core")
+                    "Number of threads, for programs that run in parallel and within a program; "
+                    "default one per core")
         ->check(number_range(1.0, 1024.0));
     command
         .add_option("--memory", options.memory,

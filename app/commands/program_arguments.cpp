@@ -1,6 +1,7 @@
 #include "app/commands/program_arguments.h"
 
 #include <filesystem>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -146,6 +147,7 @@ core::Result<CheckJob> job_of(const CheckArguments& arguments) {
     if (arguments.memory_limit) job.memory_limit = *arguments.memory_limit * 1e6;
     job.start_line = arguments.start_line;
     job.settings = std::move(settings);
+    job.threads = std::max(1U, std::thread::hardware_concurrency());
     return job;
 }
 

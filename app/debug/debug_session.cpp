@@ -49,6 +49,7 @@ ControlWalk::ControlWalk(RecordedRun& run, size_t next_block)
       control_(run.state_at(next_block)->control) {}
 
 void ControlWalk::advance() {
+    (void)run_.library(); // ends the work of other threads with it
     [[maybe_unused]] const auto block = interpreter_.next(control_);
     assert(block && *block);
     ++next_block_;
@@ -339,7 +340,7 @@ bool DebugSession::is_recorded() const { return run_->is_complete(); }
 
 double DebugSession::recorded_fraction() const { return run_->fraction(); }
 
-const gcode::Program& DebugSession::program() const { return *run_->check().program; }
+const gcode::Program& DebugSession::program() const { return run_->program(); }
 
 const SetupFile& DebugSession::setup_file() const { return run_->check().file; }
 

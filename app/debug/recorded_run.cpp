@@ -292,6 +292,7 @@ RecordedRun::open(const CheckJob& job, PreparedCheck check, size_t memory_budget
     std::unique_ptr<RecordedRun> run(new RecordedRun(std::move(check), memory_budget));
     run->needs_surface_ = job.needs_surface;
     run->after_block_ = job.after_block;
+    run->runner_->use_threads(job.threads);
     if (!job.start_line.empty())
         if (const auto begun = run->runner_->start_at(job.start_line); !begun)
             return tl::unexpected(core::in_file(begun.error(), job.program));
@@ -315,9 +316,18 @@ const CheckRun& RecordedRun::record() const { return check_->run; }
 
 double RecordedRun::fraction() const { return is_complete_ ? 1.0 : runner_->progress().fraction; }
 
-gcode::ProgramLibrary& RecordedRun::library() const { return *check_->library; }
+gcode::ProgramLibrary& RecordedRun::library() const {
+    runner_->work_alone();
+    return *check_->library;
+}
+
+const gcode::Program& RecordedRun::program() const {
+    runner_->work_alone();
+    return *check_->program;
+}
 
 void RecordedRun::visit_ahead(size_t position, const RunState& state, const BlockVisit& visit) {
+    runner_->work_alone();
     replayer_->use(setup_at(position));
     replayer_->visit_ahead(state.control, state.lowering, visit);
 }
@@ -400,6 +410,7 @@ void RecordedRun::advance_to(RunState& state, size_t from, size_t position) {
         state = frame.restored();
         from = frame.blocks;
     }
+    if (from < position) runner_->work_alone();
     while (from < position) {
         replayer_->use(setup_at(from));
         [[maybe_unused]] const auto step = replayer_->step(state);

@@ -50,7 +50,10 @@ public:
     bool advance();
 
     const PreparedCheck& check() const { return *check_; }
-    /// The subprograms that all run states refer to.
+    /// The main program. Other threads may read it during advance(), so ask for it again after
+    /// that.
+    const gcode::Program& program() const;
+    /// The subprograms that all run states refer to. As for the program, ask again.
     gcode::ProgramLibrary& library() const;
     /// The set-up in effect for a block.
     const core::Setup& setup_at(size_t block) const;

@@ -200,7 +200,7 @@ SurfacePoint surface_point(const CutModel& model, const LineEnd& end) {
     Vec3 outward(0.0);
     outward[end.axis] = end.upper ? 1.0 : -1.0;
     if (mark == 0) return {point, normal_of_raw(model.solid, point, end.axis, outward), {}};
-    const CutterSweep sweep = model.log[mark - 1].sweep;
+    const CutterSweep sweep = model.log[model.log.index_of(mark)].sweep;
     return {point, normal_at_end(sweep, point, outward), sweep.block};
 }
 
@@ -246,18 +246,19 @@ Crossing crossing_at(const Dbm& lines, int axis, const std::array<int, 3>& node,
     return crossing;
 }
 
-std::optional<uint32_t> sweep_at(const Dbm& lines, const LineEnd& end) {
+std::optional<uint32_t> sweep_at(const CutModel& model, const LineEnd& end) {
     const EndMarks marks =
-        lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
+        model.lines.families[static_cast<size_t>(end.axis)].marks(end.u, end.v, end.interval);
     const uint32_t mark = end.upper ? marks.upper : marks.lower;
-    return mark > 0 ? std::optional(mark - 1) : std::nullopt;
+    if (mark == 0) return std::nullopt;
+    return static_cast<uint32_t>(model.log.index_of(mark));
 }
 
 CrossedEdge crossed_edge(const CutModel& model, const Crossing& crossing) {
     const LineEnd& end = crossing.end;
     CrossedEdge edge;
     if (crossing.found) {
-        edge = {{Vec3(0.0), surface_point(model, end).normal}, sweep_at(model.lines, end)};
+        edge = {{Vec3(0.0), surface_point(model, end).normal}, sweep_at(model, end)};
     }
     // A line does not end at a face that it runs along.
     const double outward = end.upper ? 1.0 : -1.0;

@@ -79,8 +79,8 @@ struct CrossedEdge {
 
 CrossedEdge crossed_edge(const CutModel& model, const Crossing& crossing);
 
-/// The number of the cut that made an end; empty for raw stock.
-std::optional<uint32_t> sweep_at(const Dbm& lines, const LineEnd& end);
+/// The number in the log of the cut that made an end; empty for raw stock.
+std::optional<uint32_t> sweep_at(const CutModel& model, const LineEnd& end);
 
 /// Where the vertices of a cell may be. `bounds`: of the uncut solid.
 Aabb vertex_room(const ScanGrid& grid, const Aabb& bounds, const std::array<int, 3>& cell);

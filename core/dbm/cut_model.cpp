@@ -4,7 +4,23 @@
 
 namespace core {
 
-void SweepLog::push_back(const CutterSweep& sweep) {
+uint32_t SweepLog::last_mark() const {
+    if (marks_.empty()) return 0;
+    return marks_.back().mark + static_cast<uint32_t>(entries_.size()) - 1 - marks_.back().first;
+}
+
+size_t SweepLog::index_of(uint32_t mark) const {
+    size_t from = 0, to = marks_.size(); // the last run that begins at or before `mark`
+    while (to - from > 1) {
+        const size_t middle = from + (to - from) / 2;
+        (marks_[middle].mark <= mark ? from : to) = middle;
+    }
+    return marks_[from].first + (mark - marks_[from].mark);
+}
+
+void SweepLog::push_back(const CutterSweep& sweep, uint32_t mark) {
+    if (marks_.empty() || mark != last_mark() + 1)
+        marks_.push_back({static_cast<uint32_t>(entries_.size()), mark});
     const bool same_attitude = !attitudes_.empty() && attitudes_.back().cutter == sweep.cutter
                                && attitudes_.back().orientation == sweep.orientation;
     if (!same_attitude)
@@ -30,10 +46,11 @@ Aabb SweepLog::box(size_t i) const {
     return {path.min + body.min, path.max + body.max};
 }
 
-void SweepLog::cut_back(const Mark& mark) {
-    attitudes_.truncate(mark.attitudes);
-    positions_.truncate(mark.positions);
-    entries_.truncate(mark.entries);
+void SweepLog::cut_back(const Sizes& sizes) {
+    attitudes_.truncate(sizes.attitudes);
+    positions_.truncate(sizes.positions);
+    entries_.truncate(sizes.entries);
+    marks_.truncate(sizes.marks);
 }
 
 LoggedSweep SweepLog::operator[](size_t i) const {

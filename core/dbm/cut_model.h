@@ -68,15 +68,22 @@ struct LoggedSweep {
 class SweepLog {
 public:
     size_t size() const { return entries_.size(); }
-    void push_back(const CutterSweep& sweep);
+    /// Adds a move with a number above those of all others; by default one more than the last.
+    void push_back(const CutterSweep& sweep) { push_back(sweep, last_mark() + 1); }
+    void push_back(const CutterSweep& sweep, uint32_t mark);
+
+    /// The index of the move with a number, which must be in the log.
+    size_t index_of(uint32_t mark) const;
 
     /// The sizes of the lists within, for cut_back().
-    struct Mark {
-        size_t attitudes, positions, entries;
+    struct Sizes {
+        size_t attitudes, positions, entries, marks;
     };
-    Mark mark() const { return {attitudes_.size(), positions_.size(), entries_.size()}; }
-    /// Removes the moves since a mark.
-    void cut_back(const Mark& mark);
+    Sizes sizes() const {
+        return {attitudes_.size(), positions_.size(), entries_.size(), marks_.size()};
+    }
+    /// Removes the moves added since then.
+    void cut_back(const Sizes& sizes);
 
     LoggedSweep operator[](size_t i) const;
     uint32_t block(size_t i) const { return entries_[i].block; }
@@ -97,9 +104,16 @@ private:
         uint32_t attitude;
         uint32_t block;
     };
+    /// The move `first` and those after it have consecutive numbers from `mark` on.
+    struct MarkRun {
+        uint32_t first, mark;
+    };
+    uint32_t last_mark() const;
+
     SharedLog<Attitude> attitudes_;
     SharedLog<Vec3> positions_;
     SharedLog<Entry> entries_;
+    SharedLog<MarkRun> marks_;
 };
 
 /// The moves first .. last of a log, and a box around the paths of their tips.
@@ -127,7 +141,8 @@ struct CutModel {
     ScanLines columns; // empty if the model has no columns
     std::array<TileBoxes, 3> line_boxes;
     TileBoxes column_boxes;
-    SweepLog log; // the moves that came near the stock; marks are numbers + 1
+    SweepLog log;       // the moves that came near the stock, with their marks
+    uint32_t marks = 0; // given out so far, from 1: one for each move that came to `outer_box`
     std::vector<SharedLog<SweepRun>> history; // per tile of columns: the moves that came near it
     CutterSweep last;                         // last of all moves, also those away from the stock
     double volume_owed = 0.0;                 // removed but not yet reported (see cut), mm3
@@ -193,7 +208,8 @@ private:
     Aabb front_;
     double beyond_ = 0.0, points_ = 0.0; // removed, see RemovalSums
     CutterSweep last_before_;
-    SweepLog::Mark log_before_;
+    SweepLog::Sizes log_before_;
+    uint32_t marks_before_ = 0;
     std::array<size_t, 4> stale_before_{}; // numbers of stale tiles
     std::vector<SavedTile> tiles_;
 };

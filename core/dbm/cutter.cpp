@@ -94,6 +94,13 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     return cutter;
 }
 
+bool cut_alike(const CutterSweep& a, const CutterSweep& b) {
+    if (a.from != b.from || a.to != b.to || a.orientation != b.orientation) return false;
+    return a.cutter == b.cutter
+           || (a.cutter->path_error == b.cutter->path_error && a.cutter->flutes == b.cutter->flutes
+               && a.cutter->pieces == b.cutter->pieces);
+}
+
 Aabb bounds(const CutterSweep& sweep) {
     Aabb body = sweep.cutter->body;
     if (!is_upright(sweep.orientation)) {

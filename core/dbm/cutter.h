@@ -46,6 +46,8 @@ inline bool is_upright(const Mat3& stock_from_tool) {
 struct Cutter {
     struct Piece {
         RevolvedProfile within, around;
+
+        bool operator==(const Piece&) const = default;
     };
     RevolvedProfile flutes;
     double path_error = 0.0;
@@ -64,6 +66,9 @@ struct CutterSweep {
     Mat3 orientation = Mat3(1.0); // stock_from_tool
     uint32_t block = 0;           // of the program, in the caller's numbering
 };
+
+/// Whether two moves remove the same from any stock, whatever their blocks.
+bool cut_alike(const CutterSweep& a, const CutterSweep& b);
 
 /// A box that contains everything the sweep may remove.
 Aabb bounds(const CutterSweep& sweep);

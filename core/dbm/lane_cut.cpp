@@ -149,6 +149,9 @@ HWY_INLINE void trim(const TileTask& task, ScanTile& tile, size_t k, size_t slot
     const RowMask from_below = wanted & at_most(gone.ends.lower, old.lower);
     const RowMask from_above = wanted & at_most(old.upper, gone.ends.upper);
     const RowMask whole = from_below & from_above;
+    done.layers |= 1U << std::min(k, size_t{31});
+    if (any(from_below)) done.lower_chunks |= 1U << (slot / chunk);
+    if (any(from_above)) done.upper_chunks |= 1U << (slot / chunk);
     store(choose(whole, row_of(infinity), choose(from_below, gone.ends.upper, old.lower)),
           &tile.layers[k].lower[slot]);
     store(choose(whole, row_of(-infinity), choose(from_above, gone.ends.lower, old.upper)),
@@ -173,6 +176,9 @@ void note_blocks(TileCut& done, size_t slot, uint32_t changed) {
 }
 
 void note_by_hand(TileCut& done, size_t slot, uint32_t hard, const Swept& gone) {
+    done.lower_chunks |= 1U << (slot / chunk);
+    done.upper_chunks |= 1U << (slot / chunk);
+    done.layers = ~0U; // a line may even get another interval
     std::array<double, chunk> lower, upper, low_tilts, high_tilts;
     store(gone.ends.lower, lower.data());
     store(gone.ends.upper, upper.data());

@@ -411,19 +411,74 @@ std::vector<std::pair<Vec3, Vec3>> PieceMap::stretches(const CutModel& model, si
     return found;
 }
 
+namespace {
+
+/// The range of heights that is inside all lines of some range.
+struct CommonHeights {
+    double low = -infinity, high = infinity;
+};
+
+/// What the lines within a range of one tile have in common; empty unless each is a single segment.
+/// The loops run over neighbouring lines without branches, so that compilers use vectors.
+std::optional<CommonHeights> single_segments(const ScanTile& tile, const LineRange& range) {
+    constexpr size_t side = ScanTile::side;
+    std::array<double, side> low, high, length, beyond;
+    low.fill(-infinity);
+    high.fill(infinity);
+    length.fill(infinity);
+    beyond.fill(-infinity);
+    const auto first = static_cast<size_t>(range.u_first), last = static_cast<size_t>(range.u_last);
+    for (int v = range.v_first; v < range.v_last; ++v) {
+        const size_t row = static_cast<size_t>(v) * side;
+        const double* lower = &tile.layers[0].lower[row];
+        const double* upper = &tile.layers[0].upper[row];
+        for (size_t u = first; u < last; ++u) {
+            low[u] = std::max(low[u], lower[u]);
+            high[u] = std::min(high[u], upper[u]);
+            length[u] = std::min(length[u], upper[u] - lower[u]);
+        }
+        if (tile.layers.size() < 2) continue;
+        lower = &tile.layers[1].lower[row];
+        upper = &tile.layers[1].upper[row];
+        for (size_t u = first; u < last; ++u) beyond[u] = std::max(beyond[u], upper[u] - lower[u]);
+    }
+    CommonHeights common;
+    for (size_t u = first; u < last; ++u) {
+        if (!(length[u] > 0.0) || beyond[u] > 0.0) return std::nullopt;
+        common.low = std::max(common.low, low[u]);
+        common.high = std::min(common.high, high[u]);
+    }
+    return common;
+}
+
+/// The same for lines of a family in any range, which is not empty.
+std::optional<CommonHeights> single_segments(const ScanLines& lines, const LineRange& range) {
+    CommonHeights common;
+    for (int v0 = range.v_first / tile_side * tile_side; v0 < range.v_last; v0 += tile_side)
+        for (int u0 = range.u_first / tile_side * tile_side; u0 < range.u_last; u0 += tile_side) {
+            const ScanTile* tile = lines.tile(lines.tile_of(u0, v0));
+            if (tile == nullptr) return std::nullopt;
+            const auto here = single_segments(
+                *tile, {std::max(range.u_first - u0, 0), std::min(range.u_last - u0, tile_side),
+                        std::max(range.v_first - v0, 0), std::min(range.v_last - v0, tile_side)});
+            if (!here) return std::nullopt;
+            common.low = std::max(common.low, here->low);
+            common.high = std::min(common.high, here->high);
+        }
+    return common;
+}
+
+} // namespace
+
 bool is_still_connected(const CutModel& model, const Aabb& box) {
     const ScanGrid& grid = model.lines.grid;
     const auto [u_first, u_last] = lines_within(grid, 0, box.min.x, box.max.x, 1);
     const auto [v_first, v_last] = lines_within(grid, 1, box.min.y, box.max.y, 1);
     if (u_first > u_last || v_first > v_last) return true;
-    double low = -infinity, high = box.min.z;
-    for (int v = v_first; v <= v_last; ++v)
-        for (int u = u_first; u <= u_last; ++u) {
-            const auto& line = family(model, 2).line(u, v);
-            if (line.size() != 1) return false;
-            low = std::max(low, line[0].lower);
-            high = std::min(high, line[0].upper);
-        }
+    const auto common =
+        single_segments(family(model, 2), {u_first, u_last + 1, v_first, v_last + 1});
+    if (!common) return false;
+    const double low = common->low, high = std::min(common->high, box.min.z);
     const double below = std::ceil((high - grid.coordinate(2, 0)) / grid.spacing) - 1.0;
     const int k = static_cast<int>(std::clamp(below, -1.0, grid.count(2) - 1.0));
     if (k < 0 || grid.coordinate(2, k) < low) return false;

@@ -7,27 +7,43 @@
 namespace core {
 namespace {
 
-Aabb box_of_block(const TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions,
-                  size_t tile, size_t block) {
-    const LineRange range = lines_of_block(lines, tiles, tile, block);
+/// The box around the material of the lines of a tile that are in a range.
+Aabb box_of_lines(const LineRange& range, const ScanLines& lines, const LinePositions& positions,
+                  size_t tile) {
+    constexpr int side = ScanTile::side;
     const int axis = lines.axis(), ua = u_axis(axis), va = v_axis(axis);
     const int wide = positions.cells ? 1 : 0;
     Aabb box;
     if (lines.tile(tile) == nullptr) return box;
     const std::vector<ScanTile::Layer>& layers = lines.tile(tile)->layers;
+    // Of each column of lines; an empty line is (+inf, -inf). Without branches, compilers use
+    // vectors.
+    std::array<double, side> lower, upper;
+    lower.fill(infinity);
+    upper.fill(-infinity);
+    const auto first = static_cast<size_t>(range.u_first % side);
+    const size_t last = first + static_cast<size_t>(range.u_last - range.u_first);
     for (int v = range.v_first; v < range.v_last; ++v) {
-        for (int u = range.u_first; u < range.u_last; ++u) {
-            const auto slot =
-                static_cast<size_t>(v % ScanTile::side * ScanTile::side + u % ScanTile::side);
-            if (!(layers[0].lower[slot] < layers[0].upper[slot])) continue;
-            box.min[axis] = std::min(box.min[axis], layers[0].lower[slot]);
-            for (const ScanTile::Layer& layer : layers)
-                box.max[axis] = std::max(box.max[axis], layer.upper[slot]);
-            box.min[ua] = std::min(box.min[ua], positions.u[u]);
-            box.max[ua] = std::max(box.max[ua], positions.u[u + wide]);
-            box.min[va] = std::min(box.min[va], positions.v[v]);
-            box.max[va] = std::max(box.max[va], positions.v[v + wide]);
+        const auto row = static_cast<size_t>(v % side * side);
+        double any_lower = infinity;
+        for (size_t u = first; u < last; ++u) {
+            lower[u] = std::min(lower[u], layers[0].lower[row + u]);
+            any_lower = std::min(any_lower, layers[0].lower[row + u]);
         }
+        for (const ScanTile::Layer& layer : layers)
+            for (size_t u = first; u < last; ++u)
+                upper[u] = std::max(upper[u], layer.upper[row + u]);
+        if (any_lower == infinity) continue;
+        box.min[va] = std::min(box.min[va], positions.v[v]);
+        box.max[va] = std::max(box.max[va], positions.v[v + wide]);
+    }
+    for (size_t u = first; u < last; ++u) {
+        if (lower[u] == infinity) continue;
+        const int at = range.u_first + static_cast<int>(u - first);
+        box.min[axis] = std::min(box.min[axis], lower[u]);
+        box.max[axis] = std::max(box.max[axis], upper[u]);
+        box.min[ua] = std::min(box.min[ua], positions.u[at]);
+        box.max[ua] = std::max(box.max[ua], positions.u[at + wide]);
     }
     return box;
 }
@@ -170,13 +186,19 @@ TileBoxes unfitted_boxes(const ScanLines& lines) {
     return tiles;
 }
 
+Aabb fitted_box(const TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions,
+                size_t tile) {
+    return box_of_lines(lines_of_tile(lines, tiles, tile), lines, positions, tile);
+}
+
 void fit(TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions) {
     for (const uint32_t tile : tiles.stale_tiles) {
         Aabb whole;
         for (size_t block = 0; block < TileBoxes::blocks_per_tile; ++block) {
             Aabb& box = tiles.blocks[tile * TileBoxes::blocks_per_tile + block];
             if ((tiles.stale[tile] >> block) & 1U) {
-                box = box_of_block(tiles, lines, positions, tile, block);
+                box =
+                    box_of_lines(lines_of_block(lines, tiles, tile, block), lines, positions, tile);
                 tiles.block_gaps[tile * TileBoxes::blocks_per_tile + block] =
                     gap_of_block(tiles, lines, tile, block);
             }

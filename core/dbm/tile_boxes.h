@@ -66,12 +66,6 @@ LineRange lines_of_tile(const ScanLines& lines, const TileBoxes& tiles, size_t t
 /// The lines of one of the 4 x 4 blocks of a tile.
 LineRange lines_of_block(const ScanLines& lines, const TileBoxes& tiles, size_t tile, size_t block);
 
-/// The tiles, or boxes of a level, under one box of the level above: up to 4 x 4.
-LineRange below(const TileBoxes& tiles, size_t level, size_t index);
-
-/// Boxes for these lines, all empty and all outdated.
-TileBoxes unfitted_boxes(const ScanLines& lines);
-
 /// Positions of the lines: line i is at u[i], or, for columns (`cells`), cell i spans u[i] .. u[i +
 /// 1].
 struct LinePositions {
@@ -79,6 +73,17 @@ struct LinePositions {
     const double* v = nullptr;
     bool cells = false;
 };
+
+/// The box around the material of a tile as it is now.
+Aabb fitted_box(const TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions,
+                size_t tile);
+
+/// The tiles, or boxes of a level, under one box of the level above: up to 4 x 4.
+LineRange below(const TileBoxes& tiles, size_t level, size_t index);
+
+/// Boxes for these lines, all empty and all outdated.
+TileBoxes unfitted_boxes(const ScanLines& lines);
+
 /// Refits all outdated boxes.
 void fit(TileBoxes& tiles, const ScanLines& lines, const LinePositions& positions);
 

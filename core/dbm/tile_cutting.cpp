@@ -123,16 +123,21 @@ LineRange tiles_of(const LineRange& lines) {
             (lines.v_last + side - 1) / side};
 }
 
+const ScanLines& family_of(const CutModel& model, int family) {
+    return family == column_family ? model.columns
+                                   : model.lines.families[static_cast<size_t>(family)];
+}
+
+LinePositions positions_of(const CutModel& model, int family) {
+    if (family == column_family) return {model.corners[0].data(), model.corners[1].data(), true};
+    return {model.positions[static_cast<size_t>(u_axis(family))].data(),
+            model.positions[static_cast<size_t>(v_axis(family))].data(), false};
+}
+
 void fit_boxes(CutModel& model) {
     model.loose_tests = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto family = static_cast<size_t>(axis);
-        fit(model.line_boxes[family], model.lines.families[family],
-            {model.positions[static_cast<size_t>(u_axis(axis))].data(),
-             model.positions[static_cast<size_t>(v_axis(axis))].data(), false});
-    }
-    fit(model.column_boxes, model.columns,
-        {model.corners[0].data(), model.corners[1].data(), true});
+    for (int family = 0; family < families; ++family)
+        fit(boxes_of(model, family), family_of(model, family), positions_of(model, family));
 }
 
 LineRange lines_in(const CutModel& model, int axis, const Aabb& box) {
@@ -175,7 +180,8 @@ TileOutcome cut_lines(CutModel& model, size_t tile, const LineRange& range, cons
     TileCut done;
     loops.cut(plan, task, own, done);
     if (done.blocks == 0) return {};
-    return {finish(task, own, done), done.blocks};
+    return {finish(task, own, done), done.blocks, done.lower_chunks, done.upper_chunks,
+            done.layers};
 }
 
 TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, const LanePlan& plan,
@@ -210,13 +216,10 @@ TileOutcome cut_columns(CutModel& model, size_t tile, const LineRange& range, co
     }
     if (own == nullptr) return {};
     finish(task, *own, done);
-    return {{}, done.blocks};
+    return {{}, done.blocks, done.lower_chunks, done.upper_chunks, done.layers};
 }
 
 namespace {
-
-constexpr int column_family = 3; // after the three families of lines
-constexpr int families = 4;
 
 /// Calls `act` for the tiles of columns that a sweep may change.
 template <typename Act>
@@ -227,7 +230,7 @@ void for_tiles_of_columns(const CutModel& model, const Aabb& front, const Act& a
 }
 
 /// Records the sweep for all tiles of columns that it may change; false if there are none.
-bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
+bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front, uint32_t mark) {
     const auto number = static_cast<uint32_t>(model.log.size());
     Aabb path;
     path.extend(sweep.from);
@@ -237,7 +240,7 @@ bool log_sweep(CutModel& model, const CutterSweep& sweep, const Aabb& front) {
         append(model.history[tile], number, path);
         noted = true;
     });
-    if (noted) model.log.push_back(sweep);
+    if (noted) model.log.push_back(sweep, mark);
     return noted;
 }
 
@@ -247,17 +250,21 @@ bool continues(const CutterSweep& sweep, const CutterSweep& last) {
            && last.orientation == sweep.orientation;
 }
 
-/// Prepares a sweep for cutting and adds it to the log; empty if it does not come near the stock.
-std::optional<ReadySweep> begin(CutModel& model, const CutterSweep& sweep) {
+} // namespace
+
+std::optional<ReadySweep> prepare(CutModel& model, const CutterSweep& sweep) {
     const bool on = continues(sweep, model.last);
     if (model.last.cutter != sweep.cutter) model.last.cutter = sweep.cutter;
     model.last.to = sweep.to;
     model.last.orientation = sweep.orientation;
-    const ReadySweep ready{.sweep = &sweep,
-                           .front = on ? front_bounds(sweep, model.outer_box.max.z) : bounds(sweep),
-                           .mark = static_cast<uint32_t>(model.log.size() + 1)};
-    if (!overlaps(ready.front, model.outer_box) || !log_sweep(model, sweep, ready.front))
-        return std::nullopt;
+    const Aabb front = on ? front_bounds(sweep, model.outer_box.max.z) : bounds(sweep);
+    if (!overlaps(front, model.outer_box)) return std::nullopt;
+    return ReadySweep{.sweep = &sweep, .front = front, .mark = ++model.marks};
+}
+
+std::optional<ReadySweep> begin(CutModel& model, const CutterSweep& sweep) {
+    const std::optional<ReadySweep> ready = prepare(model, sweep);
+    if (!ready || !log_sweep(model, sweep, ready->front, ready->mark)) return std::nullopt;
     return ready;
 }
 
@@ -271,32 +278,11 @@ ScanLines& family_of(CutModel& model, int family) {
                                    : model.lines.families[static_cast<size_t>(family)];
 }
 
-/// The lines or columns of a family that a sweep may change.
 LineRange range_of(const CutModel& model, int family, const Aabb& front) {
     return family == column_family ? cells_in(model, front) : lines_in(model, family, front);
 }
 
-/// Runs `act(family, tile, outcome)` for every tile of lines and columns that `mine(family, tile)`
-/// accepts, always in the same order, after cutting the tile.
-template <typename Mine, typename Act>
-void cut_tiles(CutModel& model, const ReadySweep& ready, const Mine& mine, const Act& act) {
-    const double top = model.outer_box.max.z;
-    for (int family = 0; family < families; ++family) {
-        const bool columns = family == column_family;
-        if (columns && model.columns.u_count() == 0) return;
-        const LineRange range = range_of(model, family, ready.front);
-        for (const Cutter::Piece& piece : ready.sweep->cutter->pieces) {
-            const RevolvedProfile& profile = columns ? piece.within : piece.around;
-            const LanePlan plan = lane_plan(profile, *ready.sweep, columns ? 2 : family, top);
-            for_tiles(range, boxes_of(model, family), [&](size_t tile) {
-                if (!mine(family, tile)) return;
-                act(family, tile,
-                    columns ? cut_columns(model, tile, range, plan, ready)
-                            : cut_lines(model, tile, range, plan, ready));
-            });
-        }
-    }
-}
+namespace {
 
 /// Largest number of tiles of one family whose boxes are outdated.
 size_t most_stale(const CutModel& model) {
@@ -305,11 +291,12 @@ size_t most_stale(const CutModel& model) {
     return most;
 }
 
+} // namespace
+
 void fit_when_many_are_stale(CutModel& model) {
     if (most_stale(model) >= TileBoxes::most_stale) fit_boxes(model);
 }
 
-/// Adds a removed volume to the volume owed and returns the part of it that can be reported now.
 double reported(CutModel& model, const RemovalSums& sums) {
     const double h = model.lines.grid.spacing;
     model.volume_owed += h * h * (sums.beyond + h * sums.points);
@@ -317,6 +304,8 @@ double reported(CutModel& model, const RemovalSums& sums) {
     model.volume_owed -= now;
     return now;
 }
+
+namespace {
 
 /// The outcome of one tile, stored until all threads are done.
 struct StoredOutcome {
@@ -346,19 +335,19 @@ public:
 private:
     void work(unsigned thread) {
         const auto threads = static_cast<unsigned>(kept_.size());
-        const auto mine = [&](int family, size_t tile) {
-            const auto across = static_cast<size_t>(boxes_of(model_, family).u_tiles);
-            return (tile % across + tile / across + static_cast<size_t>(family)) % threads
-                   == thread;
-        };
-        for (uint32_t i = 0; i < ready_.size(); ++i) {
-            if (!ready_[i]) continue;
-            cut_tiles(model_, *ready_[i], mine,
-                      [&](int family, size_t tile, const TileOutcome& outcome) {
-                          if (outcome.blocks != 0)
-                              kept_[thread].push_back({i, family, tile, outcome});
-                      });
-        }
+        for (uint32_t i = 0; i < ready_.size(); ++i)
+            for (int family = 0; ready_[i] && family < families; ++family) {
+                const auto across = static_cast<size_t>(boxes_of(model_, family).u_tiles);
+                const auto mine = [&](size_t tile) {
+                    return (tile % across + tile / across + static_cast<size_t>(family)) % threads
+                           == thread;
+                };
+                cut_tiles(model_, family, *ready_[i], mine,
+                          [&](uint32_t, size_t tile, const TileOutcome& outcome) {
+                              if (outcome.blocks != 0)
+                                  kept_[thread].push_back({i, family, tile, outcome});
+                          });
+            }
     }
 
     /// Sums up in the order of a single thread, so that the result does not depend on the number of
@@ -391,13 +380,14 @@ private:
 /// Cuts all tiles that a sweep may change.
 RemovalSums cut_all_tiles(CutModel& model, const ReadySweep& ready) {
     RemovalSums sums;
-    cut_tiles(
-        model, ready, [](int, size_t) { return true; },
-        [&](int family, size_t tile, const TileOutcome& outcome) {
-            sums.beyond += outcome.removed.beyond;
-            sums.points += outcome.removed.points;
-            boxes_of(model, family).note(tile, outcome.blocks);
-        });
+    for (int family = 0; family < families; ++family)
+        cut_tiles(
+            model, family, ready, [](size_t) { return true; },
+            [&](uint32_t, size_t tile, const TileOutcome& outcome) {
+                sums.beyond += outcome.removed.beyond;
+                sums.points += outcome.removed.points;
+                boxes_of(model, family).note(tile, outcome.blocks);
+            });
     return sums;
 }
 
@@ -426,7 +416,10 @@ double cut(CutModel& model, const CutterSweep& sweep) {
 }
 
 TrialCut::TrialCut(CutModel& model, const CutterSweep& sweep)
-    : model_(&model), last_before_(model.last), log_before_(model.log.mark()) {
+    : model_(&model),
+      last_before_(model.last),
+      log_before_(model.log.sizes()),
+      marks_before_(model.marks) {
     const std::optional<ReadySweep> ready = begin(model, sweep);
     if (!ready) return;
     is_near_ = true;
@@ -449,6 +442,7 @@ TrialCut::~TrialCut() {
     if (!model_) return;
     CutModel& model = *model_;
     model.last = last_before_;
+    model.marks = marks_before_;
     if (!is_near_) return;
     for (SavedTile& saved : tiles_) {
         family_of(model, saved.family).put_back(saved.tile, std::move(saved.before));

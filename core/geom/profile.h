@@ -15,6 +15,8 @@ struct ProfileElement {
     double z0 = 0.0, r0 = 0.0; // lower rim, mm; r >= 0, z0 <= z1
     double z1 = 0.0, r1 = 0.0; // upper rim
     double margin = 0.0;
+
+    bool operator==(const ProfileElement&) const = default;
 };
 
 /// A body of revolution about Z, as the union of convex pieces.
@@ -23,6 +25,7 @@ struct RevolvedProfile {
     double form_error = 0.0; // maximum distance of the true surface from the pieces, mm
 
     bool empty() const { return elements.empty(); }
+    bool operator==(const RevolvedProfile&) const = default;
 };
 
 Aabb bounds(const ProfileElement& element);

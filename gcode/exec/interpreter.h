@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <compare>
 #include <cstdint>
 #include <map>
@@ -75,7 +76,10 @@ public:
     }
     template <typename T>
     T& write() {
-        if (state_.use_count() > 1) state_ = state_->copy();
+        if (state_.use_count() > 1)
+            state_ = state_->copy();
+        else
+            std::atomic_thread_fence(std::memory_order_acquire); // as in Shared
         return static_cast<StateOf<T>&>(*state_).value;
     }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 namespace gcode {
 
-/// A copy-on-write value: copies share it until one of them is written to.
+/// A copy-on-write value: copies share it until one of them is written to. Copies may be used in
+/// different threads.
 template <typename T>
 class Shared {
 public:
@@ -23,7 +25,12 @@ public:
 
     /// The value for writing; it is copied first if it is shared.
     T& write() {
-        if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
+        if (value_.use_count() > 1)
+            value_ = std::make_shared<T>(*value_);
+        else
+            // use_count is a relaxed read: another thread that has just dropped its copy must have
+            // finished reading it.
+            std::atomic_thread_fence(std::memory_order_acquire);
         return *value_;
     }
 

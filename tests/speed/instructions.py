@@ -170,7 +170,7 @@ def main():
                 continue
             nc, toml = pathlib.Path(folder, f"{name}.nc"), pathlib.Path(folder, "setup.toml")
             nc.write_text(program, encoding="utf-8")
-            arguments = ["check", str(nc), "--setup", str(toml)]
+            arguments = ["check", str(nc), "--setup", str(toml), "--jobs", "1"]
             if isinstance(how, str):
                 toml.write_text(how, encoding="utf-8")
             else:

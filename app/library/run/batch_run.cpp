@@ -52,6 +52,7 @@ public:
                 const BatchHooks& hooks)
         : jobs_(jobs), hooks_(hooks), budget_(limits.memory), results_(jobs.size()) {
         for (const CheckJob& job : jobs_) sizes_.push_back(program_size(job.program));
+        threads_ = std::max(1U, limits.jobs);
         const size_t most = std::min<size_t>(std::max(1U, limits.jobs), jobs.size());
         order_.resize(jobs.size());
         std::iota(order_.begin(), order_.end(), size_t(0));
@@ -115,29 +116,36 @@ private:
         while (!is_stopped()) {
             const size_t index = next_++;
             if (index >= order_.size()) break;
-            check_whatever_comes(order_[index], thread);
+            check_whatever_comes(order_[index], thread, threads_for(order_.size() - index));
         }
         const std::lock_guard lock(mutex_);
         --working_;
         something_ended_.notify_one();
     }
 
-    void check_whatever_comes(size_t i, size_t thread) {
+    /// The number of threads for a check, when it and so many others have not been started. The
+    /// last programs of a batch share the threads that have nothing left to do.
+    unsigned threads_for(size_t waiting) const {
+        return static_cast<unsigned>(std::max<size_t>(1, threads_ / waiting));
+    }
+
+    void check_whatever_comes(size_t i, size_t thread, unsigned threads) {
         try {
-            check(i, thread);
+            check(i, thread, threads);
         } catch (const std::exception&) {
             // Out of memory outside of the check itself, and maybe too little for a message: the
             // program counts as not checked.
         }
     }
 
-    void check(size_t i, size_t thread) {
+    void check(size_t i, size_t thread, unsigned threads) {
         const CheckJob& job = jobs_[i];
         if (hooks_.known)
             if (auto known = hooks_.known(job)) return end(i, thread, *std::move(known));
         double taken = 0.0;
         bool is_cut = false;
         CheckJob hooked = job;
+        hooked.threads = threads;
         hooked.before_model = [&](double bytes) {
             is_cut = !budget_.take(bytes, [this] { return is_stopped(); });
             if (!is_cut) taken = bytes;
@@ -208,6 +216,7 @@ private:
     const std::vector<CheckJob>& jobs_;
     const BatchHooks& hooks_;
     MemoryBudget budget_;
+    unsigned threads_ = 1;
     std::vector<double> sizes_; // of the programs, bytes
     std::vector<size_t> order_;
     std::atomic<size_t> next_{0};                // index in order_

@@ -21,7 +21,7 @@ struct CheckRun;
 
 /// Limits of a batch.
 struct BatchLimits {
-    unsigned jobs = 1;     // programs checked at the same time
+    unsigned jobs = 1;     // threads: programs checked at the same time, and within programs
     double memory = 1e300; // estimated bytes for all of them together
 };
 

@@ -72,10 +72,10 @@ KeyJson settings_json(const ProgramSettings& settings) {
 } // namespace
 
 std::optional<std::string> options_text(const CheckJob& job) {
-    // memory_limit is left out: it only decides whether there is a result.
+    // memory_limit is left out: it only decides whether there is a result. So are the threads.
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
-                 before_model, after_block, is_stopped, start_line, settings, engine, edits, rules,
-                 setup_was_found] = job;
+                 before_model, after_block, is_stopped, start_line, settings, engine, threads,
+                 edits, rules, setup_was_found] = job;
     if (!edits.empty()) return std::nullopt;
     KeyJson severities = KeyJson::object();
     for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);

@@ -3,6 +3,7 @@
 #include <cassert>
 
 #include "core/dbm/covered_path.h"
+#include "core/dbm/cut_ahead.h"
 #include "core/motion/path.h"
 #include "core/sim/setup.h"
 
@@ -75,17 +76,25 @@ std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg) {
 double FluteCut::along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
     if (context_.tool.parts.empty()) return 0.0;
-    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     ++context_.statistics.sweeps;
-    return cut(stock, sweep_on(way));
+    if (context_.replay) return context_.replay->cut(stock, sweep_on(leg));
+    return cut(stock, sweep_on(leg));
 }
 
 std::unique_ptr<TrialCut> FluteCut::try_along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
     if (context_.tool.parts.empty()) return nullptr;
-    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
     ++context_.statistics.sweeps;
-    return std::make_unique<TrialCut>(stock, sweep_on(way));
+    return std::make_unique<TrialCut>(stock, sweep_on(leg));
+}
+
+double FluteCut::keep(TrialCut& trial, const Leg& leg, const CutModel& stock) {
+    if (context_.replay) context_.replay->skip(stock, sweep_on(leg));
+    return trial.keep();
+}
+
+CutterSweep FluteCut::sweep_on(const Leg& leg) {
+    return sweep_on(context_.against_stock(context_.bodies[0], leg));
 }
 
 CutterSweep FluteCut::sweep_on(const RelativeLeg& way) {

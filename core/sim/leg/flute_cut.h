@@ -20,6 +20,11 @@ public:
 
     /// The same as a trial; none without a tool.
     std::unique_ptr<TrialCut> try_along(const Leg& leg, CutModel& stock);
+    /// Keeps such a trial; the volume removed, mm3.
+    double keep(TrialCut& trial, const Leg& leg, const CutModel& stock);
+
+    /// The move that the flutes make on a straight leg. There must be a tool.
+    CutterSweep sweep_on(const Leg& leg);
 
     /// Cuts the stock along any leg; halves the leg while the tool turns too far.
     double along_turning(const Leg& leg, CutModel& stock);
@@ -36,7 +41,6 @@ public:
 
 private:
     std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg);
-    /// The move that the flutes make on a straight leg.
     CutterSweep sweep_on(const RelativeLeg& way);
 
     const LegContext& context_;

@@ -9,7 +9,7 @@ namespace core {
 
 LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
                    const std::vector<bool>& mounted_fixtures, CheckMemory& memory,
-                   Statistics& statistics)
+                   Statistics& statistics, CutReplay* replay)
     : context_{setup,
                tool,
                use,
@@ -17,7 +17,8 @@ LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, B
                mounted_fixtures,
                memory,
                statistics,
-               moving_bodies(setup, tool)},
+               moving_bodies(setup, tool),
+               replay},
       bounds_(setup, memory),
       flutes_(context_),
       probe_(context_, bounds_),

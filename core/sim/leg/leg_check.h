@@ -132,8 +132,8 @@ struct FluteContact {
 class LegCheck {
 public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
-             const std::vector<bool>& mounted_fixtures, CheckMemory& memory,
-             Statistics& statistics);
+             const std::vector<bool>& mounted_fixtures, CheckMemory& memory, Statistics& statistics,
+             CutReplay* replay = nullptr);
     LegCheck(const LegCheck&) = delete;
     LegCheck& operator=(const LegCheck&) = delete;
 

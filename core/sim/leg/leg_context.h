@@ -11,6 +11,7 @@
 
 namespace core {
 
+class CutReplay;
 struct Setup;
 
 /// Whether material that the flutes meet is cut or is a collision.
@@ -34,6 +35,7 @@ struct LegContext {
     CheckMemory& memory;
     Statistics& statistics;
     std::vector<MovingBody> bodies;
+    CutReplay* replay = nullptr; // makes the cuts of the stock; null: they are not prepared
 
     /// The moving body of a pair.
     const MovingBody& body_of(const Pair& pair) const;

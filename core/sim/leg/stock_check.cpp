@@ -73,7 +73,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     }
     // A cut between scan lines removes no volume from them, but may have removed a witness.
     const size_t sweeps = stock.log.size();
-    const double removed = trial ? trial->keep() : flutes_.along(leg, stock);
+    const double removed = trial ? flutes_.keep(*trial, leg, stock) : flutes_.along(leg, stock);
     const bool cut = trial ? trial->is_near() : stock.log.size() > sweeps;
     for (const BodyCheck& check : checks) conclude(check, leg, start, stock, cut, pairs);
     for (const MovingBody* body : later) check_late(*body, leg, start, stock, pairs);

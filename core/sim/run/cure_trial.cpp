@@ -94,6 +94,7 @@ private:
         BlockEvents block = trial_.block;
         block.events = events;
         block.is_trial = true;
+        block.replay = nullptr;
         const BlockResult result = run_block(setup_, block, state);
         work_ += state.statistics.box_tests + state.statistics.shape_tests
                  + 100 * state.statistics.refined;

@@ -18,6 +18,7 @@
 
 namespace core {
 
+class CutReplay;
 struct Setup;
 
 /// What the trials of cures have used so far. A plain value.
@@ -72,7 +73,8 @@ struct BlockEvents {
     PathCertainty path = PathCertainty::known;
     // Replaces measuring: the stock is still cut, and rules that need no clearance still apply.
     const Judgement* judgement = nullptr;
-    bool is_trial = false; // of a cure: no depths and cures, and no rules that span blocks
+    bool is_trial = false;       // of a cure: no depths and cures, and no rules that span blocks
+    CutReplay* replay = nullptr; // makes the cuts of the state's stock, if they are prepared
 };
 
 /// The state before the first block, with the machine at `position`.
