@@ -143,6 +143,11 @@ void BlockRunner::work_alone() {
     pause_ = served_ > 4 * pause_ ? first_pause_ : std::min(2 * pause_, longest);
 }
 
+void BlockRunner::stop_reading_ahead() {
+    ahead_->halt();
+    is_ahead_over_ = true;
+}
+
 ReadBlock* BlockRunner::read_ahead(RunState& state) {
     if (threads_ < 2) return nullptr;
     if (is_ahead_over_ || (ahead_ && ahead_of_ != &state)) work_alone();
@@ -182,8 +187,10 @@ core::Result<std::optional<BlockStep>> BlockRunner::run_next(RunState& state) {
         after = state.control;
         read = interpreter_.next(after);
     }
-    if (after_reading && after.readings->met.size() > state.control.readings->met.size())
+    if (after_reading && after.readings->met.size() > state.control.readings->met.size()) {
+        if (ahead) stop_reading_ahead(); // whoever is called may use the library
         after_reading(state, after);
+    }
     if (!read) return failed(read.error());
     if (!*read) {
         std::swap(state.control, after);
@@ -217,11 +224,10 @@ core::Result<std::optional<BlockStep>> BlockRunner::run_next(RunState& state) {
                                      path,
                                      judge ? &*judged : nullptr};
     track_length(state.lengths, *setup_, of_block, block.warnings, state.machine);
-    if (state.lengths.is_open && ahead) { // another run of the block may read the program
-        ahead_->halt();
-        is_ahead_over_ = true;
+    if (before_block) {
+        if (state.lengths.is_open && ahead) stop_reading_ahead(); // it may read the program
+        before_block(block, state);
     }
-    if (before_block) before_block(block, state);
     std::swap(state.control, after);
     state.lowering = lowering;
     std::optional<core::BlockResult> bent;

@@ -67,7 +67,7 @@ public:
     /// state, which nobody else changes. Between two calls of step(), other threads may then read
     /// the program's library: call work_alone() before using it.
     /// Other threads start after `first` blocks, since that takes as long as a few hundred.
-    void use_threads(unsigned threads, size_t first);
+    void use_threads(unsigned threads, size_t first = 256);
     /// Ends the work of other threads for now.
     void work_alone();
     /// Number of blocks that other threads have read and cut.
@@ -88,6 +88,8 @@ public:
 private:
     /// The next block if another thread has read it; null if it must be read now.
     ReadBlock* read_ahead(RunState& state);
+    /// Ends the work of other threads, except that the current block is still needed.
+    void stop_reading_ahead();
     core::Result<std::optional<BlockStep>> run_next(RunState& state);
 
     std::optional<core::Error> refusal(const gcode::BlockCommands& block,

@@ -401,6 +401,7 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     running_ = &fork;
     BlockRunner runner(check_);
     runner.follows_dog_legs = has_open_rapids();
+    runner.use_threads(threads);
     std::vector<BentBlock> bent;
     std::set<FindingKey> errors;
     bool joins = false;

@@ -40,6 +40,8 @@ public:
     /// the states before the premises are kept.
     bool may_go_back = false;
 
+    unsigned threads = 1; // that each run may use
+
     /// Notes the premises of the block that the control has just read. `before` is the state before
     /// it, and `blocks` the number of blocks run so far. Returns whether another reading has been
     /// here in the same state.

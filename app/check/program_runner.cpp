@@ -181,6 +181,7 @@ ProgramRunner::~ProgramRunner() = default;
 
 void ProgramRunner::use_threads(unsigned threads, size_t first) {
     runner_->use_threads(threads, first);
+    readings_->threads = threads;
 }
 
 void ProgramRunner::work_alone() { runner_->work_alone(); }

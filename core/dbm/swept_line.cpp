@@ -378,13 +378,13 @@ Range flank_crossings(const Vec3& at, const Vec3& by) {
         // tip.
         const double middle = -b / a;
         const Vec3 f = at + middle * by;
-        const double away = core::hypot(f.x, f.y);
+        const double away = length_of(f.x, f.y);
         const double square = -(away - f.z) * (away + f.z) / a;
         if (a > 0.0 && square < 0.0) return nowhere;
         const double half = std::sqrt(std::max(0.0, square));
         return {middle - half, middle + half};
     }
-    const double away = core::hypot(at.x, at.y);
+    const double away = length_of(at.x, at.y);
     const Quadratic outside{a, b, (away - at.z) * (away + at.z)};
     if (a == 0.0 && b == 0.0) return outside.c <= 0.0 ? everywhere : nowhere;
     const double bend = b * b - a * outside.c;
@@ -415,7 +415,7 @@ Range chord_at(const LineAndMotion& line, const Cone& cone, double t) {
 
 /// The range of s in which the line passes through one of the piece's end faces, at any time.
 Range through_face(const LineAndMotion& line, double z, double radius) {
-    const double steep = core::hypot(line.d.z, line.m.z);
+    const double steep = length_of(line.d.z, line.m.z);
     const double rise = z - line.p.z;
     const double reach = 2.0 * (glm::length(line.p) + line.length + radius + std::abs(z));
     if (steep == 0.0 || std::abs(rise) > reach * steep) return nowhere;
@@ -429,10 +429,10 @@ Range through_face(const LineAndMotion& line, double z, double radius) {
     const double a = e.x * e.x + e.y * e.y;
     const double wide = radius + slack;
     if (a == 0.0) {
-        if (core::hypot(q.x, q.y) > wide) return nowhere;
+        if (length_of(q.x, q.y) > wide) return nowhere;
     } else {
         const double foot = -(q.x * e.x + q.y * e.y) / a;
-        const double away = core::hypot(q.x + foot * e.x, q.y + foot * e.y);
+        const double away = length_of(q.x + foot * e.x, q.y + foot * e.y);
         if (away > wide) return nowhere;
         const double half = std::sqrt(std::max(0.0, (radius - away) * (radius + away)) / a);
         range = {std::max(range.first, foot - half), std::min(range.last, foot + half)};
@@ -447,7 +447,7 @@ bool holds(const LineAndMotion& line, const Cone& cone, double s, double t) {
     constexpr double most = 5e-10;
     const Vec3 q = line.at(t) + s * line.d;
     if (!(q.z >= cone.z0 - most && q.z <= cone.z1 + most)) return false;
-    return core::hypot(q.x, q.y) - cone.position(q).z <= most * core::hypot(1.0, cone.slope);
+    return length_of(q.x, q.y) - cone.position(q).z <= most * length_of(1.0, cone.slope);
 }
 
 /// Adds the points at which the line meets the envelope of the moving flank: the least and greatest
@@ -506,9 +506,9 @@ struct RoundedDisc {
     };
     Distance operator()(const LineAndMotion& line, double s, double t) const {
         const Vec3 q = line.at(t) + s * line.d;
-        const double r = core::hypot(q.x, q.y), z = q.z - height;
+        const double r = length_of(q.x, q.y), z = q.z - height;
         const double beyond = std::max(0.0, r - radius);
-        const double value = core::hypot(beyond, z);
+        const double value = length_of(beyond, z);
         const Vec3 out = beyond > 0.0 ? Vec3(q.x / r, q.y / r, 0.0) : Vec3(0.0);
         const double outwards = -glm::dot(out, line.m);
         const double slope = beyond * outwards - z * line.m.z;

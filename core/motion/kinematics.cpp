@@ -284,6 +284,26 @@ double tip_reach(const Machine& machine, const Vec3& tip, double tool_length) {
 
 namespace {
 
+/// A bound of the angle by which the Z axis of a body tilts over a leg, radians; `mover_pose` is
+/// that of the body at half time.
+///
+/// Proof:   core/sim/README.md, "Turning".
+double tilt_of_axis(const Machine& machine, const std::vector<size_t>& axes, const Leg& leg,
+                    const AxisValues& middle, const Mat3& mover_pose, double turn) {
+    constexpr double rounding = 1e-12;
+    double tilt = 0.0;
+    for (const size_t i : axes) {
+        if (!is_rotary(i)) continue;
+        const double by = std::abs(leg.positions[1][i] - leg.positions[0][i]) / degrees_per_radian;
+        const MachineAxis& axis = machine.axes[i];
+        const Vec3 about =
+            machine_from_link(machine, axis.carrier, middle).rotation * axis.direction;
+        const double sine = glm::length(glm::cross(about, mover_pose[2])) + 0.5 * (turn - by);
+        tilt += by * std::min(1.0, sine + rounding);
+    }
+    return tilt;
+}
+
 /// The leg of a body without its play.
 RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& mover,
                       const Leg& leg) {
@@ -306,8 +326,9 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     for (const AxisValues& position : leg.positions)
         relative.positions.push_back(pose(position) * mover.centre
                                      - relative.orientation * mover.centre);
-    const Vec3 centre = machine_from_link(machine, mover.mount.link, middle)
-                        * (mover.mount.link_from_body * mover.centre);
+    const Transform mover_pose =
+        machine_from_link(machine, mover.mount.link, middle) * mover.mount.link_from_body;
+    const Vec3 centre = mover_pose * mover.centre;
     const double bound = 1.0 - 0.5 * turn;
     if (bound < 0.75) {
         relative.error = relative.travel = infinity;
@@ -315,7 +336,10 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     }
     const double reach = (reach_from_axes(machine, axes, middle, centre) + 0.5 * travel) / bound;
     const double curve = 0.25 * turn * (turn * reach + travel);
-    relative.error = leg.path_error + mover.form_error + curve + 0.5 * turn * mover.reach;
+    const double tilt = mover.is_revolved
+                            ? tilt_of_axis(machine, axes, leg, middle, mover_pose.rotation, turn)
+                            : turn;
+    relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
     relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
     return relative;
 }

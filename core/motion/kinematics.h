@@ -44,7 +44,8 @@ double tip_reach(const Machine& machine, const Vec3& tip, double tool_length);
 
 /// How one mounted body moves relative to another over a leg: with constant orientation, its origin
 /// moves straight from position to position (or anywhere in their hull). Every point may be `error`
-/// away from that motion. Frame: the target's.
+/// away from that motion; of a body of revolution, every point of the body as a set. Frame: the
+/// target's.
 struct RelativeLeg {
     Mat3 orientation = Mat3(1.0);
     std::vector<Vec3> positions; // of the mover's origin
@@ -60,6 +61,9 @@ struct Mover {
     double reach = 0.0;
     double form_error = 0.0; // of its shape; added to the errors of its legs
     Play play = {};          // in its own frame
+    // A body of revolution about the Z axis of its frame, on which `centre` is: turning about this
+    // axis does not change it.
+    bool is_revolved = false;
 };
 
 /// Adds displacements to the motion of a body: its origin may be displaced by any vector of the

@@ -26,7 +26,8 @@ MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolP
                       centre,
                       reach,
                       part.profile.form_error,
-                      play_of(part.kind, tool)}};
+                      play_of(part.kind, tool),
+                      true}};
 }
 
 MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, size_t index) {

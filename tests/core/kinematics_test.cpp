@@ -198,6 +198,46 @@ TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
     EXPECT_GT(tightest, 0.5); // a bound that is much too wide would be useless
 }
 
+TEST(RelativeLeg, KeepsABodyOfRevolutionWithinItsError) {
+    // As a set: the points of the real body are compared with the nearest ones of the body without
+    // turning, which is a circle for each of them.
+    std::mt19937 rng(8);
+    double tightest = 0.0, least = infinity;
+    int turned = 0;
+    for (int i = 0; i < 6000; ++i) {
+        const Machine machine = machines()[rng() % 4];
+        RandomLeg random = random_leg(machine, i % 3 ? 0.3 : 8.0, rng);
+        if (i % 2) random.mover.mount.link_from_body = {}; // upright, as tools are
+        random.mover.centre.x = random.mover.centre.y = 0.0;
+        const double of_any_body =
+            relative_leg(machine, random.target, random.mover, random.leg).error;
+        random.mover.is_revolved = true;
+        const RelativeLeg leg = relative_leg(machine, random.target, random.mover, random.leg);
+        if (leg.error == infinity || !leg.turns) continue;
+        ++turned;
+        ASSERT_LE(leg.error, of_any_body + 1e-12);
+        least = std::min(least, leg.error / of_any_body);
+        std::uniform_real_distribution<double> unit(-1.0, 1.0);
+        for (int k = 0; k <= 20; ++k) {
+            const double fraction = k / 20.0;
+            const AxisValues q = stretch(random.leg, 0.0, fraction).positions[1];
+            const Transform real = target_from_mover(machine, random.target, random.mover.mount, q);
+            const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
+            const Vec3 p = random.mover.centre + random.mover.reach * direction;
+            const Vec3 origin = leg.positions[0] + fraction * (leg.positions[1] - leg.positions[0]);
+            // The real point in the frame of the body without turning, and the circle of p there.
+            const Vec3 there = glm::transpose(leg.orientation) * (real * p - origin);
+            const double off =
+                std::hypot(std::hypot(there.x, there.y) - std::hypot(p.x, p.y), there.z - p.z);
+            ASSERT_LE(off, leg.error + 1e-9) << i;
+            tightest = std::max(tightest, off / leg.error);
+        }
+    }
+    EXPECT_GT(turned, 2000);
+    EXPECT_GT(tightest, 0.5);
+    EXPECT_LT(least, 0.1); // a tool along the axis of rotation does not change
+}
+
 TEST(TipPath, StaysWithinTheErrorOfItsLegs) {
     std::mt19937 rng(8);
     for (int i = 0; i < 300; ++i) {

@@ -60,7 +60,7 @@ TEST(PairBounds, CarriesABoundOverLegs) {
     memory.bounds = {{holder_and_stock, 30.0, 0.5}};
     PairBounds bounds(setup, memory);
     std::vector<TrackedPair> pairs;
-    bounds.begin_leg(4.0);
+    bounds.begin_leg(4.0, true);
     TrackedPair& holder = bounds.tracked_pair(pairs, holder_and_stock);
     EXPECT_EQ(holder.at_end, 30.0);
     EXPECT_TRUE(bounds.can_skip(holder, pairs));
@@ -70,10 +70,29 @@ TEST(PairBounds, CarriesABoundOverLegs) {
     bounds.end_leg();
     EXPECT_EQ(memory.bounds[0].apart, 26.0);
     // 26 mm minus 25.5 mm is less than the allowance of 1 mm.
-    bounds.begin_leg(25.5);
+    bounds.begin_leg(25.5, true);
     EXPECT_FALSE(bounds.can_skip(holder, pairs));
     EXPECT_EQ(holder.at_end, 26.0);
     EXPECT_EQ(holder.lower, 26.0);
+}
+
+TEST(PairBounds, KnowsTheTravelOfABodyThatTurnsOnlyWhileTheLegGoesOn) {
+    const core::Setup setup = block_setup();
+    CheckMemory memory;
+    PairBounds bounds(setup, memory);
+    const RelativeLeg turning{.travel = 0.5, .turns = true};
+    const RelativeLeg still{.travel = 0.0};
+    // A body at rest somewhere, or on any part of a path, may have come from anywhere.
+    EXPECT_EQ(bounds.travel(turning), infinity);
+    bounds.begin_leg(infinity, true);
+    EXPECT_EQ(bounds.travel(turning), 0.5);
+    EXPECT_EQ(bounds.travel(still), infinity);
+    bounds.end_leg();
+    EXPECT_EQ(bounds.travel(turning), infinity);
+    bounds.begin_leg(infinity, false); // the hull of unknown paths
+    EXPECT_EQ(bounds.travel(turning), infinity);
+    bounds.begin_leg(4.0, true);
+    EXPECT_EQ(bounds.travel(turning), 4.0);
 }
 
 TEST(PairBounds, SkipsOnlyPairsThatCannotDecide) {

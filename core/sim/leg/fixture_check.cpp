@@ -110,6 +110,7 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     TrackedPair& known = bounds_.tracked_pair(pairs, pair);
     if (bounds_.can_skip(known, pairs)) return;
     const RelativeLeg relative = context_.against_fixture(body, fixture, leg);
+    if (relative.turns && bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: halve the leg until the body is far away or its error is small enough.

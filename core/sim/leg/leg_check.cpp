@@ -27,7 +27,7 @@ LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, B
 
 double LegCheck::run(const Leg& leg, double start, CutModel& stock,
                      std::vector<TrackedPair>& pairs) {
-    bounds_.begin_leg(greatest_travel(context_.setup.machine, leg));
+    bounds_.begin_leg(greatest_travel(context_.setup.machine, leg), leg.straight);
     const size_t tests_before = context_.statistics.box_tests;
     double removed = 0.0;
     if (!leg.straight) {

@@ -103,6 +103,8 @@ private:
                          std::vector<TrackedPair>& pairs);
     double check_not_cutting(const Leg& leg, double start, CutModel& stock,
                              std::vector<TrackedPair>& pairs);
+    /// How far any point of the body moves over a leg at most, as seen from the stock, mm.
+    double travel_of(const MovingBody& body, const Leg& leg) const;
     /// Whether a body that is too near before the cut is clear of the stock after it.
     bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg, const CutModel& cut);
     /// Adds the clearance of a body, now that the stock is cut; `cut`: anything was removed.

@@ -60,6 +60,7 @@ double greatest_travel(const Machine& machine, const Leg& leg) {
 
 void PairBounds::end_leg() {
     for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
+    goes_on_ = false;
 }
 
 TrackedPair& PairBounds::tracked_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const {
@@ -74,12 +75,13 @@ TrackedPair& PairBounds::tracked_pair(std::vector<TrackedPair>& pairs, const Pai
     return begun;
 }
 
-bool PairBounds::can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const {
-    const double apart = known.at_end - travel_;
+bool PairBounds::can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs,
+                          double travel) const {
+    const double apart = known.at_end - travel;
     if (!cannot_decide(known.allowance, apart, pairs)) return false;
     known.lower = std::min({known.lower, apart, setup_.search_limit});
     known.at_end = apart;
-    known.drift += travel_;
+    known.drift += travel;
     return true;
 }
 

@@ -52,18 +52,35 @@ class PairBounds {
 public:
     PairBounds(const Setup& setup, CheckMemory& memory) : setup_(setup), memory_(memory) {}
 
-    /// Starts a leg on which no point moves farther than `travel`, mm.
-    void begin_leg(double travel) { travel_ = travel; }
+    /// Starts a leg on which no point moves farther than `travel`, mm. `goes_on`: it starts where
+    /// the last one ended, on a known path.
+    void begin_leg(double travel, bool goes_on) {
+        travel_ = travel;
+        goes_on_ = goes_on;
+    }
+    /// Halves or doubles the leg.
+    void scale_leg(double factor) { travel_ *= factor; }
     /// Ends the leg: subtracts its travel from the bounds of earlier blocks.
     void end_leg();
     double travel() const { return travel_; }
 
+    /// How far any point of the body moves over a part of the leg at most, mm. While rotary axes
+    /// move, there is only a bound for each body.
+    double travel(const RelativeLeg& part) const {
+        return travel_ == infinity && goes_on_ && part.turns ? part.travel : travel_;
+    }
+
     /// The entry of a pair; a new entry starts with the bound from the last block.
     TrackedPair& tracked_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
 
-    /// Whether the pair stays clear over the leg and another pair of the block has less margin. If
-    /// so, updates its bound to the leg's end.
-    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const;
+    /// Whether the pair stays clear over the leg, on which its bodies approach each other by at
+    /// most `travel`, and another pair of the block has less margin. If so, updates its bound to
+    /// the leg's end.
+    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs, double travel) const;
+    /// With the travel of the leg.
+    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const {
+        return can_skip(known, pairs, travel_);
+    }
 
     /// Whether a pair with this lower bound is clear and cannot decide the block.
     bool cannot_decide(const Allowance& allowance, double lower,
@@ -84,6 +101,7 @@ private:
     const Setup& setup_;
     CheckMemory& memory_;
     double travel_ = infinity;
+    bool goes_on_ = false;
 };
 
 } // namespace core

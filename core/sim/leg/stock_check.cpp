@@ -48,7 +48,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     for (const MovingBody* body : context_.likely_first({})) {
         if (body->kind == PartKind::flutes || (only_tool_ && body->body)) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
-        if (bounds_.can_skip(known, pairs)) continue;
+        if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
         if (bounds_.can_probably_skip(known)) {
             later.push_back(body);
             continue;
@@ -64,11 +64,11 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     if (!settled && length(leg) > context_.setup.mesh_size) trial = flutes_.try_along(leg, stock);
     if (trial && depends_on_time(checks, leg, stock)) {
         trial.reset();
-        bounds_.begin_leg(0.5 * bounds_.travel());
+        bounds_.scale_leg(0.5);
         double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
         if (!is_enough(context_.setup, pairs))
             removed += check_cutting(stretch(leg, 0.5, 1.0), start, stock, pairs);
-        bounds_.begin_leg(2.0 * bounds_.travel());
+        bounds_.scale_leg(2.0);
         return removed;
     }
     // A cut between scan lines removes no volume from them, but may have removed a witness.
@@ -86,7 +86,7 @@ void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
     if (check.clear && !check.before.whole
         && bounds_.cannot_decide(known.allowance, check.before.plain.lower, pairs)) {
         merge(known, probe_.clearance(check.body, leg, start, check.before, {}));
-        known.drift = bounds_.travel();
+        known.drift = travel_of(check.body, leg);
         return;
     }
     const bool is_known = check.before.whole && !cut;
@@ -94,7 +94,12 @@ void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
     PairClearance now = probe_.clearance(check.body, leg, start, check.before, after);
     probe_.settle_time(now, leg, start, stock);
     merge(known, now);
-    known.drift = bounds_.travel();
+    known.drift = travel_of(check.body, leg);
+}
+
+double StockCheck::travel_of(const MovingBody& body, const Leg& leg) const {
+    return bounds_.travel() < infinity ? bounds_.travel()
+                                       : bounds_.travel(context_.against_stock(body, leg));
 }
 
 void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start,
@@ -138,9 +143,12 @@ StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& le
     after.plain = Separation{.lower = after.plain.lower};
     if (after.plain.lower >= limit) return after;
     const RelativeLeg relative = context_.against_stock(check.body, leg);
+    // Nothing has come nearer. If the nearest material is still there, the bound is as before.
+    const double before =
+        check.before.whole ? check.before.plain.upper - relative.error : -infinity;
     const StockGoal goal{.limit = limit,
                          .bound = StockBound::upper,
-                         .enough = after.plain.lower + resolution,
+                         .enough = std::max(after.plain.lower + resolution, before),
                          .known_lower = after.plain.lower};
     after.plain = widened(probe_.to_stock(check.body, relative, stock, goal), relative);
     return after;
@@ -152,14 +160,14 @@ bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stoc
     for (const MovingBody* body : context_.likely_first({})) {
         if (only_tool_ && body->body) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
-        if (bounds_.can_skip(known, pairs)) continue;
+        if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
         if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
         const StockObservation seen = probe_.observe(*body, leg, stock, known.upper);
         PairClearance now = probe_.clearance(*body, leg, start, seen, seen);
         if (body->kind != PartKind::flutes) probe_.settle_time(now, leg, start, stock);
         gouged = gouged || (body->kind == PartKind::flutes && now.verdict == Verdict::collision);
         merge(known, now);
-        known.drift = bounds_.travel();
+        known.drift = travel_of(*body, leg);
     }
     return gouged;
 }
@@ -256,6 +264,8 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
         return 0.0;
     }
     if (is_enough(context_.setup, pairs)) return 0.0;
+    // Flutes that cut may not be measured at all.
+    if (context_.use == FluteUse::cutting) bounds_.carry_bound({PartKind::flutes}, pairs);
     if (!context_.turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
     if (is_clear_by_bound(leg, start, stock, pairs)) return 0.0;
     const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
