@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include <fmt/format.h>
@@ -152,13 +153,24 @@ ReadBlock* BlockRunner::read_ahead(RunState& state) {
     if (threads_ < 2) return nullptr;
     if (is_ahead_over_ || (ahead_ && ahead_of_ != &state)) work_alone();
     if (!ahead_) {
+        // Starting takes time for each tile of the stock.
+        constexpr size_t tiles_per_block = 50;
+        const size_t tiles = state.machine.stock.columns.tile_count();
+        const size_t pause = first_pause_ == 0 ? pause_ : std::max(pause_, tiles / tiles_per_block);
         const bool is_plain = state.machine.spread.none() && !state.lengths.is_open;
-        if (++alone_ <= pause_ || !is_plain) return nullptr;
-        ahead_ = std::make_unique<RunAhead>(check_, *setup_, state, threads_);
-        ahead_of_ = &state;
-        served_ = 0;
+        if (++alone_ <= pause || !is_plain) return nullptr;
     }
-    ReadBlock* block = ahead_->next(state.machine.stock);
+    ReadBlock* block = nullptr;
+    try {
+        if (!ahead_) {
+            ahead_ = std::make_unique<RunAhead>(check_, *setup_, state, threads_);
+            ahead_of_ = &state;
+            served_ = 0;
+        }
+        block = ahead_->next(state.machine.stock);
+    } catch (const std::bad_alloc&) {
+        threads_ = 1; // the memory is enough for the run alone
+    }
     if (!block) {
         work_alone();
         return nullptr;
@@ -236,6 +248,7 @@ core::Result<std::optional<BlockStep>> BlockRunner::run_next(RunState& state) {
         bent = dog_legs_->run(of_block, state.machine);
     }
     core::BlockEvents with_cuts = of_block;
+    with_cuts.threads = threads_;
     if (ahead) with_cuts.replay = &ahead_->cuts(state.machine.stock);
     step.checked.result = core::run_block(*setup_, with_cuts, state.machine);
     is_ahead_over_ = is_ahead_over_ || (ahead && !ahead_->went_as_foreseen());

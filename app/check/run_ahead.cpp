@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <deque>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -20,14 +19,17 @@ namespace app {
 namespace {
 
 // A window is worth the cost of handing it over, and what the run copies from it should still be in
-// the cache. Some windows exist at the same time, so they also bound the memory.
+// the cache.
 constexpr size_t most_blocks = 32;
-constexpr double usual_bytes = 4e6; // then no more blocks are added
-constexpr double most_bytes = 64e6; // a block that takes more is left to the run
+constexpr double usual_bytes = 2e6; // then no more blocks are added
+constexpr double most_bytes = 16e6; // of a block and of all windows; the run makes larger blocks
 constexpr size_t windows_ahead = 3;
 
+/// The run itself is the limit: with more threads the others only wait.
+constexpr unsigned most_threads = 8;
+
 /// So many that threads that finish early find more work.
-unsigned parts_for(unsigned threads) { return (std::min(threads, 64U) + 1) / 2; }
+unsigned parts_for(unsigned threads) { return threads <= 4 ? 1 : 2; }
 
 } // namespace
 
@@ -48,6 +50,7 @@ struct RunAhead::Window {
     std::vector<ReadBlock> blocks;                    // the first `count` are in use
     std::vector<std::vector<EarlierAccess>> accesses; // made while each of them was read
     size_t count = 0;
+    double estimate = 0.0; // of the memory of its cuts, bytes, without the scale
     std::unique_ptr<core::CutWindow> cuts;
     unsigned shards_done = 0;
     bool is_ready = false;
@@ -72,15 +75,16 @@ public:
           lowering_(from.lowering),
           forecast_(setup, from.machine) {}
 
-    /// Reads a window; false at the end of what can be foreseen.
-    bool read(Window& window, core::CutAhead& cuts) {
+    /// Reads a window; false at the end of what can be foreseen. `scale`: windows have lately taken
+    /// so many times the memory that was estimated.
+    bool read(Window& window, core::CutAhead& cuts, double scale) {
         window.count = 0;
         window.shards_done = 0;
         window.is_ready = false;
         bool goes_on = true;
         std::vector<core::CutterSweep> moves;
-        double bytes = 0.0;
-        while (goes_on && window.count < most_blocks && bytes < usual_bytes) {
+        window.estimate = 0.0;
+        while (goes_on && window.count < most_blocks && scale * window.estimate < usual_bytes) {
             if (window.count == window.blocks.size()) {
                 window.blocks.emplace_back();
                 window.accesses.emplace_back();
@@ -91,11 +95,12 @@ public:
             double more = 0.0;
             for (size_t i = block.first_move; i < moves.size(); ++i)
                 more += static_cast<double>(sizeof(core::CutterSweep)) + cuts.bytes_for(moves[i]);
-            bytes += more;
-            goes_on = goes_on && more < most_bytes;
+            goes_on = goes_on && scale * more < most_bytes;
             if (!goes_on) moves.resize(block.first_move);
             block.last_move = moves.size();
-            window.count += goes_on;
+            if (!goes_on) break;
+            window.estimate += more;
+            ++window.count;
         }
         window.cuts = cuts.begin(std::move(moves), std::move(window.cuts));
         return goes_on;
@@ -150,7 +155,13 @@ public:
         }
     }
 
-    ~Team() { halt(); }
+    ~Team() {
+        try {
+            halt();
+        } catch (const std::exception&) {
+            // Out of memory: the observers miss some accesses.
+        }
+    }
 
     void halt() {
         {
@@ -190,7 +201,7 @@ private:
         std::unique_lock lock(mutex_);
         try {
             while (!is_halted_ && !has_failed_) {
-                if (reads && !has_read_all_ && windows_.size() < windows_ahead)
+                if (reads && may_read())
                     read(lock);
                 else if (!cut_a_shard(lock))
                     (reads ? may_read_ : may_cut_).wait(lock);
@@ -202,18 +213,31 @@ private:
         }
     }
 
+    bool may_read() const {
+        double bytes = 0.0;
+        for (const auto& window : windows_) bytes += scale_ * window->estimate;
+        return !has_read_all_ && windows_.size() < windows_ahead && bytes < most_bytes;
+    }
+
     /// `lock` is released meanwhile.
     void read(std::unique_lock<std::mutex>& lock) {
-        std::unique_ptr<Window> window = std::make_unique<Window>();
-        if (!used_.empty()) {
-            window = std::move(used_.back());
-            used_.pop_back();
-        }
+        if (used_.empty()) used_.push_back(std::make_unique<Window>());
+        windows_.reserve(windows_.size() + 1);
+        std::unique_ptr<Window> window = std::move(used_.back());
+        used_.pop_back();
+        const double scale = scale_;
         lock.unlock();
-        const bool goes_on = reader_.read(*window, cuts_);
+        bool goes_on = false;
+        try {
+            goes_on = reader_.read(*window, cuts_, scale);
+        } catch (...) {
+            lock.lock();
+            used_.push_back(std::move(window)); // with the accesses that it has noted
+            throw;
+        }
         lock.lock();
         has_read_all_ = !goes_on;
-        (window->count > 0 ? windows_.emplace_back() : used_.emplace_back()) = std::move(window);
+        (window->count > 0 ? windows_ : used_).push_back(std::move(window));
         may_cut_.notify_all();
         is_ready_.notify_one();
     }
@@ -235,6 +259,9 @@ private:
                 lock.unlock();
                 core::CutAhead::finish(*window.cuts);
                 lock.lock();
+                const auto bytes = static_cast<double>(core::CutAhead::bytes_in(*window.cuts));
+                const double ratio = bytes / std::max(1.0, window.estimate);
+                scale_ = std::clamp(std::max(ratio, 0.9 * scale_), 0.5, 100.0);
                 window.is_ready = true;
                 is_ready_.notify_one();
                 return true;
@@ -254,7 +281,7 @@ private:
             if (!cut_a_shard(lock)) is_ready_.wait(lock);
         }
         current_ = std::move(windows_.front());
-        windows_.pop_front();
+        windows_.erase(windows_.begin());
         ++first_window_;
         at_ = 0;
         lock.unlock();
@@ -269,11 +296,12 @@ private:
     std::condition_variable may_read_; // or cut: for the thread that reads
     std::condition_variable may_cut_;  // for the threads that only cut
     std::condition_variable is_ready_; // a window, or there will be none: for the thread of the run
-    std::deque<std::unique_ptr<Window>> windows_; // that were read and not yet run
+    std::vector<std::unique_ptr<Window>> windows_; // that were read and not yet run
     std::vector<std::unique_ptr<Window>> used_;
     std::vector<uint64_t> next_of_shard_; // number of the window that each shard cuts next
     std::vector<bool> is_cutting_;        // by shard
     uint64_t first_window_ = 0;           // number of windows_.front()
+    double scale_ = 1.0;                  // memory of windows by its estimate
     bool has_read_all_ = false;
     bool is_halted_ = false;
     bool has_failed_ = false;
@@ -287,7 +315,7 @@ private:
 
 RunAhead::RunAhead(const PreparedCheck& check, const core::Setup& setup, const RunState& from,
                    unsigned threads)
-    : team_(std::make_unique<Team>(check, setup, from, threads)) {}
+    : team_(std::make_unique<Team>(check, setup, from, std::min(threads, most_threads))) {}
 
 RunAhead::~RunAhead() = default;
 

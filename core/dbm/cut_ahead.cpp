@@ -107,17 +107,21 @@ CutWindow::~CutWindow() = default;
 size_t CutWindow::size() const { return contents_->sweeps.size(); }
 const CutterSweep& CutWindow::sweep(size_t i) const { return contents_->sweeps[i]; }
 
-CutAhead::CutAhead(const CutModel& model, unsigned parts) : model_(model), warm_(parts * families) {
-    model_.log = {};
-    model_.history.clear();
+CutAhead::CutAhead(const CutModel& model, unsigned parts) : warm_(parts * families) {
+    // Without what only searches need: that is most of a model besides its tiles.
+    model_.outer_box = model.outer_box;
+    model_.lines = model.lines;
+    model_.columns = model.columns;
+    model_.positions = model.positions;
+    model_.corners = model.corners;
+    model_.last = model.last;
+    model_.marks = model.marks;
     for (int family = 0; family < families; ++family) {
+        const TileBoxes& from = boxes_of(model, family);
         TileBoxes& boxes = boxes_of(model_, family);
-        boxes.gaps = {};
-        boxes.above = {};
-        boxes.blocks = {};
-        boxes.block_gaps = {};
-        boxes.stale = {};
-        boxes.stale_tiles = {};
+        boxes.u_tiles = from.u_tiles;
+        boxes.v_tiles = from.v_tiles;
+        boxes.boxes = from.boxes;
         touched_in_[static_cast<size_t>(family)].resize(boxes.boxes.size());
     }
 }
@@ -133,6 +137,21 @@ double CutAhead::bytes_for(const CutterSweep& sweep) const {
     return lines / CutWindow::Contents::Ends::size * sizeof(CutWindow::Contents::Ends);
 }
 
+size_t CutAhead::bytes_in(const CutWindow& window) {
+    size_t bytes = 0;
+    for (const CutWindow::Contents::Shard& shard : window.contents_->shards)
+        bytes += shard.ends.size() * sizeof(CutWindow::Contents::Ends)
+                 + shard.changes.size() * sizeof(CutWindow::Contents::TileChange);
+    return bytes;
+}
+
+bool CutAhead::changes_stock(const CutWindow& window, size_t i) {
+    const auto& shards = window.contents_->shards;
+    return std::any_of(shards.begin(), shards.end(), [&](const auto& shard) {
+        return shard.first_change[i] < shard.first_change[i + 1];
+    });
+}
+
 std::unique_ptr<CutWindow> CutAhead::begin(std::vector<CutterSweep> sweeps,
                                            std::unique_ptr<CutWindow> used) {
     std::unique_ptr<CutWindow> window = used ? std::move(used) : std::make_unique<CutWindow>();
@@ -143,11 +162,16 @@ std::unique_ptr<CutWindow> CutAhead::begin(std::vector<CutterSweep> sweeps,
     for (const CutterSweep& sweep : contents.sweeps)
         contents.ready.push_back(prepare(model_, sweep));
     contents.shards.resize(shards());
+    // One heavy window must not bind its memory for good.
+    constexpr size_t much = 4'000'000;
+    const bool is_large = bytes_in(*window) > much;
     for (CutWindow::Contents::Shard& shard : contents.shards) {
+        std::vector<CutWindow::Contents::CoolTile> cooled = std::exchange(shard.cooled, {});
+        if (is_large) shard = {};
         shard.changes.clear();
         shard.first_change.clear();
         shard.ends.clear();
-        shard.returned = std::exchange(shard.cooled, {});
+        shard.returned = std::move(cooled);
     }
     return window;
 }
@@ -249,10 +273,16 @@ void CutAhead::share(CutWindow& window, const CutModel& model) {
             cool.content = family_of(model, family_of_shard(s)).share_tile(cool.tile);
 }
 
-double CutReplay::cut(CutModel& model, const CutterSweep& sweep) {
-    if (&model != model_) return core::cut(model, sweep);
+double CutReplay::cut(CutModel& model, const CutterSweep& sweep, unsigned threads) {
+    if (&model != model_) return core::cut(model, sweep, threads);
     is_lost_ = !foresaw(sweep);
-    return is_lost_ ? core::cut(model, sweep) : CutAhead::repeat(*window_, next_++, sweep, model);
+    if (is_lost_) return core::cut(model, sweep, threads);
+    const size_t moves = model.log.size();
+    const double removed = CutAhead::repeat(*window_, next_, sweep, model);
+    // The boxes around the stock may be tighter here than around the copy.
+    is_lost_ = model.log.size() == moves && CutAhead::changes_stock(*window_, next_);
+    ++next_;
+    return removed;
 }
 
 void CutReplay::skip(const CutModel& model, const CutterSweep& sweep) {

@@ -46,8 +46,11 @@ public:
 
     unsigned shards() const { return static_cast<unsigned>(warm_.size()); }
 
-    /// About how much memory a window takes for a move, at most, bytes.
+    /// About how much memory a window takes for a move, bytes: an upper bound for a cutter that is
+    /// one convex piece and material that is one interval on each line.
     double bytes_for(const CutterSweep& sweep) const;
+    /// How much memory a finished window takes.
+    static size_t bytes_in(const CutWindow& window);
 
     /// Prepares the next moves. `used`: a window that is not needed any more, to use its memory.
     ///
@@ -69,6 +72,9 @@ public:
     /// Result:  as cut().
     static double repeat(const CutWindow& window, size_t i, const CutterSweep& sweep,
                          CutModel& model);
+
+    /// Whether a move of a finished window changes any line.
+    static bool changes_stock(const CutWindow& window, size_t i);
 
     /// Notes for the copy which tiles it can share with a model that has just made all moves of a
     /// window. Use the window for later moves.
@@ -95,7 +101,7 @@ public:
     /// Makes a move in any model.
     ///
     /// Result:  as core::cut().
-    double cut(CutModel& model, const CutterSweep& sweep);
+    double cut(CutModel& model, const CutterSweep& sweep, unsigned threads = 1);
 
     /// Notes a move that was made in another way.
     void skip(const CutModel& model, const CutterSweep& sweep);

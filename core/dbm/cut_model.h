@@ -169,7 +169,10 @@ Result<CutModel> make_cut_model(Solid solid, double spacing,
 /// normals there (README.md, "Volume"): additive over cuts, and exact to first order for faces of
 /// any direction. The volume of one small cut may come out negative; such a remainder is carried
 /// over to the next cuts, so no reported volume is negative and the sum is right.
-double cut(CutModel& model, const CutterSweep& sweep);
+///
+/// `threads`: may be used for a move that comes near very many lines. Any number gives the same
+/// bits.
+double cut(CutModel& model, const CutterSweep& sweep, unsigned threads = 1);
 
 /// Removes what several moves sweep, in order, on several threads; returns the volume removed by
 /// each.

@@ -1,6 +1,7 @@
 #include "core/dbm/tile_cutting.h"
 
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "core/base/math.h"
@@ -121,6 +122,11 @@ private:
 LineRange tiles_of(const LineRange& lines) {
     return {lines.u_first / side, (lines.u_last + side - 1) / side, lines.v_first / side,
             (lines.v_last + side - 1) / side};
+}
+
+const TileBoxes& boxes_of(const CutModel& model, int family) {
+    return family == column_family ? model.column_boxes
+                                   : model.line_boxes[static_cast<size_t>(family)];
 }
 
 const ScanLines& family_of(const CutModel& model, int family) {
@@ -311,6 +317,7 @@ namespace {
 struct StoredOutcome {
     uint32_t sweep;
     int family;
+    uint32_t piece;
     size_t tile;
     TileOutcome outcome;
 };
@@ -321,6 +328,8 @@ public:
     Batch(CutModel& model, std::span<const CutterSweep> sweeps) : model_(model) {
         for (const CutterSweep& sweep : sweeps) ready_.push_back(begin(model, sweep));
     }
+    /// A single move, which has begun.
+    Batch(CutModel& model, const ReadySweep& sweep) : model_(model), ready_{sweep} {}
 
     std::vector<double> run(unsigned threads) {
         kept_.resize(threads);
@@ -343,9 +352,9 @@ private:
                            == thread;
                 };
                 cut_tiles(model_, family, *ready_[i], mine,
-                          [&](uint32_t, size_t tile, const TileOutcome& outcome) {
+                          [&](uint32_t piece, size_t tile, const TileOutcome& outcome) {
                               if (outcome.blocks != 0)
-                                  kept_[thread].push_back({i, family, tile, outcome});
+                                  kept_[thread].push_back({i, family, piece, tile, outcome});
                           });
             }
     }
@@ -355,11 +364,10 @@ private:
     std::vector<double> gather() {
         std::vector<StoredOutcome> all;
         for (const auto& some : kept_) all.insert(all.end(), some.begin(), some.end());
-        std::stable_sort(all.begin(), all.end(),
-                         [](const StoredOutcome& a, const StoredOutcome& b) {
-                             if (a.sweep != b.sweep) return a.sweep < b.sweep;
-                             return a.family != b.family ? a.family < b.family : a.tile < b.tile;
-                         });
+        std::sort(all.begin(), all.end(), [](const StoredOutcome& a, const StoredOutcome& b) {
+            return std::tie(a.sweep, a.family, a.piece, a.tile)
+                   < std::tie(b.sweep, b.family, b.piece, b.tile);
+        });
         std::vector<RemovalSums> sums(ready_.size());
         for (const StoredOutcome& one : all) {
             sums[one.sweep].beyond += one.outcome.removed.beyond;
@@ -405,13 +413,28 @@ Aabb box_of_cuts(const CutModel& model, size_t first) {
     return box;
 }
 
-double cut(CutModel& model, const CutterSweep& sweep) {
-    const std::optional<ReadySweep> ready = begin(model, sweep);
-    RemovalSums sums;
-    if (ready) {
-        sums = cut_all_tiles(model, *ready);
-        fit_when_many_are_stale(model);
+namespace {
+
+/// Number of lines and columns within a box.
+double lines_near(const CutModel& model, const Aabb& front) {
+    double lines = 0.0;
+    for (int family = 0; family < families; ++family) {
+        const LineRange range = range_of(model, family, front);
+        lines += double(range.u_last - range.u_first) * double(range.v_last - range.v_first);
     }
+    return lines;
+}
+
+} // namespace
+
+double cut(CutModel& model, const CutterSweep& sweep, unsigned threads) {
+    constexpr double many_lines = 200'000; // some milliseconds, many times the start of a thread
+    const std::optional<ReadySweep> ready = begin(model, sweep);
+    if (!ready) return reported(model, {});
+    if (threads > 1 && lines_near(model, ready->front) > many_lines)
+        return Batch(model, *ready).run(std::min(threads, 16U))[0];
+    const RemovalSums sums = cut_all_tiles(model, *ready);
+    fit_when_many_are_stale(model);
     return reported(model, sums);
 }
 

@@ -35,6 +35,7 @@ constexpr int column_family = 3;
 constexpr int families = 4;
 
 TileBoxes& boxes_of(CutModel& model, int family);
+const TileBoxes& boxes_of(const CutModel& model, int family);
 ScanLines& family_of(CutModel& model, int family);
 const ScanLines& family_of(const CutModel& model, int family);
 LinePositions positions_of(const CutModel& model, int family);
@@ -47,8 +48,8 @@ LineRange lines_in(const CutModel& model, int axis, const Aabb& box);
 /// The cells that overlap the box.
 LineRange cells_in(const CutModel& model, const Aabb& box);
 
-template <typename Act>
 /// Calls `act` for the tiles that a range of lines touches, u fastest.
+template <typename Act>
 void for_tiles(const LineRange& lines, const TileBoxes& boxes, const Act& act) {
     if (lines.empty()) return;
     const LineRange tiles = tiles_of(lines);

@@ -141,6 +141,26 @@ TEST(CutAhead, RepeatsEveryMoveWithTheSameBits) {
     EXPECT_GT(removing, 1500u);
 }
 
+TEST(Cut, OfALargeMoveIsTheSameOnSeveralThreads) {
+    std::mt19937 rng(74);
+    const Aabb box{{0, 0, 0}, {60, 50, 8}};
+    CutModel one = box_model(box, 0.11), other = one;
+    size_t removing = 0;
+    for (const RevolvedProfile& flutes : cutters()) {
+        const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, 0.0));
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 from(-5.0, random_point(box, rng).y, random_point(box, rng).z);
+            const Vec3 to(65.0, random_point(box, rng).y, random_point(box, rng).z);
+            const CutterSweep sweep{cutter, from, to, Mat3(1.0), 1};
+            const double a = cut(one, sweep), b = cut(other, sweep, 3);
+            removing += a > 0.0;
+            ASSERT_EQ(std::bit_cast<uint64_t>(a), std::bit_cast<uint64_t>(b));
+        }
+    }
+    EXPECT_GT(removing, 15u);
+    ASSERT_NO_FATAL_FAILURE(expect_same(one, other));
+}
+
 TEST(CutAhead, NumbersMovesAlikeWhateverTheBoxesAroundTheStockAre) {
     // Moves through a part of the raw box that is empty are not in the log if the boxes around the
     // stock are fitted, and these depend on searches.

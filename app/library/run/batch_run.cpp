@@ -116,17 +116,21 @@ private:
         while (!is_stopped()) {
             const size_t index = next_++;
             if (index >= order_.size()) break;
-            check_whatever_comes(order_[index], thread, threads_for(order_.size() - index));
+            const unsigned threads = threads_for(order_.size() - index);
+            ++running_;
+            check_whatever_comes(order_[index], thread, threads);
+            --running_;
         }
         const std::lock_guard lock(mutex_);
         --working_;
         something_ended_.notify_one();
     }
 
-    /// The number of threads for a check, when it and so many others have not been started. The
-    /// last programs of a batch share the threads that have nothing left to do.
+    /// The number of threads for a check that begins while so many programs wait, itself included:
+    /// its share of what it, the waiting and the running ones can use. So the last programs of a
+    /// batch, and few programs, use several threads each.
     unsigned threads_for(size_t waiting) const {
-        return static_cast<unsigned>(std::max<size_t>(1, threads_ / waiting));
+        return static_cast<unsigned>(std::max<size_t>(1, threads_ / (waiting + running_)));
     }
 
     void check_whatever_comes(size_t i, size_t thread, unsigned threads) {
@@ -217,7 +221,8 @@ private:
     const BatchHooks& hooks_;
     MemoryBudget budget_;
     unsigned threads_ = 1;
-    std::vector<double> sizes_; // of the programs, bytes
+    std::atomic<size_t> running_{0}; // programs
+    std::vector<double> sizes_;      // of the programs, bytes
     std::vector<size_t> order_;
     std::atomic<size_t> next_{0};                // index in order_
     std::vector<std::atomic<double>> fractions_; // of each thread's program, bytes

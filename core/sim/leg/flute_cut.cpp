@@ -77,8 +77,8 @@ double FluteCut::along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
     if (context_.tool.parts.empty()) return 0.0;
     ++context_.statistics.sweeps;
-    if (context_.replay) return context_.replay->cut(stock, sweep_on(leg));
-    return cut(stock, sweep_on(leg));
+    if (context_.replay) return context_.replay->cut(stock, sweep_on(leg), context_.threads);
+    return cut(stock, sweep_on(leg), context_.threads);
 }
 
 std::unique_ptr<TrialCut> FluteCut::try_along(const Leg& leg, CutModel& stock) {

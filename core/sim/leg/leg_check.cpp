@@ -9,7 +9,7 @@ namespace core {
 
 LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
                    const std::vector<bool>& mounted_fixtures, CheckMemory& memory,
-                   Statistics& statistics, CutReplay* replay)
+                   Statistics& statistics, CutReplay* replay, unsigned threads)
     : context_{setup,
                tool,
                use,
@@ -18,7 +18,8 @@ LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, B
                memory,
                statistics,
                moving_bodies(setup, tool),
-               replay},
+               replay,
+               threads},
       bounds_(setup, memory),
       flutes_(context_),
       probe_(context_, bounds_),

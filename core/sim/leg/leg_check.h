@@ -135,7 +135,7 @@ class LegCheck {
 public:
     LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, BlockIndex block,
              const std::vector<bool>& mounted_fixtures, CheckMemory& memory, Statistics& statistics,
-             CutReplay* replay = nullptr);
+             CutReplay* replay = nullptr, unsigned threads = 1);
     LegCheck(const LegCheck&) = delete;
     LegCheck& operator=(const LegCheck&) = delete;
 

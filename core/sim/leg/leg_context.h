@@ -36,6 +36,7 @@ struct LegContext {
     Statistics& statistics;
     std::vector<MovingBody> bodies;
     CutReplay* replay = nullptr; // makes the cuts of the stock; null: they are not prepared
+    unsigned threads = 1;        // for a large cut
 
     /// The moving body of a pair.
     const MovingBody& body_of(const Pair& pair) const;

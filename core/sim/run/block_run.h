@@ -84,8 +84,8 @@ struct BlockRun {
         static const ToolAssembly nothing;
         const ToolAssembly* held = tool();
         if (held && is_oriented(*held)) held = held->oriented.get();
-        return {setup,  held ? *held : nothing, use,         block.block, state.mounted_fixtures,
-                memory, state.statistics,       block.replay};
+        return {setup,  held ? *held : nothing, use,          block.block,  state.mounted_fixtures,
+                memory, state.statistics,       block.replay, block.threads};
     }
     /// Whether a cycle has stopped the spindle of a boring bar, to move its edge off the wall.
     bool is_oriented(const ToolAssembly& held) const {

@@ -75,6 +75,7 @@ struct BlockEvents {
     const Judgement* judgement = nullptr;
     bool is_trial = false;       // of a cure: no depths and cures, and no rules that span blocks
     CutReplay* replay = nullptr; // makes the cuts of the state's stock, if they are prepared
+    unsigned threads = 1;        // for large cuts
 };
 
 /// The state before the first block, with the machine at `position`.
