@@ -1,5 +1,6 @@
 #include "core/dbm/tile_cutting.h"
 
+#include <exception>
 #include <thread>
 #include <tuple>
 #include <utility>
@@ -331,13 +332,29 @@ public:
     /// A single move, which has begun.
     Batch(CutModel& model, const ReadySweep& sweep) : model_(model), ready_{sweep} {}
 
+    /// Errors: std::bad_alloc, after all threads have ended.
     std::vector<double> run(unsigned threads) {
         kept_.resize(threads);
+        std::vector<std::exception_ptr> failures(threads);
+        const auto work_safely = [&](unsigned thread) {
+            try {
+                work(thread);
+            } catch (...) {
+                failures[thread] = std::current_exception();
+            }
+        };
         std::vector<std::thread> others;
-        for (unsigned thread = 1; thread < threads; ++thread)
-            others.emplace_back([this, thread] { work(thread); });
-        work(0);
+        unsigned next = 1;
+        try {
+            for (; next < threads; ++next) others.emplace_back(work_safely, next);
+        } catch (const std::exception&) {
+            // The system has no more threads or memory for them: this one does their work.
+        }
+        work_safely(0);
+        for (; next < threads; ++next) work_safely(next);
         for (std::thread& other : others) other.join();
+        for (const std::exception_ptr& failure : failures)
+            if (failure) std::rethrow_exception(failure);
         return gather();
     }
 
@@ -432,7 +449,7 @@ double cut(CutModel& model, const CutterSweep& sweep, unsigned threads) {
     const std::optional<ReadySweep> ready = begin(model, sweep);
     if (!ready) return reported(model, {});
     if (threads > 1 && lines_near(model, ready->front) > many_lines)
-        return Batch(model, *ready).run(std::min(threads, 16U))[0];
+        return Batch(model, *ready).run(threads)[0];
     const RemovalSums sums = cut_all_tiles(model, *ready);
     fit_when_many_are_stale(model);
     return reported(model, sums);
