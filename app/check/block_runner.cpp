@@ -129,8 +129,10 @@ core::PathCertainty BlockRunner::certainty(const gcode::BlockCommands& block,
 }
 
 void BlockRunner::use_threads(unsigned threads, size_t first) {
+    // The run itself is the limit: with more threads the others only wait.
+    constexpr unsigned most_threads = 8;
     work_alone();
-    threads_ = threads;
+    threads_ = std::min(threads, most_threads);
     first_pause_ = pause_ = first;
 }
 
@@ -154,9 +156,9 @@ ReadBlock* BlockRunner::read_ahead(RunState& state) {
     if (is_ahead_over_ || (ahead_ && ahead_of_ != &state)) work_alone();
     if (!ahead_) {
         // Starting takes time for each tile of the stock.
-        constexpr size_t tiles_per_block = 50;
+        constexpr size_t tiles_to_double = 12'800;
         const size_t tiles = state.machine.stock.columns.tile_count();
-        const size_t pause = first_pause_ == 0 ? pause_ : std::max(pause_, tiles / tiles_per_block);
+        const size_t pause = pause_ + pause_ * tiles / tiles_to_double;
         const bool is_plain = state.machine.spread.none() && !state.lengths.is_open;
         if (++alone_ <= pause || !is_plain) return nullptr;
     }

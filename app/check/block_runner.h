@@ -66,7 +66,8 @@ public:
     /// Lets step() use other threads, too, if it runs many blocks one after the other on the same
     /// state, which nobody else changes. Between two calls of step(), other threads may then read
     /// the program's library: call work_alone() before using it.
-    /// Other threads start after `first` blocks, since that takes as long as a few hundred.
+    /// They start after `first` blocks, or later for a large stock: to start them takes as long as
+    /// some hundred blocks. At most eight are used.
     void use_threads(unsigned threads, size_t first = 256);
     /// Ends the work of other threads for now.
     void work_alone();

@@ -91,7 +91,6 @@ std::optional<core::BlockResult> DogLegTrial::run(const core::BlockEvents& block
     trial.events = block.events.first(static_cast<size_t>(block.events.rend() - last));
     trial.judgement = nullptr;
     trial.is_trial = true;
-    trial.replay = nullptr;
     core::SimulatorState state = before;
     return core::run_block(setup_, trial, state);
 }

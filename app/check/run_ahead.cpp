@@ -25,9 +25,6 @@ constexpr double usual_bytes = 2e6; // then no more blocks are added
 constexpr double most_bytes = 16e6; // of a block and of all windows; the run makes larger blocks
 constexpr size_t windows_ahead = 3;
 
-/// The run itself is the limit: with more threads the others only wait.
-constexpr unsigned most_threads = 8;
-
 /// So many that threads that finish early find more work.
 unsigned parts_for(unsigned threads) { return threads <= 4 ? 1 : 2; }
 
@@ -315,7 +312,7 @@ private:
 
 RunAhead::RunAhead(const PreparedCheck& check, const core::Setup& setup, const RunState& from,
                    unsigned threads)
-    : team_(std::make_unique<Team>(check, setup, from, std::min(threads, most_threads))) {}
+    : team_(std::make_unique<Team>(check, setup, from, threads)) {}
 
 RunAhead::~RunAhead() = default;
 

@@ -40,7 +40,7 @@ struct ReadBlock {
 ///          thread of the run.
 class RunAhead {
 public:
-    /// Starts up to `threads` - 1 threads, and at most seven.
+    /// Starts up to `threads` - 1 threads.
     ///
     /// Cost:   some 50 ns for each tile of the stock.
     RunAhead(const PreparedCheck& check, const core::Setup& setup, const RunState& from,

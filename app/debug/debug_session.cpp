@@ -49,7 +49,7 @@ ControlWalk::ControlWalk(RecordedRun& run, size_t next_block)
       control_(run.state_at(next_block)->control) {}
 
 void ControlWalk::advance() {
-    (void)run_.library(); // ends the work of other threads with it
+    run_.work_alone();
     [[maybe_unused]] const auto block = interpreter_.next(control_);
     assert(block && *block);
     ++next_block_;

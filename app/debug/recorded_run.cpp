@@ -316,18 +316,20 @@ const CheckRun& RecordedRun::record() const { return check_->run; }
 
 double RecordedRun::fraction() const { return is_complete_ ? 1.0 : runner_->progress().fraction; }
 
+void RecordedRun::work_alone() const { runner_->work_alone(); }
+
 gcode::ProgramLibrary& RecordedRun::library() const {
-    runner_->work_alone();
+    work_alone();
     return *check_->library;
 }
 
 const gcode::Program& RecordedRun::program() const {
-    runner_->work_alone();
+    work_alone();
     return *check_->program;
 }
 
 void RecordedRun::visit_ahead(size_t position, const RunState& state, const BlockVisit& visit) {
-    runner_->work_alone();
+    work_alone();
     replayer_->use(setup_at(position));
     replayer_->visit_ahead(state.control, state.lowering, visit);
 }
@@ -410,7 +412,7 @@ void RecordedRun::advance_to(RunState& state, size_t from, size_t position) {
         state = frame.restored();
         from = frame.blocks;
     }
-    if (from < position) runner_->work_alone();
+    if (from < position) work_alone();
     while (from < position) {
         replayer_->use(setup_at(from));
         [[maybe_unused]] const auto step = replayer_->step(state);

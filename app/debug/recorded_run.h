@@ -50,6 +50,8 @@ public:
     bool advance();
 
     const PreparedCheck& check() const { return *check_; }
+    /// Ends the work of other threads with the program for now; advance() may start it again.
+    void work_alone() const;
     /// The main program. Other threads may read it during advance(), so ask for it again after
     /// that.
     const gcode::Program& program() const;

@@ -166,6 +166,24 @@ RandomLeg random_leg(const Machine& machine, double turn_deg, std::mt19937& rng)
     return random;
 }
 
+/// A point of the sphere around the mover's centre at a fraction of the leg: where it really is,
+/// and where the mover's origin is if it does not turn.
+struct Moment {
+    Vec3 point;  // in the mover's frame
+    Vec3 real;   // in the target's frame
+    Vec3 origin; // in the target's frame
+};
+
+Moment random_moment(const Machine& machine, const RandomLeg& random, const RelativeLeg& leg,
+                     double fraction, std::mt19937& rng) {
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    const AxisValues q = stretch(random.leg, 0.0, fraction).positions[1];
+    const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
+    const Vec3 p = random.mover.centre + random.mover.reach * direction;
+    return {p, target_from_mover(machine, random.target, random.mover.mount, q) * p,
+            leg.positions[0] + fraction * (leg.positions[1] - leg.positions[0])};
+}
+
 TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
     std::mt19937 rng(7);
     double tightest = 0.0;
@@ -176,21 +194,14 @@ TEST(RelativeLeg, KeepsEveryPointWithinItsError) {
         const RelativeLeg leg = relative_leg(machine, random.target, random.mover, random.leg);
         if (leg.error == infinity) continue;
         ++(leg.turns ? turned : straight);
-        std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (int k = 0; k <= 20; ++k) {
-            const double fraction = k / 20.0;
-            const AxisValues q = stretch(random.leg, 0.0, fraction).positions[1];
-            const Transform real = target_from_mover(machine, random.target, random.mover.mount, q);
-            const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
-            const Vec3 p = random.mover.centre + random.mover.reach * direction;
-            const Vec3 taken = leg.orientation * p + leg.positions[0]
-                               + fraction * (leg.positions[1] - leg.positions[0]);
-            const double off = glm::distance(real * p, taken);
+            const Moment at = random_moment(machine, random, leg, k / 20.0, rng);
+            const double off = glm::distance(at.real, leg.orientation * at.point + at.origin);
             ASSERT_LE(off, leg.error + 1e-9) << i;
             if (leg.turns) tightest = std::max(tightest, off / leg.error);
             const Transform before = target_from_mover(machine, random.target, random.mover.mount,
                                                        random.leg.positions[0]);
-            ASSERT_LE(glm::distance(real * p, before * p), leg.travel + 1e-9) << i;
+            ASSERT_LE(glm::distance(at.real, before * at.point), leg.travel + 1e-9) << i;
         }
     }
     EXPECT_GT(turned, 2000);
@@ -217,16 +228,12 @@ TEST(RelativeLeg, KeepsABodyOfRevolutionWithinItsError) {
         ++turned;
         ASSERT_LE(leg.error, of_any_body + 1e-12);
         least = std::min(least, leg.error / of_any_body);
-        std::uniform_real_distribution<double> unit(-1.0, 1.0);
         for (int k = 0; k <= 20; ++k) {
-            const double fraction = k / 20.0;
-            const AxisValues q = stretch(random.leg, 0.0, fraction).positions[1];
-            const Transform real = target_from_mover(machine, random.target, random.mover.mount, q);
-            const Vec3 direction = glm::normalize(Vec3(unit(rng), unit(rng), unit(rng) + 1e-3));
-            const Vec3 p = random.mover.centre + random.mover.reach * direction;
-            const Vec3 origin = leg.positions[0] + fraction * (leg.positions[1] - leg.positions[0]);
-            // The real point in the frame of the body without turning, and the circle of p there.
-            const Vec3 there = glm::transpose(leg.orientation) * (real * p - origin);
+            const Moment at = random_moment(machine, random, leg, k / 20.0, rng);
+            // The real point in the frame of the body without turning, and the circle of the point
+            // there.
+            const Vec3 there = glm::transpose(leg.orientation) * (at.real - at.origin);
+            const Vec3& p = at.point;
             const double off =
                 std::hypot(std::hypot(there.x, there.y) - std::hypot(p.x, p.y), there.z - p.z);
             ASSERT_LE(off, leg.error + 1e-9) << i;

@@ -50,10 +50,13 @@ class BatchRunner {
 public:
     BatchRunner(const std::vector<CheckJob>& jobs, const BatchLimits& limits,
                 const BatchHooks& hooks)
-        : jobs_(jobs), hooks_(hooks), budget_(limits.memory), results_(jobs.size()) {
+        : jobs_(jobs),
+          hooks_(hooks),
+          budget_(limits.memory),
+          threads_(std::max(1U, limits.jobs)),
+          results_(jobs.size()) {
         for (const CheckJob& job : jobs_) sizes_.push_back(program_size(job.program));
-        threads_ = std::max(1U, limits.jobs);
-        const size_t most = std::min<size_t>(std::max(1U, limits.jobs), jobs.size());
+        const size_t most = std::min<size_t>(threads_, jobs.size());
         order_.resize(jobs.size());
         std::iota(order_.begin(), order_.end(), size_t(0));
         // Largest first, so that the batch does not end with a long program running alone.
@@ -220,7 +223,7 @@ private:
     const std::vector<CheckJob>& jobs_;
     const BatchHooks& hooks_;
     MemoryBudget budget_;
-    unsigned threads_ = 1;
+    unsigned threads_;
     std::atomic<size_t> running_{0}; // programs
     std::vector<double> sizes_;      // of the programs, bytes
     std::vector<size_t> order_;

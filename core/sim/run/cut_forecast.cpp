@@ -27,17 +27,11 @@ CutForecast::CutForecast(const Setup& setup, const SimulatorState& state)
 
 CutForecast::~CutForecast() = default;
 
-const ToolAssembly* CutForecast::tool() const {
-    if (!tool_) return nullptr;
-    const auto found = setup_.tools.find(*tool_);
-    return found == setup_.tools.end() ? nullptr : &found->second;
-}
-
 void CutForecast::hold(std::optional<ToolNumber> number) {
-    tool_ = number;
     held_.reset();
-    if (tool() && !tool()->parts.empty())
-        held_ = std::make_unique<HeldTool>(setup_, *tool(), memory_);
+    const auto tool = number ? setup_.tools.find(*number) : setup_.tools.end();
+    if (tool != setup_.tools.end() && !tool->second.parts.empty())
+        held_ = std::make_unique<HeldTool>(setup_, tool->second, memory_);
 }
 
 bool CutForecast::add(const BlockEvents& block, std::vector<CutterSweep>& moves) {
@@ -55,8 +49,9 @@ bool CutForecast::add(const BlockEvents& block, std::vector<CutterSweep>& moves)
 bool CutForecast::add(const Motion& motion, BlockIndex block, std::vector<CutterSweep>& moves) {
     if (!is_certain_ || motion.stops_at_contact) return false;
     if (motion.kind == MotionKind::rapid || !held_) return true;
-    if (!turns_to_cut(spindle_, *tool()) || !cuts_along(*tool(), motion)) return true;
-    if (tool()->oriented) return false;
+    const ToolAssembly& tool = held_->context.tool;
+    if (!turns_to_cut(spindle_, tool) || !cuts_along(tool, motion)) return true;
+    if (tool.oriented) return false;
     for (size_t i = 3; i < 6; ++i)
         if (motion.from[i] != motion.to[i]) return false;
     const Path path = path_of(motion, setup_.machine, chord_error(setup_.mesh_size));

@@ -24,14 +24,12 @@ public:
     bool add(const BlockEvents& block, std::vector<CutterSweep>& moves);
 
 private:
-    const ToolAssembly* tool() const;
     bool add(const Motion& motion, BlockIndex block, std::vector<CutterSweep>& moves);
     void hold(std::optional<ToolNumber> tool);
 
     struct HeldTool;
 
     const Setup& setup_;
-    std::optional<ToolNumber> tool_;
     SpindleChange spindle_;
     bool is_certain_; // where the machine is
     CheckMemory memory_;
