@@ -33,8 +33,8 @@ struct TileCut {
         64) std::array<double, ScanTile::side> beyond{}; // removed volume by lane: see RemovalSums
     alignas(64) std::array<double, ScanTile::side> points{};
     uint32_t blocks = 0; // bit i: 4 x 4 block i has changed
-    // Bit i: a lower or an upper end in slots 8 i .. 8 i + 7 has changed; bit k: one in layer k, the
-    // last bit: in any layer from the 31st on.
+    // Bit i: a lower or an upper end in slots 8 i .. 8 i + 7 has changed; bit k: one in layer k,
+    // the last bit: in any layer from the 31st on.
     uint32_t lower_chunks = 0, upper_chunks = 0, layers = 0;
     size_t by_hand_count = 0;
     std::array<ScalarCut, ScanTile::lines> by_hand; // not done yet; 8 kB, not initialised
