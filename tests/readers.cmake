@@ -4,12 +4,12 @@ cmake_minimum_required(VERSION 3.25)
 
 # gcode/text/source and core/geom/mesh_file determine why a file cannot be read before they read it;
 # windows of lines are for programs that are only translated. core/base/platform only has the means
-# to open files. app/base/file_stamp is for outputs and watched files, saved_setup reads the file
+# to open files. app/base/file_stamp is for outputs and watched files, setup_document reads the file
 # that it writes, and the prompt reads a file named there.
 set(allowed
   core/base/file_reads.cpp core/base/platform_posix.cpp core/base/platform_windows.cpp
   gcode/language/program_folder.cpp gcode/text/source.cpp core/geom/mesh_file.cpp
-  app/base/sha256.cpp app/base/file_stamp.cpp app/check/saved_setup.cpp
+  app/base/sha256.cpp app/base/file_stamp.cpp app/setup/setup_document.cpp
   app/debug/prompt/location.cpp)
 set(readers "ifstream|fopen|[^A-Za-z]::open\\(|parse_file|directory_iterator|is_regular_file|is_directory"
   "|filesystem::exists|fs::exists|file_size|read_symlink")

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "app/setup/program_settings.h"
-#include "app/setup/setup_edits.h"
 #include "core/base/result.h"
 #include "core/sim/finding.h"
 #include "core/sim/verdict.h"
@@ -39,11 +38,17 @@ struct CheckJob {
     std::string start_line = {}; // "120" or "N210"; empty: from the beginning
     ProgramSettings settings;    // replace those under [program] of the set-up
     Engine engine = Engine::exact;
-    unsigned threads = 1;            // to use; the result does not depend on it
-    SetupEdits edits = {};           // replace what is stated or inferred
+    unsigned threads = 1; // to use; the result does not depend on it
+    // The text of the set-up, in place of that of its file: while it is edited, the file may be
+    // older or may not exist. Relative paths are relative to the folder of setup_path().
+    std::optional<std::string> setup_text = {};
     core::RuleSeverities rules = {}; // replace those of the set-up, rule by rule
     bool setup_was_found = false;    // it was not named, but is next to the program
 };
+
+/// The path of the set-up; for a set-up without a file, the one next to the program, under which it
+/// would be saved.
+std::string setup_path(const CheckJob& job);
 
 /// Uses the set-up next to the program if the job names none.
 void find_setup_next_to(CheckJob& job);

@@ -113,6 +113,11 @@ std::optional<CheckedBlock> tightest_block(const CheckRun& run) {
     return tightest;
 }
 
+std::string setup_path(const CheckJob& job) {
+    if (!job.setup.empty()) return job.setup;
+    return std::filesystem::path(job.program).replace_extension(".toml").generic_string();
+}
+
 void find_setup_next_to(CheckJob& job) {
     if (!job.setup.empty() || job.program.empty()) return;
     job.setup = setup_next_to(job.program);

@@ -11,6 +11,7 @@
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/inference/inferred_stock.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/toml_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
 #include "core/motion/path.h"
@@ -113,6 +114,20 @@ core::Result<gcode::Program> read_once(const std::string& path, std::string& sha
     return gcode::read_program(path);
 }
 
+/// Whether a text states nothing: it has no key.
+bool states_nothing(const std::string& text) {
+    const auto root = parsed_toml(text);
+    return root && root->empty();
+}
+
+core::Result<SetupFile> read_setup_of(const CheckJob& job) {
+    const bool is_bare =
+        job.setup_text ? job.setup.empty() && states_nothing(*job.setup_text) : job.setup.empty();
+    if (is_bare) return bare_setup(job.settings);
+    return job.setup_text ? read_setup_text(*job.setup_text, setup_path(job), job.settings)
+                          : read_setup(job.setup, job.settings);
+}
+
 } // namespace
 
 PreparedCheck::PreparedCheck() = default;
@@ -128,13 +143,11 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     auto program = read_once(job.program, run.sha256);
     if (!program) return tl::unexpected(core::in_file(program.error(), job.program));
     check.program = std::make_unique<const gcode::Program>(*std::move(program));
-    FEELER_TRY(check.file,
-               job.setup.empty() ? bare_setup(job.settings) : read_setup(job.setup, job.settings));
+    FEELER_TRY(check.file, read_setup_of(job));
     SetupFile& file = check.file;
     if (job.setup_was_found)
         run.assumptions.push_back(
             fmt::format("the set-up is {}, because it is next to the program", job.setup));
-    if (const auto edited = apply(job.edits, file); !edited) return tl::unexpected(edited.error());
     const auto dialect = choose_dialect(file, *check.program, run);
     if (!dialect) return tl::unexpected(core::in_file(dialect.error(), job.program));
     run.dialect = file.environment.dialect = *dialect;
@@ -147,19 +160,19 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     if (!notes) return tl::unexpected(core::in_file(notes.error(), job.setup));
     for (std::string& note : *notes) run.assumptions.push_back(std::move(note));
     file.environment.limits.is_stopped = job.is_stopped;
-    check.stock_is_stated = !file.needs_stock && (!file.is_inferred || job.edits.stock)
+    check.stock_is_stated = !file.needs_stock && !file.is_inferred
                             && !file.assumed.contains("stock")
                             && !stands_for_no_stock(file.setup.stock);
     check.tool_mismatches = tool_mismatches(*check.program, file);
     if (const auto whole = complete_setup(file, *check.program); !whole)
         return tl::unexpected(
-            core::in_file(whole.error(), job.setup.empty() ? job.program : job.setup));
+            core::in_file(whole.error(), file.is_inferred ? job.program : setup_path(job)));
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
     run.coverage = coverage_of(file);
     run.setup = std::move(file.setup);
     settle_corner_tolerances(run.setup.machine, *dialect);
-    if (job.allowance && !job.edits.allowance) run.setup.allowance = job.allowance;
+    if (job.allowance) run.setup.allowance = job.allowance;
     run.setup.detail = job.detail;
     for (const auto& [rule, severity] : job.rules) run.setup.rules[rule] = severity;
     if (job.mesh_size) run.setup.mesh_size = *job.mesh_size;

@@ -3,108 +3,77 @@
 #include <algorithm>
 #include <array>
 
-#include "app/check/prepared_check.h"
+#include "app/setup/coverage.h"
 #include "app/setup/holder_library.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/tools/found_tool.h"
-#include "core/sim/tool_assembly.h"
+#include "core/sim/setup.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 namespace {
 
-/// The keys of all fields in which the tools differ, including shape and holder.
-std::set<std::string> differing_keys(const core::ToolDescription& a,
-                                     const core::ToolDescription& b) {
-    std::set<std::string> keys;
-    if (a.shape != b.shape) keys.insert("shape");
-    for (const core::ToolSize& field : fields_of(b.shape))
-        if (field.of(a) != field.of(b)) keys.insert(field.key);
-    const auto same = [](const core::ConeStep& one, const core::ConeStep& two) {
-        return one.lower_diameter == two.lower_diameter && one.upper_diameter == two.upper_diameter
-               && one.length == two.length;
-    };
-    if (!std::equal(a.holder.begin(), a.holder.end(), b.holder.begin(), b.holder.end(), same))
-        keys.insert("holder");
-    return keys;
-}
-
-bool are_equal(const core::Solid& a, const core::Solid& b) {
-    if (a.shape.index() != b.shape.index()) return false;
-    if (const auto* box = std::get_if<core::SolidBox>(&a.shape)) {
-        const auto& other = std::get<core::SolidBox>(b.shape);
-        return box->box.min == other.box.min && box->box.max == other.box.max;
-    }
-    if (const auto* round = std::get_if<core::SolidCylinder>(&a.shape)) {
-        const auto& other = std::get<core::SolidCylinder>(b.shape);
-        return round->base == other.base && round->radius == other.radius
-               && round->height == other.height && round->axis == other.axis;
-    }
-    return true; // a mesh is never edited
-}
-
-SheetTool sheet_tool(const SetupFile& file, const core::ToolAssembly& tool,
-                     const SetupEdits& edits) {
+SheetTool sheet_tool(const SetupFile& file, const core::ToolAssembly& tool) {
     SheetTool shown;
     shown.tool = editable(tool.description);
     const core::ToolNumber number = tool.description.number;
     if (const auto why = file.inferred_tools.find(number); why != file.inferred_tools.end())
         shown.why = why->second;
-    if (file.is_inferred || !shown.why.empty()) shown.source = SetupSource::inferred;
-    if (const auto edit = edits.tools.find(number); edit != edits.tools.end())
-        shown.stated = edit->second.stated;
+    if (file.is_inferred || !shown.why.empty()) shown.source = SetupSource::assumed;
+    if (const auto partial = file.partial_tools.find(number); partial != file.partial_tools.end())
+        shown.stated = partial->second.stated;
     return shown;
+}
+
+std::vector<SheetOffset> sheet_offsets(const SetupFile& file) {
+    std::set<size_t> shown(file.offsets_used.begin(), file.offsets_used.end());
+    for (const int index : file.offsets_set) shown.insert(static_cast<size_t>(index));
+    if (shown.empty()) shown.insert(0);
+    std::vector<SheetOffset> offsets;
+    for (const size_t index : shown) {
+        const gcode::AxisValues& origin = file.environment.work_offset(index);
+        const bool is_stated = file.offsets_set.contains(static_cast<int>(index))
+                               || (!file.environment.parameters.empty() && !file.infers_frame);
+        offsets.push_back({gcode::name_of_offset(index),
+                           {origin[0], origin[1], origin[2]},
+                           is_stated && !file.assumed.contains("offsets") ? SetupSource::stated
+                                                                          : SetupSource::assumed,
+                           file.offsets_used.contains(index)});
+    }
+    return offsets;
 }
 
 } // namespace
 
 const char* name_of(SetupSource source) {
     switch (source) {
-    case SetupSource::file:
-        return "set-up";
-    case SetupSource::inferred:
-        return "inferred";
-    case SetupSource::usual:
-        return "usual";
     case SetupSource::stated:
         return "stated";
+    case SetupSource::assumed:
+        return "assumed";
+    case SetupSource::usual:
+        return "default";
     }
     return "";
 }
 
-SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup, const SetupEdits& edits) {
+SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     SetupSheet sheet;
     sheet.path = file.path;
     sheet.frame = file.stock_frame;
     sheet.stock = setup.stock;
     sheet.stock_why = file.inferred_stock;
-    if (edits.stock)
-        sheet.stock_source = SetupSource::stated;
-    else if (file.needs_stock)
-        sheet.stock_source = SetupSource::inferred;
-    for (const auto& [number, tool] : setup.tools)
-        sheet.tools.push_back(sheet_tool(file, tool, edits));
+    const bool is_assumed = file.needs_stock || file.assumed.contains("stock");
+    if (is_assumed) sheet.stock_source = SetupSource::assumed;
+    for (const auto& [number, tool] : setup.tools) sheet.tools.push_back(sheet_tool(file, tool));
+    sheet.offsets = sheet_offsets(file);
     sheet.allowance = setup.allowance;
-    if (edits.allowance)
-        sheet.allowance_source = SetupSource::stated;
-    else if (!setup.allowance)
-        sheet.allowance_source = SetupSource::usual;
-    if (file.is_inferred) sheet.tool_at_start = setup.tool_at_start;
+    const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();
+    for (const auto& [name, pose] : file.frames)
+        sheet.frames.emplace(name, stock_from_machine * pose);
+    sheet.knows_fixtures = file.fixtures_known != Known::missing;
+    sheet.has_machine = file.has_axes;
     return sheet;
-}
-
-SetupEdits edits_between(const SetupSheet& shown, const SetupSheet& wanted, SetupEdits made) {
-    if (!are_equal(shown.stock, wanted.stock)) made.stock = wanted.stock;
-    if (shown.allowance != wanted.allowance) made.allowance = wanted.allowance;
-    for (size_t i = 0; i < std::min(shown.tools.size(), wanted.tools.size()); ++i) {
-        const core::ToolDescription& tool = wanted.tools[i].tool;
-        const std::set<std::string> keys = differing_keys(shown.tools[i].tool, tool);
-        if (keys.empty()) continue;
-        StatedTool& stated = made.tools[tool.number];
-        stated.tool = tool;
-        stated.stated.insert(keys.begin(), keys.end());
-    }
-    if (!made.tools.empty() && !made.tool_at_start) made.tool_at_start = shown.tool_at_start;
-    return made;
 }
 
 namespace {

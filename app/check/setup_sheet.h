@@ -1,12 +1,13 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "app/setup/setup_edits.h"
 #include "core/base/ids.h"
+#include "core/base/vec.h"
 #include "core/dbm/solid.h"
 #include "core/sim/tool_description.h"
 
@@ -18,43 +19,56 @@ namespace app {
 
 struct SetupFile;
 
-/// Where a value of a set-up comes from.
-enum class SetupSource : uint8_t { file, inferred, usual, stated };
+/// Where a value of a set-up comes from: the set-up states it, it is only assumed (inferred from
+/// the program, or marked so in the file), or it is the usual default.
+enum class SetupSource : uint8_t { stated, assumed, usual };
 
-/// "from the set-up", "inferred", ...
+/// "stated", "assumed", "default".
 const char* name_of(SetupSource source);
 
-/// A tool in the set-up dialog.
+/// A tool as checked.
 struct SheetTool {
-    core::ToolDescription tool;             // editable
-    SetupSource source = SetupSource::file; // of all values not in `stated`
-    std::string why;                        // reason for inferring it, a sentence
-    std::set<std::string> stated;           // keys that the user has stated
+    core::ToolDescription tool;
+    SetupSource source = SetupSource::stated; // of all values not in `stated`
+    std::string why;                          // reason for assuming it, a sentence
+    std::set<std::string> stated = {};        // keys that a partly described tool states
+
+    SetupSource source_of(const std::string& key) const {
+        return stated.contains(key) ? SetupSource::stated : source;
+    }
 };
 
-/// The editable values of a set-up. To edit them, change a copy.
+/// A work offset: of the set-up, or one in whose coordinates the program moves.
+struct SheetOffset {
+    std::string name;
+    core::Vec3 origin = core::Vec3(0.0); // X, Y, Z, machine coordinates
+    SetupSource source = SetupSource::stated;
+    bool is_used = false; // by the program
+};
+
+/// The values of a set-up as they are checked, with their sources.
 struct SetupSheet {
     std::string path;  // of the set-up; empty: it was inferred
     std::string frame; // frame of the stock's coordinates
-    core::Solid stock; // box, cylinder, or a mesh, which can only be replaced
-    SetupSource stock_source = SetupSource::file;
-    std::string stock_why; // reason for inferring it, a sentence
+    core::Solid stock; // in the frame of the stock
+    SetupSource stock_source = SetupSource::stated;
+    std::string stock_why; // reason for assuming it, a sentence
     std::vector<SheetTool> tools;
+    std::vector<SheetOffset> offsets;
     std::optional<double> allowance; // the general one; empty: the defaults
-    SetupSource allowance_source = SetupSource::file;
-    std::optional<core::ToolNumber> tool_at_start; // only if inferred
+    /// Poses of the named frames relative to the stock: "machine", "stock", work offsets, fixtures.
+    std::map<std::string, core::Transform> frames;
+    bool knows_fixtures = false; // it describes some, or states that there are none
+    bool has_machine = false;    // it describes axes
 };
 
-/// The editable values of a check after read_check.
-SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup, const SetupEdits& edits);
+/// The values of a check after read_check.
+SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup);
 
-/// Adds the edits that turn `shown` into `wanted` to `made`, the edits already in `shown`.
-SetupEdits edits_between(const SetupSheet& shown, const SetupSheet& wanted, SetupEdits made);
-
-/// The sizes that can be edited for a shape, in the order of the dialog.
+/// The sizes that a shape has, in the order of the panel.
 std::vector<core::ToolSize> fields_of(core::ToolShape shape);
 
-/// The shapes offered in the dialog. An outline can only be given in a set-up file.
+/// The shapes that can be chosen. An outline can only be given in a set-up file.
 std::vector<core::ToolShape> stateable_shapes();
 
 /// Makes the lengths of a tool editable: turns a single-cylinder shank into a shank diameter and a

@@ -221,13 +221,12 @@ bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& 
 namespace {
 
 constexpr const char* axis_keys[] = {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"};
-core::Result<toml::table> parse(const std::string& path) {
-    auto parsed = read_toml(path);
-    if (!parsed && parsed.error().message.find("'allowance'") != std::string::npos)
-        parsed.error().message += "; if there are [[allowance]] tables, write the general "
-                                  "allowance as one of them, with a "
-                                  "distance and without between";
-    return parsed;
+/// Explains the error of a file that states allowances in two forms.
+core::Error explained(core::Error error) {
+    if (error.message.find("'allowance'") != std::string::npos)
+        error.message += "; if there are [[allowance]] tables, write the general allowance as one "
+                         "of them, with a distance and without between";
+    return error;
 }
 
 /// Applies the settings of [program] and of the command line. Must come before the bodies are read:
@@ -329,7 +328,7 @@ void read_rules(TableReader& table, SetupFile& file) {
 /// Reads the machine from its own file. Errors name that file.
 void read_machine_file(const std::string& path, SetupFile& file,
                        std::optional<core::Error>& error) {
-    const auto parsed = parse(path);
+    const auto parsed = read_toml(path);
     if (!parsed) {
         error = parsed.error();
     } else {
@@ -645,22 +644,35 @@ std::string assume_machine_zero(SetupFile& file) {
             : "");
 }
 
-core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over) {
+namespace {
+
+core::Result<SetupFile> setup_of(const core::Result<toml::table>& parsed, const std::string& path,
+                                 const ProgramSettings& over) {
     SetupFile file;
     file.path = path;
     std::optional<core::Error> error;
-    const auto parsed = parse(path);
     if (parsed) {
         BodyContext context{std::filesystem::path(path).parent_path(), {}, file};
         TableReader root(*parsed, "set-up", error);
         read_root(root, *parsed, context, over, error);
         settle_start(file);
+        file.frames = std::move(context.frames.machine_from);
     } else {
-        error = parsed.error();
+        error = explained(parsed.error());
     }
     if (!error) return file;
-    if (error->file.empty()) error->file = path;
-    return tl::unexpected(*error);
+    return tl::unexpected(core::in_file(*std::move(error), path));
+}
+
+} // namespace
+
+core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over) {
+    return setup_of(read_toml(path), path, over);
+}
+
+core::Result<SetupFile> read_setup_text(const std::string& text, const std::string& path,
+                                        const ProgramSettings& over) {
+    return setup_of(parsed_toml(text), path, over);
 }
 
 std::string setup_next_to(const std::string& program) {

@@ -38,6 +38,13 @@ struct StatedControl {
 core::Result<std::vector<std::string>>
 apply(const StatedControl& control, gcode::Environment& environment, core::Machine& machine);
 
+/// A `[[tool]]` without a shape: it states only some values of a tool, and the rest is inferred.
+struct PartialTool {
+    core::ToolDescription tool;   // values of the stated keys
+    std::set<std::string> stated; // keys
+    core::SourceSpan where;       // in the set-up file
+};
+
 /// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it
@@ -46,12 +53,15 @@ struct SetupFile {
     std::optional<gcode::DialectId> dialect; // empty: to be recognised
     StatedControl control;
     std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
+    std::set<size_t> offsets_used;            // work offsets in which the program moves
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
+    std::map<core::ToolNumber, PartialTool> partial_tools;
     std::string tool_table;                        // path of the control's tool table
     bool needs_stock = false;                      // infer it from the program
     std::optional<double> stock_margin;            // added around an inferred stock, mm
     std::string stock_frame = "G54";               // frame of the stock's coordinates
+    std::map<std::string, core::Transform> frames; // poses of the named frames in the machine
     std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, a sentence
     std::string inferred_stock;                             // reason; empty: stated
     bool speed_by_hand = false;                             // M3 starts the spindle without S
@@ -80,6 +90,12 @@ struct SetupFile {
 /// Errors: with file, line and column: a missing file, invalid TOML, an unknown key, an invalid
 ///         value, an open mesh, an impossible tool.
 core::Result<SetupFile> read_setup(const std::string& path, const ProgramSettings& over);
+
+/// Reads a set-up from its text, as if it were in a file.
+///
+/// Errors: as read_setup.
+core::Result<SetupFile> read_setup_text(const std::string& text, const std::string& path,
+                                        const ProgramSettings& over);
 
 /// Assumes a place of the work in the machine: all work offsets are equal and far below the highest
 /// position of the machine, where it starts and has its home unless stated otherwise. Axis limits

@@ -17,8 +17,7 @@ void read_shape(TableReader& table, core::ToolDescription& tool) {
     std::vector<std::string_view> names;
     for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.emplace_back(entry.name);
     const auto shape = table.word("shape", names);
-    if (!shape) return table.need("shape");
-    tool.shape = *core::tool_shape_named(*shape);
+    if (shape) tool.shape = *core::tool_shape_named(*shape);
     for (const core::ToolSize& size : core::tool_sizes()) size.put(tool, table.number(size.key));
     tool.teeth = table.integer("teeth");
     for (const std::vector<double>& row : table.rows("profile", 2))
@@ -68,6 +67,25 @@ std::vector<std::string> notes_on(const core::ToolDescription& tool) {
     return notes;
 }
 
+namespace {
+
+void refuse_twice(TableReader& table, const core::ToolDescription& tool) {
+    table.refuse("number", fmt::format("= {} is defined twice", core::value_of(tool.number)));
+}
+
+/// Adds a tool of which the table states only some values.
+void add_partial(TableReader& table, const core::ToolDescription& tool, SetupFile& file) {
+    if (!tool.outline.empty()) return table.refuse("profile", "needs shape = \"profile\"");
+    if (!tool.name.empty()) file.environment.tool_names.emplace(tool.name, tool.number);
+    PartialTool partial{tool, {}, {table.line(), 0, 0}};
+    for (const std::string& key : table.keys()) partial.stated.insert(key);
+    if (file.setup.tools.contains(tool.number)
+        || !file.partial_tools.emplace(tool.number, std::move(partial)).second)
+        refuse_twice(table, tool);
+}
+
+} // namespace
+
 void read_tool(TableReader& table, BodyContext& context) {
     SetupFile& file = context.file;
     core::ToolDescription tool;
@@ -85,11 +103,13 @@ void read_tool(TableReader& table, BodyContext& context) {
                                               : core::SpindleDirection::clockwise;
     read_centre(table, tool);
     table.finish();
+    if (!table.has("shape")) return add_partial(table, tool, file);
 
     const auto assembled = core::assemble(tool);
     if (!assembled) return table.refuse_whole(assembled.error().message);
-    if (!file.setup.tools.emplace(tool.number, *assembled).second)
-        table.refuse("number", fmt::format("= {} is defined twice", *number));
+    if (file.partial_tools.contains(tool.number)
+        || !file.setup.tools.emplace(tool.number, *assembled).second)
+        refuse_twice(table, tool);
     file.environment.tool_names.emplace(tool.name, tool.number);
     file.environment.tool_lengths[tool.number] = assembled->length;
     if (tool.length_is_guess) file.environment.guessed_lengths.insert(tool.number);

@@ -6,21 +6,23 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
+#include "app/setup/inference/inferred_setup.h"
 #include "app/setup/program_settings.h"
-#include "app/setup/setup_edits.h"
+#include "app/setup/setup_changes.h"
+#include "app/setup/setup_document.h"
 #include "app/setup/setup_file.h"
-#include "gcode/language/dialect.h"
+#include "app/setup/setup_text.h"
 #include "gcode/language/environment.h"
+#include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {
 namespace {
 
 using app::CheckJob;
-using app::SetupEdits;
+using app::SetupDocument;
 using app::SetupSource;
 using test_support::bytes_of;
 using testing::HasSubstr;
@@ -40,7 +42,7 @@ app::SetupSheet sheet_of(const CheckJob& job) {
     const auto check = app::read_check(job);
     EXPECT_TRUE(check) << (check ? "" : check.error().message);
     if (!check) return {};
-    return app::sheet_of(check->file, check->run.setup, job.edits);
+    return app::sheet_of(check->file, check->run.setup);
 }
 
 std::string cones_text(const std::vector<core::ConeStep>& cones) {
@@ -114,21 +116,6 @@ void expect_same(const app::PreparedCheck& a, const app::PreparedCheck& b,
     EXPECT_EQ(a.file.speed_by_hand, b.file.speed_by_hand) << where;
 }
 
-/// Saves the set-up of a job to a folder and compares it with what is read from there.
-void expect_saved_as_it_is(const CheckJob& job, const std::string& path) {
-    const auto before = app::read_check(job);
-    if (!before) return; // a program that cannot be read has no set-up
-    const auto saved = app::save_setup(job, path, true, app::write_output);
-    ASSERT_TRUE(saved) << job.program << ": " << saved.error().message;
-    CheckJob again;
-    again.program = job.program;
-    again.setup = path;
-    const auto after = app::read_check(again);
-    ASSERT_TRUE(after) << job.program << ": " << after.error().message << " in line "
-                       << after.error().where.line;
-    expect_same(*before, *after, job.program);
-}
-
 /// A job for its own program, without a set-up.
 struct OwnProgram {
     test_support::ScopedFolder folder;
@@ -137,128 +124,153 @@ struct OwnProgram {
     explicit OwnProgram(const std::string& text = pocket) {
         job.program = folder.write("p.nc", text);
     }
+    /// The sheet of the program with this text of a set-up.
+    app::SetupSheet sheet(const std::string& setup) {
+        job.setup_text = setup;
+        return sheet_of(job);
+    }
+    /// The error in this text of a set-up.
+    core::Error error(const std::string& setup) {
+        job.setup_text = setup;
+        const auto check = app::read_check(job);
+        EXPECT_FALSE(check) << setup;
+        return check ? core::Error{} : check.error();
+    }
 };
 
-/// Edits as a user would make to change the stock, sizes of the first tool, and a holder.
-SetupEdits some_edits(const app::SetupSheet& shown) {
-    app::SetupSheet wanted = shown;
-    wanted.stock = box_of({-10, -5, -20.25}, {60, 45.5, 0.1});
-    wanted.allowance = 1.5;
-    if (!wanted.tools.empty() && wanted.tools[0].tool.shape != core::ToolShape::profile) {
-        core::ToolDescription& tool = wanted.tools[0].tool;
-        if (tool.stick_out) tool.stick_out = *tool.stick_out + 7.3;
-        tool.holder = {{32, 40, 30}, {50, 50, 20}};
-        tool.gauge_length.reset();
-    }
-    return app::edits_between(shown, wanted, {});
+/// The programs in the repository that can be read.
+std::vector<std::string> real_programs() {
+    std::vector<std::string> paths;
+    for (const char* where : {"/assets/programs", "/tests/real/programs"})
+        for (const auto& file :
+             std::filesystem::directory_iterator(std::string(FEELER_SOURCE_DIR) + where)) {
+            CheckJob job;
+            job.program = file.path().generic_string();
+            if (file.path().extension() != ".md" && app::read_check(job))
+                paths.push_back(job.program);
+        }
+    std::sort(paths.begin(), paths.end());
+    EXPECT_GE(paths.size(), 10u);
+    return paths;
 }
 
-TEST(SetupEdits, StatedIsNotInferred) {
+TEST(SetupSheet, SaysWhereValuesComeFrom) {
     OwnProgram own;
-    const app::SetupSheet shown = sheet_of(own.job);
-    ASSERT_EQ(shown.tools.size(), 2u);
-    EXPECT_EQ(shown.stock_source, SetupSource::inferred);
-    EXPECT_EQ(shown.tools[0].source, SetupSource::inferred);
-    EXPECT_THAT(shown.tools[0].why, HasSubstr("tool 1"));
-    EXPECT_THAT(shown.stock_why, HasSubstr("stock"));
-    EXPECT_EQ(shown.allowance_source, SetupSource::usual);
+    const app::SetupSheet bare = sheet_of(own.job);
+    ASSERT_EQ(bare.tools.size(), 2u);
+    EXPECT_EQ(bare.stock_source, SetupSource::assumed);
+    EXPECT_EQ(bare.tools[0].source, SetupSource::assumed);
+    EXPECT_THAT(bare.tools[0].why, HasSubstr("tool 1"));
+    EXPECT_THAT(bare.stock_why, HasSubstr("stock"));
+    EXPECT_FALSE(bare.allowance);
+    ASSERT_EQ(bare.offsets.size(), 1u);
+    EXPECT_EQ(bare.offsets[0].name, "G54");
+    EXPECT_TRUE(bare.offsets[0].is_used);
+    EXPECT_EQ(bare.offsets[0].source, SetupSource::assumed);
+    EXPECT_FALSE(bare.knows_fixtures);
 
-    app::SetupSheet wanted = shown;
-    wanted.tools[0].tool.diameter = 20.0;
-    wanted.tools[0].tool.shank_diameter = 16.0;
-    own.job.edits = app::edits_between(shown, wanted, {});
-    const app::SetupSheet edited = sheet_of(own.job);
-    EXPECT_EQ(edited.tools[0].stated, (std::set<std::string>{"diameter", "shank_diameter"}));
-    EXPECT_EQ(edited.tools[0].tool.diameter, 20.0);
-    EXPECT_TRUE(edited.tools[1].stated.empty());
-    EXPECT_EQ(edited.stock_source, SetupSource::inferred) << "it was not stated";
-    EXPECT_GT(core::bounds(edited.stock).size().x, core::bounds(shown.stock).size().x)
+    const app::SetupSheet stated =
+        own.sheet("fixtures = \"none\"\nassumed = [\"stock\"]\n[offsets]\nG54 = { X = 1 }\nG55 = { "
+                  "Y = 2 }\n[stock]\nbox = [[0, 0, -9], [40, 30, 0]]\n");
+    EXPECT_EQ(stated.stock_source, SetupSource::assumed) << "the file says so";
+    ASSERT_EQ(stated.offsets.size(), 2u);
+    EXPECT_EQ(stated.offsets[0].source, SetupSource::stated);
+    EXPECT_EQ(stated.offsets[1].origin, core::Vec3(0, 2, 0));
+    EXPECT_FALSE(stated.offsets[1].is_used);
+    EXPECT_TRUE(stated.knows_fixtures);
+}
+
+TEST(PartialTool, StatesOnlyWhatIsKnown) {
+    OwnProgram own;
+    const app::SetupSheet bare = sheet_of(own.job);
+    const app::SetupSheet edited =
+        own.sheet("[[tool]]\nnumber = 1\ndiameter = 20\nholder = \"BT40-ER32\"\n");
+    const app::SheetTool& tool = edited.tools[0];
+    EXPECT_EQ(tool.tool.diameter, 20.0);
+    EXPECT_EQ(app::holder_name(tool.tool), "BT40-ER32");
+    EXPECT_EQ(tool.source_of("diameter"), SetupSource::stated);
+    EXPECT_EQ(tool.source_of("holder"), SetupSource::stated);
+    EXPECT_EQ(tool.source_of("flute_length"), SetupSource::assumed);
+    EXPECT_EQ(tool.tool.shape, bare.tools[0].tool.shape);
+    EXPECT_EQ(edited.tools[1].tool.diameter, bare.tools[1].tool.diameter);
+    EXPECT_EQ(edited.tools[1].source, SetupSource::assumed);
+    EXPECT_EQ(edited.stock_source, SetupSource::assumed) << "it was not stated";
+    EXPECT_GT(core::bounds(edited.stock).size().x, core::bounds(bare.stock).size().x)
         << "a wider tool reaches further";
 }
 
-TEST(SetupEdits, WithNothingButAToolAtStartAreNotEmpty) {
-    SetupEdits edits;
-    EXPECT_TRUE(edits.empty());
-    edits.tool_at_start = core::ToolNumber{3};
-    EXPECT_FALSE(edits.empty());
-}
-
-TEST(SetupEdits, AStatedStockStaysWhereItWasStated) {
+TEST(PartialTool, ChangingAStickOutChangesNothingElse) {
     OwnProgram own;
-    const app::SetupSheet shown = sheet_of(own.job);
-    app::SetupSheet wanted = shown;
-    wanted.stock = {core::SolidCylinder{{20, 15, -12}, 45.0, 12.0, 2}, 0.0};
-    own.job.edits = app::edits_between(shown, wanted, {});
-    const app::SetupSheet edited = sheet_of(own.job);
-    EXPECT_EQ(edited.stock_source, SetupSource::stated);
-    expect_same_solid(edited.stock, wanted.stock, "as stated");
-    const auto check = app::read_check(own.job);
-    EXPECT_TRUE(check->stock_is_stated);
-    EXPECT_THAT(check->run.assumptions, testing::Contains("the stock is as stated"));
+    const auto tool = [&](const std::string& text) {
+        return own.sheet("[[tool]]\nnumber = 1\nholder = \"BT40-ER32\"\n" + text).tools[0].tool;
+    };
+    const core::ToolDescription before = tool(""), shorter = tool("stick_out = 22\n"),
+                                longer = tool("stick_out = 55.5\n");
+    EXPECT_EQ(longer.stick_out, 55.5);
+    EXPECT_EQ(longer.flute_length, before.flute_length);
+    EXPECT_EQ(longer.shank_diameter, before.shank_diameter);
+    EXPECT_EQ(shorter.stick_out, 22.0);
+    EXPECT_EQ(shorter.diameter, before.diameter);
+    EXPECT_EQ(tool("stick_out = 12\n").flute_length, 12.0)
+        << "assumed flutes are not longer than the tool";
 }
 
-TEST(SetupEdits, ASheetThatWasNotTouchedEditsNothing) {
+TEST(PartialTool, IsCompletedFromComments) {
+    OwnProgram own("(T1 D=10. CR=2. - ZMIN=-3. - bullnose end mill)\n" + std::string(pocket));
+    const app::SetupSheet sheet = own.sheet("[[tool]]\nnumber = 1\nflute_length = 31\n");
+    EXPECT_EQ(sheet.tools[0].tool.shape, core::ToolShape::bull);
+    EXPECT_EQ(sheet.tools[0].tool.corner_radius, 2.0);
+    EXPECT_EQ(sheet.tools[0].tool.flute_length, 31.0);
+}
+
+TEST(PartialTool, OfAProgramWithoutToolCallsIsTheOneInTheSpindle) {
+    OwnProgram own("G21 G90 G54\nS8000 M3\nG0 X0 Y0 Z5\nG1 Z-3 F200\nX40\nG0 Z5\nM30\n");
+    const app::SetupSheet sheet = own.sheet("[[tool]]\nnumber = 7\ndiameter = 9\n");
+    ASSERT_EQ(sheet.tools.size(), 1u);
+    EXPECT_EQ(sheet.tools[0].tool.number, core::ToolNumber{7});
+    EXPECT_EQ(sheet.tools[0].tool.diameter, 9.0);
+}
+
+TEST(PartialTool, ThatContradictsItselfIsAnErrorWithItsLine) {
+    OwnProgram own;
+    const core::Error error = own.error("[[tool]]\nnumber = 2\nstick_out = 30\n\n[[tool]]\n"
+                                        "number = 1\nflute_length = 30\nstick_out = 20\n");
+    EXPECT_EQ(error.where.line, 5u);
+    EXPECT_THAT(error.message, HasSubstr("tool 1"));
+    EXPECT_THAT(error.file, HasSubstr("p.toml"));
+    EXPECT_THAT(own.error("[[tool]]\nnumber = 1\ndiameter = 4\n[[tool]]\nnumber = 1\nshape = "
+                          "\"flat\"\ndiameter = 4\nflute_length = 9\n")
+                    .message,
+                HasSubstr("defined twice"));
+    EXPECT_THAT(own.error("[[tool]]\nnumber = 1\npitch = 1\n").message, HasSubstr("pitch"));
+}
+
+TEST(PartialTool, ThatIsNotUsedIsLeftOut) {
+    OwnProgram own;
+    own.job.setup_text = "[[tool]]\nnumber = 9\nstick_out = 30\n";
+    const auto check = app::read_check(own.job);
+    ASSERT_TRUE(check);
+    EXPECT_FALSE(check->run.setup.tools.contains(core::ToolNumber{9}));
+    EXPECT_THAT(check->run.assumptions, testing::Contains(HasSubstr("tool 9 is described")));
+}
+
+TEST(StatedTool, OfTheSheetIsThatOfTheSetup) {
     for (const char* setup : {"clamped_plate", "test_g90", "test_g90_vise6", "parallel"}) {
         CheckJob job;
         job.program = assets + "programs/clamped_plate.nc";
         job.setup = assets + "setups/" + setup + ".toml";
-        const app::SetupSheet shown = sheet_of(job);
-        EXPECT_FALSE(shown.tools.empty()) << setup;
-        EXPECT_TRUE(app::edits_between(shown, shown, {}).empty()) << setup;
-        for (const app::SheetTool& tool : shown.tools) {
+        const auto check = app::read_check(job);
+        ASSERT_TRUE(check) << setup;
+        for (const app::SheetTool& tool : sheet_of(job).tools) {
             const auto assembled = core::assemble(tool.tool);
             ASSERT_TRUE(assembled) << setup << assembled.error().message;
-            const auto check = app::read_check(job);
             EXPECT_NEAR(assembled->length, check->run.setup.tools.at(tool.tool.number).length, 1e-9)
                 << setup;
         }
     }
 }
 
-TEST(SetupEdits, SayWhichFieldIsWrongAndChangeNothing) {
-    OwnProgram own;
-    const app::SetupSheet shown = sheet_of(own.job);
-    struct Wrong {
-        const char* key;
-        std::function<void(app::SetupSheet&)> make;
-    };
-    const std::vector<Wrong> all = {
-        {"diameter", [](auto& sheet) { sheet.tools[0].tool.diameter = -3.0; }},
-        {"flute_length", [](auto& sheet) { sheet.tools[0].tool.flute_length = 9000.0; }},
-        {"stick_out", [](auto& sheet) { sheet.tools[0].tool.stick_out = 1.0; }},
-        {"corner_radius",
-         [](auto& sheet) {
-             sheet.tools[0].tool = app::reshaped(sheet.tools[0].tool, core::ToolShape::bull);
-             sheet.tools[0].tool.corner_radius = 50.0;
-         }},
-        {"box",
-         [](auto& sheet) {
-             sheet.stock = box_of({0, 0, 0}, {10, 10, 0});
-         }},
-        {"box",
-         [](auto& sheet) {
-             sheet.stock = box_of({0, 0, 0}, {1e9, 10, 10});
-         }},
-        {"cylinder",
-         [](auto& sheet) {
-             sheet.stock = {core::SolidCylinder{{0, 0, 0}, -1.0, 5.0, 2}, 0.0};
-         }},
-        {"allowance", [](auto& sheet) { sheet.allowance = -1.0; }}};
-    for (const Wrong& wrong : all) {
-        app::SetupSheet wanted = shown;
-        wrong.make(wanted);
-        const SetupEdits edits = app::edits_between(shown, wanted, {});
-        const auto refused = app::refusals_of(edits);
-        ASSERT_EQ(refused.size(), 1u) << wrong.key;
-        EXPECT_EQ(refused[0].key, wrong.key) << refused[0].why;
-        EXPECT_FALSE(refused[0].why.empty());
-        app::SetupFile file;
-        EXPECT_FALSE(app::apply(edits, file));
-        EXPECT_TRUE(file.setup.tools.empty() && !file.setup.allowance);
-    }
-}
-
-TEST(SetupEdits, AToolCanTakeEveryShape) {
+TEST(StatedTool, CanTakeEveryShape) {
     OwnProgram own;
     const core::ToolDescription before = sheet_of(own.job).tools[0].tool;
     for (const core::ToolShape shape : app::stateable_shapes()) {
@@ -269,117 +281,227 @@ TEST(SetupEdits, AToolCanTakeEveryShape) {
         EXPECT_EQ(tool.diameter, before.diameter);
         const auto back = core::assemble(app::reshaped(tool, core::ToolShape::flat));
         EXPECT_TRUE(back) << core::name_of(shape);
+        const auto text = app::with_tool("[[tool]]\nnumber = 1\nstick_out = 9 # short\n", tool);
+        ASSERT_TRUE(text) << text.error().message;
+        EXPECT_EQ(own.sheet(*text).tools[0].tool.shape, shape) << *text;
     }
 }
 
-TEST(SavedSetup, OfTheSampleSetupsMeansTheSame) {
-    for (const auto& [setup, program] : {std::pair{"clamped_plate", "clamped_plate"},
-                                         {"test_g90", "clamped_plate"},
-                                         {"test_g90_vise6", "clamped_plate"},
-                                         {"parallel", "clamped_plate"}}) {
-        const test_support::ScopedFolder folder;
-        std::filesystem::copy(assets, folder / "assets", std::filesystem::copy_options::recursive);
+/// The text of a set-up that states everything as it was inferred.
+std::string all_stated(const app::SetupSheet& sheet) {
+    core::Result<std::string> text = std::string();
+    if (!std::holds_alternative<core::SolidMesh>(sheet.stock.shape))
+        text = app::with_stock(*text, sheet.stock, sheet.frame);
+    for (const app::SheetTool& tool : sheet.tools) {
+        if (text) text = app::with_tool(*text, tool.tool);
+    }
+    EXPECT_TRUE(text) << (text ? "" : text.error().message);
+    return text.value_or("");
+}
+
+TEST(StatedSetup, MeansWhatWasInferred) {
+    for (const std::string& program : real_programs()) {
         CheckJob job;
-        job.program = assets + "programs/" + program + ".nc";
-        job.setup = folder / "assets/setups/" + std::string(setup) + ".toml";
-        expect_saved_as_it_is(job, folder / "assets/setups/plain.toml");
-        job.edits = some_edits(sheet_of(job));
-        expect_saved_as_it_is(job, folder / "assets/setups/edited.toml");
+        job.program = program;
+        const auto before = app::read_check(job);
+        ASSERT_TRUE(before);
+        if (app::stands_for_no_stock(before->run.setup.stock)) continue;
+        job.setup_text = all_stated(sheet_of(job));
+        const auto after = app::read_check(job);
+        ASSERT_TRUE(after) << program << ": " << after.error().message << *job.setup_text;
+        ASSERT_EQ(before->run.setup.tools.size(), after->run.setup.tools.size()) << program;
+        for (const auto& [number, tool] : before->run.setup.tools)
+            expect_same_tool(tool, after->run.setup.tools.at(number), program);
     }
 }
 
-TEST(SavedSetup, OfARealProgramMeansWhatWasInferred) {
-    size_t count = 0;
-    for (const char* where : {"/assets/programs", "/tests/real/programs"})
-        for (const auto& file :
-             std::filesystem::directory_iterator(std::string(FEELER_SOURCE_DIR) + where)) {
-            if (file.path().extension() == ".md") continue;
-            const test_support::ScopedFolder folder;
-            CheckJob job;
-            job.program = file.path();
-            if (!app::read_check(job)) continue;
-            ++count;
-            expect_saved_as_it_is(job, folder / "s.toml");
-            job.edits = some_edits(sheet_of(job));
-            expect_saved_as_it_is(job, folder / "e.toml");
-        }
-    RecordProperty("programs", static_cast<int>(count));
-    EXPECT_GE(count, 10u);
+TEST(InferredSetup, WrittenToAFileMeansTheSame) {
+    for (const std::string& path : real_programs()) {
+        const test_support::ScopedFolder folder;
+        CheckJob job;
+        job.program = path;
+        const auto before = app::read_check(job);
+        const auto program = gcode::read_program(path);
+        const auto setup = app::infer_setup(*program, {});
+        ASSERT_TRUE(before && setup);
+        job.setup = folder.write("s.toml", app::setup_text(*setup, path));
+        const auto after = app::read_check(job);
+        ASSERT_TRUE(after) << path << ": " << after.error().message;
+        expect_same(*before, *after, path);
+    }
 }
 
-TEST(SavedSetup, KeepsTextWrittenByTheUser) {
+TEST(InferredSetup, IsUtf8ForAnyNameOfTheProgram) {
+    const test_support::ScopedFolder folder;
+    const auto program = gcode::read_program(folder.write("p.nc", pocket));
+    const std::string text = app::setup_text(*app::infer_setup(*program, {}), "fr\xE4s.nc");
+    EXPECT_THAT(text, HasSubstr("fr\xC3\xA4s.nc"));
+}
+
+std::string changed(const core::Result<std::string>& text) {
+    EXPECT_TRUE(text) << (text ? "" : text.error().message);
+    return text.value_or("");
+}
+
+TEST(SetupChanges, KeepTextWrittenByTheUser) {
     const std::string before = bytes_of(assets + "setups/clamped_plate.toml");
-    SetupEdits edits;
-    edits.stock = box_of({0, 0, -25}, {240, 150, 0});
-    const auto after = app::rewritten_setup(before, edits);
-    ASSERT_TRUE(after);
-    EXPECT_THAT(*after, HasSubstr("[0, 0, -25], [240, 150, 0]"));
-    EXPECT_THAT(*after, HasSubstr("# Fixtures. `at` is the position of the mesh origin;"));
-    EXPECT_THAT(*after, HasSubstr("# Drill: 70 + 70 = 140 mm."));
-    EXPECT_THAT(*after, Not(HasSubstr("[0, 0, -20]")));
-    EXPECT_EQ(*app::rewritten_setup(before, {}), before);
+    const std::string after =
+        changed(app::with_stock(before, box_of({0, 0, -25}, {240, 150, 0}), "G54"));
+    EXPECT_THAT(after, HasSubstr("[0, 0, -25], [240, 150, 0]"));
+    EXPECT_THAT(after, HasSubstr("# Fixtures. `at` is the position of the mesh origin;"));
+    EXPECT_THAT(after, HasSubstr("# Drill: 70 + 70 = 140 mm."));
+    EXPECT_THAT(after, Not(HasSubstr("[0, 0, -20]")));
 }
 
-TEST(SavedSetup, PutsAllowancesWhereTomlTakesThem) {
-    SetupEdits edits;
-    edits.allowance = 3.0;
+TEST(SetupChanges, PutAllowancesWhereTomlTakesThem) {
     for (const char* text :
          {"", "mesh_size = 0.4\n", "allowance = 2.0   # old\n[stock]\nbox = [[0,0,0],[1,1,1]]\n",
           "# only\n[[allowance]]\nbetween = [\"holder\", \"stock\"]\ndistance = 5\n",
           "[[allowance]]\ndistance = 2\n\n# next\n[stock]\nbox = [[0,0,0],[1,1,1]]\n",
           "stock = { box = [[0,0,0],[1,1,1]] }\n"}) {
-        const auto after = app::rewritten_setup(text, edits);
-        ASSERT_TRUE(after) << text << after.error().message;
-        const test_support::ScopedFolder folder;
-        const auto read = app::read_setup(folder.write("s.toml", *after), {});
-        ASSERT_TRUE(read) << *after << read.error().message;
-        EXPECT_EQ(read->setup.allowance, 3.0) << *after;
+        const std::string after = changed(app::with_allowance(text, 3.0));
+        const auto read = app::read_setup_text(after, "s.toml", {});
+        ASSERT_TRUE(read) << after << read.error().message;
+        EXPECT_EQ(read->setup.allowance, 3.0) << after;
+        const auto none =
+            app::read_setup_text(changed(app::with_allowance(after, {})), "s.toml", {});
+        ASSERT_TRUE(none);
+        EXPECT_FALSE(none->setup.allowance);
     }
 }
 
-TEST(SavedSetup, MarksInferredAndStatedValues) {
-    OwnProgram own;
-    own.job.edits = some_edits(sheet_of(own.job));
-    const auto text = app::setup_file_text(own.job);
-    ASSERT_TRUE(text);
-    EXPECT_THAT(*text, HasSubstr("the stock is as stated"));
-    EXPECT_THAT(*text, HasSubstr("tool 1 is as stated: holder, stick_out; the rest"));
-    EXPECT_THAT(*text, HasSubstr("tool 2 is"));
-    const std::string dialect(gcode::dialect(app::read_check(own.job)->run.dialect).name);
-    EXPECT_THAT(*text, HasSubstr("dialect = \"" + dialect + "\""))
-        << "whatever the program becomes";
-    expect_saved_as_it_is(own.job, own.folder / "s.toml");
+TEST(SetupChanges, StateAStockOfAnotherShape) {
+    std::string text = changed(app::with_stock("", box_of({-1, -2, -3}, {4, 5, 6}), "G55"));
+    EXPECT_EQ(text, "[stock]\nbox = [[-1, -2, -3], [4, 5, 6]]\nframe = \"G55\"\n");
+    text =
+        changed(app::with_stock("assumed = [\"stock\", \"start\"]\n" + text,
+                                {core::SolidCylinder{{20, 15, -12}, 45.0, 12.0, 0}, 0.0}, "G54"));
+    EXPECT_EQ(text, "assumed = [\"start\"]\n[stock]\nframe = \"G55\"\ncylinder = { radius = 45, "
+                    "height = 12, axis = \"X\" }\nat = [20, 15, -12]\n");
+    text = changed(app::with_stock(text, box_of({0, 0, 0}, {1, 1, 1}), "G54"));
+    EXPECT_THAT(text, HasSubstr("box = [[0, 0, 0], [1, 1, 1]]"));
+    EXPECT_THAT(text, Not(HasSubstr("at =")));
+    EXPECT_THAT(text, HasSubstr("frame = \"G55\""));
 }
 
-TEST(SavedSetup, IsUtf8ForAnyNameOfTheProgram) {
-    const test_support::ScopedFolder folder;
-    CheckJob job;
-    job.program = folder.write("fr\xE4s.nc", pocket);
-    expect_saved_as_it_is(job, folder / "s.toml");
-    EXPECT_THAT(bytes_of(folder / "s.toml"), HasSubstr("fr\xC3\xA4s.nc"));
+TEST(SetupChanges, AddCopyRenameAndRemoveFixtures) {
+    std::string text = changed(app::with_fixture("fixtures = \"none\"\n", "vise",
+                                                 "box = [[0, 0, 0], [9, 9, 9]] # steel\n"));
+    EXPECT_EQ(text, "[[fixture]]\nname = \"vise\"\nbox = [[0, 0, 0], [9, 9, 9]] # steel\n");
+    text += "[[fixture.move]]\nline = 9\nremove = true\n\n[[fixture]]\nname = \"jaw\"\nframe = "
+            "\"vise\"\nbox = [[0, 0, 0], [1, 1, 1]]\n\n[[allowance]]\nbetween = [\"vise\", "
+            "\"holder\"]\ndistance = 3\n";
+    EXPECT_FALSE(app::with_fixture(text, "vise", "box = [[0, 0, 0], [1, 1, 1]]\n"));
+    const auto carried = app::without_fixture(text, "vise");
+    ASSERT_FALSE(carried);
+    EXPECT_THAT(carried.error().message, HasSubstr("relative to \"vise\""));
+    const std::string renamed = changed(app::with_renamed_fixture(text, "vise", "big vise"));
+    EXPECT_THAT(renamed, Not(HasSubstr("\"vise\"")));
+    EXPECT_THAT(renamed, HasSubstr("frame = \"big vise\""));
+    EXPECT_THAT(renamed, HasSubstr("between = [\"big vise\", \"holder\"]"));
+    ASSERT_TRUE(app::read_setup_text(renamed, "s.toml", {}));
+    EXPECT_FALSE(app::with_renamed_fixture(text, "vise", "jaw"));
+    const std::string copied = changed(app::with_copied_fixture(text, "vise", "vise-2"));
+    EXPECT_THAT(copied, HasSubstr("name = \"vise-2\"\nbox = [[0, 0, 0], [9, 9, 9]] # steel\n"));
+    ASSERT_TRUE(app::read_setup_text(copied, "s.toml", {}));
+    EXPECT_THAT(changed(app::without_fixture(text, "jaw")), Not(HasSubstr("jaw")));
+    EXPECT_EQ(app::free_name(text, "vise"), "vise-2");
+    EXPECT_EQ(app::free_name(copied, "vise-2"), "vise-3");
+    EXPECT_EQ(app::free_name(text, "stud"), "stud");
+}
+
+TEST(SetupChanges, StateOffsets) {
+    EXPECT_EQ(changed(app::with_offset("", "G54", {-350, 0.1 + 0.2, -420})),
+              "[offsets]\nG54 = { X = -350, Y = 0.3, Z = -420 }\n");
+    EXPECT_EQ(changed(app::with_offset("[offsets]\n\"G54.1 P2\" = { X = 1, C = 90 } # fourth\n",
+                                       "G54.1 P2", {5, 6, 7})),
+              "[offsets]\n\"G54.1 P2\" = { X = 5, C = 90, Y = 6, Z = 7 } # fourth\n");
+    EXPECT_EQ(changed(app::without_offset("mesh_size = 1\n[offsets]\nG54 = { X = 1 }\n", "G54")),
+              "mesh_size = 1\n");
+}
+
+TEST(SetupChanges, WriteRoundNumbers) {
+    EXPECT_EQ(app::setup_number(-14.700000000000045), "-14.7");
+    EXPECT_EQ(app::setup_number(-0.0), "0");
+    EXPECT_EQ(app::setup_number(25.4 / 3), "8.466667");
+    EXPECT_EQ(app::setup_vector({1, 2.5, -1e-9}), "[1, 2.5, 0]");
+}
+
+TEST(SetupDocument, UndoesAndRedoesEveryEdit) {
+    SetupDocument document("s.toml", "a = 1\n");
+    const auto set = [&](const std::string& text, const std::string& mark = "") {
+        return document.edit(
+            "Set " + text, [&](const std::string&) { return text; }, mark);
+    };
+    EXPECT_FALSE(document.is_modified());
+    ASSERT_TRUE(set("b"));
+    ASSERT_TRUE(set("c1", "drag"));
+    ASSERT_TRUE(set("c2", "drag"));
+    ASSERT_TRUE(set("c3", "drag"));
+    document.end_sequence();
+    ASSERT_TRUE(set("d", "drag"));
+    EXPECT_EQ(document.undo_title(), "Set d");
+    document.undo();
+    EXPECT_EQ(document.text(), "c3");
+    EXPECT_EQ(document.redo_title(), "Set d");
+    document.undo();
+    EXPECT_EQ(document.text(), "b") << "one drag is one step";
+    document.undo();
+    EXPECT_EQ(document.text(), "a = 1\n");
+    EXPECT_FALSE(document.is_modified());
+    document.undo();
+    EXPECT_EQ(document.text(), "a = 1\n");
+    for (int i = 0; i < 5; ++i) document.redo();
+    EXPECT_EQ(document.text(), "d");
+    document.undo();
+    ASSERT_TRUE(set("e"));
+    EXPECT_EQ(document.redo_title(), "") << "a new edit ends what could be redone";
+    const uint64_t version = document.version();
+    EXPECT_FALSE(document.edit("No", [](const std::string&) -> core::Result<std::string> {
+        return core::fail(core::ErrorCode::invalid_value, "no");
+    }));
+    EXPECT_EQ(document.version(), version);
+    EXPECT_EQ(document.text(), "e");
+    document.file_changed("f");
+    EXPECT_FALSE(document.is_modified());
+    document.undo();
+    EXPECT_EQ(document.text(), "e") << "nothing is lost when the file changes";
+    EXPECT_TRUE(document.is_modified());
 }
 
 TEST(SavedSetup, NeverReplacesAFileUnasked) {
     OwnProgram own;
     const std::string path = own.folder.write("s.toml", "mine\n");
-    const auto refused = app::save_setup(own.job, path, false, app::write_output);
+    SetupDocument document("", "");
+    ASSERT_TRUE(document.edit("Edit", [](const auto&) { return std::string("mesh_size = 1\n"); }));
+    const auto save = [&](const std::string& to, app::Replacing replacing) {
+        return app::save_setup(document, to, replacing, own.job.program, app::write_output);
+    };
+    const auto refused = save(path, app::Replacing::refused);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("already exists"));
     EXPECT_EQ(bytes_of(path), "mine\n");
-    EXPECT_FALSE(app::save_setup(own.job, own.job.program, true, app::write_output));
+    EXPECT_TRUE(document.is_modified());
+    EXPECT_FALSE(save(own.job.program, app::Replacing::allowed));
     EXPECT_EQ(bytes_of(own.job.program), pocket);
-    ASSERT_TRUE(app::save_setup(own.job, path, true, app::write_output));
-    EXPECT_THAT(bytes_of(path), HasSubstr("[stock]"));
-    EXPECT_EQ(app::proposed_setup_path(own.job), own.folder / "p.toml");
+    ASSERT_TRUE(save(path, app::Replacing::allowed));
+    EXPECT_EQ(bytes_of(path), "mesh_size = 1\n");
+    EXPECT_FALSE(document.is_modified());
+    EXPECT_TRUE(save(path, app::Replacing::refused)) << "its own file";
+    EXPECT_EQ(app::setup_path(own.job), own.folder / "p.toml");
+    own.folder.write("s.toml", "mesh_size = 3\n");
+    const auto changed_since = save(path, app::Replacing::refused);
+    ASSERT_FALSE(changed_since);
+    EXPECT_THAT(changed_since.error().message, HasSubstr("changed by another program"));
     EXPECT_EQ(own.folder.names().size(), 2u) << "no other file remains";
 }
 
 TEST(SavedSetup, StaysInTheFolderOfTheFilesThatItNames) {
     const test_support::ScopedFolder folder;
-    CheckJob job;
-    job.program = assets + "programs/clamped_plate.nc";
-    job.setup = assets + "setups/clamped_plate.toml";
-    const auto refused = app::save_setup(job, folder / "s.toml", false, app::write_output);
+    const std::string path = assets + "setups/clamped_plate.toml";
+    SetupDocument document(path, bytes_of(path));
+    const auto refused = app::save_setup(document, folder / "s.toml", app::Replacing::refused, "",
+                                         app::write_output);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().message, HasSubstr("save it in"));
 }

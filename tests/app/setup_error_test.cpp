@@ -128,7 +128,7 @@ TEST(SetupFile, NamesTheFramesItKnows) {
 TEST(SetupFile, NamesTheShapesOfTools) {
     expect_error(SetupWriter().tool("number = 1\nshape = \"round\"\n"),
                  {"\"round\"", "flat ball bull"});
-    expect_error(SetupWriter().tool("number = 1\n"), {"shape is missing"});
+    expect_error(SetupWriter().tool("number = 1\nprofile = [[0, 0], [1, 5]]\n"), {"profile"});
     expect_error(SetupWriter().tool("shape = \"flat\"\n"), {"number is missing"});
 }
 

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "app/view/ui/command.h"
-#include "app/view/ui/window.h"
 #include "tests/viewer/made_study.h"
 
 namespace {

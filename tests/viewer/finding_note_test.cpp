@@ -112,11 +112,11 @@ TEST(DroppedFiles, OfAnotherProgramTakeNoEditsAlong) {
     app::CheckJob job;
     job.program = "a.nc";
     job.setup = "s.toml";
-    job.edits.allowance = 3.0;
+    job.setup_text = "allowance = 3\n";
     EXPECT_FALSE(with_dropped(job, {"clamp.STL"}, model, 0.0));
     EXPECT_FALSE(with_dropped({}, {"s.toml"}, model, 0.0));
     const auto other = with_dropped(job, {"b.nc"}, model, 0.0);
-    EXPECT_TRUE(other && other->setup.empty() && other->edits.empty());
+    EXPECT_TRUE(other && other->setup.empty() && !other->setup_text);
     const auto with_setup = with_dropped(job, {"t.TOML"}, model, 0.0);
     EXPECT_TRUE(with_setup && with_setup->program == "a.nc" && with_setup->setup == "t.TOML");
 }

@@ -293,7 +293,7 @@ TEST(SetupSummary, SpellsOutWhatWasInferred) {
         core::ToolDescription tool;
         tool.number = core::ToolNumber{number};
         tool.diameter = 6.0;
-        sheet->tools.push_back({tool, app::SetupSource::inferred, "", {}});
+        sheet->tools.push_back({tool, app::SetupSource::assumed, "", {}});
     }
     opened.sheet = sheet;
     model.program = std::make_shared<const OpenedProgram>(opened);

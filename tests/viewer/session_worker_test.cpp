@@ -6,7 +6,6 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/setup_sheet.h"
-#include "app/commands/output.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
@@ -282,43 +281,78 @@ TEST(SessionWorker, EndsAtAnyMoment) {
     }
 }
 
-TEST(SessionWorker, ChecksWithAnEditedSetupAndSavesIt) {
-    const test_support::ScopedFolder folder;
+/// A program that cuts a slot, without a set-up.
+app::CheckJob slot(const test_support::ScopedFolder& folder) {
     app::CheckJob job;
     job.program = folder.write("p.nc", "G21 G90 G54\nT1 M6\nS8000 M3\nG43 H1 Z5\nG0 X0 Y0\n"
                                        "G1 Z-3 F200\nX40\nG0 Z5\nM30\n");
+    return job;
+}
+
+TEST(SessionWorker, ChecksAgainWithAnEditedSetup) {
+    const test_support::ScopedFolder folder;
+    app::CheckJob job = slot(folder);
     Watcher watcher;
     watcher.open(job);
     ASSERT_TRUE(watcher.record());
-    const auto sheet = watcher.model.program->sheet;
-    ASSERT_TRUE(sheet);
-    ASSERT_EQ(sheet->tools.size(), 1u);
+    ASSERT_EQ(watcher.model.program->sheet->tools.size(), 1u);
     go_to(watcher.model, 4);
     watcher.model.bookmarks = {3};
+    watcher.worker().show({4, true});
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.block_state != nullptr; }));
 
-    app::SetupSheet wanted = *sheet;
-    wanted.tools[0].tool.diameter = 12.0;
-    job.edits = app::edits_between(*sheet, wanted, {});
+    job.setup_text = "[[tool]]\nnumber = 1\ndiameter = 12\n";
     watcher.open(job);
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.opening == 2; }));
-    ASSERT_TRUE(watcher.record());
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.program->sheet != nullptr; }));
+    bool was_blank = false;
+    ASSERT_TRUE(watcher.wait_for([&] {
+        const ViewModel& model = watcher.model;
+        was_blank = was_blank || !model.program || !model.has_rows() || !model.block_state;
+        return model.opening == 2 && model.is_recorded;
+    }));
+    EXPECT_FALSE(was_blank) << "the program stays on screen";
     EXPECT_EQ(watcher.model.cursor.block, 4u);
     EXPECT_EQ(watcher.model.bookmarks, (std::set<size_t>{3}));
     const app::SetupSheet& edited = *watcher.model.program->sheet;
-    EXPECT_EQ(edited.tools[0].stated, (std::set<std::string>{"diameter"}));
+    EXPECT_EQ(edited.tools[0].source_of("diameter"), app::SetupSource::stated);
     EXPECT_EQ(edited.tools[0].tool.diameter, 12.0);
+}
 
-    const auto save = [&] {
-        watcher.worker().save_setup(job, folder / "p.toml", false, app::write_output);
-    };
-    save();
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
-    EXPECT_FALSE(watcher.model.saved->refusal);
-    watcher.model.saved.reset();
-    save();
-    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.saved.has_value(); }));
-    EXPECT_TRUE(watcher.model.saved->refusal && watcher.model.saved->exists);
+TEST(SessionWorker, KeepsTheLastGoodStateIfTheSetupCannotBeRead) {
+    const test_support::ScopedFolder folder;
+    app::CheckJob job = slot(folder);
+    Watcher watcher;
+    watcher.open(job);
+    ASSERT_TRUE(watcher.record());
+    job.setup_text = "[[tool]]\nnumber = 1\ndiametre = 12\n";
+    watcher.open(job);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.workspace.error.has_value(); }));
+    EXPECT_EQ(watcher.model.workspace.error->where.line, 3u);
+    EXPECT_EQ(watcher.model.opening, 1u);
+    EXPECT_TRUE(watcher.model.has_rows() && watcher.model.is_recorded && !watcher.model.failure);
+    watcher.worker().show({6, true});
+    EXPECT_TRUE(watcher.wait_for(
+        [&] { return watcher.model.block_state && watcher.model.block_state->block == 6; }));
+    job.setup_text = "[[tool]]\nnumber = 1\ndiameter = 12\n";
+    watcher.open(job);
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.opening == 2; }));
+    EXPECT_FALSE(watcher.model.workspace.error);
+}
+
+TEST(SessionWorker, ReadsOnlyTheLastOfManyEdits) {
+    const test_support::ScopedFolder folder;
+    app::CheckJob job = slot(folder);
+    Watcher watcher;
+    watcher.open(job);
+    ASSERT_TRUE(watcher.record());
+    for (int diameter = 1; diameter <= 40; ++diameter) {
+        job.setup_text = "[[tool]]\nnumber = 1\ndiameter = " + std::to_string(diameter) + "\n";
+        watcher.open(job);
+    }
+    ASSERT_TRUE(watcher.wait_for([&] {
+        return watcher.model.program && watcher.model.program->sheet->tools[0].tool.diameter == 40.0
+               && watcher.model.is_recorded;
+    }));
+    EXPECT_LT(watcher.model.opening, 41u) << "edits that came too fast are left out";
 }
 
 } // namespace

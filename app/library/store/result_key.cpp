@@ -75,8 +75,8 @@ std::optional<std::string> options_text(const CheckJob& job) {
     // memory_limit is left out: it only decides whether there is a result. So are the threads.
     const auto& [program, setup, allowance, mesh_size, memory_limit, detail, needs_surface,
                  before_model, after_block, is_stopped, start_line, settings, engine, threads,
-                 edits, rules, setup_was_found] = job;
-    if (!edits.empty()) return std::nullopt;
+                 setup_text, rules, setup_was_found] = job;
+    if (setup_text) return std::nullopt;
     KeyJson severities = KeyJson::object();
     for (const auto& [rule, severity] : rules) severities[rule] = core::name_of(severity);
     const KeyJson json = {{"rules", severities},

@@ -45,7 +45,7 @@ std::string names_in(const CheckJob& job) {
 }
 
 /// Whether results of a job are stored.
-bool is_stored(const CheckJob& job) { return job.edits.empty(); }
+bool is_stored(const CheckJob& job) { return !job.setup_text; }
 
 /// The keys under which the result of a job may be stored.
 struct JobKeys {

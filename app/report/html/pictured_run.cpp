@@ -243,11 +243,12 @@ struct Camera {
 
 /// A program that has run to its end, in the state that the window would show.
 struct Stage {
-    WorkerSession session{[] { return false; }, [] { return false; }};
+    WorkerSession session{[] { return false; }};
     ViewModel model;
 
     core::Result<void> open(const CheckJob& job) {
-        session.open(job, [] {});
+        session.open(
+            job, [] {}, [] { return false; });
         while (session.has_work()) session.record();
         take_in(model, session.take_update(), 0.0);
         if (model.failure) return tl::unexpected(*model.failure);

@@ -77,8 +77,11 @@ std::vector<std::string> move_apart(gcode::Environment& environment, const Progr
                         gcode::name_of_offset(*main), fmt::join(others, ", "))};
 }
 
-/// A tool number that is not in use.
-ToolNumber free_number(const ProgramSurvey& seen) {
+/// A number for the tool in the spindle before the first tool call: that of the only partly
+/// described tool, else one that is not in use.
+ToolNumber free_number(const ProgramSurvey& seen, const SetupFile& file) {
+    if (seen.tools.empty() && file.partial_tools.size() == 1)
+        return file.partial_tools.begin()->first;
     int number = 1;
     while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
         ++number;
@@ -93,6 +96,61 @@ FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
     tool.tool.shape = core::ToolShape::flat;
     tool.source += " and its use, because drills do not cut sideways";
     return tool;
+}
+
+/// A found tool with the values that the set-up states of it.
+FoundTool overlaid(FoundTool found, const PartialTool& partial) {
+    const auto states = [&](const char* key) { return partial.stated.contains(key); };
+    core::ToolDescription& tool = found.tool;
+    const core::ToolDescription& stated = partial.tool;
+    if (states("stick_out") || states("holder") || states("holder_mesh")) tool.gauge_length.reset();
+    const bool has_plain_shank =
+        tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
+    if (states("stick_out") && has_plain_shank) {
+        tool.shank_diameter = tool.shank[0].lower_diameter;
+        tool.shank.clear();
+    }
+    for (const core::ToolSize& size : core::tool_sizes())
+        if (states(size.key)) size.put(tool, size.of(stated));
+    found.has_diameter = found.has_diameter || states("diameter");
+    if (states("name")) tool.name = stated.name;
+    if (states("teeth")) tool.teeth = stated.teeth;
+    if (states("shank")) {
+        tool.shank = stated.shank;
+        tool.stick_out = stated.stick_out;
+    }
+    if (states("holder") || states("holder_mesh")) tool.holder = stated.holder;
+    if (states("touched_off")) {
+        tool.touched_off = stated.touched_off;
+        tool.length_is_guess = stated.length_is_guess;
+    }
+    if (states("spindle")) tool.cuts = stated.cuts;
+    if (states("cuts_at_centre")) tool.cuts_at_centre = stated.cuts_at_centre;
+    if (states("cuts_at_centre") || states("centre_diameter"))
+        tool.centre_radius =
+            states("centre_diameter") ? stated.centre_radius : 0.25 * tool.diameter;
+    if (states("single_point")) tool.single_point = stated.single_point;
+    found.source += " and the set-up";
+    return found;
+}
+
+/// Puts the stated values of partly described tools into the missing ones.
+///
+/// Errors: invalid_value if they do not fit to what is known of the tool.
+core::Result<void> overlay(const SetupFile& file, std::vector<FoundTool>& missing) {
+    for (FoundTool& found : missing) {
+        const auto partial = file.partial_tools.find(found.tool.number);
+        if (partial == file.partial_tools.end()) continue;
+        found = overlaid(std::move(found), partial->second);
+        const auto assembled = core::assemble(complete(found).tool);
+        if (!assembled)
+            return tl::unexpected<core::Error>(
+                {core::ErrorCode::invalid_value, partial->second.where,
+                 fmt::format("{} (what the set-up does not state is taken from {})",
+                             assembled.error().message, found.source),
+                 file.path});
+    }
+    return {};
 }
 
 /// The tools that the program uses and the set-up lacks, with what is known of them.
@@ -118,7 +176,7 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
             FoundTool tool = is_only ? *offered.in_spindle : found->second;
             tool.tool.number = number;
             missing.push_back(file.infers_tools ? as_used(std::move(tool), seen) : tool);
-        } else if (file.infers_tools) {
+        } else if (file.infers_tools || file.partial_tools.contains(number)) {
             missing.push_back(unknown_tool(number, mills(number), unit));
         }
     }
@@ -131,9 +189,9 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     if (offered.in_spindle) {
         missing.push_back(*offered.in_spindle);
         if (core::value_of(missing.back().tool.number) == 0)
-            missing.back().tool.number = ToolNumber{1};
+            missing.back().tool.number = free_number(seen, file);
     } else if (file.infers_tools) {
-        missing.push_back(unknown_tool(free_number(seen), mills(ToolNumber{0}), unit));
+        missing.push_back(unknown_tool(free_number(seen, file), mills(ToolNumber{0}), unit));
     }
     if (file.infers_tools && seen.calls_tools) {
         file.setup.tool_at_start = missing.back().tool.number;
@@ -142,6 +200,20 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
                         core::value_of(*file.setup.tool_at_start)));
     }
     return missing;
+}
+
+/// Notes on partly described tools that the program does not use: they cannot be completed.
+void add_notes_on_unused(SetupFile& file, const std::vector<FoundTool>& used) {
+    for (const auto& [number, partial] : file.partial_tools) {
+        const auto is_it = [&, which = number](const FoundTool& found) {
+            return found.tool.number == which;
+        };
+        if (std::any_of(used.begin(), used.end(), is_it)) continue;
+        file.assumptions.push_back(
+            fmt::format("tool {} is described without a shape, and the program does not use it: it "
+                        "is left out",
+                        core::value_of(number)));
+    }
 }
 
 std::vector<std::string> put_tools(SetupFile& file, const std::vector<FoundTool>& tools,
@@ -387,6 +459,8 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     const std::string position = assume_machine_zero(file);
     const gcode::AxisValues& zero = file.environment.work_offsets[0];
     file.setup.stock_mount.link_from_body = core::translation({zero[0], zero[1], zero[2]});
+    file.frames["G54"] = file.frames["stock"] = file.setup.stock_mount.link_from_body;
+    file.frames["machine"] = {};
     file.assumptions = notes;
     const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
     if (!speeds.empty()) file.assumptions.push_back(speeds);
@@ -411,12 +485,16 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     ProgramSurvey first = survey(program, file.environment, sizes(file, true));
     if (file.infers_frame && assume_extended_offsets(file.environment, first))
         first = survey(program, file.environment, sizes(file, true));
-    FEELER_TRY(const std::vector<FoundTool> tools, missing_tools(file, program, first));
+    FEELER_TRY(std::vector<FoundTool> tools, missing_tools(file, program, first));
+    if (const auto fits = overlay(file, tools); !fits) return tl::unexpected(fits.error());
+    add_notes_on_unused(file, tools);
     if (file.infers_frame && !file.infers_tools && !first.offsets_lengths) assume_touch_off(file);
     put_tools(file, tools, first, 0.0);
     assume_axes(file, first);
     file.stock_known = file.needs_stock ? Known::missing : Known::described;
     file.offsets_known = known_offsets(file, first);
+    for (const auto& [offset, is_set] : first.offsets)
+        if (offset < gcode::no_work_offset) file.offsets_used.insert(offset);
     if (file.infers_tools) assume_handwork(file, first);
     std::vector<std::string> about_stock;
     if (file.infers_frame) about_stock = move_apart(file.environment, first);
@@ -524,7 +602,10 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
                      double control_length) {
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
-    if (file.infers_tools || file.touches_off) {
+    const auto partial = file.partial_tools.find(tool.number);
+    const bool states_length =
+        partial != file.partial_tools.end() && partial->second.stated.contains("touched_off");
+    if ((file.infers_tools || file.touches_off) && !states_length) {
         tool.touched_off = control_length;
         tool.length_is_guess = control_length == 0.0;
     }

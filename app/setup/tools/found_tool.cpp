@@ -168,6 +168,9 @@ void complete_lengths(ToolDescription& tool, double least_flutes,
         tool.flute_length = usual_flutes(tool);
         const bool undercuts = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
         if (!undercuts) tool.flute_length = std::max(tool.flute_length, least_flutes);
+        if (tool.stick_out)
+            tool.flute_length =
+                std::min(tool.flute_length, *tool.stick_out - tool.neck_length.value_or(0.0));
         assumed.push_back(fmt::format("flutes {:.4g} mm", tool.flute_length));
     }
     if (!tool.shank_diameter) {

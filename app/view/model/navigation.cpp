@@ -164,6 +164,14 @@ std::optional<StretchIndex> selected_stretch(const ViewModel& model) {
 
 void show_findings(ViewModel& model, bool shown) {
     model.shows_findings = shown;
+    model.shows_setup = false;
+    model.list_follows = true;
+}
+
+void show_setup(ViewModel& model, bool shown) {
+    model.shows_setup = shown;
+    model.workspace.wants_focus = shown;
+    model.workspace.has_keys = false;
     model.list_follows = true;
 }
 

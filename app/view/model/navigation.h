@@ -42,6 +42,9 @@ bool step_stretch(ViewModel& model, bool forward);
 std::optional<StretchIndex> selected_stretch(const ViewModel& model);
 /// Shows the findings or the lines in the list.
 void show_findings(ViewModel& model, bool shown);
+
+/// Shows the set-up in place of the list, with the keyboard.
+void show_setup(ViewModel& model, bool shown);
 /// The key of the program in the stored notes: its absolute path.
 std::string notes_key(const ViewModel& model);
 std::string note_at(const ViewModel& model, const StretchIndex& index);

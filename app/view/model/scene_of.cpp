@@ -160,6 +160,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     SceneKey key;
     key.opening = model.opening;
     key.block_state = model.block_state ? model.block_state->serial : 0;
+    key.setup = model.program ? model.program->scene.get() : nullptr;
     key.path = model.path.get();
     key.block = model.cursor.block;
     key.pair = model.shown_pair;

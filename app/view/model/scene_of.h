@@ -32,6 +32,7 @@ render::Scene scene_of(const ViewModel& model);
 struct SceneKey {
     uint64_t opening = 0, block_state = 0;
     const void* path = nullptr;
+    const void* setup = nullptr;
     size_t block = 0;
     BodyNames pair;
     double fraction = 1.0; // of the block's time

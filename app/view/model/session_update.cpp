@@ -8,7 +8,6 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/saved_setup.h"
 #include "app/check/setup_sheet.h"
 #include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
@@ -27,15 +26,14 @@ OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
     opened.dialect = dialect.name;
     opened.counts_blocks = dialect.language == gcode::Language::klartext;
     opened.assumptions = check.run.assumptions;
-    opened.is_inferred = job.setup.empty();
+    opened.is_inferred = check.file.is_inferred;
     opened.is_inch = check.is_in_inches();
     opened.coverage = check.run.coverage;
     for (const auto& [number, tool] : check.run.setup.tools)
         if (!tool.description.holder.empty()) opened.tools_with_holder.insert(number);
     opened.scene = make_scene_setup(check.run.setup);
-    opened.proposed_path = proposed_setup_path(job);
-    opened.sheet =
-        std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup, job.edits));
+    opened.proposed_path = setup_path(job);
+    opened.sheet = std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup));
     return opened;
 }
 
@@ -85,7 +83,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.changes, later.changes);
     take(news.failure, later.failure);
     take(news.refusal, later.refusal);
-    take(news.saved, later.saved);
+    take(news.setup_error, later.setup_error);
     take(news.stopped, later.stopped);
     news.fraction = later.fraction;
     news.is_recorded = later.is_recorded;

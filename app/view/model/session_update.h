@@ -80,7 +80,7 @@ struct OpenedProgram {
     std::set<core::ToolNumber> tools_with_holder;
     bool counts_blocks = false; // its lines begin with block numbers without N
     std::shared_ptr<const SceneSetup> scene;
-    std::shared_ptr<const SetupSheet> sheet; // the editable part of the set-up
+    std::shared_ptr<const SetupSheet> sheet; // the set-up with the sources of its values
     std::string proposed_path;               // default file for saving the set-up
 };
 
@@ -107,17 +107,6 @@ struct ShowRequest {
     bool at_end = true; // the state after the block; false: before it
 };
 
-/// Writes a file completely or not at all; the same type as app::FileWriter.
-using SetupWriter =
-    std::function<core::Result<void>(const std::string& path, const std::string& text)>;
-
-/// The result of saving a set-up.
-struct SetupSaved {
-    std::string path;
-    std::optional<core::Error> refusal;
-    bool exists = false; // refused because the file exists
-};
-
 /// Where a walk ended.
 struct RunEnd {
     uint64_t walk = 0; // number of the walk
@@ -137,8 +126,10 @@ struct SessionUpdate {
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
     std::optional<core::Error> failure;              // the program could not be opened
-    std::optional<std::string> refusal;              // why a request was refused, as a sentence
-    std::optional<SetupSaved> saved;
+    // It could not be opened again with another set-up: the session before it goes on.
+    std::optional<core::Error> setup_error;
+    bool is_again = false;              // the program is the one opened before, with another set-up
+    std::optional<std::string> refusal; // why a request was refused, as a sentence
     std::optional<core::Error> stopped; // the program could not be run to its end
     double fraction = 0.0;              // of the program, checked so far
     bool is_recorded = false;

@@ -14,7 +14,6 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
-#include "app/check/saved_setup.h"
 #include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
 #include "app/view/model/scene_of.h"
@@ -52,9 +51,8 @@ ControlValues values_of(const DebugSession& session) {
 
 } // namespace
 
-WorkerSession::WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing)
+WorkerSession::WorkerSession(std::function<bool()> is_interrupted)
     : is_interrupted_(std::move(is_interrupted)),
-      is_closing_(std::move(is_closing)),
       surface_(std::make_unique<render::StockSurface>()) {}
 
 WorkerSession::~WorkerSession() = default;
@@ -63,33 +61,52 @@ const CheckRun* WorkerSession::checked() const { return session_ ? &session_->re
 
 bool WorkerSession::has_work() const { return session_ && (walk_ || !session_->is_recorded()); }
 
-void WorkerSession::open(const CheckJob& job, const std::function<void()>& publish) {
+void WorkerSession::begin(const CheckJob& job, bool is_again) {
     session_.reset();
     walk_.reset();
     scenes_.clear();
     surface_->reset();
+    program_ = job.program;
+    is_shown_ = is_again;
     news_ = {};
     news_.opening = ++openings_;
     news_.has_news = news_.is_busy = true;
-    publish();
+    news_.is_again = is_again;
+}
+
+void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& publish,
+                         const std::function<bool()>& is_superseded) {
+    const bool is_again = is_shown_ && wanted.program == program_;
+    if (!is_again) {
+        begin(wanted, false);
+        publish();
+    }
+    CheckJob job = wanted;
+    job.is_stopped = is_superseded;
     auto check = read_check(job);
-    if (!check) return fail(check.error());
+    if (is_superseded()) return;
+    if (!check) return fail(check.error(), is_again);
+    if (is_again) begin(job, true);
+    job.is_stopped = wanted.is_stopped;
     OpenedProgram opened = opened_program(job, *check);
     scenes_.emplace_back(0, opened.scene);
-    show_early(track_of(*check, opened.scene->setup, is_closing_));
+    show_early(track_of(*check, opened.scene->setup, is_superseded));
     news_.opened = std::make_shared<const OpenedProgram>(opened);
     news_.has_news = news_.is_busy = true;
+    is_shown_ = true;
     publish();
+    if (is_superseded()) return;
     auto session = DebugSession::open(job, *std::move(check));
-    if (!session) return fail(session.error());
+    if (!session) return fail(session.error(), is_again);
     session_ = *std::move(session);
     session_->is_interrupted = [this] { return is_interrupted_() || Clock::now() > walk_rests_; };
     news_.has_news = true;
     set_breakpoints(breakpoints_);
 }
 
-void WorkerSession::fail(const core::Error& error) {
-    news_.failure = error;
+void WorkerSession::fail(const core::Error& error, bool is_again) {
+    (is_again ? news_.setup_error : news_.failure) = error;
+    is_shown_ = is_again;
     news_.has_news = true;
     news_.is_busy = false;
 }
@@ -213,19 +230,6 @@ void WorkerSession::take_back() {
     restart_following();
 }
 
-void WorkerSession::save_setup(const CheckJob& job, const std::string& path, bool may_replace,
-                               const SetupWriter& write) {
-    SetupSaved saved{path, {}, false};
-    const auto done = app::save_setup(job, path, may_replace, write);
-    if (!done) {
-        std::error_code ignored; // an invalid file name: the refusal reports it
-        saved.refusal = done.error();
-        saved.exists = !may_replace && std::filesystem::exists(path, ignored);
-    }
-    news_.saved = std::move(saved);
-    news_.has_news = true;
-}
-
 void WorkerSession::restart_following() {
     walk_.reset();
     scenes_.clear();
@@ -271,6 +275,7 @@ struct SessionWorker::State {
     void interrupt() { interrupted_ = walks_.load(); }
     void post(Task task);
     void run();
+    void open(const CheckJob& job);
     void deliver(SessionUpdate news);
     /// The requested view, if it can be made now.
     std::optional<ShowRequest> wanted(const WorkerSession& session);
@@ -282,6 +287,7 @@ struct SessionWorker::State {
     std::optional<ShowRequest> wanted_;
     SessionUpdate news_;
     std::atomic<bool> stopping_ = false;
+    std::atomic<uint64_t> opens_ = 0;       // requested
     std::atomic<uint64_t> walks_ = 0;       // requested
     std::atomic<uint64_t> interrupted_ = 0; // walks up to this number
     uint64_t walking_ = 0;                  // last one begun; used by the worker's thread only
@@ -305,6 +311,16 @@ void SessionWorker::State::post(Task task) {
     changed_.notify_all();
 }
 
+void SessionWorker::State::open(const CheckJob& job) {
+    const uint64_t number = ++opens_;
+    post([this, job, number](WorkerSession& session) {
+        const auto is_superseded = [&] { return stopping_ || opens_ != number; };
+        if (is_superseded()) return;
+        session.open(
+            job, [&] { deliver(session.take_update()); }, is_superseded);
+    });
+}
+
 void SessionWorker::State::deliver(SessionUpdate news) {
     if (!news.has_news) return;
     {
@@ -324,7 +340,7 @@ void SessionWorker::State::run() {
     const auto is_interrupted = [this] {
         return stopping_ || (walking_ != 0 && walking_ <= interrupted_);
     };
-    WorkerSession session(is_interrupted, [this] { return stopping_.load(); });
+    WorkerSession session(is_interrupted);
     while (!stopping_) {
         Task task;
         {
@@ -359,10 +375,7 @@ void SessionWorker::interrupt() { state_->interrupt(); }
 
 void SessionWorker::open(const CheckJob& job) {
     interrupt();
-    state_->post([state = state_.get(), job](WorkerSession& session) {
-        const auto publish = [&] { state->deliver(session.take_update()); };
-        session.open(job, publish);
-    });
+    state_->open(job);
 }
 
 void SessionWorker::show(const ShowRequest& request) {
@@ -396,12 +409,6 @@ void SessionWorker::change(const WhatIf& change, size_t block) {
 
 void SessionWorker::take_back() {
     state_->post([](WorkerSession& session) { session.take_back(); });
-}
-
-void SessionWorker::save_setup(const CheckJob& job, const std::string& path, bool may_replace,
-                               const SetupWriter& write) {
-    state_->post(
-        [=](WorkerSession& session) { session.save_setup(job, path, may_replace, write); });
 }
 
 SessionUpdate SessionWorker::take() {

@@ -26,13 +26,15 @@ class ProgramTrack;
 /// A debugging session and its updates for the window, used by one thread.
 class WorkerSession {
 public:
-    /// `is_interrupted` is polled during long walks, `is_closing` while a program is opened.
-    WorkerSession(std::function<bool()> is_interrupted, std::function<bool()> is_closing);
+    /// `is_interrupted` is polled during long walks.
+    explicit WorkerSession(std::function<bool()> is_interrupted);
     ~WorkerSession();
 
     /// Opens a program. Calls `publish` at the start, and when the path is known, before the stock
-    /// model is made.
-    void open(const CheckJob& job, const std::function<void()>& publish);
+    /// model is made. The program that is already open goes on until the new set-up is read, and
+    /// stays open if that fails. `is_superseded` is polled: true stops opening.
+    void open(const CheckJob& job, const std::function<void()>& publish,
+              const std::function<bool()>& is_superseded);
     /// The record so far; null: no program is open.
     const CheckRun* checked() const;
     /// Whether there is more to record.
@@ -48,8 +50,6 @@ public:
     void watch(const std::vector<std::string>& expressions) { watched_ = expressions; }
     void change(const WhatIf& change, size_t block);
     void take_back();
-    void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
-                    const SetupWriter& write);
 
     SessionUpdate take_update();
 
@@ -59,7 +59,9 @@ private:
     void publish_if_due();
     void walk_on();
     /// Reports that the program cannot be opened.
-    void fail(const core::Error& error);
+    void fail(const core::Error& error, bool is_again);
+    /// Forgets the open program.
+    void begin(const CheckJob& job, bool is_again);
     void show_early(ProgramTrack track);
     void refuse(const core::Error& error);
     /// The set-up in effect for a block, for drawing.
@@ -68,8 +70,10 @@ private:
     void restart_following();
     std::vector<ShownValue> watched_values() const;
 
-    std::function<bool()> is_interrupted_, is_closing_;
+    std::function<bool()> is_interrupted_;
     std::unique_ptr<DebugSession> session_;
+    std::string program_;   // path of the program that was opened last
+    bool is_shown_ = false; // its path and set-up were published
     SessionPublisher publisher_;
     std::unique_ptr<render::StockSurface> surface_;
     std::vector<std::pair<size_t, std::shared_ptr<const SceneSetup>>> scenes_; // by first block
@@ -98,6 +102,7 @@ public:
     /// Aborts the check.
     ~SessionWorker();
 
+    /// Only the last of several waiting requests is answered.
     void open(const CheckJob& job);
     /// Only the last of several waiting requests is answered.
     void show(const ShowRequest& request);
@@ -112,9 +117,6 @@ public:
     /// Applies a change that takes effect from a block on.
     void change(const WhatIf& change, size_t block);
     void take_back();
-    /// See app::save_setup.
-    void save_setup(const CheckJob& job, const std::string& path, bool may_replace,
-                    const SetupWriter& write);
 
     /// What is new since the last call.
     SessionUpdate take();

@@ -1,6 +1,7 @@
 #include "app/view/model/view_model.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <utility>
 
@@ -38,6 +39,16 @@ void forget_view_state(ViewModel& model) {
     model.measuring.positions.clear();
     model.follows_timeline = true;
     model.camera_placed = false;
+}
+
+/// The last known state of the stock, with the bodies of another set-up.
+std::shared_ptr<const BlockState> with_bodies_of(const std::shared_ptr<const BlockState>& before,
+                                                 const OpenedProgram& opened) {
+    if (!before) return nullptr;
+    auto state = std::make_shared<BlockState>(*before);
+    state->scene = opened.scene;
+    state->mounted_fixtures.clear();
+    return state;
 }
 
 /// Prepares for a new opening. If it is the same program, what the user has entered stays.
@@ -164,8 +175,18 @@ void stay(ViewModel& model) {
 
 void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (!news.has_news) return;
-    if (news.opening != model.opening) start_anew(model, news.opening);
-    if (news.opened) model.program = news.opened;
+    if (news.opening != model.opening) {
+        const bool is_again = news.is_again && news.opened && model.program
+                              && model.program->program == news.opened->program;
+        const auto shown = is_again ? with_bodies_of(model.block_state, *news.opened) : nullptr;
+        start_anew(model, news.opening);
+        model.block_state = shown; // until the new state arrives
+    }
+    if (news.opened) {
+        model.program = news.opened;
+        model.workspace.error.reset();
+    }
+    if (news.setup_error) model.workspace.error = news.setup_error;
     if (news.opened && !model.settings.has_own_unit) model.settings.inch = news.opened->is_inch;
     const bool has_rows = !news.rows.empty();
     const bool is_first = !model.has_rows() && has_rows;
@@ -190,7 +211,6 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     model.fraction = news.fraction;
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
-    if (news.saved) model.saved = news.saved;
     if (news.refusal) say(model, *news.refusal, now);
     if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped)
         model.coverage = coverage_words(model);
@@ -373,6 +393,58 @@ bool go_to_stop(ViewModel& model, bool forward) {
     else
         go_to(model, below == all.begin() ? all.back() : *(below - 1));
     return true;
+}
+
+namespace {
+
+const char* words_of(DeviceAnswer answer) {
+    switch (answer) {
+    case DeviceAnswer::unknown:
+        return "no answer";
+    case DeviceAnswer::nothing:
+        return "no motion";
+    case DeviceAnswer::permitted:
+        return "permitted";
+    case DeviceAnswer::late:
+        return "late";
+    case DeviceAnswer::refused:
+        return "refused";
+    case DeviceAnswer::not_queried:
+        return "not checked";
+    }
+    return "";
+}
+
+std::string device_words(const ViewModel& model) {
+    const DeviceModel& device = model.device;
+    if (!device.shown) return {};
+    if (device.failure) return ", coprocessor: failed";
+    if (!device.study) return device.is_running ? ", coprocessor: running" : ", coprocessor";
+    return std::string(", coprocessor: ")
+           + words_of(answer_of(device.study.get(), model.cursor.block));
+}
+
+} // namespace
+
+std::string window_title(const ViewModel& model) {
+    if (model.failure || (model.is_recorded && !model.has_rows()))
+        return "Program could not be opened - feeler";
+    if (!model.program) return "feeler";
+    std::string title = model.workspace.document.is_modified() ? "* " : "";
+    title += std::filesystem::path(model.program->program).filename().generic_string();
+    const auto state_words = [](const BlockRow& row) -> std::string {
+        if (!is_offending(row)) return {};
+        return std::string(", ")
+               + (row.verdict != core::Verdict::clear ? core::name_of(row.verdict) : "error");
+    };
+    if (model.has_rows())
+        title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
+                             model.rows.size() - 1, state_words(model.row()));
+    title += device_words(model);
+    if (!model.missing.empty()) title += ", file missing or empty";
+    if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
+    if (model.workspace.error) title += ", last good state";
+    return title + " - feeler";
 }
 
 } // namespace app::viewer

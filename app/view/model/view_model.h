@@ -13,11 +13,11 @@
 #include "app/view/model/session_update.h"
 #include "app/view/model/settings.h"
 #include "app/view/model/timeline.h"
+#include "app/view/model/workspace.h"
 #include "render/scene.h"
 
 namespace app {
 struct CheckJob;
-struct SetupEdits;
 struct Tolerances;
 } // namespace app
 
@@ -97,15 +97,8 @@ enum class Popup : uint8_t {
     what_if,
     breakpoint,
     settings,
-    setup,
+    leaving,
     tolerances
-};
-
-/// A request to check with edits of the set-up, or to save them.
-struct SetupRequest {
-    std::shared_ptr<const SetupEdits> edits;
-    std::string save_path = {}; // empty: only check
-    bool may_replace = false;
 };
 
 /// Measuring between two clicked points.
@@ -130,14 +123,14 @@ struct ViewModel {
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const BlockState> block_state;
     std::vector<std::string> changes;
-    std::shared_ptr<const SetupEdits> edits; // of the set-up, as last opened; null: none
-    std::optional<SetupSaved> saved;         // result of the last request to save the set-up
     std::optional<core::Error> failure, stopped;
     std::string missing; // a file that was read, but has since been deleted or emptied
     double fraction = 0.0;
     bool is_recorded = false, is_busy = false;
     DeviceModel device;
     ToleranceModel tolerances;
+
+    Workspace workspace; // the set-up
 
     // input of the user
     Cursor cursor;
@@ -151,6 +144,7 @@ struct ViewModel {
     std::vector<FindingNote> notes;            // of all programs
     std::optional<StretchIndex> selected = {}; // in the list of findings
     bool shows_findings = false, note_wants_focus = false;
+    bool shows_setup = false; // in place of lines and findings
     Settings settings;
     TimelineRange range;
     bool follows_timeline = true; // shows the whole program while it grows
@@ -179,13 +173,13 @@ struct ViewModel {
     bool breakpoints_changed = false;
     std::vector<std::string> watches; // expressions
     bool watches_changed = false;
-    std::optional<SetupRequest> wanted_setup;
-    bool wants_saving = false; // the popup shows its field for the file
-    std::string wanted_path;   // a program, set-up or mesh that was dropped or typed
+    std::string wanted_path; // a program, set-up or mesh that was dropped or typed
 
     // requests to the window
     bool notes_changed = false;
     bool wants_picture = false, wants_reload = false, wants_quit = false;
+    bool wants_saving = false;  // of the set-up, under its name
+    std::string save_path = {}; // the set-up is to be saved under this name
 
     bool has_rows() const { return !rows.empty(); }
     const BlockRow& row() const { return rows[cursor.block]; }
@@ -233,5 +227,9 @@ std::string depth_words(const ViewModel& model, const core::Overlap& overlap);
 /// As length_text, for an upper bound or an allowance: rounded up.
 std::string length_at_most(const ViewModel& model, double mm, int decimals = 2);
 const char* length_unit(const ViewModel& model);
+
+/// The title of the window. It includes the current block, for window lists and screen readers, and
+/// the answer of the device if the coprocessor panel is open.
+std::string window_title(const ViewModel& model);
 
 } // namespace app::viewer

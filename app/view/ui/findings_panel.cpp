@@ -76,20 +76,24 @@ void draw_words(Frame& frame, const std::string& message, const std::string& cur
 
 void draw_list_tabs(Frame& frame) {
     ViewModel& model = frame.model;
-    const auto tab = [&](const char* name, bool shows_findings) {
-        const bool is_on = model.shows_findings == shows_findings;
+    const auto tab = [&](const char* name, bool is_on, Command command) {
         text(frame.fonts.strong, frame.palette.color(is_on ? Role::text : Role::dim), name);
-        if (ImGui::IsItemClicked()) show_findings(model, shows_findings);
-        if (!is_on) tip(frame, tip_of(Command::show_findings));
-        if (!is_on) return;
+        const bool is_clicked = ImGui::IsItemClicked() && !is_on;
+        if (!is_on) tip(frame, tip_of(command));
+        if (!is_on) return is_clicked;
         const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
         ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y + frame.px(2)},
                                                   {high.x, high.y + frame.px(4)},
                                                   frame.palette.color(Role::accent));
+        return false;
     };
-    tab("Program", false);
+    const bool is_list = !model.shows_setup;
+    const bool program = tab("Program", is_list && !model.shows_findings, Command::show_findings);
     ImGui::SameLine(0, frame.px(16));
-    tab("Findings", true);
+    const bool findings = tab("Findings", is_list && model.shows_findings, Command::show_findings);
+    ImGui::SameLine(0, frame.px(16));
+    if (tab("Set-up", model.shows_setup, Command::edit_setup)) show_setup(model, true);
+    if (program || findings) show_findings(model, findings);
 }
 
 void FindingsPanel::draw_note(Frame& frame, const StretchIndex& which) {

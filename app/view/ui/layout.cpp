@@ -12,12 +12,12 @@ using render::Role;
 
 /// Draws a panel in an area of the window, with padding inside.
 void place(Frame& frame, Panel& panel, const char* name, const Area& area, ImVec2 padding,
-           bool scrolls = false) {
+           bool scrolls = false, bool takes_keys = false) {
     ImGui::SetCursorScreenPos(area.corner());
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
     ImGui::BeginChild(
         name, area.size(), false,
-        ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoNav
+        ImGuiWindowFlags_AlwaysUseWindowPadding | (takes_keys ? 0 : ImGuiWindowFlags_NoNav)
             | (scrolls ? 0 : ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse));
     ImGui::PopStyleVar();
     panel.draw(frame, area);
@@ -109,8 +109,11 @@ void Layout::draw_body(Frame& frame, const Area& area) {
     const ImVec2 room(frame.px(12), frame.px(10));
     place(frame, toolbar_, "toolbar", parts.toolbar, ImVec2(0, 0));
     const bool findings = frame.model.shows_findings;
-    place(frame, findings ? static_cast<Panel&>(findings_) : program_,
-          findings ? "findings" : "program", parts.list, room);
+    if (frame.model.shows_setup)
+        place(frame, setup_, "setup", parts.list, room, false, true);
+    else
+        place(frame, findings ? static_cast<Panel&>(findings_) : program_,
+              findings ? "findings" : "program", parts.list, room);
     place(frame, scene_, "view", parts.view, ImVec2(0, 0));
     if (parts.device.width > 0.0F) place(frame, device_, "device", parts.device, room, true);
     if (parts.inspector.width > 0.0F)

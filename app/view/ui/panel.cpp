@@ -206,6 +206,10 @@ IconText text_of(Icon icon) {
         return {"\xEF\x81\x9B", "()"};
     case Icon::undo:
         return {"\xEF\x83\xA2", "undo"};
+    case Icon::redo:
+        return {"\xEF\x80\x9E", "redo"};
+    case Icon::save:
+        return {"\xEF\x83\x87", "save"};
     case Icon::chevron:
         return {"\xEF\x81\x94", ">"};
     case Icon::note:

@@ -62,6 +62,8 @@ enum class Icon : uint8_t {
     open,
     locate,
     undo,
+    redo,
+    save,
     chevron,
     note,
     bulb,

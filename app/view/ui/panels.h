@@ -57,7 +57,7 @@ private:
     std::string typed_;
 };
 
-/// Draws the tabs of the two lists on the left.
+/// Draws the tabs of the lists and the set-up on the left.
 void draw_list_tabs(Frame& frame);
 
 /// The current block: clearance, pair, state, findings. Below it, the program as a whole.
@@ -101,13 +101,13 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// Shows, edits and saves the set-up. Edits take effect when the user applies them, and only if all
-/// of them are valid.
-class SetupPopup {
+/// The set-up as a tree, and the fields of the selected thing. An edit takes effect when its field
+/// is left.
+class SetupPanel : public Panel {
 public:
-    SetupPopup();
-    ~SetupPopup();
-    void draw(Frame& frame);
+    SetupPanel();
+    ~SetupPanel() override;
+    void draw(Frame& frame, const Area& area) override;
 
 private:
     struct State;
@@ -115,7 +115,7 @@ private:
 };
 
 /// The dialogs on top of the panels: keys, go to line, open file, what-if, breakpoints, settings,
-/// set-up.
+/// tolerances, unsaved edits.
 class PopupPanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
@@ -125,12 +125,12 @@ private:
     void draw_open_file(Frame& frame);
     void draw_breakpoint(Frame& frame);
     void draw_what_if(Frame& frame);
+    void draw_leaving(Frame& frame);
     void draw_lengths(Frame& frame, const core::Setup& setup);
     void draw_fixture(Frame& frame, const core::Setup& setup);
 
     std::string line_, path_, condition_;
     Popup shown_{};
-    SetupPopup setup_;
     // fields of the what-if dialog
     size_t fixture_ = 0;
     double length_ = 0.0, table_length_ = 0.0, allowance_ = 0.0, by_[3] = {0.0, 0.0, 0.0};
@@ -176,6 +176,7 @@ private:
     ToolbarPanel toolbar_;
     ProgramPanel program_;
     FindingsPanel findings_;
+    SetupPanel setup_;
     ScenePanel scene_;
     InspectorPanel inspector_;
     DevicePanel device_;

@@ -143,7 +143,7 @@ bool walk(ViewModel& model, Command command, double now) {
         go_to_bookmark(model);
         return true;
     case Command::show_findings:
-        show_findings(model, !model.shows_findings);
+        show_findings(model, model.shows_setup ? model.shows_findings : !model.shows_findings);
         return true;
     case Command::next_stretch:
     case Command::previous_stretch:
@@ -309,17 +309,34 @@ void perform(ViewModel& model, Command command, double now) {
         open_popup(model, Popup::what_if);
         break;
     case Command::edit_setup:
-        open_popup(model, Popup::setup);
+        show_setup(model, !model.shows_setup);
         break;
     case Command::save_setup:
-        model.popup = Popup::setup;
         model.wants_saving = true;
+        break;
+    case Command::save_setup_as:
+        show_setup(model, true);
+        model.workspace.is_naming = true;
+        break;
+    case Command::undo:
+        undo(model, now);
+        break;
+    case Command::redo:
+        redo(model, now);
+        break;
+    case Command::copy_item:
+        copy_selected(model);
         break;
     case Command::shortcuts:
         open_popup(model, Popup::shortcuts);
         break;
     case Command::close_popup:
+        if (model.popup == Popup::none && model.workspace.has_keys) {
+            show_setup(model, false);
+            break;
+        }
         if (model.popup == Popup::none) model.section.reset();
+        model.workspace.leaving = Leaving::no;
         model.popup = Popup::none;
         model.playback.running = false;
         stay(model);

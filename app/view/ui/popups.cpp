@@ -133,8 +133,8 @@ const char* title_of(Popup popup) {
         return "Breakpoints";
     case Popup::settings:
         return "Settings";
-    case Popup::setup:
-        return "Set-up";
+    case Popup::leaving:
+        return "The set-up has unsaved edits";
     case Popup::tolerances:
         return "How wrong may the set-up be?";
     case Popup::none:
@@ -289,11 +289,35 @@ void PopupPanel::draw_what_if(Frame& frame) {
         model.wants_take_back = true;
 }
 
+void PopupPanel::draw_leaving(Frame& frame) {
+    ViewModel& model = frame.model;
+    Workspace& workspace = model.workspace;
+    const std::string& path = workspace.document.path();
+    text(frame.fonts.text, frame.palette.color(Role::text),
+         path.empty() ? "They are in no file yet." : "They are not in " + path + " yet.");
+    ImGui::Dummy(ImVec2(0, frame.px(4)));
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::Button("Save")) {
+        model.wants_saving = true;
+        model.shows_setup = true;
+        model.popup = Popup::none;
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Drop the edits")) {
+        workspace.drops_edits = true;
+        model.popup = Popup::none;
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel")) {
+        workspace.leaving = Leaving::no;
+        model.popup = Popup::none;
+    }
+}
+
 void PopupPanel::draw(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
     if (model.popup == Popup::none) return;
     const bool is_wide = model.popup == Popup::shortcuts;
-    const bool is_form = model.popup == Popup::setup;
     const bool is_table = model.popup == Popup::tolerances;
     ImGui::SetNextWindowPos(ImVec2(area.x + 0.5F * area.width, area.y + 0.45F * area.height),
                             ImGuiCond_Always, ImVec2(0.5F, 0.5F));
@@ -301,7 +325,6 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     ImGui::SetNextWindowSizeConstraints(ImVec2(0.0F, 0.0F),
                                         ImVec2(area.width - 20, 0.88F * area.height));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
-    if (is_form) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(760), area.width - 20), 0));
     if (is_table) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(980), area.width - 20), 0));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
@@ -331,8 +354,8 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     case Popup::settings:
         draw_settings(frame);
         break;
-    case Popup::setup:
-        setup_.draw(frame);
+    case Popup::leaving:
+        draw_leaving(frame);
         break;
     case Popup::tolerances:
         draw_tolerances(frame);
@@ -343,7 +366,10 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(2);
-    if (!open) model.popup = Popup::none;
+    if (!open) {
+        model.popup = Popup::none;
+        model.workspace.leaving = Leaving::no;
+    }
     if (model.popup == Popup::none) shown_ = Popup::none;
 }
 
@@ -406,9 +432,6 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
                  "Correct the file and save it; it is then reloaded automatically. Or drop another "
                  "program or set-up here.");
     ImGui::Dummy(ImVec2(0, frame.px(6)));
-    if (model.edits && ImGui::Button("Undo the changes of the set-up"))
-        frame.model.wanted_setup = SetupRequest{};
-    if (model.edits) ImGui::SameLine();
     if (ImGui::Button("Reload")) frame.perform(Command::reload);
     ImGui::SameLine();
     if (ImGui::Button("Open another file")) frame.perform(Command::open);

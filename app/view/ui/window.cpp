@@ -23,6 +23,7 @@
 #include "app/view/model/settings.h"
 #include "app/view/model/tolerance_sheet.h"
 #include "app/view/model/tolerance_worker.h"
+#include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
@@ -128,6 +129,7 @@ public:
           window_(window),
           gui_(window),
           layout_(std::move(renderer)),
+          unsaved_(job.unsaved, job.write),
           log_(job.frame_log),
           worker_([] { glfwPostEmptyEvent(); }),
           device_([] { glfwPostEmptyEvent(); }),
@@ -141,14 +143,19 @@ public:
     void drop(const std::vector<std::string>& paths);
     void damage() { frames_ = 3; }
     void open_job();
-    void do_setup(const SetupRequest& request);
+    /// Closes, or asks first if there are unsaved edits.
+    void close();
 
 private:
     void update();
     void draw();
     void rebuild_fonts();
     void save_picture();
-    void work_with_saved();
+    void watch_files();
+    void open(const CheckJob& check);
+    void take_changed_files(double now);
+    void update_setup(double now);
+    void leave();
     void remember_geometry();
     void set_title();
     double wanted_scale() const;
@@ -162,6 +169,9 @@ private:
     std::string title_;
     std::optional<render::ColorScheme> styled_;
     FileWatch files_;
+    UnsavedSetups unsaved_;
+    uint64_t opened_version_ = 0;           // of the document that is checked
+    std::optional<double> keep_unsaved_at_; // seconds
     FrameLog log_;
     KeyQueue keys_;
     double last_watch_ = 0.0, last_frame_ = 0.0;
@@ -196,49 +206,125 @@ void Window::rebuild_fonts() {
     styled_ = model.settings.theme;
 }
 
+/// Checks the open program with the set-up as it is now.
 void Window::open_job() {
     if (!check_) return;
+    const SetupDocument& document = model.workspace.document;
+    opened_version_ = document.version();
+    check_->setup = document.path();
+    check_->setup_text.reset();
+    if (document.is_modified()) check_->setup_text = document.text();
     worker_.set_breakpoints(model.breakpoints);
     worker_.open(*check_);
+    watch_files();
+    damage();
+}
+
+void Window::watch_files() {
     std::vector<std::string> files = files_of_setup(check_->setup);
     files.push_back(check_->program);
     if (!job_.device.file.empty()) files.push_back(job_.device.file);
     files_.set(std::move(files));
-    model.edits =
-        check_->edits.empty() ? nullptr : std::make_shared<const SetupEdits>(check_->edits);
-    damage();
 }
 
-void Window::do_setup(const SetupRequest& request) {
-    if (!check_) return;
-    CheckJob edited = *check_;
-    edited.edits = *request.edits;
-    damage();
-    if (!request.save_path.empty())
-        return worker_.save_setup(edited, request.save_path, request.may_replace, job_.write);
-    check_ = edited;
+/// Opens a program with the set-up of a job.
+void Window::open(const CheckJob& check) {
+    check_ = check;
+    const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
+    open_document(model, SetupDocument(check.setup, text));
+    if (auto unsaved = unsaved_.find(check.program, check.setup, text))
+        model.workspace.found = std::move(unsaved->text);
+    keep_unsaved_at_.reset();
     open_job();
-    say(model, "Checking again with the changed set-up", glfwGetTime());
-}
-
-/// Continues with the saved set-up file, so that the window shows what was saved.
-void Window::work_with_saved() {
-    const std::string path = model.saved->path;
-    model.saved.reset();
-    if (model.popup == Popup::setup) model.popup = Popup::none;
-    if (!check_) return;
-    check_->setup = path;
-    check_->edits = {};
-    open_job();
-    say(model, "Saved " + path, glfwGetTime());
+    if (model.workspace.found) show_setup(model, true);
 }
 
 void Window::drop(const std::vector<std::string>& paths) {
     damage();
+    const bool opens = std::any_of(paths.begin(), paths.end(),
+                                   [](const std::string& path) { return !is_mesh_file(path); });
+    Workspace& workspace = model.workspace;
+    if (opens && workspace.document.is_modified() && !workspace.drops_edits) {
+        workspace.leaving = Leaving::to_open;
+        workspace.leaving_for = paths;
+        model.popup = Popup::leaving;
+        return;
+    }
     const auto check = with_dropped(check_.value_or(CheckJob{}), paths, model, glfwGetTime());
-    if (!check) return;
-    check_ = check;
+    if (check) open(*check);
+}
+
+void Window::close() {
+    Workspace& workspace = model.workspace;
+    if (!workspace.document.is_modified()) return glfwSetWindowShouldClose(window_, GLFW_TRUE);
+    workspace.leaving = Leaving::to_close;
+    model.popup = Popup::leaving;
+    damage();
+}
+
+/// Does what the user wanted to do when edits were not saved, after they were saved or dropped.
+void Window::leave() {
+    Workspace& workspace = model.workspace;
+    const Leaving leaving = std::exchange(workspace.leaving, Leaving::no);
+    if (check_) unsaved_.forget(check_->program, workspace.document.path());
+    keep_unsaved_at_.reset();
+    if (leaving == Leaving::to_close) return glfwSetWindowShouldClose(window_, GLFW_TRUE);
+    const std::vector<std::string> paths = std::exchange(workspace.leaving_for, {});
+    workspace.drops_edits = true;
+    drop(paths);
+    model.workspace.drops_edits = false;
+}
+
+/// Reads changed files again. Edits of the set-up are never lost that way.
+void Window::take_changed_files(double now) {
+    Workspace& workspace = model.workspace;
+    const std::string& path = workspace.document.path();
+    const auto text = path.empty() ? std::nullopt : core::file_bytes(path);
+    if (text && *text != workspace.document.saved_text()) {
+        if (workspace.document.is_modified()) {
+            workspace.on_disk = *text;
+            show_setup(model, true);
+        } else {
+            take_file(model, *text);
+        }
+    }
     open_job();
+    say(model, "A file has changed: reloading", now);
+}
+
+/// Carries out the requests about the set-up, and checks the program again after an edit.
+void Window::update_setup(double now) {
+    constexpr double keep_delay = 1.0; // seconds
+    Workspace& workspace = model.workspace;
+    const bool saves = std::exchange(model.wants_saving, false) || !model.save_path.empty();
+    if (saves && check_) {
+        const std::string before = workspace.document.path();
+        if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
+            show_setup(model, true);
+        } else {
+            unsaved_.forget(check_->program, before);
+            keep_unsaved_at_.reset();
+            check_->setup = workspace.document.path();
+            watch_files();
+            if (workspace.document.path() != before) open_job();
+            if (workspace.leaving != Leaving::no) leave();
+        }
+        damage();
+    }
+    if (std::exchange(workspace.drops_edits, false)) leave();
+    if (std::exchange(workspace.forgets_found, false) && check_)
+        unsaved_.forget(check_->program, workspace.document.path());
+    if (check_ && workspace.document.version() != opened_version_) {
+        open_job();
+        keep_unsaved_at_ = now + keep_delay;
+    }
+    if (!keep_unsaved_at_ || now < *keep_unsaved_at_ || !check_) return;
+    keep_unsaved_at_.reset();
+    const SetupDocument& document = workspace.document;
+    if (document.is_modified())
+        unsaved_.keep(check_->program, document.path(), document.saved_text(), document.text());
+    else
+        unsaved_.forget(check_->program, document.path());
 }
 
 void Window::press(int code, int modifiers) {
@@ -251,7 +337,8 @@ void Window::press(int code, int modifiers) {
     const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
     const bool moves_text = code >= key::enter && code <= key::end;
     if (is_typing && (is_plain || moves_text)) return;
-    const bool keeps_keys = model.popup != Popup::none && model.popup != Popup::shortcuts;
+    const bool keeps_keys = (model.popup != Popup::none && model.popup != Popup::shortcuts)
+                            || (model.popup == Popup::none && model.workspace.has_keys);
     const bool closes = *command == Command::close_popup || *command == Command::what_if
                         || *command == Command::quit;
     if (keeps_keys && !closes && (is_plain || moves_text)) return;
@@ -291,18 +378,14 @@ void Window::update() {
     if (std::exchange(model.wants_reload, false)) open_job();
     if (now - last_watch_ > watch_interval) {
         last_watch_ = now;
-        if (files_.has_changed()) {
-            open_job();
-            say(model, "A file has changed: reloading", now);
-        }
+        if (files_.has_changed()) take_changed_files(now);
         if (model.missing != files_.missing()) {
             model.missing = files_.missing();
             damage();
         }
         if (now < model.message_until + watch_interval) damage();
     }
-    if (const auto setup = std::exchange(model.wanted_setup, {})) do_setup(*setup);
-    if (model.saved && !model.saved->refusal) work_with_saved();
+    update_setup(now);
     if (send_device_orders(model, device_, check_)) damage();
     if (send_tolerance_orders(model, tolerances_, check_)) damage();
     if (send_requests(model, worker_)) {
@@ -311,7 +394,7 @@ void Window::update() {
     }
     if (std::exchange(model.notes_changed, false))
         keep_notes(model, job_.notes_file, job_.write, now);
-    if (model.wants_quit) glfwSetWindowShouldClose(window_, GLFW_TRUE);
+    if (std::exchange(model.wants_quit, false)) close();
 }
 
 void Window::draw() {
@@ -346,7 +429,7 @@ void Window::remember_geometry() {
 }
 
 void Window::run() {
-    open_job();
+    if (check_) open(*check_);
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
         update();
         if (std::exchange(asked_, false) && !model.playback.running) {
@@ -379,6 +462,11 @@ void damage(GLFWwindow* window, What...) {
 }
 
 void listen(GLFWwindow* window) {
+    glfwSetWindowCloseCallback(window, [](GLFWwindow* w) {
+        if (!glfwGetWindowUserPointer(w)) return;
+        glfwSetWindowShouldClose(w, GLFW_FALSE);
+        window_of(w).close();
+    });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         if (glfwGetWindowUserPointer(w))
             window_of(w).drop(std::vector<std::string>(paths, paths + count));
@@ -449,56 +537,6 @@ core::Result<void> run_window(const WindowJob& job) {
     shown->run();
     glfwSetWindowUserPointer(window.get(), nullptr);
     return {};
-}
-
-namespace {
-
-const char* words_of(DeviceAnswer answer) {
-    switch (answer) {
-    case DeviceAnswer::unknown:
-        return "no answer";
-    case DeviceAnswer::nothing:
-        return "no motion";
-    case DeviceAnswer::permitted:
-        return "permitted";
-    case DeviceAnswer::late:
-        return "late";
-    case DeviceAnswer::refused:
-        return "refused";
-    case DeviceAnswer::not_queried:
-        return "not checked";
-    }
-    return "";
-}
-
-std::string device_words(const ViewModel& model) {
-    const DeviceModel& device = model.device;
-    if (!device.shown) return {};
-    if (device.failure) return ", coprocessor: failed";
-    if (!device.study) return device.is_running ? ", coprocessor: running" : ", coprocessor";
-    return std::string(", coprocessor: ")
-           + words_of(answer_of(device.study.get(), model.cursor.block));
-}
-
-} // namespace
-
-std::string window_title(const ViewModel& model) {
-    if (model.failure || (model.is_recorded && !model.has_rows()))
-        return "Program could not be opened - feeler";
-    if (!model.program) return "feeler";
-    std::string title = std::filesystem::path(model.program->program).filename().generic_string();
-    const auto state_words = [](const BlockRow& row) -> std::string {
-        if (!is_offending(row)) return {};
-        return std::string(", ")
-               + (row.verdict != core::Verdict::clear ? core::name_of(row.verdict) : "error");
-    };
-    if (model.has_rows())
-        title += fmt::format(", line {} (block {} of {}{})", model.row().line, model.cursor.block,
-                             model.rows.size() - 1, state_words(model.row()));
-    title += device_words(model);
-    if (!model.missing.empty()) title += ", file missing or empty";
-    if (model.stopped) title += fmt::format(", stopped at line {}", model.stopped->where.line);
-    return title + " - feeler";
 }
 
 namespace {

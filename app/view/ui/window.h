@@ -30,7 +30,8 @@ struct WindowJob {
     std::filesystem::path settings_file; // read when opened, written when closed; empty: none
     std::filesystem::path notes_file;    // notes on findings; empty: not stored
     std::filesystem::path pictures;      // folder for pictures saved with F12
-    SetupWriter write;                   // for set-ups and notes
+    std::filesystem::path unsaved;       // folder for unsaved set-ups; empty: they are not kept
+    FileWriter write;                    // for set-ups and notes
     std::filesystem::path frame_log;     // log of frames; empty: none
 };
 
@@ -39,10 +40,6 @@ struct WindowJob {
 /// Errors: unsupported, as a single line, without a display or OpenGL 3.3.
 core::Result<void> run_window(const WindowJob& job);
 
-/// The title of the window. It includes the current block, for window lists and screen readers, and
-/// the answer of the device if the coprocessor panel is open.
-std::string window_title(const ViewModel& model);
-
 /// The job after files were dropped on the window: a program, a set-up, or both. A new program
 /// discards the set-up and the breakpoints of the old one. Empty if there is nothing to open; then
 /// a message says why.
@@ -50,7 +47,7 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
                                      ViewModel& model, double now);
 
 /// Saves the notes of the open program, merged with those saved by other windows.
-void keep_notes(ViewModel& model, const std::filesystem::path& path, const SetupWriter& write,
+void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
                 double now);
 
 /// The camera of a picture.

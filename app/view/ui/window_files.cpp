@@ -12,7 +12,12 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     bool has_program = false, has_setup = false;
     for (const std::string& path : paths) {
         if (is_mesh_file(path)) {
-            say(model, "Enter the mesh in a set-up: mesh = \"" + path + "\"", now);
+            if (model.program) {
+                add_mesh(model, path);
+                show_setup(model, true);
+            } else {
+                say(model, "Open a program first: then a mesh is added to its set-up", now);
+            }
         } else if (is_setup_file(path)) {
             check.setup = path;
             has_setup = true;
@@ -31,11 +36,11 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
         model.opens_another = true;
         model.breakpoints.clear();
     }
-    check.edits = {};
+    check.setup_text.reset();
     return check;
 }
 
-void keep_notes(ViewModel& model, const std::filesystem::path& path, const SetupWriter& write,
+void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,
                 double now) {
     if (path.empty() || !model.program) return;
     std::error_code ignored; // writing the file reports it

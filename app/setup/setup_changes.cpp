@@ -1,0 +1,372 @@
+#include "app/setup/setup_changes.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/setup/setup_text.h"
+#include "app/setup/toml_file.h"
+#include "core/base/math.h"
+#include "core/dbm/solid.h"
+#include "core/sim/tool_description.h"
+
+namespace app {
+namespace {
+
+using core::ErrorCode;
+using core::Result;
+
+/// A chain of changes of a text; after an error nothing more is done.
+class Changes {
+public:
+    explicit Changes(std::string text) : text_(std::move(text)) {}
+
+    void set(const TomlPath& path, const std::string& value) {
+        if (text_) text_ = toml_with_value(*text_, path, value);
+    }
+    void erase(const TomlPath& path) {
+        if (text_) text_ = toml_without(*text_, path);
+    }
+    void apply(const std::function<Result<std::string>(const std::string&)>& change) {
+        if (text_) text_ = change(*text_);
+    }
+    /// The values so far; empty after an error.
+    toml::table root() const {
+        auto parsed = text_ ? parsed_toml(*text_) : Result<toml::table>(toml::table{});
+        return parsed ? *std::move(parsed) : toml::table{};
+    }
+    Result<std::string> text() && { return std::move(text_); }
+
+private:
+    Result<std::string> text_;
+};
+
+const toml::node* node_at(const toml::table& root, const TomlPath& path) {
+    toml::node_view<const toml::node> view{static_cast<const toml::node&>(root)};
+    for (const TomlPath::Step& step : path.steps())
+        view = std::holds_alternative<std::string>(step) ? view[std::get<std::string>(step)]
+                                                         : view[std::get<size_t>(step)];
+    return view.node();
+}
+
+/// The element of a list of tables whose key has a value.
+template <typename Value>
+std::optional<size_t> index_of(const toml::table& root, const char* list, const char* key,
+                               const Value& value) {
+    const toml::array* tables = root[list].as_array();
+    for (size_t i = 0; tables && i < tables->size(); ++i)
+        if (const toml::table* table = tables->get(i)->as_table())
+            if ((*table)[key].value<Value>() == value) return i;
+    return std::nullopt;
+}
+
+std::optional<TomlPath> path_of(const char* list, const std::optional<size_t>& index) {
+    return index ? std::optional(TomlPath{list, *index}) : std::nullopt;
+}
+
+toml::table root_of(const std::string& text) {
+    auto parsed = parsed_toml(text);
+    return parsed ? *std::move(parsed) : toml::table{};
+}
+
+/// Removes the keys of a body's shape, apart from one.
+void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape) {
+    const toml::table root = changes.root();
+    for (const char* key : {"box", "cylinder", "mesh", "model", "margin"})
+        if (key != shape && node_at(root, body / key)) changes.erase(body / key);
+}
+
+bool is_zero(const core::Vec3& v) { return v == core::Vec3(0.0); }
+
+void set_vector(Changes& changes, const TomlPath& path, const core::Vec3& value) {
+    if (!is_zero(value) || node_at(changes.root(), path)) changes.set(path, setup_vector(value));
+}
+
+/// Whether bodies other than the stock stand in the frame of a body.
+bool carries_others(const toml::table& root, const std::string& name) {
+    const auto is_carried = [&](const toml::node& node) {
+        const toml::table* table = node.as_table();
+        return table && (*table)["frame"].value<std::string>() == name;
+    };
+    const toml::array* fixtures = root["fixture"].as_array();
+    return (root["part"].node() && is_carried(*root["part"].node()))
+           || (fixtures && std::any_of(fixtures->begin(), fixtures->end(), is_carried));
+}
+
+/// Visits the names in `between` of all allowances: path and name.
+void visit_between(const toml::table& root,
+                   const std::function<void(const TomlPath&, const std::string&)>& see) {
+    const toml::array* rules = root["allowance"].as_array();
+    for (size_t i = 0; rules && i < rules->size(); ++i)
+        for (size_t side = 0; side < 2; ++side)
+            if (const auto name = root["allowance"][i]["between"][side].value<std::string>())
+                see(TomlPath{"allowance", i, "between", side}, *name);
+}
+
+Result<void> check_new_name(const std::string& text, const std::string& name) {
+    if (name.empty()) return core::fail(ErrorCode::invalid_value, "a fixture needs a name");
+    if (path_of_fixture(text, name))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("there is a fixture \"{}\" already", name));
+    return {};
+}
+
+tl::unexpected<core::Error> no_fixture(const std::string& name) {
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("there is no fixture \"{}\" in the set-up", name));
+}
+
+/// The lines of a table without its header, from a text that begins with it.
+std::string body_of(const std::string& table) {
+    const size_t header = table.find("]");
+    const size_t end = table.find('\n', header);
+    return table.substr(end + 1);
+}
+
+} // namespace
+
+std::string setup_number(double value) {
+    constexpr double steps = 1e6;
+    const double rounded = core::round(value * steps) / steps;
+    return toml_number(std::abs(value) < 1e9 ? rounded + 0.0 : value);
+}
+
+std::string setup_vector(const core::Vec3& v) {
+    return fmt::format("[{}, {}, {}]", setup_number(v.x), setup_number(v.y), setup_number(v.z));
+}
+
+std::optional<BodyPath> path_of_fixture(const std::string& text, std::string_view name) {
+    return path_of("fixture", index_of(root_of(text), "fixture", "name", std::string(name)));
+}
+
+std::optional<TomlPath> path_of_tool(const std::string& text, core::ToolNumber number) {
+    return path_of("tool",
+                   index_of(root_of(text), "tool", "number", int64_t{core::value_of(number)}));
+}
+
+Result<std::string> with_stock(const std::string& text, const core::Solid& stock,
+                               std::string_view frame) {
+    const TomlPath path = "stock";
+    const bool is_new = !node_at(root_of(text), path);
+    Changes changes(text);
+    if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
+        for (const char* key : {"at", "rotate_deg"}) changes.erase(path / key);
+        changes.apply([&](const std::string& t) { return with_box(t, path, box->box); });
+    } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
+        changes.erase(path / "rotate_deg");
+        changes.apply([&](const std::string& t) {
+            return with_cylinder(t, path, round->radius, round->height, round->axis);
+        });
+        changes.apply(
+            [&](const std::string& t) { return with_pose(t, path, round->base, core::Vec3(0.0)); });
+    } else {
+        return core::fail(ErrorCode::unsupported, "only a box or a cylinder can be stated here");
+    }
+    if (is_new) changes.set(path / "frame", toml_text(frame));
+    changes.apply([](const std::string& t) { return with_known(t, "stock"); });
+    return std::move(changes).text();
+}
+
+Result<std::string> with_box(const std::string& text, const BodyPath& body, const core::Aabb& box) {
+    Changes changes(text);
+    changes.set(body / "box",
+                fmt::format("[{}, {}]", setup_vector(box.min), setup_vector(box.max)));
+    keep_shape(changes, body, "box");
+    return std::move(changes).text();
+}
+
+Result<std::string> with_cylinder(const std::string& text, const BodyPath& body, double radius,
+                                  double height, int axis) {
+    Changes changes(text);
+    changes.set(body / "cylinder",
+                fmt::format("{{ radius = {}, height = {}, axis = \"{}\" }}", setup_number(radius),
+                            setup_number(height), "XYZ"[axis]));
+    keep_shape(changes, body, "cylinder");
+    return std::move(changes).text();
+}
+
+Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
+                              const std::string& file) {
+    Changes changes(text);
+    changes.set(body / "mesh", toml_text(file));
+    keep_shape(changes, body, "mesh");
+    return std::move(changes).text();
+}
+
+Result<std::string> with_pose(const std::string& text, const BodyPath& body, const core::Vec3& at,
+                              const core::Vec3& rotate_deg) {
+    Changes changes(text);
+    set_vector(changes, body / "at", at);
+    set_vector(changes, body / "rotate_deg", rotate_deg);
+    return std::move(changes).text();
+}
+
+Result<std::string> with_fixture(const std::string& text, const std::string& name,
+                                 const std::string& lines) {
+    if (const auto fits = check_new_name(text, name); !fits) return tl::unexpected(fits.error());
+    Changes changes(text);
+    changes.erase("fixtures");
+    changes.apply([&](const std::string& t) {
+        return toml_with_table(t, "fixture", "name = " + toml_text(name) + "\n" + lines);
+    });
+    return std::move(changes).text();
+}
+
+Result<std::string> with_copied_fixture(const std::string& text, const std::string& name,
+                                        const std::string& copy) {
+    const auto path = path_of_fixture(text, name);
+    if (!path) return no_fixture(name);
+    if (const auto fits = check_new_name(text, copy); !fits) return tl::unexpected(fits.error());
+    const size_t index = std::get<size_t>(path->steps()[1]);
+    FEELER_TRY(const std::string body, toml_body_of(text, "fixture", index));
+    FEELER_TRY(const std::string more, toml_with_table(text, "fixture", body));
+    const size_t last = root_of(more)["fixture"].as_array()->size() - 1;
+    Changes changes(more);
+    changes.set({"fixture", last, "name"}, toml_text(copy));
+    changes.erase({"fixture", last, "move"});
+    return std::move(changes).text();
+}
+
+Result<std::string> without_fixture(const std::string& text, const std::string& name) {
+    const auto path = path_of_fixture(text, name);
+    if (!path) return no_fixture(name);
+    const toml::table root = root_of(text);
+    if (carries_others(root, name))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("other bodies are positioned relative to \"{}\": give them "
+                                      "another frame first",
+                                      name));
+    bool is_named = false;
+    visit_between(root, [&](const TomlPath&, const std::string& other) {
+        is_named = is_named || other == name;
+    });
+    if (is_named)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("a minimum clearance ([[allowance]]) names \"{}\": remove it "
+                                      "first",
+                                      name));
+    return toml_without(text, *path);
+}
+
+Result<std::string> with_renamed_fixture(const std::string& text, const std::string& name,
+                                         const std::string& other) {
+    const auto path = path_of_fixture(text, name);
+    if (!path) return no_fixture(name);
+    if (other == name) return text;
+    if (const auto fits = check_new_name(text, other); !fits) return tl::unexpected(fits.error());
+    Changes changes(text);
+    changes.set(*path / "name", toml_text(other));
+    const toml::table root = root_of(text);
+    visit_between(root, [&](const TomlPath& at, const std::string& named) {
+        if (named == name) changes.set(at, toml_text(other));
+    });
+    const toml::array* fixtures = root["fixture"].as_array();
+    for (size_t i = 0; fixtures && i < fixtures->size(); ++i)
+        if (root["fixture"][i]["frame"].value<std::string>() == name)
+            changes.set({"fixture", i, "frame"}, toml_text(other));
+    if (root["part"]["frame"].value<std::string>() == name)
+        changes.set({"part", "frame"}, toml_text(other));
+    return std::move(changes).text();
+}
+
+std::string free_name(const std::string& text, const std::string& name) {
+    if (!path_of_fixture(text, name)) return name;
+    std::string stem = name; // "clamp-1" becomes "clamp-2"
+    while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
+    if (stem == name || stem.empty()) stem = name + "-";
+    int number = 2;
+    while (path_of_fixture(text, stem + std::to_string(number))) ++number;
+    return stem + std::to_string(number);
+}
+
+Result<std::string> with_tool_value(const std::string& text, core::ToolNumber number,
+                                    const std::string& key,
+                                    const std::optional<std::string>& value) {
+    const auto path = path_of_tool(text, number);
+    if (path && value) return toml_with_value(text, *path / key, *value);
+    if (path) return toml_without(text, *path / key);
+    if (!value) return text;
+    return toml_with_table(
+        text, "tool", fmt::format("number = {}\n{} = {}\n", core::value_of(number), key, *value));
+}
+
+Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
+    const std::string body = body_of(tool_table(tool));
+    const auto path = path_of_tool(text, tool.number);
+    if (!path) return toml_with_table(text, "tool", body);
+    // Value by value, so that the comments of the values that stay are kept.
+    const toml::table wanted = root_of(body);
+    const toml::table root = root_of(text);
+    const toml::table* before = node_at(root, *path)->as_table();
+    Changes changes(text);
+    for (const auto& [key, value] : *before)
+        if (!wanted.contains(key)) changes.erase(*path / std::string(key.str()));
+    for (const auto& [key, value] : wanted) {
+        const toml::node* old = before->get(key);
+        std::ostringstream now, then;
+        value.visit([&](const auto& v) { now << v; });
+        if (old) old->visit([&](const auto& v) { then << v; });
+        if (now.str() != then.str()) changes.set(*path / std::string(key.str()), now.str());
+    }
+    return std::move(changes).text();
+}
+
+Result<std::string> without_tool(const std::string& text, core::ToolNumber number) {
+    const auto path = path_of_tool(text, number);
+    return path ? toml_without(text, *path) : Result<std::string>(text);
+}
+
+Result<std::string> with_offset(const std::string& text, const std::string& name,
+                                const core::Vec3& origin) {
+    const TomlPath path{"offsets", name};
+    const bool is_new = !node_at(root_of(text), path);
+    Changes changes(text);
+    if (is_new)
+        changes.set(path, fmt::format("{{ X = {}, Y = {}, Z = {} }}", setup_number(origin.x),
+                                      setup_number(origin.y), setup_number(origin.z)));
+    for (int axis = 0; axis < 3 && !is_new; ++axis)
+        changes.set(path / std::string(1, "XYZ"[axis]), setup_number(origin[axis]));
+    changes.apply([](const std::string& t) { return with_known(t, "offsets"); });
+    return std::move(changes).text();
+}
+
+Result<std::string> without_offset(const std::string& text, const std::string& name) {
+    Changes changes(text);
+    changes.erase({"offsets", name});
+    const toml::table root = changes.root();
+    const toml::table* offsets = root["offsets"].as_table();
+    if (offsets && offsets->empty()) changes.erase("offsets");
+    return std::move(changes).text();
+}
+
+Result<std::string> with_allowance(const std::string& text, std::optional<double> distance) {
+    const toml::table root = root_of(text);
+    const toml::array* rules = root["allowance"].as_array();
+    if (!rules)
+        return distance ? toml_with_value(text, "allowance", setup_number(*distance))
+                        : toml_without(text, "allowance");
+    for (size_t i = 0; i < rules->size(); ++i) {
+        if (root["allowance"][i]["between"]) continue;
+        return distance
+                   ? toml_with_value(text, {"allowance", i, "distance"}, setup_number(*distance))
+                   : toml_without(text, {"allowance", i});
+    }
+    if (!distance) return text;
+    return toml_with_table(text, "allowance", "distance = " + setup_number(*distance) + "\n");
+}
+
+Result<std::string> with_known(const std::string& text, std::string_view word) {
+    const toml::table root = root_of(text);
+    const toml::array* words = root["assumed"].as_array();
+    std::vector<std::string> left;
+    for (size_t i = 0; words && i < words->size(); ++i)
+        if (const auto one = root["assumed"][i].value<std::string>(); one && *one != word)
+            left.push_back(toml_text(*one));
+    if (!words || left.size() == words->size()) return text;
+    if (left.empty()) return toml_without(text, "assumed");
+    return toml_with_value(text, "assumed", fmt::format("[{}]", fmt::join(left, ", ")));
+}
+
+} // namespace app

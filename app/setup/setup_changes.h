@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "app/setup/toml_edit.h"
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+
+namespace core {
+struct Solid;
+struct ToolDescription;
+} // namespace core
+
+namespace app {
+
+/// Functions that change the text of a set-up file, one statement at a time. They keep everything
+/// else in it, as the functions of toml_edit.h do, whose errors they return. Lengths are mm, and
+/// are rounded to 1e-6 mm; angles are degrees.
+
+/// The place of a body in a set-up: `[stock]`, `[part]` or an element of `[[fixture]]`.
+using BodyPath = TomlPath;
+
+/// The fixture with this name; empty if the set-up has none.
+std::optional<BodyPath> path_of_fixture(const std::string& text, std::string_view name);
+/// The `[[tool]]` with this number.
+std::optional<TomlPath> path_of_tool(const std::string& text, core::ToolNumber number);
+
+/// States the stock, a box or a cylinder, in place of the old one, and that it is not assumed. Its
+/// frame, tolerance and comments stay.
+core::Result<std::string> with_stock(const std::string& text, const core::Solid& stock,
+                                     std::string_view frame);
+
+/// Sets the shape of a body to a box, to a cylinder or to the mesh in a file. Position and frame
+/// stay.
+core::Result<std::string> with_box(const std::string& text, const BodyPath& body,
+                                   const core::Aabb& box);
+core::Result<std::string> with_cylinder(const std::string& text, const BodyPath& body,
+                                        double radius, double height, int axis);
+core::Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
+                                    const std::string& file);
+
+/// Sets `at` and `rotate_deg` of a body. Keys of the value 0 that are not there stay away.
+core::Result<std::string> with_pose(const std::string& text, const BodyPath& body,
+                                    const core::Vec3& at, const core::Vec3& rotate_deg);
+
+/// Adds a fixture with these lines after its name, such as "box = [[0, 0, 0], [10, 10, 10]]".
+/// Removes `fixtures = "none"`.
+core::Result<std::string> with_fixture(const std::string& text, const std::string& name,
+                                       const std::string& lines);
+/// Adds a copy of a fixture under a new name, without its moves during the program.
+core::Result<std::string> with_copied_fixture(const std::string& text, const std::string& name,
+                                              const std::string& copy);
+/// Removes a fixture.
+///
+/// Errors: also invalid_value if other bodies are positioned relative to it, or if an allowance
+///         names it.
+core::Result<std::string> without_fixture(const std::string& text, const std::string& name);
+/// Renames a fixture where it is described and wherever it is named.
+core::Result<std::string> with_renamed_fixture(const std::string& text, const std::string& name,
+                                               const std::string& other);
+/// A name that no body of the set-up has: `name`, or else with a number after it.
+std::string free_name(const std::string& text, const std::string& name);
+
+/// Sets one value of a tool, given as TOML, or removes it. A tool that the set-up does not contain
+/// is added with this value alone; the rest is inferred.
+core::Result<std::string> with_tool_value(const std::string& text, core::ToolNumber number,
+                                          const std::string& key,
+                                          const std::optional<std::string>& value);
+/// States a tool completely, in place of the old description.
+core::Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool);
+core::Result<std::string> without_tool(const std::string& text, core::ToolNumber number);
+
+/// States the origin of a work offset: machine coordinates of X, Y, Z; its other axes stay. The
+/// work offsets are then not assumed.
+core::Result<std::string> with_offset(const std::string& text, const std::string& name,
+                                      const core::Vec3& origin);
+core::Result<std::string> without_offset(const std::string& text, const std::string& name);
+
+/// Sets the general minimum clearance, or leaves it to the defaults.
+core::Result<std::string> with_allowance(const std::string& text, std::optional<double> distance);
+
+/// Removes a word from `assumed`: the value is known.
+core::Result<std::string> with_known(const std::string& text, std::string_view word);
+
+/// A number as a person would write it in a set-up: rounded to 1e-6.
+std::string setup_number(double value);
+/// Three numbers as a list: "[0, 0, 12.5]".
+std::string setup_vector(const core::Vec3& v);
+
+} // namespace app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/ids.h"
+#include "core/base/vec.h"
+
+namespace app {
+
+/// A body as the text of a set-up states it. Frame: `frame`.
+struct StatedBody {
+    struct Cylinder {
+        double radius = 0.0, height = 0.0;
+        int axis = 2;
+    };
+
+    std::string name; // of a fixture
+    std::optional<core::Aabb> box;
+    std::optional<Cylinder> cylinder;
+    std::string mesh, model; // files
+    core::Vec3 at = core::Vec3(0.0), rotate_deg = core::Vec3(0.0);
+    std::string frame = "G54";
+    bool expendable = false;
+    std::optional<double> tolerance, margin; // mm
+    uint32_t line = 0;                       // of its header
+
+    bool has_shape() const { return box || cylinder || !mesh.empty() || !model.empty(); }
+};
+
+/// What the text of a set-up states, for editing it.
+struct StatedSetup {
+    std::optional<StatedBody> stock, part;
+    std::vector<StatedBody> fixtures;
+    std::vector<core::ToolNumber> tools;
+    std::vector<std::string> offsets; // names as written
+    std::string machine_file;
+    bool has_no_fixtures = false; // fixtures = "none"
+
+    const StatedBody* fixture(const std::string& name) const;
+};
+
+/// Reads a text that may be in the middle of an edit: wrong values are left out. Text that is not
+/// TOML gives an empty set-up.
+StatedSetup stated_in(const std::string& text);
+
+} // namespace app

@@ -1,0 +1,383 @@
+#include "app/view/model/workspace.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/check/setup_sheet.h"
+#include "app/setup/setup_changes.h"
+#include "app/setup/setup_text.h"
+#include "app/setup/stated_setup.h"
+#include "app/view/model/view_model.h"
+#include "core/dbm/solid.h"
+
+namespace app::viewer {
+namespace {
+
+using Kind = SetupItem::Kind;
+
+const SetupSheet* sheet_of(const ViewModel& model) {
+    return model.program && model.program->sheet ? model.program->sheet.get() : nullptr;
+}
+
+SetupItem item(Kind kind, std::string name = {}, core::ToolNumber tool = {}) {
+    return {kind, std::move(name), tool};
+}
+
+std::string size_text(const ViewModel& model, const core::Vec3& size) {
+    return fmt::format("{} x {} x {} {}", length_text(model, size.x), length_text(model, size.y),
+                       length_text(model, size.z), length_unit(model));
+}
+
+std::string shape_text(const ViewModel& model, const StatedBody& body) {
+    if (body.box) return size_text(model, body.box->size());
+    if (body.cylinder)
+        return fmt::format("D{} x {} {}", length_text(model, 2.0 * body.cylinder->radius),
+                           length_text(model, body.cylinder->height), length_unit(model));
+    const std::string& file = body.mesh.empty() ? body.model : body.mesh;
+    return std::filesystem::path(file).filename().generic_string();
+}
+
+std::string solid_text(const ViewModel& model, const core::Solid& stock) {
+    if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape))
+        return fmt::format("D{} x {} {}", length_text(model, 2.0 * round->radius),
+                           length_text(model, round->height), length_unit(model));
+    return size_text(model, core::bounds(stock).size());
+}
+
+SetupRow heading_row(std::string title) { return {.item = {}, .title = std::move(title)}; }
+
+void add_machine_rows(const Workspace& workspace, const SetupSheet& sheet,
+                      std::vector<SetupRow>& rows) {
+    SetupRow row{item(Kind::machine), "Machine", "not described", SetupSource::usual};
+    row.is_missing = !sheet.has_machine;
+    if (sheet.has_machine) {
+        row.detail =
+            std::filesystem::path(workspace.stated->machine_file).filename().generic_string();
+        row.source = SetupSource::stated;
+    }
+    rows.push_back(std::move(row));
+}
+
+void add_offset_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<SetupRow>& rows) {
+    rows.push_back(heading_row("Work offsets"));
+    for (const SheetOffset& offset : sheet.offsets)
+        rows.push_back(
+            {item(Kind::offset, offset.name), offset.name,
+             fmt::format("{}, {}, {}", length_text(model, offset.origin.x),
+                         length_text(model, offset.origin.y), length_text(model, offset.origin.z)),
+             offset.source});
+}
+
+void add_fixture_rows(const ViewModel& model, const SetupSheet& sheet,
+                      std::vector<SetupRow>& rows) {
+    const StatedSetup& stated = *model.workspace.stated;
+    SetupRow head = heading_row("Fixtures");
+    if (stated.fixtures.empty()) {
+        head.detail = stated.has_no_fixtures ? "none" : "not described";
+        head.is_missing = !sheet.knows_fixtures;
+    }
+    rows.push_back(std::move(head));
+    for (const StatedBody& body : stated.fixtures)
+        rows.push_back({item(Kind::fixture, body.name), body.name, shape_text(model, body)});
+}
+
+void add_tool_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<SetupRow>& rows) {
+    rows.push_back(heading_row("Tools"));
+    for (const SheetTool& tool : sheet.tools) {
+        const core::ToolNumber number = tool.tool.number;
+        SetupRow row{item(Kind::tool, {}, number),
+                     fmt::format("T{}  {} {}", core::value_of(number),
+                                 core::name_of(tool.tool.shape),
+                                 length_text(model, tool.tool.diameter)),
+                     holder_name(tool.tool), tool.source};
+        if (tool.tool.holder.empty()) row.detail = "no holder";
+        if (row.detail.empty()) row.detail = "holder";
+        rows.push_back(std::move(row));
+    }
+}
+
+void take_in_text(Workspace& workspace) {
+    workspace.stated = std::make_shared<const StatedSetup>(stated_in(workspace.document.text()));
+    workspace.refusal.clear();
+}
+
+/// Selects nothing if the selected thing is gone.
+void keep_selection(Workspace& workspace) {
+    const SetupItem& selected = workspace.selected;
+    if (selected.kind == Kind::fixture && !workspace.stated->fixture(selected.name))
+        workspace.selected = {};
+}
+
+void step_back_or_forth(ViewModel& model, bool back, double now) {
+    SetupDocument& document = model.workspace.document;
+    const std::string title = back ? document.undo_title() : document.redo_title();
+    if (title.empty()) return say(model, back ? "Nothing to undo" : "Nothing to redo", now);
+    if (back)
+        document.undo();
+    else
+        document.redo();
+    take_in_text(model.workspace);
+    keep_selection(model.workspace);
+    say(model, (back ? "Undone: " : "Done again: ") + title, now);
+}
+
+const SheetTool* tool_of(const SetupSheet& sheet, core::ToolNumber number) {
+    const auto found =
+        std::find_if(sheet.tools.begin(), sheet.tools.end(),
+                     [&](const SheetTool& tool) { return tool.tool.number == number; });
+    return found == sheet.tools.end() ? nullptr : &*found;
+}
+
+const SheetOffset* offset_of(const SetupSheet& sheet, const std::string& name) {
+    const auto found = std::find_if(sheet.offsets.begin(), sheet.offsets.end(),
+                                    [&](const SheetOffset& offset) { return offset.name == name; });
+    return found == sheet.offsets.end() ? nullptr : &*found;
+}
+
+core::Result<std::string> stated_offset(const std::string& text, const StatedSetup& stated,
+                                        const SheetOffset& offset) {
+    const bool is_there = std::find(stated.offsets.begin(), stated.offsets.end(), offset.name)
+                          != stated.offsets.end();
+    return is_there ? with_known(text, "offsets") : with_offset(text, offset.name, offset.origin);
+}
+
+/// Adds a fixture and selects it. `lines`: its shape and position.
+void add_fixture(ViewModel& model, const std::string& wanted_name, const std::string& lines) {
+    const std::string name = free_name(model.workspace.document.text(), wanted_name);
+    if (edit_setup(model, "Add " + name,
+                   [&](const std::string& text) { return with_fixture(text, name, lines); }))
+        model.workspace.selected = item(Kind::fixture, name);
+}
+
+} // namespace
+
+void open_document(ViewModel& model, SetupDocument document) {
+    Workspace workspace;
+    workspace.document = std::move(document);
+    workspace.stated = std::make_shared<const StatedSetup>(stated_in(workspace.document.text()));
+    model.workspace = std::move(workspace);
+}
+
+bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument::Edit& edit,
+                const std::string& mark) {
+    Workspace& workspace = model.workspace;
+    const auto edited = workspace.document.edit(title, edit, mark);
+    if (!edited) {
+        workspace.refusal = edited.error().message;
+        return false;
+    }
+    take_in_text(workspace);
+    return true;
+}
+
+void take_file(ViewModel& model, std::string text) {
+    model.workspace.document.file_changed(std::move(text));
+    take_in_text(model.workspace);
+    keep_selection(model.workspace);
+}
+
+void undo(ViewModel& model, double now) { step_back_or_forth(model, true, now); }
+
+void redo(ViewModel& model, double now) { step_back_or_forth(model, false, now); }
+
+std::vector<SetupRow> rows_of_setup(const ViewModel& model) {
+    const Workspace& workspace = model.workspace;
+    const SetupSheet* sheet = sheet_of(model);
+    if (!sheet || !workspace.stated) return {};
+    std::vector<SetupRow> rows;
+    add_machine_rows(workspace, *sheet, rows);
+    add_offset_rows(model, *sheet, rows);
+    rows.push_back(
+        {item(Kind::stock), "Stock", solid_text(model, sheet->stock), sheet->stock_source});
+    add_fixture_rows(model, *sheet, rows);
+    if (workspace.stated->part)
+        rows.push_back({item(Kind::part), "Part", shape_text(model, *workspace.stated->part)});
+    add_tool_rows(model, *sheet, rows);
+    rows.push_back(
+        {item(Kind::allowance), "Minimum clearance",
+         sheet->allowance ? length_text(model, *sheet->allowance) + " " + length_unit(model) : "",
+         sheet->allowance ? SetupSource::stated : SetupSource::usual});
+    if (workspace.error && workspace.error->where.line > 0) {
+        const SetupItem wrong = item_at_line(workspace, workspace.error->where.line);
+        for (SetupRow& row : rows) row.has_error = wrong.kind != Kind::none && row.item == wrong;
+    }
+    return rows;
+}
+
+SetupItem item_at_line(const Workspace& workspace, uint32_t line) {
+    const std::string& text = workspace.document.text();
+    SetupItem found;
+    uint32_t best = 0;
+    const auto offer = [&](uint32_t first, const SetupItem& item) {
+        if (first <= line && first > best) {
+            best = first;
+            found = item;
+        }
+    };
+    const StatedSetup& stated = *workspace.stated;
+    if (stated.stock) offer(stated.stock->line, item(Kind::stock));
+    if (stated.part) offer(stated.part->line, item(Kind::part));
+    for (const StatedBody& body : stated.fixtures) offer(body.line, item(Kind::fixture, body.name));
+    for (const core::ToolNumber number : stated.tools)
+        if (const auto path = path_of_tool(text, number))
+            offer(toml_span(text, *path).line, item(Kind::tool, {}, number));
+    for (const std::string& name : stated.offsets)
+        offer(toml_span(text, {"offsets", name}).line, item(Kind::offset, name));
+    for (const char* other : {"program", "machine", "control", "rules", "allowance"})
+        offer(toml_span(text, other).line,
+              std::string_view(other) == "machine" ? item(Kind::machine) : SetupItem{});
+    return found;
+}
+
+bool can_state(const ViewModel& model, const SetupItem& item) {
+    const SetupSheet* sheet = sheet_of(model);
+    if (!sheet) return false;
+    if (item.kind == Kind::stock)
+        return sheet->stock_source == SetupSource::assumed
+               && !std::holds_alternative<core::SolidMesh>(sheet->stock.shape);
+    if (item.kind == Kind::offset) {
+        const SheetOffset* offset = offset_of(*sheet, item.name);
+        return offset && offset->source == SetupSource::assumed;
+    }
+    if (item.kind != Kind::tool) return false;
+    const SheetTool* tool = tool_of(*sheet, item.tool);
+    return tool && tool->source == SetupSource::assumed;
+}
+
+void state_item(ViewModel& model, const SetupItem& item) {
+    const SetupSheet* sheet = sheet_of(model);
+    if (!sheet || !can_state(model, item)) return;
+    const StatedSetup stated = *model.workspace.stated;
+    if (item.kind == Kind::stock) {
+        const bool has_shape = stated.stock && stated.stock->has_shape();
+        edit_setup(model, "State the stock", [&](const std::string& text) {
+            return has_shape ? with_known(text, "stock")
+                             : with_stock(text, sheet->stock, sheet->frame);
+        });
+    } else if (item.kind == Kind::offset) {
+        const SheetOffset offset = *offset_of(*sheet, item.name);
+        edit_setup(model, "State " + offset.name,
+                   [&](const std::string& text) { return stated_offset(text, stated, offset); });
+    } else {
+        const SheetTool& tool = *tool_of(*sheet, item.tool);
+        edit_setup(model, fmt::format("State T{}", core::value_of(item.tool)),
+                   [&](const std::string& text) { return with_tool(text, tool.tool); });
+    }
+}
+
+void add_box(ViewModel& model) {
+    const SetupSheet* sheet = sheet_of(model);
+    if (!sheet) return;
+    const bool inch = model.settings.inch;
+    const core::Vec3 size = inch ? core::Vec3(50.8, 25.4, 25.4) : core::Vec3(50.0, 25.0, 25.0);
+    const core::Aabb stock = core::bounds(sheet->stock);
+    const core::Vec3 at(stock.min.x - size.x, stock.min.y, stock.min.z);
+    add_fixture(model, "block-1",
+                fmt::format("box = [[0, 0, 0], {}]\nat = {}\nframe = {}\n", setup_vector(size),
+                            setup_vector(at), toml_text(sheet->frame)));
+}
+
+void add_mesh(ViewModel& model, const std::string& file) {
+    const std::string name = std::filesystem::path(file).stem().generic_string();
+    const SetupSheet* sheet = sheet_of(model);
+    const std::string path = path_in_setup(model, file);
+    add_fixture(model, name.empty() ? "mesh" : name,
+                fmt::format("mesh = {}\nat = [0, 0, 0]\nframe = {}\n", toml_text(path),
+                            toml_text(sheet ? sheet->frame : "G54")));
+}
+
+void copy_selected(ViewModel& model) {
+    const SetupItem selected = model.workspace.selected;
+    if (selected.kind != Kind::fixture) return;
+    const std::string copy = free_name(model.workspace.document.text(), selected.name);
+    if (edit_setup(model, "Copy " + selected.name, [&](const std::string& text) {
+            return with_copied_fixture(text, selected.name, copy);
+        }))
+        model.workspace.selected = item(Kind::fixture, copy);
+}
+
+void delete_selected(ViewModel& model) {
+    const SetupItem selected = model.workspace.selected;
+    const auto remove = [&](const std::string& what, const SetupDocument::Edit& edit) {
+        edit_setup(model, "Delete " + what, edit);
+    };
+    switch (selected.kind) {
+    case Kind::fixture:
+        remove(selected.name,
+               [&](const std::string& text) { return without_fixture(text, selected.name); });
+        break;
+    case Kind::stock:
+        remove("the stock", [](const std::string& text) { return toml_without(text, "stock"); });
+        break;
+    case Kind::part:
+        remove("the part", [](const std::string& text) { return toml_without(text, "part"); });
+        break;
+    case Kind::offset:
+        remove(selected.name,
+               [&](const std::string& text) { return without_offset(text, selected.name); });
+        break;
+    case Kind::tool:
+        remove(fmt::format("T{}", core::value_of(selected.tool)),
+               [&](const std::string& text) { return without_tool(text, selected.tool); });
+        break;
+    case Kind::allowance:
+        remove("the minimum clearance",
+               [](const std::string& text) { return with_allowance(text, std::nullopt); });
+        break;
+    case Kind::machine:
+    case Kind::none:
+        break;
+    }
+    keep_selection(model.workspace);
+}
+
+void rename_selected(ViewModel& model, const std::string& name) {
+    const SetupItem selected = model.workspace.selected;
+    if (selected.kind != Kind::fixture || name == selected.name) return;
+    if (edit_setup(model, fmt::format("Rename {}", selected.name), [&](const std::string& text) {
+            return with_renamed_fixture(text, selected.name, name);
+        }))
+        model.workspace.selected.name = name;
+}
+
+std::string path_in_setup(const ViewModel& model, const std::string& file) {
+    namespace fs = std::filesystem;
+    std::error_code failure;
+    const std::string& own = model.workspace.document.path();
+    const fs::path near = own.empty() && model.program ? model.program->program : own;
+    const fs::path folder = fs::absolute(near, failure).parent_path();
+    const fs::path full = fs::absolute(file, failure);
+    if (failure) return file;
+    const fs::path relative = full.lexically_normal().lexically_relative(folder.lexically_normal());
+    const bool is_below = !relative.empty() && *relative.begin() != "..";
+    return (is_below ? relative : full).generic_string();
+}
+
+bool save_document(ViewModel& model, const std::string& path, const FileWriter& write, double now) {
+    Workspace& workspace = model.workspace;
+    const std::string target = path.empty() ? workspace.document.path() : path;
+    if (target.empty()) {
+        workspace.is_naming = true;
+        return false;
+    }
+    const bool may_replace = std::exchange(workspace.may_replace, false);
+    const auto saved = save_setup(workspace.document, target,
+                                  may_replace ? Replacing::allowed : Replacing::refused,
+                                  model.program ? model.program->program : "", write);
+    if (!saved) {
+        workspace.is_naming = true;
+        workspace.file_name = target;
+        workspace.refusal = target + " " + saved.error().message;
+        return false;
+    }
+    workspace.is_naming = false;
+    workspace.on_disk.reset();
+    workspace.refusal.clear();
+    say(model, "Saved " + target, now);
+    return true;
+}
+
+} // namespace app::viewer

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/setup/setup_document.h"
+#include "core/base/ids.h"
+
+namespace app {
+enum class SetupSource : uint8_t;
+struct StatedSetup;
+} // namespace app
+
+namespace app::viewer {
+
+struct ViewModel;
+
+/// A thing in the tree of a set-up.
+struct SetupItem {
+    enum class Kind : uint8_t { none, machine, offset, stock, fixture, part, tool, allowance };
+
+    Kind kind = Kind::none;
+    std::string name;        // of an offset or a fixture
+    core::ToolNumber tool{}; // of a tool
+
+    bool operator==(const SetupItem&) const = default;
+};
+
+/// A row of the tree.
+struct SetupRow {
+    SetupItem item; // none: a heading
+    std::string title, detail;
+    SetupSource source{};
+    bool is_missing = false; // nothing is known about it, and it is not checked
+    bool has_error = false;  // the error in the set-up is about it
+};
+
+/// What the user is asked before unsaved edits are dropped.
+enum class Leaving : uint8_t { no, to_close, to_open };
+
+/// The set-up while it is edited.
+///
+/// Every edit changes the text of the document. The program is then checked with the new text in
+/// the background. If the text cannot be read, the last good state stays on screen.
+struct Workspace {
+    SetupDocument document;
+    std::shared_ptr<const StatedSetup> stated; // by the text of the document; never null once open
+    SetupItem selected;
+    std::optional<core::Error> error;   // in the text that was read last
+    std::string refusal;                // why the last edit was not made; empty: it was
+    std::optional<std::string> on_disk; // text in the file, changed elsewhere while there are edits
+    std::optional<std::string> found;   // text with edits of an earlier session
+    bool forgets_found = false;         // the user does not want them
+    Leaving leaving = Leaving::no;
+    bool drops_edits = false;             // the user wants to leave without saving
+    std::vector<std::string> leaving_for; // files to open then
+
+    // of the panel
+    bool has_keys = false;    // the panel has the keyboard
+    bool wants_focus = false; // it should get it in the next frame
+    bool is_naming = false;   // the file name is asked for
+    bool may_replace = false; // the user confirmed that the named file may be replaced
+    std::string file_name;    // as typed
+};
+
+/// Opens a document.
+void open_document(ViewModel& model, SetupDocument document);
+
+/// Edits the document; a refused edit is reported in `refusal`. See SetupDocument::edit. True if it
+/// was made.
+bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument::Edit& edit,
+                const std::string& mark = {});
+/// Takes in the new text of the file of an unmodified document.
+void take_file(ViewModel& model, std::string text);
+void undo(ViewModel& model, double now);
+void redo(ViewModel& model, double now);
+
+/// The tree: machine, work offsets, stock, fixtures, part, tools, minimum clearance.
+std::vector<SetupRow> rows_of_setup(const ViewModel& model);
+
+/// The thing that a line of the set-up describes; none if it describes none.
+SetupItem item_at_line(const Workspace& workspace, uint32_t line);
+
+/// Writes what is assumed about a thing into the set-up as it is: a stock, a work offset, all sizes
+/// of a tool.
+void state_item(ViewModel& model, const SetupItem& item);
+
+/// Whether state_item() has something to write.
+bool can_state(const ViewModel& model, const SetupItem& item);
+
+/// Adds a block as a fixture on the upper side of the stock, or the mesh in a file at the origin,
+/// and selects it.
+void add_box(ViewModel& model);
+void add_mesh(ViewModel& model, const std::string& file);
+/// Copies, removes or renames the selected thing, if that is possible.
+void copy_selected(ViewModel& model);
+void delete_selected(ViewModel& model);
+void rename_selected(ViewModel& model, const std::string& name);
+
+/// The path of a file as a set-up names it: relative if it is in the folder of the set-up or below.
+std::string path_in_setup(const ViewModel& model, const std::string& file);
+
+/// Saves the document under a path, or under its own if it is empty; without both, asks for a name.
+/// True if it was saved.
+bool save_document(ViewModel& model, const std::string& path, const FileWriter& write, double now);
+
+} // namespace app::viewer

@@ -1,0 +1,188 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/check/setup_sheet.h"
+#include "app/commands/output.h"
+#include "app/setup/stated_setup.h"
+#include "app/view/model/unsaved_setup.h"
+#include "app/view/model/view_model.h"
+#include "app/view/model/workspace.h"
+#include "tests/support/scoped_folder.h"
+
+namespace {
+
+using namespace app::viewer;
+using app::SetupDocument;
+using test_support::bytes_of;
+using testing::HasSubstr;
+using Kind = SetupItem::Kind;
+
+/// A window with a program and the assumed set-up of a worker.
+ViewModel opened_model(const std::string& text = {}, const std::string& path = {}) {
+    ViewModel model;
+    OpenedProgram opened;
+    opened.program = "/jobs/plate.nc";
+    opened.proposed_path = "/jobs/plate.toml";
+    auto sheet = std::make_shared<app::SetupSheet>();
+    sheet->frame = "G54";
+    sheet->stock = {core::SolidBox{{{0, 0, -10}, {120, 80, 0}}}, 0.0};
+    sheet->stock_source = app::SetupSource::assumed;
+    core::ToolDescription tool;
+    tool.number = core::ToolNumber{3};
+    tool.diameter = 6.0;
+    tool.flute_length = 18.0;
+    sheet->tools.push_back({tool, app::SetupSource::assumed, "because", {}});
+    sheet->offsets.push_back({"G54", {0, 0, -500}, app::SetupSource::assumed, true});
+    opened.sheet = sheet;
+    model.program = std::make_shared<const OpenedProgram>(opened);
+    open_document(model, SetupDocument(path, text));
+    return model;
+}
+
+const std::string& text_of_setup(const ViewModel& model) { return model.workspace.document.text(); }
+
+std::vector<std::string> titles(const ViewModel& model) {
+    std::vector<std::string> all;
+    for (const SetupRow& row : rows_of_setup(model)) all.push_back(row.title);
+    return all;
+}
+
+TEST(Workspace, ShowsTheSetupAsATree) {
+    const ViewModel model = opened_model(
+        "[[fixture]]\nname = \"vise\"\nbox = [[0, 0, 0], [10, 20, 30]]\n[part]\nmesh = "
+        "\"a/part.stl\"\n");
+    EXPECT_EQ(titles(model), (std::vector<std::string>{"Machine", "Work offsets", "G54", "Stock",
+                                                       "Fixtures", "vise", "Part", "Tools",
+                                                       "T3  flat 6.00", "Minimum clearance"}));
+    const auto rows = rows_of_setup(model);
+    EXPECT_TRUE(rows[0].is_missing);
+    EXPECT_EQ(rows[3].source, app::SetupSource::assumed);
+    EXPECT_EQ(rows[5].detail, "10.00 x 20.00 x 30.00 mm");
+    EXPECT_EQ(rows[6].detail, "part.stl");
+    EXPECT_EQ(rows[8].detail, "no holder");
+}
+
+TEST(Workspace, StatesWhatIsAssumedWithOneClick) {
+    ViewModel model = opened_model();
+    const SetupItem stock{Kind::stock, {}, {}}, offset{Kind::offset, "G54", {}},
+        tool{Kind::tool, {}, core::ToolNumber{3}};
+    for (const SetupItem& item : {stock, offset, tool}) {
+        EXPECT_TRUE(can_state(model, item));
+        state_item(model, item);
+        EXPECT_EQ(model.workspace.refusal, "");
+    }
+    EXPECT_THAT(text_of_setup(model), HasSubstr("box = [[0, 0, -10], [120, 80, 0]]"));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("G54 = { X = 0, Y = 0, Z = -500 }"));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("number = 3\nshape = \"flat\"\ndiameter = 6"));
+    for (int i = 0; i < 3; ++i) undo(model, 0.0);
+    EXPECT_EQ(text_of_setup(model), "");
+}
+
+TEST(Workspace, StatesAStockThatTheFileCallsAssumed) {
+    const std::string stock = "[stock] # sawn\nbox = [[0, 0, -10], [120, 80, 0]]\n";
+    ViewModel model = opened_model("assumed = [\"stock\"]\n" + stock, "/jobs/plate.toml");
+    state_item(model, {Kind::stock, {}, {}});
+    EXPECT_EQ(text_of_setup(model), stock);
+}
+
+TEST(Workspace, AddsCopiesRenamesAndDeletesWithUndo) {
+    ViewModel model = opened_model();
+    add_box(model);
+    EXPECT_EQ(model.workspace.selected, (SetupItem{Kind::fixture, "block-1", {}}));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("at = [-50, 0, -10]"));
+    const std::string first = text_of_setup(model);
+    copy_selected(model);
+    EXPECT_EQ(model.workspace.selected.name, "block-2");
+    rename_selected(model, "jaw");
+    EXPECT_THAT(titles(model), testing::IsSupersetOf({"block-1", "jaw"}));
+    rename_selected(model, "block-1");
+    EXPECT_THAT(model.workspace.refusal, HasSubstr("already"));
+    EXPECT_EQ(model.workspace.selected.name, "jaw");
+    delete_selected(model);
+    EXPECT_EQ(model.workspace.selected.kind, Kind::none);
+    EXPECT_EQ(text_of_setup(model), first);
+    undo(model, 0.0);
+    EXPECT_NE(model.workspace.stated->fixture("jaw"), nullptr);
+    undo(model, 0.0);
+    undo(model, 0.0);
+    EXPECT_EQ(text_of_setup(model), first);
+    redo(model, 0.0);
+    EXPECT_NE(model.workspace.stated->fixture("block-2"), nullptr);
+}
+
+TEST(Workspace, NamesMeshesRelativeToItsFolder) {
+    ViewModel model = opened_model();
+    EXPECT_EQ(path_in_setup(model, "/jobs/meshes/vise.stl"), "meshes/vise.stl");
+    EXPECT_EQ(path_in_setup(model, "/other/vise.stl"), "/other/vise.stl");
+    add_mesh(model, "/jobs/meshes/vise.stl");
+    EXPECT_THAT(text_of_setup(model), HasSubstr("name = \"vise\"\nmesh = \"meshes/vise.stl\""));
+}
+
+TEST(Workspace, MarksWhatAnErrorIsAbout) {
+    ViewModel model =
+        opened_model("mesh_size = 1\n[stock]\nbox = 3\n\n[[fixture]]\nname = \"a\"\n"
+                     "box = [[0, 0, 0], [1, 1, 1]]\n\n[[tool]]\nnumber = 3\nstick = 1\n"
+                     "[program]\nstart = 1\n");
+    const auto item = [&](uint32_t line) { return item_at_line(model.workspace, line); };
+    EXPECT_EQ(item(1).kind, Kind::none);
+    EXPECT_EQ(item(3).kind, Kind::stock);
+    EXPECT_EQ(item(7), (SetupItem{Kind::fixture, "a", {}}));
+    EXPECT_EQ(item(11), (SetupItem{Kind::tool, {}, core::ToolNumber{3}}));
+    EXPECT_EQ(item(13).kind, Kind::none);
+    model.workspace.error = core::Error{core::ErrorCode::invalid_value, {3, 1, 0}, "no"};
+    size_t marked = 0;
+    for (const SetupRow& row : rows_of_setup(model)) {
+        marked += row.has_error;
+        EXPECT_EQ(row.has_error, row.item.kind == Kind::stock);
+    }
+    EXPECT_EQ(marked, 1u);
+}
+
+TEST(Workspace, SavesUnderItsNameOrAsksForOne) {
+    const test_support::ScopedFolder folder;
+    ViewModel model = opened_model();
+    add_box(model);
+    EXPECT_FALSE(save_document(model, "", app::write_output, 0.0));
+    EXPECT_TRUE(model.workspace.is_naming);
+    EXPECT_TRUE(save_document(model, folder / "s.toml", app::write_output, 0.0));
+    EXPECT_FALSE(model.workspace.is_naming || model.workspace.document.is_modified());
+    EXPECT_EQ(bytes_of(folder / "s.toml"), text_of_setup(model));
+    copy_selected(model);
+    EXPECT_TRUE(save_document(model, "", app::write_output, 0.0));
+    folder.write("s.toml", "changed = 1\n");
+    copy_selected(model);
+    EXPECT_FALSE(save_document(model, "", app::write_output, 0.0));
+    EXPECT_THAT(model.workspace.refusal, HasSubstr("changed by another program"));
+    EXPECT_EQ(bytes_of(folder / "s.toml"), "changed = 1\n");
+    model.workspace.may_replace = true;
+    EXPECT_TRUE(save_document(model, "", app::write_output, 0.0));
+    EXPECT_EQ(bytes_of(folder / "s.toml"), text_of_setup(model));
+}
+
+TEST(UnsavedSetups, AreFoundAgainUntilForgotten) {
+    const test_support::ScopedFolder folder;
+    const UnsavedSetups kept(folder / "unsaved", app::write_output);
+    const std::string text = "# set-up: no\nmesh_size = 2\r\n\n";
+    EXPECT_FALSE(kept.find("a.nc", "", ""));
+    kept.keep("a.nc", "", "", text);
+    ASSERT_TRUE(kept.find("a.nc", "", ""));
+    EXPECT_EQ(kept.find("./a.nc", "", "")->text, text);
+    EXPECT_FALSE(kept.find("a.nc", "a.toml", "")) << "another set-up";
+    EXPECT_FALSE(kept.find("a.nc", "", text)) << "it was saved";
+    kept.forget("a.nc", "");
+    EXPECT_FALSE(kept.find("a.nc", "", ""));
+    EXPECT_FALSE(UnsavedSetups().find("a.nc", "", ""));
+}
+
+TEST(UnsavedSetups, DamagedFilesAreIgnored) {
+    const UnsavedSetup unsaved{"/p.nc", "", "0f", "x = 1\n"};
+    const std::string whole = text_of(unsaved);
+    for (size_t length = 0; length + unsaved.text.size() < whole.size(); ++length) {
+        const auto read = unsaved_in(whole.substr(0, length));
+        EXPECT_TRUE(!read || read->text.empty());
+    }
+    EXPECT_EQ(unsaved_in(whole)->text, unsaved.text);
+    EXPECT_FALSE(unsaved_in("mesh_size = 1\n"));
+}
+
+} // namespace
