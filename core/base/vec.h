@@ -85,4 +85,11 @@ double distortion(const Mat3& rotation);
 /// Rotation about the fixed axes X, then Y, then Z. Multiples of 90 degrees are exact.
 Mat3 rotation_xyz_deg(const Vec3& angles_deg);
 
+/// The angles from which rotation_xyz_deg makes this rotation again, within 1e-10 in each entry.
+///
+/// Result:  in -180..180, with as few decimals as the rotation allows, and with zeros where there
+///          is a choice: (0, 120, 0) rather than (180, 60, 180). If X and Z turn about the same
+///          line (Y is 90 or -90), X is 0.
+Vec3 angles_xyz_deg(const Mat3& rotation);
+
 } // namespace core
