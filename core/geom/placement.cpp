@@ -74,9 +74,9 @@ Transform face_to_face(const FacePlane& moving, const FacePlane& fixed, const Tr
     return {rotation, point + shift - rotation * moving.point};
 }
 
-Extent extent_along(const Mesh& mesh, const Transform& pose, const Vec3& direction) {
+BodyExtent extent_along(const Mesh& mesh, const Transform& pose, const Vec3& direction) {
     const Vec3 in_mesh = direction * pose.rotation;
-    Extent extent;
+    BodyExtent extent;
     for (const Mesh::Corners& t : mesh.triangles)
         for (const uint32_t v : t) {
             const double along = glm::dot(mesh.vertices[v], in_mesh);
@@ -87,7 +87,7 @@ Extent extent_along(const Mesh& mesh, const Transform& pose, const Vec3& directi
     return {extent.from + origin, extent.to + origin};
 }
 
-Vec3 centred_between(const Extent& body, const Vec3& direction, const FacePlane& a,
+Vec3 centred_between(const BodyExtent& body, const Vec3& direction, const FacePlane& a,
                      const FacePlane& b) {
     const double middle = 0.5 * (glm::dot(a.point, direction) + glm::dot(b.point, direction));
     return (middle - 0.5 * (body.from + body.to)) * direction;

@@ -46,18 +46,18 @@ Transform face_to_face(const FacePlane& moving, const FacePlane& fixed, const Tr
                        const FaceFit& fit = {});
 
 /// The part of a line that a body covers: least and greatest product with its direction, mm.
-struct Extent {
+struct BodyExtent {
     double from = infinity;
     double to = -infinity;
 };
 
 /// How far a mesh extends along a direction. `pose` maps the mesh to the frame of the direction.
-Extent extent_along(const Mesh& mesh, const Transform& pose, const Vec3& direction);
+BodyExtent extent_along(const Mesh& mesh, const Transform& pose, const Vec3& direction);
 
 /// The translation along a direction that brings a body into the middle between two faces.
 ///
 /// `body` is its extent along `direction`, which has length 1.
-Vec3 centred_between(const Extent& body, const Vec3& direction, const FacePlane& a,
+Vec3 centred_between(const BodyExtent& body, const Vec3& direction, const FacePlane& a,
                      const FacePlane& b);
 
 } // namespace core

@@ -136,7 +136,7 @@ TEST(CentredBetween, LeavesEqualGaps) {
         const FacePlane b{random_pose(rng, 90.0).translation, -d};
         const Vec3 shift = centred_between(extent_along(mesh, pose, d), d, a, b);
         EXPECT_LE(glm::length(glm::cross(shift, d)), 1e-12);
-        const Extent now = extent_along(mesh, translation(shift) * pose, d);
+        const BodyExtent now = extent_along(mesh, translation(shift) * pose, d);
         EXPECT_NEAR(now.from - glm::dot(a.point, d), glm::dot(b.point, d) - now.to, 1e-9);
     }
 }
