@@ -93,7 +93,8 @@ std::vector<Triangle> facing_triangles(const Mesh& mesh, const Transform& travel
     return facing;
 }
 
-std::optional<double> way_between(const Triangle& moving, const Triangle& fixed, double graze) {
+std::optional<double> way_between(const Triangle& moving, const Triangle& fixed, double graze,
+                                  double sunk) {
     const Overlap overlap = overlap_of(moving, fixed);
     if (!(width_of(overlap) > graze)) return std::nullopt;
     double least = infinity, most = -infinity;
@@ -104,7 +105,7 @@ std::optional<double> way_between(const Triangle& moving, const Triangle& fixed,
         least = std::min(least, gap);
         most = std::max(most, gap);
     }
-    if (most < -graze) return std::nullopt;
+    if (most < -sunk) return std::nullopt;
     return std::max(least, 0.0);
 }
 
@@ -135,12 +136,12 @@ void TriangleStack::divide(uint32_t node, uint32_t first, uint32_t count) {
     divide(children + 1, first + count / 2, count - count / 2);
 }
 
-void TriangleStack::for_each_above(const Aabb& box, double graze,
+void TriangleStack::for_each_above(const Aabb& box, double sunk,
                                    const std::function<double()>& limit,
                                    const std::function<void(const Triangle&)>& visit) const {
     const auto matters = [&](const Aabb& b) {
         return b.min.x <= box.max.x && box.min.x <= b.max.x && b.min.y <= box.max.y
-               && box.min.y <= b.max.y && b.max.z >= box.min.z - graze
+               && box.min.y <= b.max.y && b.max.z >= box.min.z - sunk
                && b.min.z - box.max.z < limit();
     };
     std::vector<uint32_t> open;

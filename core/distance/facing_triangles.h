@@ -17,9 +17,10 @@ std::vector<Triangle> facing_triangles(const Mesh& mesh, const Transform& travel
 /// How far a triangle can move along Z until it meets another one.
 ///
 /// Result:  the least gap along Z where one is above the other, at least 0. Empty if that region is
-///          at most `graze` wide, or if the moving triangle is above it by more than that
+///          at most `graze` wide, or if the moving triangle is above it by more than `sunk`
 ///          everywhere.
-std::optional<double> way_between(const Triangle& moving, const Triangle& fixed, double graze);
+std::optional<double> way_between(const Triangle& moving, const Triangle& fixed, double graze,
+                                  double sunk);
 
 /// A tree of boxes around triangles, for searches along Z.
 class TriangleStack {
@@ -28,8 +29,8 @@ public:
 
     /// Calls `visit` for the triangles whose boxes overlap `box` seen along Z and that are above it
     /// by less than the result of `limit`, which may fall meanwhile, and not below it altogether
-    /// by more than `graze`.
-    void for_each_above(const Aabb& box, double graze, const std::function<double()>& limit,
+    /// by more than `sunk`.
+    void for_each_above(const Aabb& box, double sunk, const std::function<double()>& limit,
                         const std::function<void(const Triangle&)>& visit) const;
 
 private:

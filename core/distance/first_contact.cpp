@@ -156,7 +156,7 @@ public:
 
     /// Takes over a way that is not below a contact that has been found.
     void offer(std::optional<double> way) {
-        if (!way || *way < -goal_.graze) return;
+        if (!way || *way < -goal_.sunk) return;
         const double travel = std::max(*way, 0.0);
         if (best_.support == nothing ? travel > best_.travel : travel >= best_.travel) return;
         best_ = {travel, number_};
@@ -179,15 +179,17 @@ private:
         const TriangleStack stack(std::move(back));
         for (const Triangle& moving : front_)
             stack.for_each_above(
-                moving.bounds(), goal_.graze, [&] { return limit(); },
-                [&](const Triangle& fixed) { offer(way_between(moving, fixed, goal_.graze)); });
+                moving.bounds(), goal_.sunk, [&] { return limit(); },
+                [&](const Triangle& fixed) {
+                    offer(way_between(moving, fixed, goal_.graze, goal_.sunk));
+                });
     }
 
     void curved_to_triangles(std::vector<Triangle> back) {
         const SlimShape shape{*moving_.curved, slimmed(*moving_.curved, goal_.graze)};
         const TriangleStack stack(std::move(back));
         stack.for_each_above(
-            bounds(shape.full), goal_.graze, [&] { return limit(); },
+            bounds(shape.full), goal_.sunk, [&] { return limit(); },
             [&](const Triangle& fixed) {
                 const ConvexShape triangle = convex(fixed);
                 offer(way_along_z(shape, {triangle, triangle}, best_.travel));

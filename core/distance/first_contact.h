@@ -24,6 +24,7 @@ struct FirstContact {
 struct ContactGoal {
     double limit = infinity; // mm: contacts beyond it are not searched for
     double graze = 1e-6;     // mm: bodies pass each other if they overlap sideways by at most this
+    double sunk = 0.01;      // mm: a body that has sunk into a support by at most this rests on it
 };
 
 /// How far a body can move straight until it first touches a support or a plane: it rests on it, or
@@ -34,7 +35,7 @@ struct ContactGoal {
 /// Frame:   the machine's.
 /// Result:  within 1e-6 mm; the bodies overlap by at most `graze` then. Surfaces along the motion
 ///          do not stop it: a jaw slides on its bed. Neither does a contact that the motion opens,
-///          nor a surface that the body has passed by more than `graze`: so ask separation()
+///          nor a surface that the body has passed by more than `sunk`: so ask separation()
 ///          whether bodies overlap at the start. A plane that was passed gives 0. Empty if nothing
 ///          is touched.
 /// Cost:    O(n log n) for n triangles in all, plus the pairs whose gap is less than the result; a

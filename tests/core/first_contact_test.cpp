@@ -75,6 +75,20 @@ TEST(FirstContact, LetsBodiesSlideAndLeave) {
     }
 }
 
+TEST(FirstContact, KeepsABodyThatHasSunkInALittle) {
+    const ExactBody table = convex(Aabb{{-100, -100, -20}, {100, 100, 0}});
+    const ExactBody cylinder = convex(ProfileElement{0, 5, 10, 5, 0});
+    for (const ExactBody& body : {mesh_box({-5, -5, 0}, {5, 5, 10}), cylinder}) {
+        EXPECT_EQ(travel(body, translation({0, 0, -0.005}), down, table), 0.0);
+        EXPECT_FALSE(travel(body, translation({0, 0, -0.005}), -down, table));
+        EXPECT_FALSE(travel(body, translation({0, 0, -0.02}), down, table));
+        EXPECT_EQ(travel(body, translation({0, 0, -0.02}), down, table, {}, {.sunk = 0.1}), 0.0);
+        // Tilted across the surface.
+        const Transform tilted{rotation_xyz_deg({10, 0, 0}), {0, 0, 0}};
+        EXPECT_EQ(travel(mesh_box({-5, -5, 0}, {5, 5, 10}), tilted, down, table), 0.0);
+    }
+}
+
 TEST(FirstContact, WithPlanesIsAtTheLowestPoint) {
     const FacePlane planes[] = {{{0, 0, -3}, {0, 0, 1}}, {{0, 0, 5}, {0, 0, -1}}};
     const ExactBody ball = convex_sphere(2.0);
