@@ -13,7 +13,7 @@ namespace {
 using Vec2 = glm::dvec2;
 
 constexpr double finest_coarse_chord = 0.56; // radians; wider chords must be of equal length
-constexpr double least_arc = std::numbers::pi / 2 - 2e-4;
+constexpr double least_arc = std::numbers::pi / 2;
 constexpr double bend_change = 0.15; // of the curvature within an arc
 
 /// The angle from a to b, -pi..pi.
@@ -103,7 +103,9 @@ private:
         std::vector<Vec2> on_it;
         for (size_t i = first; i < first + count + (whole ? 0 : 1); ++i) on_it.push_back(point(i));
         const auto fit = fitted_circle(on_it);
-        if (!fit || fit->error > circle_tolerance(fit->radius, noise_)) return false;
+        if (!fit) return false;
+        const double tolerance = circle_tolerance(fit->radius, noise_);
+        if (fit->error > tolerance) return false;
         double least = infinity, most = 0.0, sum = 0.0;
         for (size_t i = first; i < first + count; ++i) {
             const double chord = angle_between(point(i) - fit->center, point(i + 1) - fit->center);
@@ -113,7 +115,8 @@ private:
         }
         if (most > widest_chord || (most > finest_coarse_chord && most > 1.1 * least)) return false;
         const double angle = std::abs(sum), full = 2.0 * std::numbers::pi;
-        if (whole ? std::abs(angle - full) > 1e-6 : angle < least_arc) return false;
+        const double wanted = least_arc - 2.0 * tolerance / fit->radius; // both ends may be off
+        if (whole ? std::abs(angle - full) > 1e-6 : angle < wanted) return false;
         keep(*fit, first, count, whole ? full : std::min(angle, full), most, whole);
         const Vec2 start = point(first) - fit->center;
         const double half = 0.5 * sum, c = core::cos(half), s = core::sin(half);

@@ -10,7 +10,9 @@
 namespace core {
 namespace {
 
-constexpr double relative_noise = 5e-7;
+constexpr double relative_noise = 5e-7;    // of the largest coordinate
+constexpr double single_rounding = 1.2e-7; // of a coordinate in single precision
+constexpr size_t most_vertices_sampled = 1000;
 constexpr double least_angle = 1e-3;       // normals that differ by less may be of one plane
 constexpr double largest_area_ratio = 4.0; // of neighbours in a curved surface
 constexpr double largest_bend_ratio = 1.8; // of radii of curvature at two sides of a facet
@@ -25,6 +27,30 @@ double largest_coordinate(const Mesh& mesh) {
         for (int k = 0; k < 3; ++k)
             if (std::isfinite(v[k])) most = std::max(most, std::abs(v[k]));
     return most;
+}
+
+/// The place value of the sixth digit of a number, 0 for 0.
+double sixth_digit(double value) {
+    return value == 0.0 ? 0.0 : core::pow(10.0, std::floor(core::log10(std::abs(value))) - 5.0);
+}
+
+/// Whether the coordinates have at most six digits, as those of text files of some programs. A
+/// sample is enough.
+bool has_six_digits(const Mesh& mesh) {
+    const size_t step = std::max<size_t>(1, mesh.vertices.size() / most_vertices_sampled);
+    for (size_t i = 0; i < mesh.vertices.size(); i += step)
+        for (int k = 0; k < 3; ++k) {
+            const double x = mesh.vertices[i][k], digit = sixth_digit(x);
+            if (digit > 0.0
+                && std::abs(x - digit * core::round(x / digit)) > single_rounding * std::abs(x))
+                return false;
+        }
+    return true;
+}
+
+double noise_of(const Mesh& mesh) {
+    const double reach = largest_coordinate(mesh), usual = relative_noise * reach;
+    return has_six_digits(mesh) ? std::max(usual, sixth_digit(reach)) : usual;
 }
 
 /// Half the cross product of two sides, and the least height.
@@ -49,7 +75,7 @@ TriangleSize measured(const Triangle& t) {
 class FacetGrowth {
 public:
     FacetGrowth(const Mesh& mesh, const MeshSides& sides) : mesh_(mesh), sides_(sides) {
-        result_.noise = relative_noise * largest_coordinate(mesh);
+        result_.noise = noise_of(mesh);
         result_.of_triangle.assign(mesh.triangles.size(), no_index);
         sizes_.resize(mesh.triangles.size());
         for (size_t i = 0; i < sizes_.size(); ++i)

@@ -34,9 +34,10 @@ struct MeshFacets {
 constexpr double smooth_angle_deg = 32.0;
 
 /// Result:  vertices may deviate by 5e-7 of the largest coordinate, as in STL files with seven
-///          digits. A facet is curved if at least four follow each other with less than
-///          `smooth_angle_deg`, similar areas and similar radii of curvature; three will do if
-///          they are equal and more than 20 degrees apart.
+///          digits, or by a unit of the sixth digit if there are no more digits. A facet is curved
+///          if at least four follow each other with less than `smooth_angle_deg`, similar areas and
+///          similar radii of curvature; three will do if they are equal and more than 20 degrees
+///          apart.
 /// Cost:    O(n log n), some 0.5 s for a million triangles.
 MeshFacets facets_of(const Mesh& mesh, const MeshSides& sides);
 

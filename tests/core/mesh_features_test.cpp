@@ -330,6 +330,32 @@ TEST(MeshFeatures, OfBadlyTriangulatedFacesAreWhole) {
     }
 }
 
+/// Coordinates as OpenSCAD writes them.
+Mesh with_six_digits(Mesh mesh) {
+    for (Vec3& v : mesh.vertices)
+        for (int k = 0; k < 3; ++k) v[k] = static_cast<float>(std::stod(fmt::format("{:g}", v[k])));
+    return mesh;
+}
+
+TEST(MeshFeatures, AreFoundInFilesWithSixDigits) {
+    std::mt19937 rng(14);
+    for (const double reach : {20.0, 60.0, 100.0, 300.0})
+        for (int i = 0; i < 30; ++i) {
+            const Transform pose = random_pose(rng, reach);
+            const MeshFeatures bored =
+                features_of(with_six_digits(moved(bored_block(30.0, 30.0, 12.0, 40), pose)));
+            EXPECT_EQ(bored.faces.size(), 6u) << reach;
+            EXPECT_EQ(bored.edges.size(), 12u) << reach;
+            EXPECT_EQ(bored.circles.size(), 2u) << reach;
+            EXPECT_EQ(bored.walls.size(), 1u) << reach;
+            const MeshFeatures filleted = features_of(with_six_digits(
+                moved(prism_mesh(rounded_rectangle(40.0, 25.0, 6.0, 8), 0, 10), pose)));
+            EXPECT_EQ(filleted.faces.size(), 6u) << reach;
+            EXPECT_EQ(filleted.circles.size(), 8u) << reach;
+            EXPECT_EQ(filleted.walls.size(), 4u) << reach;
+        }
+}
+
 TEST(MeshFeatures, DoNotDependOnTheOrderOfTheTriangles) {
     std::mt19937 rng(12);
     const Mesh mesh = turned_mesh(stepped, 36);
