@@ -7,6 +7,7 @@
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
+#include "app/commands/setup_control.h"
 #include "app/commands/suggestion.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/program_settings.h"
@@ -21,6 +22,7 @@ struct SetupOptions {
     std::string program, output;
     bool force = false;
     ProgramArguments reading;
+    ControlArguments control;
 };
 
 core::Result<void> write_setup(const SetupOptions& options) {
@@ -40,11 +42,17 @@ core::Result<void> write_setup(const SetupOptions& options) {
     return write_output(options.output, setup_text(setup, options.program), read);
 }
 
+core::Result<ExitCode> carry_out(const SetupOptions& options) {
+    if (!options.control.files.empty())
+        return compare_with_control(options.program, options.reading, options.control,
+                                    options.output);
+    if (auto written = write_setup(options); !written) return tl::unexpected(written.error());
+    return ExitCode::clear;
+}
+
 ExitCode setup(const SetupOptions& options) {
-    auto written = write_setup(options);
-    if (written) return ExitCode::clear;
-    if (written.error().file.empty()) written.error().file = options.program;
-    return failed(written.error());
+    const auto done = carry_out(options);
+    return done ? *done : failed(core::in_file(done.error(), options.program));
 }
 
 } // namespace
@@ -56,6 +64,7 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
     add_path(command, "program", options->program, "NC program")->required();
     add_path(command, "-o,--output", options->output, "File for the set-up");
     command.add_flag("--force", options->force, "Replace the file if it is there already");
+    add_control_arguments(command, options->control);
     add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] { exit_code = setup(*options); });
 }

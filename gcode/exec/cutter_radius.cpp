@@ -106,6 +106,7 @@ core::Result<int> radius_number(Execution& execution) {
         return modal.radius_number;
     }
     if (number == 0 && modal.tool) number = value_of(*modal.tool);
+    modal.radius_number = number;
     return number;
 }
 

@@ -283,7 +283,7 @@ struct ModalState {
     bool plane_said = false; // by the program, or settled
     // That of a length offset that G28, G30 or G53 may have cancelled for good.
     std::optional<core::OffsetNumber> length_left;
-    int radius_number = 0;    // the last D, on controls where it is modal
+    int radius_number = 0;    // the last D; on controls where it is not modal, that of the last G41
     double length_sign = 0.0; // +1 after G43, -1 after G44, 0 without a length from the table
     Offsets offsets;
     std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "core/base/result.h"
+
+namespace app {
+
+/// An XML document that knows the lines of its elements. Entities of a DTD are not expanded.
+class XmlDocument {
+public:
+    /// Errors: syntax, with file, line and column.
+    static core::Result<XmlDocument> parse(const std::string& text, const std::string& path);
+
+    pugi::xml_node root() const { return document_; }
+    const std::string& path() const { return path_; }
+
+    /// The line of an element, counted from 1.
+    uint32_t line_of(const pugi::xml_node& node) const;
+
+    /// An error about an element.
+    tl::unexpected<core::Error> refuse(const pugi::xml_node& node, std::string message) const;
+
+    /// The number in an element; empty if it has no text.
+    ///
+    /// Errors: syntax, with its line, for any other text.
+    core::Result<std::optional<double>> number_in(const pugi::xml_node& node) const;
+
+private:
+    pugi::xml_document document_;
+    std::string path_;
+    std::vector<size_t> line_ends_; // positions in the text
+};
+
+} // namespace app

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace app {
+
+struct ControlOffsets;
+struct SetupFile;
+struct UsedOffsets;
+
+/// How a value of the set-up and that of the control relate.
+enum class OffsetState : uint8_t { equal, differs, not_in_setup, not_on_control };
+std::string_view name_of(OffsetState state);
+
+/// One value of the set-up and the control's.
+struct ComparedOffset {
+    std::string name;                     // "G54 X", "H3", "D3"
+    bool is_angle = false;                // degrees instead of mm
+    std::optional<double> setup, control; // empty: not stated
+    std::string file{};                   // that states the control's value; empty: none
+    uint32_t line = 0;
+    OffsetState state = OffsetState::equal;
+};
+
+/// A set-up compared with the files of a control.
+struct OffsetComparison {
+    std::vector<ComparedOffset> values; // work offsets, then lengths, then diameters
+    std::vector<std::string> notes;     // for the user
+
+    /// How many of the values are not equal.
+    size_t differences() const;
+};
+
+/// Compares the offsets that the set-up states or the program uses. Values of the control that
+/// matter to neither are left out, and so are kinds of values that no file has: a variables file
+/// says nothing about lengths.
+///
+/// Result: equal within half the last digit that controls show: 0.0005 mm or degrees, 0.00005 inch.
+OffsetComparison differences(const SetupFile& setup, const ControlOffsets& control,
+                             const UsedOffsets& used);
+
+} // namespace app
