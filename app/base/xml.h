@@ -11,11 +11,12 @@
 
 namespace app {
 
-/// An XML document that knows the lines of its elements. Entities of a DTD are not expanded.
+/// An XML document, in UTF-8 or UTF-16, that knows the lines of its elements. Entities of a DTD are
+/// not expanded.
 class XmlDocument {
 public:
     /// Errors: syntax, with file, line and column.
-    static core::Result<XmlDocument> parse(const std::string& text, const std::string& path);
+    static core::Result<XmlDocument> parse(const std::string& bytes, const std::string& path);
 
     pugi::xml_node root() const { return document_; }
     const std::string& path() const { return path_; }

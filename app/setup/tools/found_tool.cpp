@@ -110,7 +110,8 @@ constexpr ShapeName of_fusion[] = {
     {"lollipop mill", lollipop}, {"slot mill", tslot},      {"dovetail mill", dovetail},
     {"thread mill", threadmill}, {"drill", drill},          {"spot drill", drill},
     {"center drill", drill},     {"counter sink", chamfer}, {"reamer", flat},
-    {"boring bar", flat},        {"counter bore", flat}};
+    {"boring bar", flat},        {"counter bore", flat},    {"tap right hand", flat},
+    {"tap left hand", flat},     {"radius mill", flat}};
 
 } // namespace shape_names
 
@@ -208,7 +209,7 @@ std::optional<core::ToolShape> shape_in(std::span<const ShapeName> names, std::s
 
 CompleteTool complete(const FoundTool& found, double least_flutes) {
     CompleteTool whole{found.tool, {}};
-    std::vector<std::string> assumed;
+    std::vector<std::string> assumed = found.assumed;
     if (!found.has_shape) assumed.emplace_back("its shape");
     if (!found.has_diameter) assumed.emplace_back("its diameter");
     complete_shape(whole.tool, assumed);

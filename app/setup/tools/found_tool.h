@@ -12,10 +12,11 @@ namespace app {
 
 /// A tool that is described incompletely.
 struct FoundTool {
-    core::ToolDescription tool; // what is stated; the rest is 0 or empty
-    bool has_shape = false;     // else a flat end mill is assumed
-    bool has_diameter = true;   // else a common diameter is assumed
-    std::string source;         // "the comment in line 12", to follow "according to"
+    core::ToolDescription tool;         // what is stated; the rest is 0 or empty
+    bool has_shape = false;             // else a flat end mill is assumed
+    bool has_diameter = true;           // else a common diameter is assumed
+    std::string source;                 // "the comment in line 12", to follow "according to"
+    std::vector<std::string> assumed{}; // what its reader assumed, each to precede "is assumed"
 };
 
 /// A tool completed with the sizes that such tools usually have.

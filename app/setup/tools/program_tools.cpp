@@ -65,7 +65,7 @@ bool moves(const std::string& code) {
 /// State of the scan that assigns comments to tools.
 struct Scan {
     gcode::LengthUnit unit;
-    ProgramTools found{};
+    ProgramTools& found;
     std::deque<std::pair<ToolComment, size_t>> waiting{}; // since the last motion
     std::optional<int> selected{};
     bool calls_tools = false;
@@ -242,19 +242,35 @@ gcode::LengthUnit unit_of_program(const gcode::Program& program, gcode::LengthUn
     return otherwise;
 }
 
-ProgramTools tools_of_program(const gcode::Program& program, gcode::LengthUnit unit) {
-    Scan scan{unit};
+namespace {
+
+/// Reads all lines of a program.
+void scan_lines(Scan& scan, const gcode::Program& program) {
     for (size_t line = 1; line <= program.line_count(); ++line) {
         const LineParts parts = parts_of_line(program.line(line));
         scan.name(program.line(line), line);
         for (const std::string& comment : parts.comments) scan.comment(comment, line);
         if (!parts.code.empty()) scan.code(parts.code, line);
     }
-    if (!scan.calls_tools && !scan.found.in_spindle) scan.found.in_spindle = scan.best_waiting();
-    if (!scan.calls_tools && !scan.found.in_spindle && scan.found.tools.size() == 1)
-        scan.found.in_spindle = scan.found.tools.begin()->second;
-    if (scan.calls_tools) scan.found.in_spindle.reset();
-    return std::move(scan.found);
+}
+
+/// The tool in the spindle of a program without tool calls.
+std::optional<FoundTool> tool_without_call(const Scan& scan) {
+    if (scan.calls_tools) return std::nullopt;
+    if (scan.found.in_spindle) return scan.found.in_spindle;
+    if (auto waiting = scan.best_waiting()) return waiting;
+    if (scan.found.tools.size() == 1) return scan.found.tools.begin()->second;
+    return std::nullopt;
+}
+
+} // namespace
+
+ProgramTools tools_of_program(const gcode::Program& program, gcode::LengthUnit unit) {
+    ProgramTools found;
+    Scan scan{unit, found};
+    scan_lines(scan, program);
+    found.in_spindle = tool_without_call(scan);
+    return found;
 }
 
 namespace {

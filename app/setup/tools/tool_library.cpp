@@ -10,6 +10,8 @@
 
 #include "app/base/text.h"
 #include "app/setup/tools/found_tool.h"
+#include "app/setup/tools/fusion_library.h"
+#include "app/setup/tools/json_file.h"
 #include "app/setup/tools/tool_file.h"
 #include "app/setup/tools/tool_text.h"
 #include "core/base/file_reads.h"
@@ -22,15 +24,6 @@ namespace app {
 
 using ToolMap = std::map<core::ToolNumber, FoundTool>;
 
-/// Reads a JSON file.
-///
-/// Errors: io and syntax, with the file.
-core::Result<nlohmann::json> read_json(const std::filesystem::path& path);
-
-/// A text or number of an object; empty or 0 if it is missing or has another type.
-std::string text_at(const nlohmann::json& object, const char* key);
-double number_at(const nlohmann::json& object, const char* key);
-
 /// FreeCAD: a library that names its bits, or a single bit, which becomes tool 1.
 core::Result<ToolMap> tools_of_freecad_library(const nlohmann::json& library,
                                                const std::filesystem::path& path);
@@ -40,10 +33,6 @@ core::Result<ToolMap> tools_of_freecad_bit(const nlohmann::json& bit,
 /// FreeCAD's older tables: tools by number, mm and degrees.
 core::Result<ToolMap> tools_of_freecad_table(const nlohmann::json& table,
                                              const std::filesystem::path& path);
-
-/// Fusion 360 and HSM. The number of a tool is that of its post-processor data.
-core::Result<ToolMap> tools_of_fusion_library(const nlohmann::json& library,
-                                              const std::filesystem::path& path);
 
 /// Adds a tool to the map.
 ///
@@ -123,33 +112,6 @@ core::Result<ToolMap> tools_of_table(const std::string& path, gcode::LengthUnit 
 
 } // namespace
 
-core::Result<nlohmann::json> read_json(const std::filesystem::path& path) {
-    if (std::string why = core::why_no_file(path); !why.empty())
-        return tl::unexpected(
-            core::Error{ErrorCode::io, {}, std::move(why), path.generic_string()});
-    const std::optional<std::string> bytes = core::file_bytes(path);
-    if (!bytes)
-        return tl::unexpected(
-            core::Error{ErrorCode::io, {}, "cannot be read", path.generic_string()});
-    nlohmann::json json = nlohmann::json::parse(*bytes, nullptr, false);
-    if (json.is_discarded())
-        return tl::unexpected(
-            core::Error{ErrorCode::syntax, {}, "is not valid JSON", path.generic_string()});
-    return json;
-}
-
-std::string text_at(const nlohmann::json& object, const char* key) {
-    if (!object.is_object()) return {};
-    const auto found = object.find(key);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-double number_at(const nlohmann::json& object, const char* key) {
-    if (!object.is_object()) return 0.0;
-    const auto found = object.find(key);
-    return found != object.end() && found->is_number() ? found->get<double>() : 0.0;
-}
-
 core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
                             const std::filesystem::path& path) {
     const int number = core::value_of(tool.tool.number);
@@ -166,14 +128,17 @@ core::Result<void> add_tool(ToolMap& tools, const FoundTool& tool,
 
 core::Result<std::map<ToolNumber, FoundTool>> read_tool_library(const std::string& path,
                                                                 gcode::LengthUnit unit) {
-    const std::string extension = std::filesystem::path(path).extension().generic_string();
+    const std::string extension =
+        core::lower_case(std::filesystem::path(path).extension().generic_string());
     if (extension == ".json" || extension == ".fctl" || extension == ".fctb")
         return tools_of_json(path);
+    if (extension == ".tools") return tools_of_fusion_archive(path);
+    if (extension == ".hsmlib") return tools_of_hsm_library(path);
     if (extension == ".tbl") return tools_of_table(path, unit);
     return tl::unexpected(core::Error{ErrorCode::unsupported,
                                       {},
                                       "is not a tool library: known types are .fctl, .fctb, "
-                                      ".json and .tbl",
+                                      ".json, .tools, .hsmlib and .tbl",
                                       path});
 }
 
@@ -357,124 +322,6 @@ core::Result<ToolMap> tools_of_freecad_table(const json& table, const std::files
         const FoundTool tool = freecad_tool(entry, static_cast<int>(*number), path);
         if (auto wrong = add_tool(tools, tool, path); !wrong) return tl::unexpected(wrong.error());
     }
-    return tools;
-}
-
-namespace {
-
-using nlohmann::json;
-
-std::optional<ToolShape> shape_of_type(const std::string& type) {
-    if (const auto shape = shape_in(fusion_shapes(), type)) return shape;
-    return shape_of_words(plain_capitals(type));
-}
-
-/// Reads one tool of the library, converting its unit.
-struct Reader {
-    const json& tool;
-    double unit; // mm
-
-    std::optional<double> plain(const char* key) const {
-        const auto geometry = tool.find("geometry");
-        if (geometry == tool.end() || !geometry->is_object()) return std::nullopt;
-        const auto found = geometry->find(key);
-        if (found == geometry->end() || !found->is_number()) return std::nullopt;
-        return found->get<double>();
-    }
-    std::optional<double> size(const char* key) const {
-        const auto value = plain(key);
-        return value && *value > 0.0 ? std::optional(*value * unit) : std::nullopt;
-    }
-};
-
-void read_shape(const Reader& reader, ToolDescription& made) {
-    const auto corner = reader.size("RE");
-    const auto flank = reader.plain("TA"), point = reader.plain("SIG");
-    if (made.shape == ToolShape::bull || made.shape == ToolShape::tslot)
-        made.corner_radius = corner;
-    if (made.shape == ToolShape::flat && corner && 2.0 * *corner < made.diameter) {
-        made.shape = ToolShape::bull;
-        made.corner_radius = corner;
-    }
-    if (has_size(made.shape, &ToolDescription::point_deg)) made.point_deg = point;
-    if (made.shape == ToolShape::chamfer || made.shape == ToolShape::dovetail)
-        made.angle_deg = flank;
-    if (made.shape == ToolShape::chamfer && !flank && point) made.angle_deg = 0.5 * *point;
-    if (made.shape == ToolShape::chamfer)
-        made.tip_diameter = reader.size("tip-diameter").value_or(0.0);
-    if (made.shape == ToolShape::lollipop) made.neck_diameter = reader.size("shoulder-diameter");
-    if (has_size(made.shape, &ToolDescription::pitch)) made.pitch = reader.size("TP");
-    if (made.shape == ToolShape::taper) { // DC is measured at the tip
-        made.tip_diameter = made.diameter;
-        made.corner_radius = corner;
-        made.angle_deg = flank;
-        made.diameter = std::max(reader.size("SFDM").value_or(0.0), 1.5 * made.tip_diameter);
-    }
-}
-
-/// The segments of the holder, from the tool end up.
-void read_holder(const json& tool, ToolDescription& made) {
-    const auto holder = tool.find("holder");
-    if (holder == tool.end() || !holder->is_object() || !holder->contains("segments")
-        || !(*holder)["segments"].is_array())
-        return;
-    const double unit = text_at(*holder, "unit") == "inches" ? core::mm_per_inch : 1.0;
-    for (const json& segment : (*holder)["segments"]) {
-        if (!segment.is_object()) continue;
-        const double height = number_at(segment, "height") * unit;
-        const double lower = number_at(segment, "lower-diameter") * unit;
-        const double upper = number_at(segment, "upper-diameter") * unit;
-        if (height > 0.0 && std::max(lower, upper) > 0.0)
-            made.holder.push_back({lower, upper, height});
-    }
-}
-
-std::optional<int> number_of(const json& tool) {
-    const auto post = tool.find("post-process");
-    if (post == tool.end() || !post->is_object()) return std::nullopt;
-    const auto number = post->find("number");
-    if (number == post->end() || !number->is_number_integer()) return std::nullopt;
-    return number->get<int>();
-}
-
-FoundTool fusion_tool(const json& entry, int number, const std::filesystem::path& path) {
-    const Reader reader{entry, text_at(entry, "unit") == "inches" ? core::mm_per_inch : 1.0};
-    FoundTool found;
-    found.source = path.generic_string();
-    found.tool.number = core::ToolNumber{number};
-    found.tool.name = text_at(entry, "description");
-    found.tool.diameter = reader.size("DC").value_or(0.0);
-    const auto shape = shape_of_type(text_at(entry, "type"));
-    found.has_shape = shape.has_value();
-    found.tool.shape = shape.value_or(ToolShape::flat);
-    read_shape(reader, found.tool);
-    found.tool.flute_length = reader.size("LCF").value_or(0.0);
-    found.tool.shank_diameter = reader.size("SFDM");
-    found.tool.stick_out = reader.size("LB");
-    read_holder(entry, found.tool);
-    return found;
-}
-
-} // namespace
-
-core::Result<ToolMap> tools_of_fusion_library(const json& library,
-                                              const std::filesystem::path& path) {
-    ToolMap tools;
-    for (const json& entry : library["data"]) {
-        if (!entry.is_object()) continue;
-        const std::string type = text_at(entry, "type");
-        const auto number = number_of(entry);
-        if (!number || type == "holder" || type == "probe" || type.starts_with("turning")) continue;
-        if (tools.contains(core::ToolNumber{*number}))
-            continue; // variants share a number: keep the first
-        const FoundTool tool = fusion_tool(entry, *number, path);
-        if (tool.tool.diameter > 0.0) tools.emplace(tool.tool.number, tool);
-    }
-    if (tools.empty())
-        return tl::unexpected(core::Error{core::ErrorCode::syntax,
-                                          {},
-                                          "contains no milling tool with a number",
-                                          path.generic_string()});
     return tools;
 }
 
