@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/setup/autodesk_machine.h"
 #include "app/setup/body_table.h"
 #include "app/setup/control_table.h"
 #include "app/setup/coverage.h"
@@ -325,6 +326,23 @@ void read_rules(TableReader& table, SetupFile& file) {
         file.setup.rules[rule] = severity;
 }
 
+/// Reads a machine of Autodesk. Returns the letters of axes that it has and that are not described.
+std::string read_library_machine(const std::string& path, SetupFile& file,
+                                 std::optional<core::Error>& error) {
+    auto read = read_autodesk_machine(path);
+    if (!read) {
+        error = std::move(read).error();
+        return {};
+    }
+    TableReader table(read->machine, "machine", error);
+    file.has_axes = read_machine(table, file.setup.machine,
+                                 {std::filesystem::path(path).parent_path(), file.assumptions});
+    for (const std::string& note : read->notes)
+        file.assumptions.push_back(fmt::format("{}: {}", path, note));
+    if (error && error->file.empty()) error->file = path;
+    return read->rotary;
+}
+
 /// Reads the machine from its own file. Errors name that file.
 void read_machine_file(const std::string& path, SetupFile& file,
                        std::optional<core::Error>& error) {
@@ -344,12 +362,21 @@ void read_machine_file(const std::string& path, SetupFile& file,
 void read_machine_table(TableReader& table, BodyContext& context,
                         std::optional<core::Error>& error) {
     core::Machine& machine = context.file.setup.machine;
-    if (const auto name = table.string("file"))
-        read_machine_file((context.folder / *name).generic_string(), context.file, error);
+    std::string others; // axes whose places nobody has stated yet
+    if (const auto name = table.string("file")) {
+        const std::string path = (context.folder / *name).generic_string();
+        if (is_autodesk_machine(path))
+            others = read_library_machine(path, context.file, error);
+        else
+            read_machine_file(path, context.file, error);
+    }
     const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
     if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
     answer_rapids(table, context.file);
-    if (leaves_axes_out) context.file.has_axes = false;
+    const bool lacks_axes = std::any_of(others.begin(), others.end(), [&](char letter) {
+        return !machine.axes[core::axis_letters.find(letter)].present;
+    });
+    if (leaves_axes_out || lacks_axes) context.file.has_axes = false;
     const core::AxisPosition home = machine.home();
     if (home[0] && home[1] && home[2] && !context.file.environment.home) {
         gcode::AxisValues& values = context.file.environment.home.emplace();

@@ -26,7 +26,8 @@ tools_of_fusion_archive(const std::string& path);
 
 /// The same from a library of HSMWorks, Inventor CAM and older Fusion 360 (.hsmlib), in XML.
 ///
-/// Source: the format has no public description. github.com/search for "tool-library" in the
+/// Source: the format has no public description; what is said here is from HsmLibraryReader of
+/// G-CAM,
 ///         namespace hsmworks.com/xml/2004/cnc/tool-library finds readers and samples; the angle of
 ///         a chamfer mill is that of its flank from the axis, that of a drill is of the whole
 ///         point, and the sections of a holder are points of its outline.
