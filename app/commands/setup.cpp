@@ -9,6 +9,7 @@
 #include "app/commands/read_files.h"
 #include "app/commands/setup_control.h"
 #include "app/commands/suggestion.h"
+#include "app/setup/inference/imported_setup.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
@@ -19,7 +20,7 @@ namespace app {
 namespace {
 
 struct SetupOptions {
-    std::string program, output;
+    std::string program, output, import;
     bool force = false;
     ProgramArguments reading;
     ControlArguments control;
@@ -38,7 +39,9 @@ core::Result<void> write_setup(const SetupOptions& options) {
              options.output});
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
-    FEELER_TRY(const SetupFile setup, infer_setup(program, settings));
+    FEELER_TRY(const SetupFile setup, options.import.empty()
+                                          ? infer_setup(program, settings)
+                                          : infer_setup_with(program, settings, options.import));
     return write_output(options.output, setup_text(setup, options.program), read);
 }
 
@@ -64,7 +67,11 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
     add_path(command, "program", options->program, "NC program")->required();
     add_path(command, "-o,--output", options->output, "File for the set-up");
     command.add_flag("--force", options->force, "Replace the file if it is there already");
+    add_path(command, "--from", options->import,
+             "Take tools and stock from a FreeCAD job (.FCStd), or tools from a library (.tools, "
+             ".hsmlib, .json, .fctl, .fctb, .tbl)");
     add_control_arguments(command, options->control);
+    command.get_option("--from")->excludes(command.get_option("--control"));
     add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] { exit_code = setup(*options); });
 }

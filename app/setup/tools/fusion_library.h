@@ -26,11 +26,10 @@ tools_of_fusion_archive(const std::string& path);
 
 /// The same from a library of HSMWorks, Inventor CAM and older Fusion 360 (.hsmlib), in XML.
 ///
-/// Source: the format has no public description; what is said here is from HsmLibraryReader of
-/// G-CAM,
-///         namespace hsmworks.com/xml/2004/cnc/tool-library finds readers and samples; the angle of
-///         a chamfer mill is that of its flank from the axis, that of a drill is of the whole
-///         point, and the sections of a holder are points of its outline.
+/// Source: the format has no public description; what is said here is from the documentation of
+///         HsmLibraryReader of G-CAM, which checked it against real libraries. The angle of a
+///         chamfer mill is that of its flank from the axis, that of a drill is of the whole point,
+///         and the sections of a holder are points of its outline.
 core::Result<std::map<core::ToolNumber, FoundTool>> tools_of_hsm_library(const std::string& path);
 
 } // namespace app

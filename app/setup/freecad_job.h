@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/setup/tools/found_tool.h"
+#include "core/base/result.h"
+#include "core/dbm/solid.h"
+
+namespace app {
+
+/// A CAM job of FreeCAD, as far as a set-up can use it.
+struct FreeCadJob {
+    std::string name;                            // its label
+    std::string post_processor;                  // the name of the script; may be empty
+    std::vector<std::string> work_offsets;       // "G54" ...
+    std::map<core::ToolNumber, FoundTool> tools; // of its tool controllers
+    std::optional<core::Solid> stock;            // a box or a cylinder, in program coordinates, mm
+    std::vector<std::string> notes;              // what was not taken over, and the way out
+};
+
+/// Reads the first job of a document (.FCStd): its tools, its stock if that is a box or a cylinder,
+/// work offsets and post processor. The part is a BREP, which is not read.
+///
+/// Source: documents of FreeCAD 0.20 with jobs that its Path module made (PathJob.py, PathStock.py,
+///         PathToolBit.py); positions of a job are those of the document.
+/// Errors: those of the archive; syntax, with line and column, for damaged XML; syntax if the
+///         document has no job.
+core::Result<FreeCadJob> read_freecad_job(const std::string& path);
+
+} // namespace app
