@@ -11,6 +11,10 @@
 namespace render {
 namespace {
 
+/// How much of the colour of its side a body of the pair has, and the stock, whose raw and cut
+/// faces must stay apart.
+constexpr double body_share = 0.8, stock_share = 0.4;
+
 /// Number of pictures after which an unused mesh is freed.
 constexpr uint64_t patience = 30;
 
@@ -139,6 +143,8 @@ core::Result<BodyPass> BodyPass::make() {
     FEELER_TRY(pass.caps_, ShaderProgram::make(shaders::cap_vertex, shaders::cap_fragment));
     pass.no_attributes_ = GlVertexArray::make();
     pass.ball_ = std::make_shared<const TriangleMesh>(ball_mesh(1.0, 12));
+    pass.cone_ = std::make_shared<const TriangleMesh>(
+        mesh_of(core::RevolvedProfile{{{0.0, 1.0, 2.6, 0.0, 0.0}}}));
     return pass;
 }
 
@@ -147,7 +153,8 @@ BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_
     Item made{&body, body.stock_from_body,        bounds(body), color(theme, color_role(body.role)),
               {},    is_ghost ? 0.28 : body.alpha};
     if (is_ghost) made.color = mixed(made.color, color(theme, Role::accent), 0.6);
-    if (body.highlighted) made.color = mixed(made.color, state_color(theme, body.mark), 0.22);
+    if (body.side != PairSide::none)
+        made.color = mixed(made.color, color(theme, color_role(body.side)), body_share);
     made.second = made.color;
     const auto& section = frame.scene.section;
     made.cut = section && (frame.scene.section_cuts_tool || !is_of_tool(body.role));
@@ -161,6 +168,9 @@ BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
     for (const auto& brick : frame.scene.stock) made.box.extend(brick->mesh.bounds);
     made.color = color(theme, Role::stock_raw);
     made.second = color(theme, Role::stock_cut);
+    if (const PairSide side = frame.scene.stock_side; side != PairSide::none)
+        for (Color* paint : {&made.color, &made.second})
+            *paint = mixed(*paint, color(theme, color_role(side)), stock_share);
     made.cut = frame.scene.section.has_value();
     return made;
 }
@@ -203,18 +213,18 @@ void BodyPass::draw_faces(const ViewFrame& frame, const Item& item) {
 }
 
 void BodyPass::draw_edges(const ViewFrame& frame, const Item& item) {
-    const bool marked = item.body != nullptr && item.body->highlighted;
+    const bool marked = item.body != nullptr && item.body->side != PairSide::none;
     Color ink = color(frame.options.theme, Role::edge);
     if (item.body == nullptr) ink.a = static_cast<uint8_t>(ink.a / 2);
-    if (marked) ink = state_color(frame.options.theme, item.body->mark);
-    if (item.alpha < 1.0) ink.a = static_cast<uint8_t>(ink.a * 0.55);
+    if (marked) ink = color(frame.options.theme, color_role(item.body->side));
+    if (item.alpha < 1.0 && !marked) ink.a = static_cast<uint8_t>(ink.a * 0.55);
     edges_.use();
     set_view(edges_, frame, item.pose);
     set_section(edges_, item.cut ? frame.scene.section : std::nullopt, item.pose);
     (item.cut ? glEnable : glDisable)(GL_CLIP_DISTANCE0);
     edges_.set("nearer", nearer(frame.camera, 2e-4));
     edges_.set("ink", ink);
-    glLineWidth(static_cast<float>(frame.options.scale * (marked ? 2.0 : 1.0)));
+    glLineWidth(static_cast<float>(frame.options.scale * (marked ? 1.6 : 1.0)));
     for_meshes(frame, item, [](const GpuMesh& mesh) { mesh.draw_lines(); });
 }
 
@@ -240,8 +250,9 @@ void BodyPass::draw_cap(const ViewFrame& frame, const Item& item) {
     caps_.set("middle", glm::vec3(middle));
     caps_.set("sides[0]", glm::vec3(reach * side));
     caps_.set("sides[1]", glm::vec3(reach * glm::cross(section.normal, side)));
-    caps_.set_rgb("base", mixed(item.color, {0, 0, 0, 255}, 0.12));
-    caps_.set("hatch", with_alpha(color(frame.options.theme, Role::edge), 0.42));
+    const Color black{0, 0, 0, 255};
+    caps_.set_rgb("base", mixed(item.color, black, 0.22));
+    caps_.set("hatch", with_alpha(mixed(item.color, black, 0.62), 0.85));
     caps_.set("spacing", static_cast<float>(11.0 * frame.options.scale));
     glBindVertexArray(no_attributes_.id());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -321,20 +332,38 @@ void BodyPass::draw_glass(const ViewFrame& frame) {
     glDepthMask(GL_TRUE);
 }
 
-void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, Color color) {
-    const double radius = pixels * pixel_size(frame.camera, frame.viewport, at);
-    if (!(radius > 0.0)) return; // behind the eye
+void BodyPass::draw_symbol(const ViewFrame& frame, const SharedMesh& mesh,
+                           const Mat4& scene_from_mesh, Color color) {
     Item made;
     made.color = made.second = color;
     set_material(frame, made, false);
-    faces_.set("view_from_body",
-               frame.view_from_scene
-                   * Mat4(glm::dvec4(radius, 0, 0, 0), glm::dvec4(0, radius, 0, 0),
-                          glm::dvec4(0, 0, radius, 0), glm::dvec4(at, 1.0)));
+    faces_.set("view_from_body", frame.view_from_scene * scene_from_mesh);
     set_section(faces_, std::nullopt);
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
-    meshes_.of(ball_).draw_faces();
+    meshes_.of(mesh).draw_faces();
+}
+
+void BodyPass::draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, Color color) {
+    const double radius = pixels * pixel_size(frame.camera, frame.viewport, at);
+    if (!(radius > 0.0)) return; // behind the eye
+    draw_symbol(frame, ball_,
+                Mat4(glm::dvec4(radius, 0, 0, 0), glm::dvec4(0, radius, 0, 0),
+                     glm::dvec4(0, 0, radius, 0), glm::dvec4(at, 1.0)),
+                color);
+}
+
+void BodyPass::draw_arrow_head(const ViewFrame& frame, const Vec3& at, const Vec3& along,
+                               double pixels, Color color) {
+    const double radius = pixels * pixel_size(frame.camera, frame.viewport, at);
+    if (!(radius > 0.0)) return;
+    const Vec3 other = std::abs(along.z) > 0.7 ? Vec3(1, 0, 0) : Vec3(0, 0, 1);
+    const Vec3 side = glm::normalize(glm::cross(other, along));
+    draw_symbol(frame, cone_,
+                Mat4(glm::dvec4(radius * side, 0.0),
+                     glm::dvec4(radius * glm::cross(along, side), 0.0),
+                     glm::dvec4(radius * along, 0.0), glm::dvec4(at, 1.0)),
+                color);
 }
 
 namespace {

@@ -45,6 +45,9 @@ public:
     void draw_glass(const ViewFrame& frame);
     /// Draws a ball of this size in pixels over everything.
     void draw_mark(const ViewFrame& frame, const Vec3& at, double pixels, Color color);
+    /// Draws a cone of this radius in pixels over everything, its tip towards `along`.
+    void draw_arrow_head(const ViewFrame& frame, const Vec3& at, const Vec3& along, double pixels,
+                         Color color);
     void end_picture() { meshes_.end_picture(); }
 
 private:
@@ -74,7 +77,10 @@ private:
     ShaderProgram faces_, edges_, caps_;
     GpuMeshes meshes_;
     GlVertexArray no_attributes_;
-    SharedMesh ball_;
+    void draw_symbol(const ViewFrame& frame, const SharedMesh& mesh, const Mat4& scene_from_mesh,
+                     Color color);
+
+    SharedMesh ball_, cone_;
 };
 
 /// Computes ambient occlusion in corners and hollows from the depths of opaque bodies.

@@ -189,4 +189,26 @@ Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box, 
     return framed;
 }
 
+bool is_in_sight(const Camera& camera, const Viewport& viewport, const Aabb& box) {
+    constexpr double least_size = 0.02; // of the height of the picture
+    if (box.empty()) return false;
+    Vec2 low(core::infinity), high(-core::infinity);
+    int behind = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const auto seen = project(camera, viewport,
+                                  {(corner & 1) != 0 ? box.max.x : box.min.x,
+                                   (corner & 2) != 0 ? box.max.y : box.min.y,
+                                   (corner & 4) != 0 ? box.max.z : box.min.z});
+        if (!seen) {
+            ++behind;
+            continue;
+        }
+        low = glm::min(low, seen->position);
+        high = glm::max(high, seen->position);
+    }
+    if (behind > 0) return behind < 8; // around the eye
+    return high.x > 0.0 && high.y > 0.0 && low.x < viewport.width && low.y < viewport.height
+           && std::max(high.x - low.x, high.y - low.y) >= least_size * viewport.height;
+}
+
 } // namespace render

@@ -95,4 +95,7 @@ Camera seen_from(const Camera& camera, StandardView view);
 Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box,
                double margin = 0.06);
 
+/// Whether at least a part of the box is in the picture, and not too small to be noticed.
+bool is_in_sight(const Camera& camera, const Viewport& viewport, const Aabb& box);
+
 } // namespace render

@@ -43,6 +43,7 @@ enum class Role : uint8_t {
     stock_raw,
     stock_cut,
     fixture,
+    vise,
     clamp,
     flutes,
     shank,
@@ -50,12 +51,19 @@ enum class Role : uint8_t {
     nose,
     machine,
     part,
-    edge,    // feature edges of bodies
-    rapid,   // rapids with unknown clearance
-    current, // the current block
-    section  // hatching of a cut face
+    edge,      // feature edges of bodies
+    rapid,     // rapids with unknown clearance
+    current,   // the current block
+    section,   // hatching of a cut face
+    pair_tool, // of the two bodies of a pair, the one on the tool side
+    pair_body, // and the one that it must not touch
+    axis_x,    // arrows at program zero and machine zero
+    axis_y,
+    axis_z,
+    grid,  // lines on the ground
+    shadow // of the work on the ground
 };
-constexpr size_t role_count = static_cast<size_t>(Role::section) + 1;
+constexpr size_t role_count = static_cast<size_t>(Role::shadow) + 1;
 
 Color color(ColorScheme theme, Role role);
 

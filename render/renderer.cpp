@@ -1,11 +1,14 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <array>
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include "render/body_pass.h"
+#include "render/ground.h"
+#include "render/ground_pass.h"
 #include "render/line_pass.h"
 #include "render/shaders.h"
 
@@ -118,15 +121,39 @@ void set_state() {
 
 } // namespace
 
+namespace {
+
+constexpr double head_length = 2.6; // of the cone of an arrow, per radius
+
+/// The box of everything that the near and far planes must enclose, marks of constant size
+/// included.
+core::Aabb content_of(const Scene& scene, const Camera& camera, const Viewport& viewport) {
+    constexpr double mark_pixels = 120.0;
+    core::Aabb box = bounds(scene);
+    const auto add_mark = [&](const Vec3& at) {
+        const double reach = mark_pixels * std::max(pixel_size(camera, viewport, at), 0.0);
+        box.extend(core::Aabb{at, at}.grown(reach));
+    };
+    for (const Triad& triad : scene.triads) add_mark(triad.origin);
+    if (scene.witness) add_mark(scene.witness->a);
+    if (scene.ground) box.extend(ground_bounds(*scene.ground, camera, viewport));
+    return box;
+}
+
+} // namespace
+
 struct Renderer::Parts {
     ShaderProgram background;
     BodyPass bodies;
     LinePass lines;
+    GroundPass ground;
     AmbientOcclusionPass hollows;
     GlVertexArray no_attributes;
 
     void draw_background(ColorScheme theme) const;
     void draw_witness(const ViewFrame& frame);
+    void draw_depth(const ViewFrame& frame, const Witness& witness, Color ink);
+    void draw_triad(const ViewFrame& frame, const Triad& triad);
     void draw_measured(const ViewFrame& frame);
 };
 
@@ -145,10 +172,48 @@ void Renderer::Parts::draw_background(ColorScheme theme) const {
 void Renderer::Parts::draw_witness(const ViewFrame& frame) {
     if (!frame.scene.witness) return;
     const Witness& witness = *frame.scene.witness;
+    if (witness.is_contact)
+        return bodies.draw_mark(frame, witness.a, 3.0 * frame.options.scale,
+                                color(frame.options.theme, Role::dim));
     const Color ink = state_color(frame.options.theme, witness.state);
+    if (witness.is_depth) return draw_depth(frame, witness, ink);
     lines.draw_over(frame, {witness.a, witness.b}, ink, 3.0);
     for (const Vec3& end : {witness.a, witness.b})
         bodies.draw_mark(frame, end, 4.8 * frame.options.scale, ink);
+}
+
+/// A dimension line through the overlap, with an arrow head at both ends.
+void Renderer::Parts::draw_depth(const ViewFrame& frame, const Witness& witness, Color ink) {
+    const Vec3 way = witness.b - witness.a;
+    const double length = glm::length(way);
+    if (!(length > 0.0)) return bodies.draw_mark(frame, witness.a, 4.8 * frame.options.scale, ink);
+    lines.draw_over(frame, {witness.a, witness.b}, ink, 3.0);
+    const double most = length / (2.2 * head_length)
+                        / pixel_size(frame.camera, frame.viewport, 0.5 * (witness.a + witness.b));
+    const double pixels = std::min(5.0 * frame.options.scale, most);
+    for (const bool first : {true, false}) {
+        const Vec3 outwards = (first ? -1.0 : 1.0) / length * way;
+        const Vec3& end = first ? witness.a : witness.b;
+        const double size = pixels * pixel_size(frame.camera, frame.viewport, end);
+        bodies.draw_arrow_head(frame, end - head_length * size * outwards, outwards, pixels, ink);
+    }
+}
+
+void Renderer::Parts::draw_triad(const ViewFrame& frame, const Triad& triad) {
+    const double pixel = pixel_size(frame.camera, frame.viewport, triad.origin);
+    if (!(pixel > 0.0)) return; // behind the eye
+    const ColorScheme theme = frame.options.theme;
+    const double length = length_in_pixels(triad) * frame.options.scale;
+    const std::array<Role, 3> roles = {Role::axis_x, Role::axis_y, Role::axis_z};
+    for (int axis = 0; axis < 3; ++axis) {
+        Color ink = color(theme, roles[static_cast<size_t>(axis)]);
+        if (triad.is_minor) ink = mixed(ink, color(theme, Role::dim), 0.5);
+        const Vec3 end = triad.origin + length * pixel * triad.axes[axis];
+        lines.draw_over(frame, {triad.origin, end}, ink, triad.is_minor ? 1.6 : 2.4);
+        bodies.draw_arrow_head(frame, end, triad.axes[axis],
+                               (triad.is_minor ? 3.2 : 4.4) * frame.options.scale, ink);
+    }
+    bodies.draw_mark(frame, triad.origin, 3.4 * frame.options.scale, color(theme, Role::text));
 }
 
 void Renderer::Parts::draw_measured(const ViewFrame& frame) {
@@ -174,6 +239,7 @@ core::Result<Renderer> Renderer::make() {
                ShaderProgram::make(shaders::background_vertex, shaders::background_fragment));
     FEELER_TRY(parts->bodies, BodyPass::make());
     FEELER_TRY(parts->lines, LinePass::make());
+    FEELER_TRY(parts->ground, GroundPass::make());
     FEELER_TRY(parts->hollows, AmbientOcclusionPass::make());
     parts->no_attributes = GlVertexArray::make();
     return Renderer(std::move(parts));
@@ -187,16 +253,18 @@ void Renderer::draw(const Scene& scene, const Camera& camera, const DrawOptions&
                     options,
                     viewport,
                     view_from_scene(camera),
-                    clip_from_view(camera, viewport, bounds(scene))};
+                    clip_from_view(camera, viewport, content_of(scene, camera, viewport))};
     set_state();
     if (options.hollows) frame.hollows = parts_->hollows.draw(frame, parts_->bodies);
     canvas.begin();
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
     parts_->draw_background(options.theme);
     parts_->bodies.draw_opaque(frame);
+    parts_->ground.draw(frame);
     parts_->lines.draw_path(frame);
     parts_->bodies.draw_glass(frame);
     glDisable(GL_DEPTH_TEST);
+    for (const Triad& triad : scene.triads) parts_->draw_triad(frame, triad);
     parts_->draw_measured(frame);
     parts_->draw_witness(frame);
     glEnable(GL_DEPTH_TEST);

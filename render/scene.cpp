@@ -11,8 +11,8 @@ core::Aabb stock_bounds(const Scene& scene) {
 }
 
 bool holds_work(BodyRole role) {
-    return role == BodyRole::fixture || role == BodyRole::clamp || role == BodyRole::stock
-           || role == BodyRole::part;
+    return role == BodyRole::fixture || role == BodyRole::vise || role == BodyRole::clamp
+           || role == BodyRole::stock || role == BodyRole::part;
 }
 
 } // namespace
@@ -21,6 +21,8 @@ Role color_role(BodyRole role) {
     switch (role) {
     case BodyRole::fixture:
         return Role::fixture;
+    case BodyRole::vise:
+        return Role::vise;
     case BodyRole::clamp:
         return Role::clamp;
     case BodyRole::machine:
@@ -39,6 +41,10 @@ Role color_role(BodyRole role) {
         return Role::part;
     }
     return Role::fixture;
+}
+
+Role color_role(PairSide side) {
+    return side == PairSide::tool ? Role::pair_tool : Role::pair_body;
 }
 
 double usual_alpha(BodyRole role) {

@@ -1,6 +1,8 @@
 #include "render/setup_scene.h"
 
 #include <algorithm>
+#include <span>
+#include <string_view>
 
 #include "core/base/text.h"
 #include "core/motion/machine.h"
@@ -40,13 +42,27 @@ Body make_body(std::string name, BodyRole role, SharedMesh mesh, const core::Tra
 
 BodyRole fixture_role(const core::Fixture& fixture) {
     if (fixture.is_machine) return BodyRole::machine;
-    return is_clamp(fixture.name) ? BodyRole::clamp : BodyRole::fixture;
+    if (is_clamp(fixture.name)) return BodyRole::clamp;
+    return is_vise(fixture.name) ? BodyRole::vise : BodyRole::fixture;
+}
+
+bool has_word(const std::string& name, std::span<const std::string_view> words) {
+    const std::string lower = core::lower_case(name);
+    return std::any_of(words.begin(), words.end(), [&](std::string_view word) {
+        return lower.find(word) != std::string::npos;
+    });
 }
 
 } // namespace
 
 bool is_clamp(const std::string& name) {
-    return core::lower_case(name).find("clamp") != std::string::npos;
+    constexpr std::string_view words[] = {"clamp", "strap"};
+    return has_word(name, words);
+}
+
+bool is_vise(const std::string& name) {
+    constexpr std::string_view words[] = {"vise", "vice", "jaw", "chuck"};
+    return has_word(name, words);
 }
 
 SetupMeshes setup_meshes(const core::Setup& setup) {

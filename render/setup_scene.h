@@ -42,4 +42,7 @@ core::Vec3 tip_in_stock(const core::Setup& setup, double tool_length,
 /// Whether a fixture is a clamp, by its name: clamps have their own colour.
 bool is_clamp(const std::string& name);
 
+/// Whether a fixture is a vise or a chuck, by its name.
+bool is_vise(const std::string& name);
+
 } // namespace render

@@ -193,6 +193,61 @@ void main() {
 }
 )";
 
+/// A rectangle on the ground.
+const char* const shadow_vertex = R"(#version 330 core
+uniform mat4 view_from_body;
+uniform mat4 clip_from_view;
+uniform vec2 nearer;
+uniform vec2 corner;
+uniform vec2 size;
+out vec2 at;
+void main() {
+    at = vec2((gl_VertexID & 1) != 0 ? 1.0 : 0.0, (gl_VertexID & 2) != 0 ? 1.0 : 0.0);
+    vec4 p = view_from_body * vec4(corner + at * size, 0.0, 1.0);
+    p.xyz = p.xyz * nearer.x + vec3(0.0, 0.0, nearer.y);
+    gl_Position = clip_from_view * p;
+}
+)";
+
+const char* const shadow_fragment = R"(#version 330 core
+uniform sampler2D mask;
+uniform vec4 ink;
+in vec2 at;
+out vec4 color;
+void main() { color = vec4(ink.rgb, ink.a * texture(mask, at).r); }
+)";
+
+/// Lines on the ground. w: how strong the line is.
+const char* const grid_vertex = R"(#version 330 core
+layout(location = 0) in vec4 place;
+uniform mat4 view_from_body;
+uniform mat4 clip_from_view;
+uniform vec2 nearer;
+out vec2 ground;
+flat out float strength;
+void main() {
+    vec4 p = view_from_body * vec4(place.xyz, 1.0);
+    p.xyz = p.xyz * nearer.x + vec3(0.0, 0.0, nearer.y);
+    ground = place.xy;
+    strength = place.w;
+    gl_Position = clip_from_view * p;
+}
+)";
+
+/// Lines that fade away from the middle of the view.
+const char* const grid_fragment = R"(#version 330 core
+uniform vec2 middle;
+uniform float reach;
+uniform vec4 ink;
+in vec2 ground;
+flat in float strength;
+out vec4 color;
+void main() {
+    float left = clamp(1.0 - distance(ground, middle) / reach, 0.0, 1.0);
+    color = vec4(ink.rgb, ink.a * strength * left);
+}
+)";
+
 /// The fraction of the sky over a point that is hidden by nearby surfaces, from depths alone.
 /// Source: McGuire, Mara, Luebke: Scalable Ambient Obscurance, 2012.
 const char* const hollow_fragment = R"(#version 330 core

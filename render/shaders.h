@@ -13,6 +13,10 @@ extern const char* const line_vertex;
 extern const char* const line_fragment;
 extern const char* const cap_vertex;
 extern const char* const cap_fragment;
+extern const char* const shadow_vertex;
+extern const char* const shadow_fragment;
+extern const char* const grid_vertex;
+extern const char* const grid_fragment;
 extern const char* const hollow_fragment;
 extern const char* const smooth_fragment;
 

@@ -83,7 +83,7 @@ TEST(SceneWriter, WritesWhatScenesShareOnce) {
         scene.bodies.push_back(body);
     }
     scene.bodies[1].stock_from_body = core::translation({1, 2, 3.0005});
-    scene.bodies[1].highlighted = true;
+    scene.bodies[1].side = render::PairSide::body;
     scene.bodies[1].mark = render::ClearanceState::violation;
     scene.witness = render::Witness{{1, 2, 3}, {4, 5, 6.12345}, render::ClearanceState::near};
     SceneWriter writer;

@@ -163,5 +163,24 @@ TEST(Camera, KeepsItsScaleWithoutPerspective) {
     EXPECT_NEAR(pixel_size(camera, wide, camera.target + Vec3(50, 50, 50)), with, 1e-12);
 }
 
+TEST(Camera, NoticesThatNothingIsInSight) {
+    const Viewport viewport{800, 600};
+    Camera camera = framing(Camera(), viewport, {{-10, -10, -10}, {10, 10, 10}});
+    EXPECT_TRUE(is_in_sight(camera, viewport, {{-10, -10, -10}, {10, 10, 10}}));
+    EXPECT_TRUE(is_in_sight(camera, viewport, {{-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}})); // around it
+    EXPECT_FALSE(is_in_sight(camera, viewport, {{500, 500, 0}, {510, 510, 10}}));
+    EXPECT_FALSE(is_in_sight(camera, viewport, {{0, 0, 0}, {0.1, 0.1, 0.1}})); // a dot
+    EXPECT_FALSE(is_in_sight(camera, viewport, {}));
+    const Vec3 behind = eye(camera) + 50.0 * axes(camera).backward;
+    EXPECT_FALSE(is_in_sight(camera, viewport, {behind - Vec3(5.0), behind + Vec3(5.0)}));
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-300.0, 300.0), size(20.0, 200.0);
+    for (int i = 0; i < 500; ++i) { // whatever is framed is in sight
+        const Vec3 low(place(random), place(random), place(random));
+        const Aabb box{low, low + Vec3(size(random), size(random), size(random))};
+        EXPECT_TRUE(is_in_sight(framing(camera, viewport, box), viewport, box));
+    }
+}
+
 } // namespace
 } // namespace render

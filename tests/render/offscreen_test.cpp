@@ -212,6 +212,72 @@ TEST_F(Picture, FadesWhatComesLater) {
     EXPECT_GT(count_near(drawn(plain, camera), amber, 30), faded + 100);
 }
 
+TEST_F(Picture, DrawsArrowsOfTheSameSizeAtEveryZoom) {
+    Scene plain;
+    plain.triads = {{.name = "G54", .origin = {10, 20, 30}}};
+    Camera camera;
+    camera.target = {10, 20, 30};
+    std::vector<size_t> counts;
+    for (const double distance : {20.0, 200.0, 2000.0}) {
+        camera.distance = distance;
+        counts.push_back(
+            count_near(drawn(plain, camera), color(ColorScheme::dark, Role::axis_z), 60));
+    }
+    EXPECT_GT(counts[0], 80u);
+    for (const size_t count : counts)
+        EXPECT_NEAR(static_cast<double>(count), static_cast<double>(counts[0]), 30.0);
+}
+
+TEST_F(Picture, DrawsTheGroundWithAShadowSeenFromAbove) {
+    Scene plain;
+    plain.bodies = {scene->bodies[0]};
+    Camera camera = framing(Camera(), size, bounds(plain.bodies[0]));
+    const auto darker = [&](double pitch) {
+        camera.pitch = pitch;
+        plain.ground.reset();
+        const Image without = drawn(plain, camera, {.theme = ColorScheme::light});
+        plain.ground = Ground{core::translation({0, 0, bounds(plain.bodies[0]).min.z})};
+        const Image with = drawn(plain, camera, {.theme = ColorScheme::light});
+        double sum = 0.0;
+        for (size_t i = 0; i < with.rgba.size(); i += 4) sum += without.rgba[i] - with.rgba[i];
+        return sum / static_cast<double>(size.width * size.height);
+    };
+    EXPECT_GT(darker(0.7), darker(-0.7) + 1.0); // from below there are only lines
+}
+
+TEST_F(Picture, DrawsIntendedContactCalmly) {
+    Scene plain;
+    plain.witness = Witness{{0, 0, 0}, {0, 0, 0}, ClearanceState::clear, false, true};
+    Camera camera;
+    camera.distance = 100.0;
+    const Image image = drawn(plain, camera);
+    EXPECT_GT(difference(image, drawn(Scene(), camera)).different, 0.0);
+    EXPECT_LT(difference(image, drawn(Scene(), camera)).different, 0.001);
+    EXPECT_EQ(count_near(image, color(ColorScheme::dark, Role::violation), 60), 0u);
+}
+
+TEST_F(Picture, DrawsTheDepthOfAnOverlapAsALineOfThatLength) {
+    Scene plain;
+    plain.witness = Witness{{0, 0, -10}, {0, 0, 10}, ClearanceState::violation, true};
+    Camera camera = seen_from(Camera(), StandardView::front);
+    camera.distance = 60.0;
+    camera.projection = Projection::orthographic;
+    const Image image = drawn(plain, camera);
+    const Color ink = color(ColorScheme::dark, Role::violation);
+    int top = size.height, bottom = 0;
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+            if (std::abs(image.pixel(x, y)[0] - ink.r) < 40 && image.pixel(x, y)[2] < 90) {
+                top = std::min(top, y);
+                bottom = std::max(bottom, y);
+            }
+    const double expected = project(camera, size, {0, 0, -10})->position.y
+                            - project(camera, size, {0, 0, 10})->position.y;
+    EXPECT_NEAR(bottom - top, expected, 6.0);
+    plain.witness->b = plain.witness->a; // of no length: still there
+    EXPECT_GT(count_near(drawn(plain, camera), ink, 60), 20u);
+}
+
 TEST_F(Picture, DrawsAPathOfManyPieces) {
     // More than one texture holds; the last piece is as much there as the first.
     std::vector<PathPoint> points;

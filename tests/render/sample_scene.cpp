@@ -179,6 +179,12 @@ Scene sample_scene(double spacing) {
     scene.current_block = points[points.size() - 2].block;
     scene.path = std::make_shared<const ToolPath>(tool_path(std::move(points)));
     scene.witness = Witness{{14.58, -21.0, 6.0}, {22.0, -21.0, 6.0}, ClearanceState::violation};
+    for (Body& body : scene.bodies)
+        if (body.name == "holder" || body.name == "clamp-1")
+            body.side = body.name == "holder" ? PairSide::tool : PairSide::body;
+    scene.triads = {{.name = "G54", .origin = {-45, -30, 0}},
+                    {.name = "machine zero", .origin = {70, 60, 40}, .is_minor = true}};
+    scene.ground = Ground{core::translation({-45, -30, -66})};
     return scene;
 }
 

@@ -145,6 +145,16 @@ TEST(SetupScene, IsSeenFromAStockThatTurns) {
     EXPECT_NEAR(after.z, 50.0, 1e-9);
 }
 
+TEST(SetupScene, TellsVisesAndClampsByTheirNames) {
+    for (const char* name : {"vise6-body", "Fixed JAW", "chuck", "vice bed"})
+        EXPECT_TRUE(is_vise(name)) << name;
+    for (const char* name : {"clamp left", "Strap-2"}) EXPECT_TRUE(is_clamp(name)) << name;
+    for (const char* name : {"parallel-1", "table", "stud", ""}) {
+        EXPECT_FALSE(is_vise(name)) << name;
+        EXPECT_FALSE(is_clamp(name)) << name;
+    }
+}
+
 TEST(SetupScene, LeavesOutFixturesThatAreNotThere) {
     core::Setup setup = sample_setup();
     setup.fixtures[1].is_there = false;

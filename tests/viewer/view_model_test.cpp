@@ -26,7 +26,7 @@ ViewModel looked_at() {
     go_to(model, 7);
     model.bookmarks.insert(3);
     toggle_breakpoint(model, 12);
-    model.section = render::SectionPlane{};
+    model.section = Section{};
     model.camera.distance = 77.0;
     model.camera_placed = true;
     return model;

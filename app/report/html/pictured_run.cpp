@@ -32,8 +32,8 @@ namespace {
 constexpr size_t stock_triangles = 6000, body_triangles = 4000;
 
 const char* name_of(render::BodyRole role) {
-    constexpr const char* names[] = {"fixture", "clamp", "machine", "flutes", "shank",
-                                     "holder",  "nose",  "stock",   "part"};
+    constexpr const char* names[] = {"fixture", "vise",   "clamp", "machine", "flutes",
+                                     "shank",   "holder", "nose",  "stock",   "part"};
     return names[static_cast<size_t>(role)];
 }
 
@@ -175,7 +175,8 @@ std::string body_json(const render::Body& body, size_t mesh) {
     std::string json =
         fmt::format(R"({{"name":{},"role":"{}","mesh":{},"at":[{}])", script_string(body.name),
                     name_of(body.role), mesh, numbers(body.stock_from_body));
-    if (body.highlighted) json += fmt::format(R"(,"state":"{}")", name_of(body.mark));
+    if (body.side != render::PairSide::none)
+        json += fmt::format(R"(,"state":"{}")", name_of(body.mark));
     return json + "}";
 }
 
@@ -186,7 +187,8 @@ std::string SceneWriter::State::bodies_json(const render::Scene& scene) {
     if (const auto stock = stock_of(scene.stock))
         bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}}})", *stock));
     for (const render::Body& body : scene.bodies) {
-        const bool is_far = body.role == render::BodyRole::machine && !body.highlighted;
+        const bool is_far =
+            body.role == render::BodyRole::machine && body.side == render::PairSide::none;
         if (!body.visible || !body.mesh || is_far) continue;
         if (const auto mesh = mesh_of(body.mesh)) bodies.push_back(body_json(body, *mesh));
     }

@@ -90,8 +90,8 @@ inline bool is_offending(const BlockRow& row) {
 
 /// Whether the bodies touch as intended: cutting, or contact of a pair that may touch.
 inline bool is_contact(const BlockRow& row) {
-    return row.is_known && row.verdict == core::Verdict::clear && row.upper && *row.upper <= 0.0
-           && row.allowance && *row.allowance <= core::resolution;
+    return row.is_known && row.verdict == core::Verdict::clear && row.upper
+           && *row.upper <= core::resolution && row.allowance && *row.allowance <= core::resolution;
 }
 
 /// Whether the clearance is between the allowance and twice the allowance.

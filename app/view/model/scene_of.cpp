@@ -1,11 +1,15 @@
 #include "app/view/model/scene_of.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "app/check/setup_sheet.h"
+#include "app/view/model/program_zero.h"
 #include "app/view/model/view_model.h"
+#include "core/base/text.h"
 #include "render/picking.h"
 
 namespace app::viewer {
@@ -21,6 +25,8 @@ std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
 
 namespace {
 
+constexpr const char* stock_name = "stock"; // in pairs
+
 /// The view of the current block, or an older one while the worker still makes it.
 const BlockState* view_of(const ViewModel& model) {
     return model.block_state ? model.block_state.get() : nullptr;
@@ -35,6 +41,7 @@ std::optional<core::AxisValues> axes_now(const ViewModel& model, const BlockStat
 bool shows(const VisibleParts& shown, render::BodyRole role) {
     switch (role) {
     case render::BodyRole::fixture:
+    case render::BodyRole::vise:
     case render::BodyRole::clamp:
         return shown.fixtures;
     case render::BodyRole::machine:
@@ -51,16 +58,18 @@ render::ClearanceState state_of_pair(const BlockRow& row, const PairWitness& pai
     return pair.verdict == core::Verdict::clear ? state_of(row) : render::ClearanceState::violation;
 }
 
-void mark_pair(const ViewModel& model, std::vector<render::Body>& bodies) {
+void mark_pair(const ViewModel& model, render::Scene& scene) {
+    if (!model.has_rows()) return;
     const auto pair = witness_in(model.row(), model.shown_pair);
     if (!pair) return;
     const render::ClearanceState state = state_of_pair(model.row(), *pair);
     if (state < render::ClearanceState::near) return;
-    for (render::Body& body : bodies) {
-        if (body.name != pair->names[0] && body.name != pair->names[1]) continue;
-        body.highlighted = true;
-        body.mark = state;
+    for (render::Body& body : scene.bodies) {
+        if (body.name == pair->names[0]) body.side = render::PairSide::tool;
+        if (body.name == pair->names[1]) body.side = render::PairSide::body;
+        if (body.side != render::PairSide::none) body.mark = state;
     }
+    if (pair->names[1] == stock_name) scene.stock_side = render::PairSide::body;
 }
 
 /// Adds the tool at the end of the hovered block. Only on machines without rotary axes.
@@ -99,8 +108,8 @@ void add_bodies(const ViewModel& model, const BlockState& view, render::Scene& s
             body.alpha = 1.0;
     if (values) add_ghost(model, view, *values, tool, scene);
     scene.bodies.insert(scene.bodies.end(), tool.begin(), tool.end());
-    mark_pair(model, scene.bodies);
     scene.stock = view.stock;
+    mark_pair(model, scene);
 }
 
 /// Adds what is known before the first view arrives: the raw stock and the fixtures.
@@ -129,14 +138,157 @@ std::optional<core::Vec3> tip_now(const ViewModel& model) {
     return render::tip_in_stock(setup, setup.tools.at(*view->tool).length, *values);
 }
 
+std::optional<render::Triad> program_triad(const ViewModel& model) {
+    const BlockState* view = view_of(model);
+    if (!view || !view->zero || !view->scene) return {};
+    render::Triad triad = triad_of(*view->zero, view->scene->setup,
+                                   axes_now(model, *view).value_or(core::AxisValues{}));
+    if (!core::is_finite(triad.origin)) return {};
+    if (model.program && model.program->counts_blocks) triad.name = "datum"; // Klartext: no G54
+    return triad;
+}
+
 std::optional<render::Witness> witness_of(const ViewModel& model) {
     if (!model.has_rows() || !model.settings.shown.witness) return {};
     // Until the worker has made the new view, the tool is drawn at its position in the old one.
     if (model.block_state && model.block_state->block != model.cursor.block) return {};
     const auto pair = witness_in(model.row(), model.shown_pair);
     if (!pair) return {};
-    return render::Witness{pair->on_tool, pair->on_body, state_of_pair(model.row(), *pair)};
+    render::Witness witness{pair->on_tool, pair->on_body, state_of_pair(model.row(), *pair)};
+    witness.is_contact = is_contact(model.row()) && pair->verdict == core::Verdict::clear;
+    return witness;
 }
+
+namespace {
+
+/// The points that are joined by lines: measured ones, else those of a section so far.
+std::vector<core::Vec3> marked_points(const ViewModel& model) {
+    return model.section && model.section->pick == SectionPick::points ? model.section->picked
+                                                                       : model.measuring.positions;
+}
+
+void add_triads(const ViewModel& model, render::Scene& scene) {
+    if (const auto triad = program_triad(model)) scene.triads.push_back(*triad);
+    const BlockState* view = view_of(model);
+    if (!view || !view->scene || !model.program || model.program->is_inferred) return;
+    const auto values = axes_now(model, *view).value_or(core::AxisValues{});
+    scene.triads.push_back(machine_triad(view->scene->setup, values));
+}
+
+/// The body on which the work stands: of the machine's tables, the one with the highest top.
+const render::Body* table_in(const render::Scene& scene) {
+    const render::Body* table = nullptr;
+    const auto top_of = [](const render::Body& body) {
+        return glm::dot(body.stock_from_body.rotation[2], render::bounds(body).max);
+    };
+    for (const render::Body& body : scene.bodies) {
+        if (body.role != render::BodyRole::machine || !body.mesh) continue;
+        if (core::lower_case(body.name).find("table") == std::string::npos) continue;
+        if (!table || top_of(body) > top_of(*table)) table = &body;
+    }
+    return table;
+}
+
+/// The ground: the top of the table, else the lowest point of what stands on it. Its grid counts
+/// from the zero of the program.
+std::optional<render::Ground> ground_of(const ViewModel& model, const render::Scene& scene) {
+    render::Ground ground;
+    ground.inch = model.settings.inch;
+    core::Transform& pose = ground.scene_from_ground;
+    const core::Aabb work = render::work_bounds(scene);
+    if (const render::Body* table = table_in(scene)) {
+        pose = table->stock_from_body;
+        pose.translation = pose * core::Vec3(0.0, 0.0, table->mesh->bounds.max.z);
+    } else {
+        if (work.empty()) return {};
+        pose.translation = {0.0, 0.0, work.min.z};
+    }
+    const core::Vec3 zero =
+        pose.inverse() * (scene.triads.empty() ? core::Vec3(0.0) : scene.triads[0].origin);
+    pose.translation = pose * core::Vec3(zero.x, zero.y, 0.0);
+    if (!core::is_finite(pose.translation)) return {};
+    return ground;
+}
+
+/// Opacity of a part of the machine that hides the work.
+constexpr double seen_through = 0.14;
+
+/// Whether a body is between the eye and at least half of these points.
+bool hides(const render::Body& body, const core::Vec3& eye, std::span<const core::Vec3> points) {
+    const core::Transform back = body.stock_from_body.inverse();
+    size_t hidden = 0;
+    for (const core::Vec3& point : points) {
+        const double far = glm::distance(point, eye);
+        if (!(far > 0.0)) continue;
+        const core::Vec3 direction = (point - eye) / far;
+        const auto hit = render::pick_mesh(*body.mesh, {back * eye, back.rotation * direction});
+        hidden += hit && hit->distance < far - 0.5 ? 1 : 0;
+    }
+    return 2 * hidden >= points.size();
+}
+
+/// The middle of a box and the middles of its faces.
+std::array<core::Vec3, 7> middles_of(const core::Aabb& box) {
+    std::array<core::Vec3, 7> points;
+    points.fill(box.center());
+    for (size_t axis = 0; axis < 3; ++axis)
+        for (const bool low : {true, false})
+            points[1 + 2 * axis + (low ? 1 : 0)][static_cast<int>(axis)] =
+                (low ? box.min : box.max)[static_cast<int>(axis)];
+    return points;
+}
+
+/// Makes the parts of the machine that hide the work transparent: on a machine with rotary axes,
+/// the table comes between the eye and the stock, which stays in place.
+void reveal_work(const ViewModel& model, render::Scene& scene) {
+    core::Aabb stock;
+    for (const auto& brick : scene.stock) stock.extend(brick->mesh.bounds);
+    if (stock.empty()) return;
+    const auto points = middles_of(stock);
+    const core::Vec3 eye = render::eye(model.camera);
+    for (render::Body& body : scene.bodies)
+        if (body.role == render::BodyRole::machine && body.visible && body.mesh
+            && hides(body, eye, points))
+            body.alpha = seen_through;
+}
+
+/// The first surface of a body on a ray.
+std::optional<core::Vec3> surface_on(const render::Scene& scene, const std::string& name,
+                                     const render::Ray& ray) {
+    if (name == stock_name) {
+        const auto hit = render::pick_stock(scene, ray);
+        return hit ? std::optional(hit->at.point) : std::nullopt;
+    }
+    std::optional<render::SurfaceHit> nearest;
+    for (const render::Body& body : scene.bodies) {
+        if (body.name != name || !body.mesh) continue;
+        const core::Transform back = body.stock_from_body.inverse();
+        auto hit =
+            render::pick_mesh(*body.mesh, {back * ray.origin, back.rotation * ray.direction});
+        if (!hit || (nearest && nearest->distance <= hit->distance)) continue;
+        hit->point = body.stock_from_body * hit->point;
+        nearest = hit;
+    }
+    return nearest ? std::optional(nearest->point) : std::nullopt;
+}
+
+/// Makes a measured overlap a line from the surface of the body that is hit, as far into it as the
+/// tool goes. Without a surface there, the line goes the way out from the point of contact.
+void measure_overlap(const ViewModel& model, render::Scene& scene) {
+    if (!scene.witness || !model.row().overlap || !model.row().overlap->most) return;
+    const auto pair = witness_in(model.row(), model.shown_pair);
+    if (!pair || pair->names != BodyNames{model.row().part, model.row().body}) return;
+    const core::Overlap& overlap = *model.row().overlap;
+    const core::Vec3 way = *overlap.most * overlap.way_out;
+    const core::Vec3 beyond = pair->on_tool + 1.01 * way + 0.01 * overlap.way_out;
+    const auto surface = surface_on(scene, pair->names[1], {beyond, -overlap.way_out});
+    const bool is_near = surface && glm::distance(*surface, beyond) <= 1.02 * *overlap.most + 0.02;
+    scene.witness->a = is_near ? *surface - way : pair->on_tool;
+    scene.witness->b = is_near ? *surface : pair->on_tool + way;
+    scene.witness->is_depth = true;
+}
+
+} // namespace
 
 render::Scene scene_of(const ViewModel& model) {
     render::Scene scene;
@@ -151,8 +303,15 @@ render::Scene scene_of(const ViewModel& model) {
     if (model.has_rows()) scene.current_block = static_cast<uint32_t>(model.cursor.block);
     if (model.hovered) scene.hovered_block = static_cast<uint32_t>(*model.hovered);
     scene.witness = witness_of(model);
-    scene.section = model.section;
-    scene.measured = model.measuring.positions;
+    if (model.section) {
+        scene.section = model.section->plane;
+        scene.section_cuts_tool = model.section->cuts_tool;
+    }
+    scene.measured = marked_points(model);
+    add_triads(model, scene);
+    scene.ground = ground_of(model, scene);
+    reveal_work(model, scene);
+    measure_overlap(model, scene);
     return scene;
 }
 
@@ -170,10 +329,13 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     key.theme = model.settings.theme;
     key.hovered = model.hovered;
     if (model.section) {
-        key.section = model.section->normal;
-        key.section_offset = model.section->offset;
+        key.section = model.section->plane.normal;
+        key.section_offset = model.section->plane.offset;
+        key.section_cuts_tool = model.section->cuts_tool;
     }
-    key.measured = model.measuring.positions;
+    key.measured = marked_points(model);
+    key.inch = model.settings.inch;
+    if (model.has_rows()) key.overlap = model.row().overlap;
     key.width = size.width;
     key.height = size.height;
     key.has_program = model.program != nullptr;

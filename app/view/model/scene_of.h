@@ -42,7 +42,10 @@ struct SceneKey {
     std::optional<size_t> hovered;
     core::Vec3 section = core::Vec3(0.0);
     double section_offset = 0.0;
-    std::vector<core::Vec3> measured;
+    bool section_cuts_tool = false;
+    bool inch = false;                    // the unit of the grid
+    std::optional<core::Overlap> overlap; // of the shown pair
+    std::vector<core::Vec3> measured;     // and the points of a section
     int width = 0, height = 0;
     bool has_program = false;
 
@@ -53,6 +56,9 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size);
 
 /// The position of the tool tip, frame of the stock; empty if unknown.
 std::optional<core::Vec3> tip_now(const ViewModel& model);
+
+/// The arrows at the zero of the program in the current block; empty if it is unknown.
+std::optional<render::Triad> program_triad(const ViewModel& model);
 
 /// The witness of the current block, if it has one and its view is loaded.
 std::optional<render::Witness> witness_of(const ViewModel& model);

@@ -54,6 +54,14 @@ struct ShownValue {
 std::vector<ShownValue> compared(const std::vector<NamedValue>& before,
                                  const std::vector<NamedValue>& after);
 
+/// The zero of the program's coordinates, as machine coordinates of the gauge line of a tool
+/// without length.
+struct ProgramZero {
+    std::string name;                          // of the work offset: "G54"
+    std::array<core::AxisValues, 4> positions; // of zero, and of 1 mm along X, Y and Z
+    bool turns_with_work = false;              // else it stays in place while rotary axes move
+};
+
 /// A block and the state before or after it, for the window. Never changes.
 struct BlockState {
     size_t block = 0;
@@ -62,6 +70,7 @@ struct BlockState {
     std::vector<Pose> poses;                  // of the block
     std::optional<core::AxisValues> standing; // axis positions after the block
     std::optional<core::ToolNumber> tool;     // used in the block
+    std::optional<ProgramZero> zero;          // after the block
     std::vector<bool> mounted_fixtures;
     render::StockBricks stock;
     std::vector<ShownValue> modal, axes, offsets, parameters;

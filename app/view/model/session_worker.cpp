@@ -16,6 +16,7 @@
 #include "app/check/prepared_check.h"
 #include "app/debug/debug_session.h"
 #include "app/view/model/program_track.h"
+#include "app/view/model/program_zero.h"
 #include "app/view/model/scene_of.h"
 #include "render/stock_surface.h"
 
@@ -176,6 +177,7 @@ void WorkerSession::show(const ShowRequest& request) {
     view->stock = surface_->bricks();
     view->standing = known_values(view->scene->setup.machine, session_->position());
     view->mounted_fixtures = session_->mounted_fixtures();
+    view->zero = program_zero(session_->control());
     const ControlValues after = values_of(*session_);
     view->modal = compared(before.modal, after.modal);
     view->axes = compared(before.axes, after.axes);

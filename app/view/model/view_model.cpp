@@ -79,13 +79,17 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.device.study = nullptr;
 }
 
-/// Sets the worst severity of each row. Findings come and go until the check is complete.
+/// Sets the worst severity of each row, and how deep its deciding pair overlaps. Findings come and
+/// go until the check is complete.
 void mark_rows(ViewModel& model) {
     std::vector<core::Severity> worst(model.rows.size(), core::Severity::off);
     for (const core::Finding& finding : model.findings) {
         if (!finding.block || core::value_of(*finding.block) >= worst.size()) continue;
         core::Severity& of_block = worst[core::value_of(*finding.block)];
         of_block = std::max(of_block, finding.severity);
+        BlockRow& row = model.rows[core::value_of(*finding.block)];
+        if (finding.overlap && finding.pair == BodyNames{row.part, row.body})
+            row.overlap = finding.overlap;
     }
     for (size_t i = 0; i < worst.size(); ++i) {
         if (model.rows[i].worst == worst[i]) continue;
@@ -347,6 +351,11 @@ void forget_run(DeviceModel& device) {
 } // namespace
 
 void show_device(ViewModel& model, bool shown) { model.device.shown = shown; }
+
+bool has_device(const ViewModel& model) {
+    const DeviceModel& device = model.device;
+    return device.shown || !device.file.empty() || device.study != nullptr;
+}
 
 void switch_off_device(ViewModel& model) {
     model.device.shown = false;

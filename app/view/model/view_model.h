@@ -56,6 +56,9 @@ struct ToleranceModel {
 /// results is aborted.
 void show_device(ViewModel& model, bool shown);
 
+/// Whether the user has asked for the coprocessor: only then it has an icon.
+bool has_device(const ViewModel& model);
+
 /// Aborts the run and drops its results.
 void switch_off_device(ViewModel& model);
 
@@ -107,6 +110,26 @@ struct Measuring {
     std::vector<core::Vec3> positions; // at most two, frame of the stock
 };
 
+/// The direction of a section: across an axis of the stock, or any other.
+enum class SectionAxis : uint8_t { x, y, z, any };
+
+/// What the next clicks in the view define.
+enum class SectionPick : uint8_t { none, face, points };
+
+/// A section of the view. Frame: the stock's.
+struct Section {
+    render::SectionPlane plane;
+    SectionAxis axis = SectionAxis::y;
+    core::Vec3 normal = core::Vec3(0.0, 1.0, 0.0); // of the axis or the picked plane, as positions
+                                                   // count; the plane's own may be opposite
+    core::Vec3 zero = core::Vec3(0.0);             // a point at position 0
+    SectionPick pick = SectionPick::none;
+    std::vector<core::Vec3> picked; // so far, of three points
+    bool cuts_tool = false;
+
+    bool is_flipped() const { return glm::dot(normal, plane.normal) < 0.0; }
+};
+
 /// Everything the window shows, and the input of the user, independent of a window. Functions that
 /// change it are here and in navigation.h.
 struct ViewModel {
@@ -154,7 +177,7 @@ struct ViewModel {
     std::optional<size_t> pointed_at; // in this frame
     std::optional<BlockRow> resume;   // row to return to when the program is read again
     bool opens_another = false;       // the program to be opened next is a different one
-    std::optional<render::SectionPlane> section;
+    std::optional<Section> section;
     Measuring measuring;
     Popup popup = Popup::none;
     std::string message; // shown for some seconds

@@ -80,6 +80,9 @@ constexpr KeyBinding bindings[] = {
     {C::show_path, G::show, key::of('P'), shift, "Shift+P", "Path"},
     {C::show_device, G::show, key::of('D'), 0, "D", "Coprocessor: run it and show its panel"},
     {C::section, G::show, key::of('X'), 0, "X", "Section through the closest pair"},
+    {C::flip_section, G::show, key::of('X'), shift, "Shift+X", "Section: cut away the other side"},
+    {C::section_back, G::show, key::comma, 0, ",", "Section: move back (also Ctrl+wheel)"},
+    {C::section_forward, G::show, key::period, 0, ".", "Section: move on"},
     {C::measure, G::show, key::of('M'), 0, "M", "Measure between two points"},
 
     {C::edit_setup, G::window, key::of('E'), 0, "E",

@@ -88,12 +88,23 @@ void draw_scale(Frame& frame) {
     wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), sentence_of(frame.model, row));
 }
 
+/// A body of the pair, with its colour in the view.
+void pair_row(Frame& frame, const char* name, const std::string& body, Role role) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float side = frame.px(10);
+    const ImVec2 corner(at.x + frame.px(70), at.y + frame.px(4));
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + side, corner.y + side},
+                                              frame.palette.color(role), frame.px(2));
+    value_row(frame, name, body, 88.0);
+}
+
 void draw_pair(Frame& frame) {
     const BlockRow& row = frame.model.row();
     if (!row.has_pair() || !row.is_known) return;
     heading(frame, "Closest pair");
-    value_row(frame, "Tool side", row.part);
-    value_row(frame, "Obstacle", row.body);
+    const bool is_marked = state_of(row) >= render::ClearanceState::near;
+    pair_row(frame, "Tool side", row.part, is_marked ? Role::pair_tool : Role::panel);
+    pair_row(frame, "Obstacle", row.body, is_marked ? Role::pair_body : Role::panel);
     if (row.duration > 0.0)
         value_row(frame, "When",
                   core::moment_text(std::clamp(row.witness_time / row.duration, 0.0, 1.0)));

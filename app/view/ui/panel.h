@@ -68,7 +68,12 @@ enum class Icon : uint8_t {
     note,
     bulb,
     changed,
-    device
+    device,
+    save,
+    edit,
+    what_if,
+    flip,
+    tool
 };
 
 /// The fonts of the window at one scale. Without a font file, ImGui's own font is used, and plain

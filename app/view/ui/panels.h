@@ -101,6 +101,10 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// The controls of the section along the lower edge of the view: direction, position, side. Returns
+/// their height with a border; 0 without a section, or if the view is too small.
+float draw_section_bar(Frame& frame, const Area& view);
+
 /// The set-up as a tree, and the fields of the selected thing. An edit takes effect when its field
 /// is left.
 class SetupPanel : public Panel {

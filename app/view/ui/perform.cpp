@@ -3,6 +3,7 @@
 
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
+#include "app/view/model/section.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/settings.h"
 #include "app/view/model/view_model.h"
@@ -45,20 +46,23 @@ void begin_note(ViewModel& model, double now) {
     model.note_wants_focus = true;
 }
 
-void toggle_section(ViewModel& model) {
+void toggle_section(ViewModel& model, double now) {
     if (model.section) return model.section.reset();
-    render::SectionPlane plane;
-    core::Vec3 through = model.camera.target;
-    if (model.has_rows())
-        if (const auto witness = witness_in(model.row(), model.shown_pair))
-            through = 0.5 * (witness->on_tool + witness->on_body);
-    // Cut away the half on the side of the eye.
-    const core::Vec3 to_eye = render::eye(model.camera) - through;
-    const int axis = std::abs(to_eye.x) > std::abs(to_eye.y) ? 0 : 1;
-    plane.normal = core::Vec3(0.0);
-    plane.normal[axis] = to_eye[axis] < 0.0 ? -1.0 : 1.0;
-    plane.offset = glm::dot(plane.normal, through);
-    model.section = plane;
+    if (!open_section(model)) say(model, "Nothing to cut yet", now);
+}
+
+/// Moves the section by steps, or flips it at 0 steps.
+void change_section(ViewModel& model, int steps, double now) {
+    if (!model.section) return say(model, "Press X for a section first", now);
+    if (steps == 0) return flip_section(model);
+    set_section_position(model, section_position(model) + steps * section_step(model));
+}
+
+/// Ends the picking of a plane. False: none was being picked.
+bool end_picking(ViewModel& model) {
+    if (!model.section || model.section->pick == SectionPick::none) return false;
+    pick_section(model, model.section->pick);
+    return true;
 }
 
 void toggle_measuring(ViewModel& model, double now) {
@@ -217,7 +221,16 @@ bool change_view(ViewModel& model, Command command, double now) {
         zoom(model, 1.0 / 0.85);
         return true;
     case Command::section:
-        toggle_section(model);
+        toggle_section(model, now);
+        return true;
+    case Command::flip_section:
+        change_section(model, 0, now);
+        return true;
+    case Command::section_back:
+        change_section(model, -1, now);
+        return true;
+    case Command::section_forward:
+        change_section(model, 1, now);
         return true;
     case Command::measure:
         toggle_measuring(model, now);
@@ -335,7 +348,7 @@ void perform(ViewModel& model, Command command, double now) {
             show_setup(model, false);
             break;
         }
-        if (model.popup == Popup::none) model.section.reset();
+        if (model.popup == Popup::none && !end_picking(model)) model.section.reset();
         model.workspace.leaving = Leaving::no;
         model.popup = Popup::none;
         model.playback.running = false;

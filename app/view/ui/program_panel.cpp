@@ -51,9 +51,9 @@ void draw_code(Frame& frame, ImDrawList& list, ImVec2 at, const BlockRow& row, f
             if (c == 'N' || c == 'O') role = Role::dim;
             if (c == 'G' || c == 'M' || c == 'T') role = Role::accent;
             const std::string_view word(&text[i], stop - i);
-            if (word == "G0" || word == "G00" || word == "g0") role = Role::clamp;
+            if (word == "G0" || word == "G00" || word == "g0") role = Role::near;
         }
-        list.AddText(font, font->FontSize, at, palette.color(role), &text[i], &text[0] + stop);
+        list.AddText(font, font->FontSize, at, palette.ink(role), &text[i], &text[0] + stop);
         at.x += letter * static_cast<float>(stop - i);
         i = stop;
     }

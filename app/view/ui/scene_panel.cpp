@@ -7,9 +7,12 @@
 
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
+#include "app/view/model/section.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 #include "core/base/math.h"
+#include "core/base/units.h"
+#include "render/ground.h"
 #include "render/picking.h"
 #include "render/renderer.h"
 
@@ -72,6 +75,7 @@ void draw_summary(const Frame& frame, ImDrawList& list, const Area& area) {
         width = std::max(width, font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, line.c_str()).x);
     const float height = step * static_cast<float>(lines.size()) + 2 * y;
     const ImVec2 corner(area.x + frame.px(14), area.y + area.height - frame.px(56) - height);
+    if (corner.y < area.y + frame.px(60)) return;
     list.AddRectFilled(corner, {corner.x + width + 2 * x, corner.y + height},
                        frame.palette.color(Role::panel, 0.86), frame.px(5));
     list.AddRectFilled(corner, {corner.x + frame.px(3), corner.y + height},
@@ -121,6 +125,27 @@ void draw_warning(const Frame& frame, ImDrawList& list, const Area& area) {
                  words.c_str(), nullptr, room);
 }
 
+/// Draws the names of the two bodies below a tag, each with its colour.
+void draw_pair_names(const Frame& frame, ImDrawList& list, ImVec2 middle, const PairWitness& pair) {
+    ImFont* const font = frame.fonts.small;
+    const float step = font->FontSize + frame.px(4), swatch = frame.px(9);
+    float width = 0.0F;
+    for (const std::string& name : pair.names)
+        width = std::max(width, font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, name.c_str()).x);
+    const ImVec2 a(middle.x - 0.5F * width - frame.px(16), middle.y + frame.px(20));
+    const ImVec2 b(middle.x + 0.5F * width + frame.px(16), a.y + 2.0F * step + frame.px(8));
+    list.AddRectFilled(a, b, frame.palette.color(Role::panel, 0.88), frame.px(4));
+    const Role roles[] = {Role::pair_tool, Role::pair_body};
+    for (size_t i = 0; i < 2; ++i) {
+        const float y = a.y + frame.px(5) + step * static_cast<float>(i);
+        list.AddRectFilled({a.x + frame.px(8), y + frame.px(2)},
+                           {a.x + frame.px(8) + swatch, y + frame.px(2) + swatch},
+                           frame.palette.color(roles[i]), frame.px(2));
+        list.AddText(font, font->FontSize, {a.x + frame.px(14) + swatch, y},
+                     frame.palette.color(Role::text), pair.names[i].c_str());
+    }
+}
+
 std::string words_of(const ViewModel& model, const BlockRow& row) {
     if (row.verdict == core::Verdict::collision)
         return row.overlap ? fmt::format("collision, {} {} deep", depth_words(model, *row.overlap),
@@ -128,6 +153,21 @@ std::string words_of(const ViewModel& model, const BlockRow& row) {
                            : "collision";
     if (is_contact(row)) return clearance_words(model, row);
     return length_at_least(model, *row.lower) + " " + length_unit(model);
+}
+
+/// What the next click defines, while a plane is being picked.
+std::string section_hint(const ViewModel& model) {
+    if (!model.section) return {};
+    switch (model.section->pick) {
+    case SectionPick::none:
+        return {};
+    case SectionPick::face:
+        return "Click a face to cut parallel to it; Esc cancels";
+    case SectionPick::points:
+        return fmt::format("Click point {} of 3 on a surface; Esc cancels",
+                           model.section->picked.size() + 1);
+    }
+    return {};
 }
 
 /// One end of an axis. A click on it selects the view along the axis.
@@ -178,6 +218,9 @@ struct ScenePanel::State {
     void draw_labels(Frame& frame, const Area& area, const render::Viewport& size);
     void draw_witness(Frame& frame, const Area& area, const render::Viewport& size);
     void draw_measure(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_triads(Frame& frame, const Area& area, const render::Viewport& size);
+    void draw_grid_note(Frame& frame, const Area& area, const render::Viewport& size);
+    void find_again(ViewModel& model, const render::Viewport& size);
     void draw_axes(Frame& frame, const Area& area);
 
     render::Renderer renderer_;
@@ -186,13 +229,16 @@ struct ScenePanel::State {
     render::Scene scene_;
     int samples_ = 1;
     uint64_t framed_ = 0; // number of the opened program for which the camera was placed
+    uint64_t found_ = 0;  // and of that for which the work was in sight
+    float foot_ = 0.0F;   // height of the bar at the lower edge, pixels
     render::Vec2 last_hover_ = render::Vec2(-1.0); // of the mouse
     std::optional<size_t> hovered_;                // block of the path under the mouse
 };
 
 void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& size) {
     model.camera.projection = model.settings.projection;
-    if (model.camera_placed || !model.program) return;
+    if (model.camera_placed) return find_again(model, size);
+    if (!model.program) return;
     const core::Aabb box = render::work_bounds(scene_of(model));
     if (box.empty()) return;
     const bool is_first = framed_ == 0;
@@ -201,6 +247,15 @@ void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& s
     // The first picture lacks the tool: place the camera once more when the tool is known.
     model.camera_placed = model.block_state != nullptr;
     framed_ = model.camera_placed ? model.opening : 0;
+}
+
+/// Places the camera again if the work of a program that has just been opened is out of sight.
+void ScenePanel::State::find_again(ViewModel& model, const render::Viewport& size) {
+    if (found_ == model.opening || !model.block_state) return;
+    found_ = model.opening;
+    const core::Aabb box = render::work_bounds(scene_of(model));
+    if (!box.empty() && !render::is_in_sight(model.camera, size, box))
+        model.camera = render::framing(model.camera, size, box);
 }
 
 void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& size) {
@@ -247,6 +302,10 @@ void ScenePanel::State::take_click(Frame& frame, const Area& area, const render:
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const render::Vec2 at(mouse.x - area.x, mouse.y - area.y);
     const render::Pick found = render::pick(scene_, model.camera, size, at, frame.px(6));
+    if (model.section && model.section->pick != SectionPick::none) {
+        if (const auto surface = found.surface()) take_section_click(model, *surface, frame.now);
+        return;
+    }
     if (model.measuring.on) {
         const auto surface = found.surface();
         if (!surface) return;
@@ -273,7 +332,9 @@ void ScenePanel::State::take_mouse(Frame& frame, const Area& area, const render:
     const render::Vec2 at(io.MousePos.x - area.x, io.MousePos.y - area.y);
     if (ImGui::IsItemActive()) take_drag(model, size);
     if (!ImGui::IsItemHovered()) return;
-    if (io.MouseWheel != 0.0F) {
+    if (io.MouseWheel != 0.0F && io.KeyCtrl && model.section) {
+        set_section_position(model, section_position(model) + io.MouseWheel * section_step(model));
+    } else if (io.MouseWheel != 0.0F) {
         const auto surface = render::pick(scene_, model.camera, size, at).surface();
         model.camera =
             render::zoomed(model.camera, size, at, core::pow(0.85, io.MouseWheel),
@@ -301,7 +362,19 @@ void ScenePanel::State::draw_witness(Frame& frame, const Area& area, const rende
     const bool loud = is_offending(row) || is_near(row);
     const ImVec2 at(area.x + static_cast<float>(seen->position.x),
                     area.y + static_cast<float>(seen->position.y));
-    const ImVec2 middle(at.x + frame.px(62), at.y - frame.px(58));
+    const std::string words = words_of(model, row);
+    const float half =
+        0.5F
+            * frame.fonts.strong
+                  ->CalcTextSizeA(frame.fonts.strong->FontSize, 1e9F, 0.0F, words.c_str())
+                  .x
+        + frame.px(16);
+    // Beside the line, but within the view.
+    const ImVec2 middle(
+        std::clamp(at.x + frame.px(62), area.x + half,
+                   std::max(area.x + area.width - half, area.x + half)),
+        std::clamp(at.y - frame.px(58), area.y + frame.px(60),
+                   std::max(area.y + area.height - frame.px(90), area.y + frame.px(60))));
     const ImU32 fill =
         loud ? frame.palette.of(row, Role::clear) : frame.palette.color(Role::raised, 0.95);
     ImU32 ink = frame.palette.color(Role::text);
@@ -309,7 +382,71 @@ void ScenePanel::State::draw_witness(Frame& frame, const Area& area, const rende
     if (is_offending(row)) ink = IM_COL32(255, 255, 255, 255);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddLine(at, {middle.x - frame.px(20), middle.y + frame.px(10)}, fill, frame.px(1.5));
-    draw_tag(frame, list, middle, words_of(model, row), fill, ink);
+    draw_tag(frame, list, middle, words, fill, ink);
+    const auto pair = witness_in(row, model.shown_pair);
+    if (pair && loud) draw_pair_names(frame, list, middle, *pair);
+}
+
+namespace {
+
+/// Draws the name of a zero below its arrows.
+void draw_name_tag(const Frame& frame, const Area& area, const render::Viewport& size,
+                   const render::Triad& triad) {
+    const auto seen = render::project(frame.model.camera, size, triad.origin);
+    if (!seen || triad.name.empty()) return;
+    ImFont* const font = frame.fonts.small;
+    const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, triad.name.c_str());
+    const ImVec2 a(area.x + static_cast<float>(seen->position.x) - 0.5F * room.x - frame.px(5),
+                   area.y + static_cast<float>(seen->position.y) + frame.px(10));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(a, {a.x + room.x + frame.px(10), a.y + room.y + frame.px(4)},
+                       frame.palette.color(Role::panel, 0.8), frame.px(3));
+    list.AddText(font, font->FontSize, {a.x + frame.px(5), a.y + frame.px(2)},
+                 frame.palette.color(triad.is_minor ? Role::dim : Role::text), triad.name.c_str());
+}
+
+} // namespace
+
+/// Draws the letters of the arrows at the zeros, and their names.
+void ScenePanel::State::draw_triads(Frame& frame, const Area& area, const render::Viewport& size) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    ImFont* const font = frame.fonts.small;
+    const auto label = [&](const core::Vec3& at, const std::string& words, ImVec2 by, ImU32 ink) {
+        const auto seen = render::project(frame.model.camera, size, at);
+        if (!seen) return;
+        const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
+        const ImVec2 p(area.x + static_cast<float>(seen->position.x) - 0.5F * room.x + by.x,
+                       area.y + static_cast<float>(seen->position.y) - 0.5F * room.y + by.y);
+        list.AddText(font, font->FontSize, {p.x + 1.0F, p.y + 1.0F},
+                     frame.palette.color(Role::background, 0.9), words.c_str());
+        list.AddText(font, font->FontSize, p, ink, words.c_str());
+    };
+    const Role roles[] = {Role::axis_x, Role::axis_y, Role::axis_z};
+    constexpr const char* letters[] = {"X", "Y", "Z"};
+    for (const render::Triad& triad : scene_.triads) {
+        const double pixel = render::pixel_size(frame.model.camera, size, triad.origin);
+        const double length = (render::length_in_pixels(triad) + 20.0) * frame.fonts.scale * pixel;
+        for (int axis = 0; axis < 3; ++axis)
+            label(triad.origin + length * triad.axes[axis], letters[axis], {0, 0},
+                  frame.palette.color(roles[axis]));
+        draw_name_tag(frame, area, size, triad);
+    }
+}
+
+/// Draws the distances of the lines of the grid in the lower right corner.
+void ScenePanel::State::draw_grid_note(Frame& frame, const Area& area,
+                                       const render::Viewport& size) {
+    if (!scene_.ground || area.width < frame.px(440)) return;
+    const render::GridStep step = render::grid_view(*scene_.ground, frame.model.camera, size).step;
+    const double unit = scene_.ground->inch ? core::mm_per_inch : 1.0;
+    const std::string words = fmt::format("Grid {:g} / {:g} {}", step.fine / unit,
+                                          step.coarse / unit, length_unit(frame.model));
+    ImFont* const font = frame.fonts.small;
+    const ImVec2 room = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
+    ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
+                                        {area.x + area.width - room.x - frame.px(14),
+                                         area.y + area.height - foot_ - room.y - frame.px(12)},
+                                        frame.palette.color(Role::dim), words.c_str());
 }
 
 void ScenePanel::State::draw_measure(Frame& frame, const Area& area, const render::Viewport& size) {
@@ -332,19 +469,22 @@ void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render
     const ViewModel& model = frame.model;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRect(area.corner(), area.far_corner(), true);
+    draw_triads(frame, area, size);
     draw_witness(frame, area, size);
     draw_measure(frame, area, size);
+    draw_grid_note(frame, area, size);
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)},
                   location_text(model));
     draw_warning(frame, list, area);
-    draw_summary(frame, list, area);
-    std::string words;
+    const Area free{area.x, area.y, area.width, area.height - foot_};
+    draw_summary(frame, list, free);
+    std::string words = section_hint(model);
     if (frame.now < model.message_until) words = model.message;
     if (model.is_busy && !model.block_state)
         words = model.has_rows() ? "Modelling the stock \xE2\x80\xA6" : "Reading \xE2\x80\xA6";
     if (!words.empty())
-        draw_pill(frame, list, {area.x + frame.px(14), area.y + area.height - frame.px(44)}, words);
+        draw_pill(frame, list, {free.x + frame.px(14), free.y + free.height - frame.px(44)}, words);
     list.PopClipRect();
 }
 
@@ -381,6 +521,7 @@ void ScenePanel::State::draw(Frame& frame, const Area& area) {
                                | ImGuiButtonFlags_MouseButtonRight);
     ImGui::SetItemAllowOverlap();
     take_mouse(frame, area, size);
+    foot_ = draw_section_bar(frame, area);
     draw_labels(frame, area, size);
     if (area.width > frame.px(440)) draw_axes(frame, area);
 }
