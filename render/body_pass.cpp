@@ -157,7 +157,7 @@ BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_
         made.color = mixed(made.color, color(theme, color_role(body.side)), body_share);
     made.second = made.color;
     const auto& section = frame.scene.section;
-    made.cut = section && (frame.scene.section_cuts_tool || !is_of_tool(body.role));
+    made.cut = section && is_cut_by_section(frame.scene, body.role);
     made.closed = body.mesh->closed;
     return made;
 }
@@ -261,10 +261,12 @@ void BodyPass::draw_cap(const ViewFrame& frame, const Item& item) {
 
 std::vector<BodyPass::Item> BodyPass::opaque_items(const ViewFrame& frame) const {
     std::vector<Item> items;
-    for (const Body& body : frame.scene.bodies)
-        if (body.visible && body.mesh && body.alpha >= 1.0)
-            items.push_back(item(frame, body, false));
     if (frame.scene.stock_visible && !frame.scene.stock.empty()) items.push_back(stock_item(frame));
+    for (const bool is_machine : {false, true})
+        for (const Body& body : frame.scene.bodies)
+            if (body.visible && body.mesh && body.alpha >= 1.0
+                && (body.role == BodyRole::machine) == is_machine)
+                items.push_back(item(frame, body, false));
     return items;
 }
 

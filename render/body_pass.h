@@ -64,6 +64,7 @@ private:
 
     Item item(const ViewFrame& frame, const Body& body, bool is_ghost) const;
     Item stock_item(const ViewFrame& frame) const;
+    /// The work before the machine around it, most of which it hides.
     std::vector<Item> opaque_items(const ViewFrame& frame) const;
     void set_material(const ViewFrame& frame, const Item& item, bool glass) const;
     void draw_faces(const ViewFrame& frame, const Item& item);

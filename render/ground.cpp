@@ -9,7 +9,7 @@
 namespace render {
 namespace {
 
-constexpr double least_pixels = 16.0; // between two lines
+constexpr double least_pixels = 24.0; // between two lines
 
 /// A number times a power of ten, rounded once.
 double scaled(double number, int power) {
@@ -20,7 +20,8 @@ double scaled(double number, int power) {
 
 constexpr int finest = -4, coarsest = 6; // powers of ten; nobody zooms further
 
-constexpr double reach_in_steps = 60.0; // of the grid, from the middle of the view
+constexpr double reach_in_steps = 44.0; // of the grid, from the middle of the view
+constexpr float weak_line = 0.45F;      // strength of the lines between the strong ones
 
 core::Aabb box_in(const core::Transform& target_from_box, const core::Aabb& box) {
     core::Aabb moved;
@@ -35,20 +36,21 @@ core::Aabb box_in(const core::Transform& target_from_box, const core::Aabb& box)
 
 } // namespace
 
-GridStep grid_step(double pixel, bool inch) {
+GridStep step_of_at_least(double least, bool inch) {
     const double unit = inch ? core::mm_per_inch : 1.0;
     GridStep step{unit * scaled(1.0, coarsest + 1), unit * scaled(1.0, coarsest + 2)};
     for (int power = coarsest; power >= finest; --power)
         for (const double number : {5.0, 2.0, 1.0}) {
             const double fine = unit * scaled(number, power);
-            if (fine < least_pixels * pixel) return step;
+            if (fine < least) return step;
             step = {fine, unit * scaled(number > 2.0 ? 50.0 : 10.0, power)};
         }
     return step;
 }
 
 GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport) {
-    const GridStep step = grid_step(pixel_size(camera, viewport, camera.target), ground.inch);
+    const double pixel = pixel_size(camera, viewport, camera.target);
+    const GridStep step = step_of_at_least(least_pixels * pixel, ground.inch);
     return {step, Vec2(ground.scene_from_ground.inverse() * camera.target),
             reach_in_steps * step.fine};
 }
@@ -66,12 +68,14 @@ std::vector<GridPoint> grid_lines(const GridView& view) {
         const double first = std::ceil((view.middle[axis] - view.reach) / fine);
         const double last = std::floor((view.middle[axis] + view.reach) / fine);
         for (double line = first; line <= last; line += 1.0) {
-            const float strength = std::fmod(line, many) == 0.0 ? 1.0F : 0.45F;
-            for (const double end : {-view.reach, view.reach}) {
+            const bool is_strong = std::fmod(line, many) == 0.0;
+            const double reach = is_strong ? view.reach : view.fine_reach();
+            if (std::abs(line * fine - view.middle[axis]) > reach) continue;
+            for (const double end : {-reach, reach}) {
                 Vec3 place(0.0);
                 place[axis] = line * fine;
                 place[1 - axis] = view.middle[1 - axis] + end;
-                points.push_back({glm::vec3(place), strength});
+                points.push_back({glm::vec3(place), is_strong ? 1.0F : weak_line});
             }
         }
     }

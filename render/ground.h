@@ -14,17 +14,20 @@ struct GridStep {
     double coarse = 100.0; // between the stronger lines, a multiple of `fine`
 };
 
-/// The distances for a size of a pixel on the ground, mm: 1, 2 or 5 times a power of ten in mm or
-/// inch, at least 16 pixels.
-GridStep grid_step(double pixel, bool inch);
+/// The least distances that are 1, 2 or 5 times a power of ten in mm or inch and at least this, mm.
+GridStep step_of_at_least(double least, bool inch);
 
 /// The part of the grid that a picture shows. Frame: the ground's.
 struct GridView {
     GridStep step;
     Vec2 middle = Vec2(0.0); // below the target of the camera
     double reach = 0.0;      // mm; beyond it the lines have faded
+
+    /// The same for the lines between the strong ones.
+    double fine_reach() const { return 0.5 * reach; }
 };
 
+/// Lines are at least 24 pixels apart where the camera looks.
 GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport);
 
 /// The box of that part, in the scene.

@@ -58,6 +58,9 @@ void GroundPass::draw_shadow(const ViewFrame& frame) const {
     if (!has_shadow_ || !is_seen) return;
     shadows_.use();
     set_view(shadows_, frame, ground);
+    // What is cut away casts no shadow.
+    set_section(shadows_, frame.scene.section, ground);
+    glEnable(GL_CLIP_DISTANCE0);
     shadows_.set("nearer", nearer(frame.camera, ground_fraction));
     shadows_.set("corner", glm::vec2(mask_.origin));
     shadows_.set("size", glm::vec2(mask_.cell * Vec2(mask_.columns, mask_.rows)));
@@ -67,6 +70,7 @@ void GroundPass::draw_shadow(const ViewFrame& frame) const {
     glBindTexture(GL_TEXTURE_2D, shadow_.id());
     glBindVertexArray(no_attributes_.id());
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    glDisable(GL_CLIP_DISTANCE0);
 }
 
 void GroundPass::draw_grid(const ViewFrame& frame) {
@@ -83,6 +87,7 @@ void GroundPass::draw_grid(const ViewFrame& frame) {
     grids_.set("nearer", nearer(frame.camera, 1.5 * ground_fraction));
     grids_.set("middle", glm::vec2(view.middle));
     grids_.set("reach", static_cast<float>(view.reach));
+    grids_.set("fine_reach", static_cast<float>(view.fine_reach()));
     grids_.set("ink", color(frame.options.theme, Role::grid));
     glLineWidth(static_cast<float>(frame.options.scale));
     glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(points.size()));

@@ -225,7 +225,7 @@ std::optional<BodyHit> pick_body(const Scene& scene, const Ray& ray, bool throug
         const core::Transform back = body.stock_from_body.inverse();
         const Ray own{back * ray.origin, back.rotation * ray.direction};
         std::optional<SectionPlane> section;
-        if (scene.section && (scene.section_cuts_tool || !is_of_tool(body.role)))
+        if (is_cut_by_section(scene, body.role))
             section = {back.rotation * scene.section->normal,
                        scene.section->offset
                            - glm::dot(scene.section->normal, body.stock_from_body.translation)};

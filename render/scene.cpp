@@ -52,6 +52,11 @@ double usual_alpha(BodyRole role) {
     return role == BodyRole::part ? 0.4 : 1.0;
 }
 
+bool is_cut_by_section(const Scene& scene, BodyRole role) {
+    if (!scene.section || role == BodyRole::machine) return false;
+    return scene.section_cuts_tool || !is_of_tool(role);
+}
+
 core::Aabb bounds(const Body& body) {
     core::Aabb box;
     if (!body.mesh || body.mesh->bounds.empty()) return box;

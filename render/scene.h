@@ -102,11 +102,14 @@ struct Scene {
     std::optional<uint32_t> hovered_block; // drawn as wide as the current block
     std::optional<Witness> witness;
     std::optional<SectionPlane> section;
-    bool section_cuts_tool = false;   // otherwise only stock and fixtures are cut
+    bool section_cuts_tool = false;   // as well as stock and fixtures; never the machine
     std::vector<core::Vec3> measured; // joined in order
     std::vector<Triad> triads;
     std::optional<Ground> ground;
 };
+
+/// Whether the section cuts bodies of a role.
+bool is_cut_by_section(const Scene& scene, BodyRole role);
 
 /// The box of everything visible, path included.
 core::Aabb bounds(const Scene& scene);

@@ -200,11 +200,13 @@ uniform mat4 clip_from_view;
 uniform vec2 nearer;
 uniform vec2 corner;
 uniform vec2 size;
+uniform vec4 section;
 out vec2 at;
 void main() {
     at = vec2((gl_VertexID & 1) != 0 ? 1.0 : 0.0, (gl_VertexID & 2) != 0 ? 1.0 : 0.0);
     vec4 p = view_from_body * vec4(corner + at * size, 0.0, 1.0);
     p.xyz = p.xyz * nearer.x + vec3(0.0, 0.0, nearer.y);
+    gl_ClipDistance[0] = section.w - dot(section.xyz, vec3(corner + at * size, 0.0));
     gl_Position = clip_from_view * p;
 }
 )";
@@ -238,12 +240,14 @@ void main() {
 const char* const grid_fragment = R"(#version 330 core
 uniform vec2 middle;
 uniform float reach;
+uniform float fine_reach;
 uniform vec4 ink;
 in vec2 ground;
 flat in float strength;
 out vec4 color;
 void main() {
-    float left = clamp(1.0 - distance(ground, middle) / reach, 0.0, 1.0);
+    float end = strength < 1.0 ? fine_reach : reach;
+    float left = clamp(1.0 - distance(ground, middle) / end, 0.0, 1.0);
     color = vec4(ink.rgb, ink.a * strength * left);
 }
 )";

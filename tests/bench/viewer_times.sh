@@ -26,7 +26,7 @@ close() {
 open_window "${plate[@]}" --frame-log "$log"
 expect 'opens' 'block 0 of 45'
 press n
-expect 'N' 'violation'
+expect 'N' 'violation|collision'
 sleep 2
 xdotool mousemove 640 360 mousedown 2
 : >"$work/moves"

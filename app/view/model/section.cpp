@@ -146,8 +146,7 @@ void set_section_position(ViewModel& model, double position) {
 
 double section_step(const ViewModel& model) {
     const SectionRange range = section_range(model);
-    // The grid has lines at least 16 pixels apart.
-    return render::grid_step((range.most - range.least) / (16.0 * 200.0), model.settings.inch).fine;
+    return render::step_of_at_least((range.most - range.least) / 200.0, model.settings.inch).fine;
 }
 
 void pick_section(ViewModel& model, SectionPick pick) {
