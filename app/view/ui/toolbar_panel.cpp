@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,16 +21,24 @@ std::string work_offset(const ViewModel& model) {
     return {};
 }
 
+void draw_files(Frame& frame) {
+    icon_button(frame, Icon::open, Command::open, frame.model.popup == Popup::open_file);
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!frame.model.program);
+    icon_button(frame, Icon::save, Command::save_setup);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+}
+
 void draw_name(Frame& frame, float width) {
     const ViewModel& model = frame.model;
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + frame.px(7));
-    text(frame.fonts.text, frame.palette.color(Role::text), frame.fonts.icon(Icon::program));
-    ImGui::SameLine();
     const std::string name =
         model.program ? std::filesystem::path(model.program->program).filename().generic_string()
                       : "feeler";
+    const float start = ImGui::GetCursorPosX();
     text(frame.fonts.strong, frame.palette.color(Role::text),
-         shortened(frame.fonts.strong, name, 0.55F * width));
+         shortened(frame.fonts.strong, name, 0.62F * (width - start)));
     if (!model.program) return;
     std::string more = model.program->dialect;
     more += std::string(" \xC2\xB7 ") + length_unit(model);
@@ -37,7 +46,9 @@ void draw_name(Frame& frame, float width) {
         more += " \xC2\xB7 " + offset;
     ImGui::SameLine();
     const float left = width - ImGui::GetCursorPosX();
-    text(frame.fonts.text, frame.palette.color(Role::dim), shortened(frame.fonts.text, more, left));
+    if (left > frame.px(30))
+        text(frame.fonts.text, frame.palette.color(Role::dim),
+             shortened(frame.fonts.text, more, left));
 }
 
 void draw_walk(Frame& frame) {
@@ -77,26 +88,47 @@ void draw_speed(Frame& frame) {
     tip(frame, "Playback speed: 1x is the speed of the machine  ([ and ])");
 }
 
-void draw_right(Frame& frame) {
-    const ViewModel& model = frame.model;
-    icon_button(frame, Icon::device, Command::show_device, model.device.shown);
-    ImGui::SameLine();
-    icon_button(frame, Icon::section, Command::section, model.section.has_value());
-    ImGui::SameLine();
-    icon_button(frame, Icon::measure, Command::measure, model.measuring.on);
-    ImGui::SameLine();
-    icon_button(frame, Icon::picture, Command::picture);
-    ImGui::SameLine();
+/// A button at the right end of the toolbar.
+struct RightButton {
+    Icon icon;
+    Command command;
+    bool is_on = false;
+};
+
+/// The buttons at the right end, the least important ones first: those are left out in a narrow
+/// window; their keys still work.
+std::vector<RightButton> right_buttons(const ViewModel& model) {
     const bool is_dark = model.settings.theme == render::ColorScheme::dark;
-    icon_button(frame, is_dark ? Icon::sun : Icon::moon, Command::theme);
-    ImGui::SameLine();
+    std::vector<RightButton> buttons = {
+        {is_dark ? Icon::sun : Icon::moon, Command::theme},
+        {Icon::picture, Command::picture},
+        {Icon::measure, Command::measure, model.measuring.on},
+        {Icon::what_if, Command::what_if, model.popup == Popup::what_if},
+        {Icon::section, Command::section, model.section.has_value()},
+        {Icon::edit, Command::edit_setup, model.popup == Popup::setup},
+        {Icon::question, Command::shortcuts, model.popup == Popup::shortcuts}};
+    if (has_device(model))
+        buttons.insert(buttons.begin(), {Icon::device, Command::show_device, model.device.shown});
+    return buttons;
+}
+
+/// Draws the buttons in the order of a work day: set-up, view, window.
+void draw_right(Frame& frame, std::vector<RightButton> buttons) {
+    constexpr Command order[] = {Command::show_device, Command::edit_setup, Command::what_if,
+                                 Command::section,     Command::measure,    Command::picture,
+                                 Command::theme,       Command::shortcuts};
+    for (const Command command : order) {
+        for (const RightButton& button : buttons) {
+            if (button.command != command) continue;
+            icon_button(frame, button.icon, command, button.is_on);
+            ImGui::SameLine();
+        }
+    }
     ImGui::PushID("settings");
     if (ImGui::Button(frame.fonts.icon(Icon::settings), ImVec2(frame.px(32), frame.px(32))))
         frame.model.popup = Popup::settings;
     tip(frame, "Settings");
     ImGui::PopID();
-    ImGui::SameLine();
-    icon_button(frame, Icon::question, Command::shortcuts, model.popup == Popup::shortcuts);
 }
 
 } // namespace
@@ -105,11 +137,19 @@ void ToolbarPanel::draw(Frame& frame, const Area& area) {
     const float width =
         std::min(static_cast<float>(frame.model.settings.list_width * frame.fonts.scale),
                  0.31F * area.width);
-    const float right = area.width - 7 * frame.px(39) - frame.px(5);
+    // Buttons without room are left out; their keys still work.
+    std::vector<RightButton> buttons = right_buttons(frame.model);
+    const float step = frame.px(39), files = frame.px(14) + 2 * step;
+    const auto start_of = [&](size_t count) {
+        return area.width - static_cast<float>(count + 1) * step - frame.px(5);
+    };
+    while (!buttons.empty() && start_of(buttons.size()) < std::min(files, area.width))
+        buttons.erase(buttons.begin());
+    const float right = start_of(buttons.size());
     ImGui::SetCursorPos(ImVec2(frame.px(14), frame.px(8)));
-    draw_name(frame, width - frame.px(10));
+    draw_files(frame);
+    draw_name(frame, std::min(width - frame.px(10), right));
     if (frame.model.has_rows()) {
-        // Buttons without room are left out; their keys still work.
         ImGui::SetCursorPos(ImVec2(width, frame.px(8)));
         if (width + frame.px(195) < right) draw_walk(frame);
         ImGui::SameLine(0, frame.px(16));
@@ -118,7 +158,7 @@ void ToolbarPanel::draw(Frame& frame, const Area& area) {
         if (width + frame.px(500) < right) draw_speed(frame);
     }
     ImGui::SetCursorPos(ImVec2(right, frame.px(8)));
-    draw_right(frame);
+    draw_right(frame, std::move(buttons));
 }
 
 } // namespace app::viewer
