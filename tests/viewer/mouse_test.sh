@@ -117,7 +117,7 @@ picture 06-raw
 [[ $(title) =~ 'block 16 of' ]] || die 'a click on raw stock goes nowhere'
 
 # The section: a hatched face in the colour of the stock where it is cut open.
-face='#99A3AE'
+face='#999EA6'
 press 0
 press a
 xdotool mousemove 720 30

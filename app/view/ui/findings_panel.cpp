@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 #include "core/base/rule.h"
@@ -65,11 +66,13 @@ void draw_group_head(Frame& frame, const FindingGroup& group) {
 }
 
 void draw_words(Frame& frame, const std::string& message, const std::string& cure) {
-    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), message);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text),
+                 words_in_unit(frame.model, message));
     if (cure.empty()) return;
     text(frame.fonts.text, frame.palette.color(Role::accent), frame.fonts.icon(Icon::bulb));
     ImGui::SameLine(0, frame.px(7));
-    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim), cure);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
+                 words_in_unit(frame.model, cure));
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 #include "core/base/rule.h"
@@ -126,11 +127,13 @@ void draw_finding(Frame& frame, const core::Finding& finding) {
     ImGui::SameLine(0, frame.px(7));
     text(frame.fonts.strong, frame.palette.color(Role::text), core::title_of_rule(finding.rule));
     tip(frame, finding.rule);
-    wrapped_text(frame.fonts.text, frame.palette.color(Role::text), finding.message);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::text),
+                 words_in_unit(frame.model, finding.message));
     if (finding.cure.empty()) return;
     text(frame.fonts.text, frame.palette.color(Role::accent), frame.fonts.icon(Icon::bulb));
     ImGui::SameLine(0, frame.px(7));
-    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim), finding.cure);
+    wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
+                 words_in_unit(frame.model, finding.cure));
 }
 
 void draw_findings(Frame& frame) {
@@ -167,13 +170,16 @@ void draw_block(Frame& frame) {
     if (!model.block_state) return;
     for (const ShownValue& value : model.block_state->modal)
         if (value.name != "motion")
-            value_row(frame, plain_name(value.name).c_str(), value.text, 104.0, value.changed);
+            value_row(frame, plain_name(value.name).c_str(), words_in_unit(model, value.text),
+                      104.0, value.changed);
 }
 
 void draw_values(Frame& frame, const char* title, const std::vector<ShownValue>& values) {
     if (values.empty() || !ImGui::CollapsingHeader(title)) return;
     for (const ShownValue& value : values)
-        value_row(frame, value.name.c_str(), value.text, 104.0, value.changed);
+        value_row(frame, value.name.c_str(),
+                  positions_in_unit(frame.model, words_in_unit(frame.model, value.text)), 104.0,
+                  value.changed);
 }
 
 void draw_watches(Frame& frame, std::string& typed) {
@@ -181,7 +187,7 @@ void draw_watches(Frame& frame, std::string& typed) {
     if (!ImGui::CollapsingHeader("Watch")) return;
     if (model.block_state)
         for (const ShownValue& value : model.block_state->watched)
-            value_row(frame, value.name.c_str(), value.text, 104.0);
+            value_row(frame, value.name.c_str(), words_in_unit(model, value.text), 104.0);
     ImGui::SetNextItemWidth(-1.0F);
     if (ImGui::InputTextWithHint("##watch", "#100, machine.z, G54.x, H3 \xE2\x80\xA6", &typed,
                                  ImGuiInputTextFlags_EnterReturnsTrue)
@@ -231,7 +237,8 @@ void draw_assumptions(Frame& frame) {
     for (const std::string& words : program->assumptions) {
         text(frame.fonts.small, frame.palette.color(Role::dim), "\xC2\xB7");
         ImGui::SameLine(0, frame.px(6));
-        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), words);
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     words_in_unit(frame.model, words));
     }
 }
 
@@ -246,7 +253,8 @@ void draw_whole(Frame& frame) {
     if (whole.empty() && !model.stopped && model.changes.empty()) return;
     heading(frame, "Program");
     for (const std::string& change : model.changes)
-        wrapped_text(frame.fonts.text, frame.palette.color(Role::accent), "what if: " + change);
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::accent),
+                     "what if: " + words_in_unit(model, change));
     if (model.stopped)
         wrapped_text(frame.fonts.text, frame.palette.color(Role::violation),
                      fmt::format("Line {}: {}", model.stopped->where.line, model.stopped->message));

@@ -9,8 +9,10 @@
 #include "app/view/model/scene_of.h"
 #include "app/view/model/settings.h"
 #include "app/view/model/tolerance_sheet.h"
+#include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "core/base/units.h"
 
 namespace app::viewer {
 namespace {
@@ -150,13 +152,19 @@ void row_name(Frame& frame, const std::string& name) {
     ImGui::SameLine(frame.px(150));
 }
 
-/// An input field for a length, and a button that tries it. True if Enter or the button was
-/// pressed.
+/// The unit of the window, mm.
+double unit_of(const Frame& frame) { return frame.model.settings.inch ? core::mm_per_inch : 1.0; }
+
+/// An input field for a length in the unit of the window, and a button that tries it. True if Enter
+/// or the button was pressed. `value`: mm.
 bool length_to_try(Frame& frame, const char* id, double& value) {
     ImGui::PushID(id);
     ImGui::SetNextItemWidth(frame.px(100));
-    const bool entered =
-        ImGui::InputDouble("mm", &value, 0.0, 0.0, "%.3f", ImGuiInputTextFlags_EnterReturnsTrue);
+    double shown = value / unit_of(frame);
+    const bool entered = ImGui::InputDouble(length_unit(frame.model), &shown, 0.0, 0.0,
+                                            frame.model.settings.inch ? "%.5f" : "%.3f",
+                                            ImGuiInputTextFlags_EnterReturnsTrue);
+    if (entered) value = shown * unit_of(frame);
     ImGui::SameLine();
     const bool pressed = ImGui::Button("Try");
     ImGui::PopID();
@@ -264,7 +272,11 @@ void PopupPanel::draw_fixture(Frame& frame, const core::Setup& setup) {
     }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(frame.px(190));
-    ImGui::InputScalarN("X Y Z mm", ImGuiDataType_Double, by_, 3, nullptr, nullptr, "%.2f");
+    double shown[3] = {by_[0] / unit_of(frame), by_[1] / unit_of(frame), by_[2] / unit_of(frame)};
+    const bool inch = frame.model.settings.inch;
+    if (ImGui::InputScalarN(inch ? "X Y Z in" : "X Y Z mm", ImGuiDataType_Double, shown, 3, nullptr,
+                            nullptr, inch ? "%.4f" : "%.2f"))
+        for (size_t i = 0; i < 3; ++i) by_[i] = shown[i] * unit_of(frame);
     ImGui::SameLine();
     if (ImGui::Button("Try##fixture"))
         frame.model.wanted_change =
@@ -284,7 +296,7 @@ void PopupPanel::draw_what_if(Frame& frame) {
         model.wanted_change = AllowanceChange{allowance_};
     if (!setup.fixtures.empty()) draw_fixture(frame, setup);
     for (const std::string& change : model.changes)
-        text(frame.fonts.text, frame.palette.color(Role::accent), change);
+        text(frame.fonts.text, frame.palette.color(Role::accent), words_in_unit(model, change));
     if (!model.changes.empty() && ImGui::Button("Undo the last change"))
         model.wants_take_back = true;
 }
