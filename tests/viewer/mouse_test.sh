@@ -127,6 +127,29 @@ shows 08-section 'a section shows a face' has_color 08-section "$face" 10000
 click 1000 500
 [[ $(title) =~ 'block 16 of' ]] || die 'a click misses what the section has removed'
 xdotool mousemove 720 30
+# Its bar at the lower edge of the view: keys, slider, axis, side, a picked face.
+still 08-section
+press period
+shows 08-moved '. moves the section' differ 08-section 08-moved 300
+press comma
+shows 08-back ', moves it back' same 08-section 08-back
+click 860 716
+shows 08-slid 'the slider moves it far' differ 08-section 08-slid 5000
+click 1042 716
+shows 08-flipped 'a button cuts away the other side' differ 08-slid 08-flipped 5000
+click 497 716
+shows 08-level 'another cuts across Z' differ 08-flipped 08-level 5000
+shows 08-level 'and shows a face' has_color 08-level "$face" 10000
+click 540 716
+still 08-picking
+click 770 560
+shows 08-picked 'a click on a face cuts parallel to it' differ 08-picking 08-picked 300
+[[ $(title) =~ 'block 16 of' ]] || die 'picking a face goes to no line'
+click 1109 716
+shows 08-closed 'a button ends the section' has_no_color 08-closed "$face"
+press x
+shows 08-again 'X begins another' has_color 08-again "$face" 10000
+xdotool mousemove 720 30
 press Escape
 shows 09-whole 'Escape ends the section' has_no_color 09-whole "$face"
 

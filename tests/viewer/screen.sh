@@ -125,6 +125,8 @@ of_color() {
 }
 # Conditions: two pictures differ in more than N pixels; a picture has more than N pixels of a
 # colour, or none.
+# Pictures of the same state: only what blinks may differ.
+same() { (($(differing "$1" "$2") < 200)); }
 differ() { (($(differing "$1" "$2") > ${3:-0})); }
 has_color() { (($(of_color "$1" "$2") > $3)); }
 has_no_color() { [[ $(of_color "$1" "$2") == 0 ]]; }
