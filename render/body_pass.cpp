@@ -15,8 +15,9 @@ namespace {
 /// faces must stay apart.
 constexpr double body_share = 0.8, stock_share = 0.4;
 
-/// Number of pictures after which an unused mesh is freed.
-constexpr uint64_t patience = 30;
+/// Number of pictures after which an unused mesh is freed. Long enough for a turn of the view,
+/// during which bricks of the stock come and go.
+constexpr uint64_t patience = 90;
 
 template <typename T>
 void fill(GLenum target, const GlBuffer& buffer, const std::vector<T>& data) {
@@ -178,8 +179,10 @@ BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
 template <typename Act>
 void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole) {
     if (item.body != nullptr) return act(meshes_.of(item.body->mesh));
+    const Mat4 clip_from_scene = frame.clip_from_view * frame.view_from_scene;
     for (const auto& brick : frame.scene.stock)
-        act(meshes_.of(SharedMesh(brick, whole ? &brick->mesh : &brick->drawn)));
+        if (may_be_seen(brick->mesh.bounds, clip_from_scene))
+            act(meshes_.of(SharedMesh(brick, whole ? &brick->mesh : &brick->drawn)));
 }
 
 void BodyPass::set_material(const ViewFrame& frame, const Item& item, bool glass) const {

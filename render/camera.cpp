@@ -189,6 +189,23 @@ Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box, 
     return framed;
 }
 
+bool may_be_seen(const core::Aabb& box, const Mat4& clip_from_box) {
+    if (box.empty()) return false;
+    std::array<int, 6> beyond{};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec4 p = clip_from_box
+                             * glm::dvec4((corner & 1) != 0 ? box.max.x : box.min.x,
+                                          (corner & 2) != 0 ? box.max.y : box.min.y,
+                                          (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
+        for (size_t i = 0; i < 3; ++i) {
+            const double along = p[static_cast<int>(i)];
+            beyond[2 * i] += along < -1.02 * p.w ? 1 : 0;
+            beyond[2 * i + 1] += along > 1.02 * p.w ? 1 : 0;
+        }
+    }
+    return std::none_of(beyond.begin(), beyond.end(), [](int count) { return count == 8; });
+}
+
 bool is_in_sight(const Camera& camera, const Viewport& viewport, const Aabb& box) {
     constexpr double least_size = 0.02; // of the height of the picture
     if (box.empty()) return false;

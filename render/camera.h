@@ -95,6 +95,9 @@ Camera seen_from(const Camera& camera, StandardView view);
 Camera framing(const Camera& camera, const Viewport& viewport, const Aabb& box,
                double margin = 0.06);
 
+/// Whether a part of the box may be in the picture. False only if none of it is.
+bool may_be_seen(const Aabb& box, const Mat4& clip_from_box);
+
 /// Whether at least a part of the box is in the picture, and not too small to be noticed.
 bool is_in_sight(const Camera& camera, const Viewport& viewport, const Aabb& box);
 

@@ -83,23 +83,6 @@ bool approximates(const std::vector<PathPoint>& points, size_t from, size_t to, 
     return true;
 }
 
-bool may_be_seen(const core::Aabb& box, const Mat4& clip) {
-    if (box.empty()) return false;
-    std::array<int, 6> beyond{};
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec4 p = clip
-                             * glm::dvec4((corner & 1) != 0 ? box.max.x : box.min.x,
-                                          (corner & 2) != 0 ? box.max.y : box.min.y,
-                                          (corner & 4) != 0 ? box.max.z : box.min.z, 1.0);
-        for (size_t i = 0; i < 3; ++i) {
-            const double along = p[static_cast<int>(i)];
-            beyond[2 * i] += along < -1.02 * p.w ? 1 : 0;
-            beyond[2 * i + 1] += along > 1.02 * p.w ? 1 : 0;
-        }
-    }
-    return std::none_of(beyond.begin(), beyond.end(), [](int count) { return count == 8; });
-}
-
 } // namespace
 
 std::vector<PathPoint> simplified(const std::vector<PathPoint>& points, double tolerance) {

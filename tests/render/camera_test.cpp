@@ -163,6 +163,34 @@ TEST(Camera, KeepsItsScaleWithoutPerspective) {
     EXPECT_NEAR(pixel_size(camera, wide, camera.target + Vec3(50, 50, 50)), with, 1e-12);
 }
 
+TEST(Camera, LeavesOutOnlyBoxesOfWhichNoPointIsSeen) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-300.0, 300.0), size(1.0, 60.0), turn(-3.0, 3.0);
+    int left_out = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Camera camera;
+        camera.yaw = turn(random);
+        camera.pitch = 0.5 * turn(random);
+        camera.projection = i % 2 == 0 ? Projection::perspective : Projection::orthographic;
+        camera.distance = 150.0;
+        const Vec3 low(place(random), place(random), place(random));
+        const Aabb some{low, low + Vec3(size(random), size(random), size(random))};
+        const Mat4 clip =
+            clip_from_view(camera, wide, {Vec3(-300), Vec3(360)}) * view_from_scene(camera);
+        const bool kept = may_be_seen(some, clip);
+        left_out += kept ? 0 : 1;
+        for (int k = 0; k < 125; ++k) {
+            const Vec3 share(k % 5 / 4.0, k / 5 % 5 / 4.0, k / 25 / 4.0);
+            const Vec3 point = some.min + share * some.size();
+            const glm::dvec4 p = clip * glm::dvec4(point, 1.0);
+            const bool seen =
+                p.w > 0.0 && std::abs(p.x) <= p.w && std::abs(p.y) <= p.w && std::abs(p.z) <= p.w;
+            EXPECT_TRUE(kept || !seen);
+        }
+    }
+    EXPECT_GT(left_out, 500);
+}
+
 TEST(Camera, NoticesThatNothingIsInSight) {
     const Viewport viewport{800, 600};
     Camera camera = framing(Camera(), viewport, {{-10, -10, -10}, {10, 10, 10}});
