@@ -220,8 +220,6 @@ IconText text_of(Icon icon) {
         return {"\xEF\x84\x91", "*"};
     case Icon::device:
         return {"\xEF\x8B\x9B", "dev"};
-    case Icon::save:
-        return {"\xEF\x83\x87", "save"};
     case Icon::edit:
         return {"\xEF\x81\x84", "edit"};
     case Icon::what_if:

@@ -63,7 +63,6 @@ enum class Icon : uint8_t {
     locate,
     undo,
     redo,
-    save,
     chevron,
     note,
     bulb,

@@ -105,7 +105,7 @@ std::vector<RightButton> right_buttons(const ViewModel& model) {
         {Icon::measure, Command::measure, model.measuring.on},
         {Icon::what_if, Command::what_if, model.popup == Popup::what_if},
         {Icon::section, Command::section, model.section.has_value()},
-        {Icon::edit, Command::edit_setup, model.popup == Popup::setup},
+        {Icon::edit, Command::edit_setup, model.shows_setup},
         {Icon::question, Command::shortcuts, model.popup == Popup::shortcuts}};
     if (has_device(model))
         buttons.insert(buttons.begin(), {Icon::device, Command::show_device, model.device.shown});
