@@ -245,6 +245,7 @@ std::optional<FirstContact> first_contact(const ExactBody& body, const Transform
                                           std::span<const FacePlane> planes,
                                           const ContactGoal& goal) {
     const Vec3 along = glm::normalize(direction);
+    if (!is_finite(along)) return std::nullopt;
     const Transform travel = travel_from_machine(along, pose.translation);
     ContactSearch search(body, travel * pose, goal);
     for (size_t i = 0; i < supports.size(); ++i)

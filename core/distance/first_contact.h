@@ -30,14 +30,15 @@ struct ContactGoal {
 /// How far a body can move straight until it first touches a support or a plane: it rests on it, or
 /// clamps it.
 ///
-/// `direction` has length 1. Planes are half-spaces, full on the side away from their normals.
+/// Only the direction of `direction` counts, not its length. Planes are half-spaces, full on the
+/// side away from their normals.
 ///
 /// Frame:   the machine's.
 /// Result:  within 1e-6 mm; the bodies overlap by at most `graze` then. Surfaces along the motion
 ///          do not stop it: a jaw slides on its bed. Neither does a contact that the motion opens,
 ///          nor a surface that the body has passed by more than `sunk`: so ask separation()
 ///          whether bodies overlap at the start. A plane that was passed gives 0. Empty if nothing
-///          is touched.
+///          is touched, and for no direction.
 /// Cost:    O(n log n) for n triangles in all, plus the pairs whose gap is less than the result; a
 ///          million triangles some 2 s.
 std::optional<FirstContact> first_contact(const ExactBody& body, const Transform& pose,

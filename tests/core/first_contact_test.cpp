@@ -100,6 +100,7 @@ TEST(FirstContact, WithPlanesIsAtTheLowestPoint) {
     EXPECT_EQ(first_contact(ball, translation({7, 8, -9}), down, {}, planes)->travel, 0.0);
     EXPECT_FALSE(first_contact(ball, {}, down, {}));
     EXPECT_FALSE(first_contact(ExactBody(SolidMesh{}), {}, down, {}));
+    EXPECT_FALSE(first_contact(ball, {}, Vec3(0.0), {}, planes));
 }
 
 TEST(FirstContact, OfBallsIsWhereTheirCentresAreApartByBothRadii) {
