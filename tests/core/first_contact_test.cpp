@@ -68,6 +68,15 @@ TEST(FirstContact, LetsBodiesSlideAndLeave) {
             EXPECT_NEAR(found->travel, 45.0, 1e-6);
             EXPECT_EQ(found->support, 1u);
         }
+        // From outside on to the table, which is as high as the underside of the body.
+        const ExactBody mesh_table = mesh_box({-100, -100, -20}, {100, 100, 0});
+        for (const double gap : {0.0, 1e-9, -1e-9, -5e-7})
+            for (const ExactBody& flush : {table, mesh_table}) {
+                EXPECT_FALSE(travel(body, translation({-150, 0, gap}), {1, 0, 0}, flush)) << gap;
+                EXPECT_FALSE(travel(flush, translation({-250, 0, -gap}), {1, 0, 0}, body)) << gap;
+            }
+        EXPECT_NEAR(travel(body, translation({-150, 0, -1e-3}), {1, 0, 0}, table).value(), 45.0,
+                    1e-6);
         // Touching the wall, away from it and along it.
         EXPECT_FALSE(travel(body, translation({45, 0, 0}), {-1, 0, 0}, wall));
         EXPECT_FALSE(travel(body, translation({45, 0, 0}), {0, 1, 0}, wall));

@@ -283,6 +283,12 @@ TEST(MeshFeatures, DoNotTakePolygonsForCircles) {
     EXPECT_EQ(square.faces.size(), 10u);
     EXPECT_EQ(square.edges.size(), 24u);
     EXPECT_TRUE(square.circles.empty() && square.walls.empty());
+    std::vector<glm::dvec2> uneven; // ten sides of 45 and 27 degrees
+    for (int i = 0; i < 5; ++i)
+        for (const double turn : {72.0 * i, 72.0 * i + 45.0})
+            uneven.emplace_back(20 * std::cos(full_turn * turn / 360),
+                                20 * std::sin(full_turn * turn / 360));
+    EXPECT_TRUE(features_of(prism_mesh(uneven, 0, 5)).circles.empty());
     std::vector<glm::dvec2> ellipse;
     for (int i = 0; i < 64; ++i)
         ellipse.emplace_back(20 * std::cos(full_turn * i / 64),
