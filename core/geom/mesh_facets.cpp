@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/math.h"
 #include "core/base/union_find.h"
@@ -19,6 +20,7 @@ constexpr double largest_bend_ratio = 1.8; // of radii of curvature at two sides
 constexpr uint32_t least_curved_facets = 4;
 constexpr uint32_t least_equal_facets = 3; // if they are of equal area and at least
 constexpr double least_equal_angle = 0.34; // radians, 20 degrees, apart: a fillet of three chords
+constexpr double largest_lump_bend = 2.0;  // of radii of curvature at its border
 constexpr double largest_lump = 8.0;       // area of a part of a curved surface, of its neighbours
 
 double largest_coordinate(const Mesh& mesh) {
@@ -179,35 +181,50 @@ struct Bend {
     double radius; // of curvature, from the middles of the facets and the angle
 };
 
+/// The bend between the facets on both sides of a side, if they meet at a small angle. Facet `a` is
+/// that of the side.
+std::optional<Bend> bend_at(const Mesh& mesh, const MeshSides& sides, const MeshFacets& facets,
+                            uint32_t side) {
+    const uint32_t mate = sides.mates[side];
+    if (mate == no_index) return std::nullopt;
+    const uint32_t i = facets.of_triangle[side / 3], k = facets.of_triangle[mate / 3];
+    if (i == k || i == no_index || k == no_index) return std::nullopt;
+    const MeshFacet& a = facets.facets[i];
+    const MeshFacet& b = facets.facets[k];
+    static const double smooth = core::cos(radians_of(smooth_angle_deg));
+    if (glm::dot(a.normal, b.normal) < smooth) return std::nullopt;
+    const Vec3 along = mesh.vertices[end_of(mesh, side)] - mesh.vertices[start_of(mesh, side)];
+    const double across = glm::length(glm::cross(b.centroid - a.centroid, along))
+                          / std::max(glm::length(along), 1e-300);
+    const double angle = glm::length(glm::cross(a.normal, b.normal));
+    return Bend{i, k, angle, across / std::max(angle, 1e-12)};
+}
+
+/// All bends between facets of similar area.
 std::vector<Bend> bends_of(const Mesh& mesh, const MeshSides& sides, const MeshFacets& facets) {
-    const double smooth = core::cos(radians_of(smooth_angle_deg));
     std::vector<Bend> bends;
     for (uint32_t side = 0; side < sides.mates.size(); ++side) {
-        const uint32_t mate = sides.mates[side];
-        if (mate == no_index || mate < side) continue;
-        const uint32_t i = facets.of_triangle[side / 3], k = facets.of_triangle[mate / 3];
-        if (i == k || i == no_index || k == no_index) continue;
-        const MeshFacet& a = facets.facets[i];
-        const MeshFacet& b = facets.facets[k];
-        if (glm::dot(a.normal, b.normal) < smooth) continue;
-        if (std::max(a.area, b.area) > largest_area_ratio * std::min(a.area, b.area)) continue;
-        const Vec3 along = mesh.vertices[end_of(mesh, side)] - mesh.vertices[start_of(mesh, side)];
-        const Vec3 apart = b.centroid - a.centroid;
-        const double across =
-            glm::length(glm::cross(apart, along)) / std::max(glm::length(along), 1e-300);
-        const double angle = glm::length(glm::cross(a.normal, b.normal));
-        bends.push_back({i, k, angle, across / std::max(angle, 1e-12)});
+        if (sides.mates[side] < side) continue;
+        const auto bend = bend_at(mesh, sides, facets, side);
+        if (!bend) continue;
+        const double a = facets.facets[bend->a].area, b = facets.facets[bend->b].area;
+        if (std::max(a, b) <= largest_area_ratio * std::min(a, b)) bends.push_back(*bend);
     }
     return bends;
 }
 
-/// Joins facets along bends that are about as tight as the tightest of both.
-UnionFind joined(const std::vector<Bend>& bends, size_t count) {
+/// For each facet the least radius of its bends.
+std::vector<double> tightest_of(const std::vector<Bend>& bends, size_t count) {
     std::vector<double> tightest(count, infinity);
     for (const Bend& bend : bends)
         for (const uint32_t facet : {bend.a, bend.b})
             tightest[facet] = std::min(tightest[facet], bend.radius);
-    UnionFind patches(count);
+    return tightest;
+}
+
+/// Joins facets along bends that are about as tight as the tightest of both.
+UnionFind joined(const std::vector<Bend>& bends, const std::vector<double>& tightest) {
+    UnionFind patches(tightest.size());
     for (const Bend& bend : bends)
         if (bend.radius <= largest_bend_ratio * std::min(tightest[bend.a], tightest[bend.b]))
             patches.join(bend.a, bend.b);
@@ -242,18 +259,18 @@ void mark_curved(MeshFacets& facets, const std::vector<Bend>& bends, UnionFind p
     }
 }
 
-/// Marks facets within curved surfaces that are little larger than their neighbours: places where
-/// the triangles are too small for the precision of the mesh.
-void mark_lumps(const MeshSides& sides, MeshFacets& facets) {
-    const double smooth = core::cos(radians_of(smooth_angle_deg));
+/// Marks facets within curved surfaces that bend as these do, but are larger: where triangles are
+/// small for the precision of the mesh, several can be of one plane.
+void mark_lumps(const Mesh& mesh, const MeshSides& sides, const std::vector<double>& tightest,
+                MeshFacets& facets) {
     std::vector<double> largest(facets.facets.size(), 0.0); // of the curved neighbours
     for (uint32_t side = 0; side < sides.mates.size(); ++side) {
-        const uint32_t i = facets.of_triangle[side / 3];
+        const uint32_t i = facets.of_triangle[side / 3], mate = sides.mates[side];
         if (i == no_index || facets.facets[i].curved) continue;
-        const uint32_t mate = sides.mates[side];
-        const uint32_t k = mate == no_index ? no_index : facets.of_triangle[mate / 3];
-        if (k == i || (k == no_index && mate != no_index)) continue;
-        if (k == no_index || !(glm::dot(facets.facets[i].normal, facets.facets[k].normal) > smooth))
+        const uint32_t k = mate == no_index ? i : facets.of_triangle[mate / 3];
+        if (mate != no_index && (k == i || k == no_index)) continue;
+        const auto bend = bend_at(mesh, sides, facets, side);
+        if (!bend || (facets.facets[k].curved && bend->radius > largest_lump_bend * tightest[k]))
             largest[i] = -infinity;
         else if (facets.facets[k].curved && largest[i] >= 0.0)
             largest[i] = std::max(largest[i], facets.facets[k].area);
@@ -267,8 +284,9 @@ void mark_lumps(const MeshSides& sides, MeshFacets& facets) {
 MeshFacets facets_of(const Mesh& mesh, const MeshSides& sides) {
     MeshFacets facets = FacetGrowth(mesh, sides).run();
     const std::vector<Bend> bends = bends_of(mesh, sides, facets);
-    mark_curved(facets, bends, joined(bends, facets.facets.size()));
-    mark_lumps(sides, facets);
+    const std::vector<double> tightest = tightest_of(bends, facets.facets.size());
+    mark_curved(facets, bends, joined(bends, tightest));
+    mark_lumps(mesh, sides, tightest, facets);
     return facets;
 }
 

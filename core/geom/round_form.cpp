@@ -25,6 +25,12 @@ std::optional<double> strip_width(const Mesh& mesh, const MeshFacets& facets, ui
     return width;
 }
 
+template <typename Act>
+void for_each_side(std::span<const uint32_t> triangles, const Act& act) {
+    for (const uint32_t t : triangles)
+        for (uint32_t side = 3 * t; side < 3 * t + 3; ++side) act(side);
+}
+
 } // namespace
 
 Vec3 perpendicular(const Vec3& direction) {
@@ -84,15 +90,26 @@ std::optional<RoundForm> form_of_strips(const Mesh& mesh, const MeshSides& sides
     return form;
 }
 
-std::optional<RoundForm> refined(const Mesh& mesh, RoundForm form,
+std::optional<RoundForm> refined(const Mesh& mesh, double noise, RoundForm form,
                                  std::span<const uint32_t> triangles) {
+    // The diagonals of long strips deviate little in angle, but by the width of the strip.
+    const auto is_along = [&](const Vec3& way) {
+        return glm::length(glm::cross(way, form.axis)) <= 8.0 * noise + 1e-6 * glm::length(way);
+    };
+    double longest = 0.0;
+    for_each_side(triangles, [&](uint32_t side) {
+        const Vec3 way = way_along(mesh, side);
+        if (is_along(way)) longest = std::max(longest, glm::length(way));
+    });
     Vec3 axis(0.0);
-    for (const uint32_t t : triangles)
-        for (uint32_t side = 3 * t; side < 3 * t + 3; ++side) {
-            const Vec3 way = way_along(mesh, side);
-            if (glm::length(glm::cross(way, form.axis)) <= along_axis * glm::length(way))
-                axis += glm::dot(way, form.axis) < 0.0 ? -way : way;
-        }
+    std::vector<uint32_t> ends; // not those of slivers at the border of a wall, which can be off
+    for_each_side(triangles, [&](uint32_t side) {
+        const Vec3 way = way_along(mesh, side);
+        if (!is_along(way) || glm::length(way) < 0.1 * longest) return;
+        axis += glm::dot(way, form.axis) < 0.0 ? -way : way;
+        ends.push_back(start_of(mesh, side));
+        ends.push_back(end_of(mesh, side));
+    });
     form.axis = glm::normalize(axis);
     for (int k = 0; k < 3; ++k) { // an axis of the frame, within the precision
         if (1.0 - std::abs(form.axis[k]) > 1e-12) continue;
@@ -102,11 +119,10 @@ std::optional<RoundForm> refined(const Mesh& mesh, RoundForm form,
     }
     const Vec3 u = perpendicular(form.axis), v = glm::cross(form.axis, u);
     std::vector<glm::dvec2> points;
-    for (const uint32_t t : triangles)
-        for (const uint32_t i : mesh.triangles[t]) {
-            const Vec3 p = mesh.vertices[i] - form.origin;
-            points.emplace_back(glm::dot(p, u), glm::dot(p, v));
-        }
+    for (const uint32_t i : ends) {
+        const Vec3 p = mesh.vertices[i] - form.origin;
+        points.emplace_back(glm::dot(p, u), glm::dot(p, v));
+    }
     const auto fit = fitted_circle(points);
     if (!fit) return std::nullopt;
     form.origin += fit->center.x * u + fit->center.y * v;

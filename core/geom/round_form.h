@@ -52,8 +52,8 @@ std::optional<RoundForm> form_beyond(const Mesh& mesh, const MeshFacets& facets,
 std::optional<RoundForm> form_of_strips(const Mesh& mesh, const MeshSides& sides,
                                         const MeshFacets& facets, uint32_t side);
 
-/// The cylinder through the vertices of triangles, along their long sides.
-std::optional<RoundForm> refined(const Mesh& mesh, RoundForm form,
+/// The cylinder along the sides of triangles that run along a rough form, and through their ends.
+std::optional<RoundForm> refined(const Mesh& mesh, double noise, RoundForm form,
                                  std::span<const uint32_t> triangles);
 
 } // namespace core

@@ -127,7 +127,8 @@ private:
         if (!form) return false;
         const uint32_t seed = side / 3;
         grow(*form, {&seed, 1}, 4.0);
-        form = facets_claimed() >= 3 ? refined(mesh_, *form, claimed_) : std::nullopt;
+        form =
+            facets_claimed() >= 3 ? refined(mesh_, facets_.noise, *form, claimed_) : std::nullopt;
         release();
         if (!form) return false;
         claimed_.clear();
@@ -181,8 +182,10 @@ private:
         if (!facet) return true; // a sliver
         const double lean = glm::dot(facet->normal, form.axis);
         if (std::abs(lean) > 0.999 && face_of_[triangle] != no_index) return false;
-        // Vertices between the ends of a chord are below the circle, but in the plane of the chord.
-        return std::abs(lean - form.lean) <= (least >= -tolerance ? 0.2 : 2e-3);
+        // Vertices between the ends of a chord are below the circle, but in the plane of the chord;
+        // and a rough form must not spread over a ball at its end.
+        const bool loose = least >= -tolerance && widening == 1.0;
+        return std::abs(lean - form.lean) <= (loose ? 0.2 : 2e-3);
     }
 
     /// Claims all connected triangles that fit; `widening` multiplies the tolerance.

@@ -22,6 +22,7 @@ using test_support::moved;
 using test_support::prism_mesh;
 using test_support::ProfilePoint;
 using test_support::random_pose;
+using test_support::rounded_box;
 using test_support::rounded_rectangle;
 using test_support::shuffled;
 using test_support::torus_mesh;
@@ -267,6 +268,27 @@ TEST(MeshFeatures, FindWallsBetweenFilletsWithoutCircularEdges) {
     EXPECT_NEAR(f.walls[1].radius_to, 15.0, 1e-9);
     EXPECT_NEAR(glm::distance(f.walls[1].from, f.walls[1].to), 15.0, 1e-9);
     EXPECT_EQ(f.circles.size(), 6u); // with those where the fillets begin and end
+}
+
+TEST(MeshFeatures, OfARoundedBoxAreSixFacesAndTwelveFillets) {
+    std::mt19937 rng(15);
+    for (const uint32_t chords : {3u, 4u, 6u, 12u})
+        for (const double radius : {2.0, 5.0}) {
+            const Transform pose = random_pose(rng, 100.0);
+            const Mesh mesh =
+                in_single_precision(moved(rounded_box({40, 25, 10}, radius, chords), pose));
+            const MeshFeatures f = features_of(mesh);
+            expect_consistent(f, mesh);
+            EXPECT_EQ(f.faces.size(), 6u) << chords;
+            EXPECT_EQ(f.edges.size() + f.corners.size(), 0u) << chords;
+            EXPECT_EQ(f.walls.size(), 12u) << chords;
+            for (const RoundWall& w : f.walls) {
+                EXPECT_NEAR(w.radius_from, radius, 1e-3);
+                EXPECT_EQ(w.kind, RoundKind::boss);
+                const Vec3 axis = glm::abs(w.axis() * pose.rotation);
+                EXPECT_NEAR(std::max({axis.x, axis.y, axis.z}), 1.0, 1e-10);
+            }
+        }
 }
 
 TEST(MeshFeatures, DoNotTakePolygonsForCircles) {

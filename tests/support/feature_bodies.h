@@ -112,6 +112,50 @@ inline std::vector<glm::dvec2> rounded_rectangle(double half_x, double half_y, d
     return outline;
 }
 
+/// A box about the origin with all edges rounded, in `chords` chords each. Its corners are parts of
+/// a ball with poles on Z; their vertices are shared.
+inline core::Mesh rounded_box(const core::Vec3& half, double radius, uint32_t chords) {
+    const uint32_t columns = 4 * (chords + 1), rows = 2 * (chords + 1);
+    core::Mesh mesh;
+    std::vector<uint32_t> number;
+    const auto add = [&](const core::Vec3& p) {
+        for (uint32_t i = 0; i < mesh.vertices.size(); ++i)
+            if (glm::distance(mesh.vertices[i], p) < 1e-9) return i;
+        mesh.vertices.push_back(p);
+        return static_cast<uint32_t>(mesh.vertices.size() - 1);
+    };
+    const double step = std::numbers::pi / 2 / chords;
+    for (uint32_t i = 0; i < rows; ++i)
+        for (uint32_t j = 0; j < columns; ++j) {
+            const bool up = i > chords;
+            const uint32_t quarter = j / (chords + 1);
+            const double height = step * (double(i) - (up ? chords + 1 : chords));
+            const double turn = std::numbers::pi / 2 * quarter + step * (j % (chords + 1));
+            const core::Vec3 side(quarter == 0 || quarter == 3 ? 1 : -1, quarter < 2 ? 1 : -1,
+                                  up ? 1 : -1);
+            number.push_back(
+                add(side * (half - core::Vec3(radius))
+                    + radius
+                          * core::Vec3(std::cos(height) * std::cos(turn),
+                                       std::cos(height) * std::sin(turn), std::sin(height))));
+        }
+    const auto triangle = [&](uint32_t a, uint32_t b, uint32_t c) {
+        if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
+    };
+    const auto at = [&](uint32_t i, uint32_t j) { return number[i * columns + j % columns]; };
+    for (uint32_t i = 0; i + 1 < rows; ++i)
+        for (uint32_t j = 0; j < columns; ++j) {
+            triangle(at(i, j), at(i, j + 1), at(i + 1, j + 1));
+            triangle(at(i, j), at(i + 1, j + 1), at(i + 1, j));
+        }
+    const uint32_t q = chords + 1, top = rows - 1;
+    triangle(at(top, 0), at(top, q), at(top, 2 * q));
+    triangle(at(top, 0), at(top, 2 * q), at(top, 3 * q));
+    triangle(at(0, 2 * q), at(0, q), at(0, 0));
+    triangle(at(0, 3 * q), at(0, 2 * q), at(0, 0));
+    return mesh;
+}
+
 /// Coordinates as they come from an STL file.
 inline core::Mesh in_single_precision(core::Mesh mesh) {
     for (core::Vec3& v : mesh.vertices) v = core::Vec3(glm::vec3(v));
