@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/base/text.h"
+#include "app/view/model/placing.h"
 #include "app/view/model/view_model.h"
 #include "gcode/text/program_text.h"
 
@@ -170,6 +171,7 @@ void show_findings(ViewModel& model, bool shown) {
 
 void show_setup(ViewModel& model, bool shown) {
     model.shows_setup = shown;
+    begin_picking(model, PickGoal::none);
     model.workspace.wants_focus = shown;
     model.workspace.has_keys = false;
     model.list_follows = true;

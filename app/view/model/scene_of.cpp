@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/check/setup_sheet.h"
+#include "app/view/model/placing.h"
 #include "app/view/model/program_zero.h"
 #include "app/view/model/view_model.h"
 #include "core/base/text.h"
@@ -125,6 +126,26 @@ void add_raw_bodies(const SceneSetup& known, render::Scene& scene) {
     stock.mesh = known.meshes.raw_stock;
     stock.alpha = 0.35;
     scene.bodies.push_back(std::move(stock));
+}
+
+/// Moves the bodies that are being dragged.
+void add_drag(const ViewModel& model, render::Scene& scene) {
+    const Placing& placing = model.placing;
+    if (!placing.drag || !model.program || !model.program->scene) return;
+    if (placing.body == stock_name) {
+        render::Body stock;
+        stock.name = stock_name;
+        stock.role = render::BodyRole::stock;
+        stock.mesh = model.program->scene->meshes.raw_stock;
+        stock.alpha = 0.5;
+        stock.stock_from_body = *placing.drag;
+        if (stock.mesh) scene.bodies.push_back(std::move(stock));
+        return;
+    }
+    const std::vector<std::string> names = moved_with(model, placing.body);
+    for (render::Body& body : scene.bodies)
+        if (std::find(names.begin(), names.end(), body.name) != names.end())
+            body.stock_from_body = *placing.drag * body.stock_from_body;
 }
 
 } // namespace
@@ -296,6 +317,7 @@ render::Scene scene_of(const ViewModel& model) {
         add_bodies(model, *view, scene);
     else if (model.program && model.program->scene)
         add_raw_bodies(*model.program->scene, scene);
+    add_drag(model, scene);
     for (render::Body& body : scene.bodies) body.visible = shows(model.settings.shown, body.role);
     scene.stock_visible = model.settings.shown.stock;
     scene.path = model.path;
@@ -333,6 +355,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
         key.section_offset = model.section->plane.offset;
         key.section_cuts_tool = model.section->cuts_tool;
     }
+    key.drag = model.placing.drag;
     key.measured = marked_points(model);
     key.inch = model.settings.inch;
     if (model.has_rows()) key.overlap = model.row().overlap;

@@ -45,6 +45,7 @@ struct SceneKey {
     bool section_cuts_tool = false;
     bool inch = false;                    // the unit of the grid
     std::optional<core::Overlap> overlap; // of the shown pair
+    std::optional<core::Transform> drag;  // of a body that is placed
     std::vector<core::Vec3> measured;     // and the points of a section
     int width = 0, height = 0;
     bool has_program = false;

@@ -154,6 +154,7 @@ struct ViewModel {
     ToleranceModel tolerances;
 
     Workspace workspace; // the set-up
+    Placing placing;
 
     // input of the user
     Cursor cursor;

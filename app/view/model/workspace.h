@@ -8,6 +8,7 @@
 
 #include "app/setup/setup_document.h"
 #include "core/base/ids.h"
+#include "core/base/vec.h"
 
 namespace app {
 enum class SetupSource : uint8_t;
@@ -64,6 +65,30 @@ struct Workspace {
     bool is_naming = false;   // the file name is asked for
     bool may_replace = false; // the user confirmed that the named file may be replaced
     std::string file_name;    // as typed
+};
+
+/// What the next click in the view defines.
+enum class PickGoal : uint8_t {
+    none,
+    own_face,       // of the body that is placed
+    other_face,     // to which it is put
+    between_first,  // the first of two faces, in the middle of which the body is put
+    between_second, // and the second
+    zero            // a corner, edge, face, bore or boss as the zero of a work offset
+};
+
+struct PickState;
+
+/// Placing bodies and work offsets by pointing at them; see placing.h.
+struct Placing {
+    PickGoal goal = PickGoal::none;
+    std::string body;   // that is placed
+    std::string offset; // name of the work offset whose zero is set
+    // How faces are put together: looking the same way; with their middles together.
+    bool flush = false, centred = false;
+    size_t turn = 0;                     // which of the candidates under the cursor is meant
+    std::optional<core::Transform> drag; // moves the body on screen while it is dragged
+    std::shared_ptr<PickState> picks;    // never null once picking has begun
 };
 
 /// Opens a document.

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "app/view/model/navigation.h"
+#include "app/view/model/placing.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/section.h"
 #include "app/view/model/session_worker.h"
@@ -344,6 +345,10 @@ void perform(ViewModel& model, Command command, double now) {
         open_popup(model, Popup::shortcuts);
         break;
     case Command::close_popup:
+        if (model.popup == Popup::none && model.placing.goal != PickGoal::none) {
+            begin_picking(model, PickGoal::none);
+            break;
+        }
         if (model.popup == Popup::none && model.workspace.has_keys) {
             show_setup(model, false);
             break;

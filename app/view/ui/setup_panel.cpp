@@ -11,6 +11,7 @@
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
+#include "app/view/model/placing.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 #include "core/base/units.h"
@@ -135,6 +136,9 @@ private:
     void draw_part(Frame& frame, const StatedBody& body);
     void draw_shape(Frame& frame, const StatedBody& body, const BodyPath& path, bool has_cylinder);
     void draw_pose(Frame& frame, const StatedBody& body, const BodyPath& path);
+    void draw_placing(Frame& frame, const std::string& body);
+    void draw_face_lists(Frame& frame, const std::string& body);
+    void draw_zero(Frame& frame, const std::string& offset);
     void draw_tool(Frame& frame, const SheetTool& shown);
     void draw_tool_sizes(Frame& frame, const SheetTool& shown);
     void draw_holder(Frame& frame, const SheetTool& shown);
@@ -161,6 +165,10 @@ private:
     SetupItem focused_;       // of the tree, by the keyboard
     bool wants_name_ = false; // the name of the fixture gets the keyboard
     std::string mesh_file_;
+    // of the lists of faces
+    std::string listed_body_, other_body_;
+    size_t own_face_ = 0, other_face_ = 0;
+    int zero_[3] = {0, 0, 2}; // corner of the stock: least, middle, greatest
 };
 
 std::optional<double> SetupPanel::State::number(Frame& frame, const char* id, double value,
@@ -310,7 +318,7 @@ void SetupPanel::State::draw_row(Frame& frame, const SetupRow& row, int index) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const Theme& palette = frame.palette;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x, height = frame.px(22);
+    const float width = ImGui::GetContentRegionAvail().x, height = frame.px(20);
     const float text_y = at.y + 0.5F * (height - frame.fonts.text->FontSize);
     ImGui::PushID(index);
     if (row.item.kind == Kind::none) {
@@ -357,10 +365,10 @@ void SetupPanel::State::take_tree_keys(Frame& frame) {
 
 void SetupPanel::State::draw_tree(Frame& frame, const std::vector<SetupRow>& rows) {
     const float room = ImGui::GetContentRegionAvail().y;
-    const float wanted = frame.px(24) * static_cast<float>(rows.size()) + frame.px(12);
+    const float wanted = frame.px(21) * static_cast<float>(rows.size()) + frame.px(12);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(0, frame.px(1)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(6), frame.px(5)));
-    ImGui::BeginChild("tree", ImVec2(0, std::min(wanted, 0.48F * room)), true,
+    ImGui::BeginChild("tree", ImVec2(0, std::min(wanted, 0.42F * room)), true,
                       ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NavFlattened);
     ImGui::PopStyleVar();
     Workspace& workspace = frame.model.workspace;
@@ -462,6 +470,7 @@ void SetupPanel::State::draw_offset(Frame& frame, const SheetOffset& offset) {
     if (origin)
         edit_setup(model, "Change " + offset.name,
                    [&](const std::string& t) { return with_offset(t, offset.name, *origin); });
+    draw_zero(frame, offset.name);
     wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  offset.is_used ? "Machine coordinates of program zero, as on the control's page."
                                 : "The program does not use it.");
@@ -534,6 +543,7 @@ void SetupPanel::State::draw_stock(Frame& frame) {
             });
         draw_pose(frame, *stated, "stock");
     }
+    draw_placing(frame, stock_name);
     std::string why = "In " + sheet.frame + ".";
     if (sheet.stock_source == SetupSource::assumed && !sheet.stock_why.empty())
         why += " Assumed: " + sheet.stock_why + ".";
@@ -618,6 +628,120 @@ void SetupPanel::State::draw_pose(Frame& frame, const StatedBody& body, const Bo
     ImGui::EndCombo();
 }
 
+/// Draws the list of the faces of a body; true if another one was chosen.
+bool face_list(Frame& frame, const char* id, const std::vector<SceneFace>& faces, size_t& chosen) {
+    chosen = faces.empty() ? 0 : std::min(chosen, faces.size() - 1);
+    bool is_changed = false;
+    ImGui::SetNextItemWidth(frame.px(208));
+    if (!ImGui::BeginCombo(id, faces.empty() ? "" : faces[chosen].name.c_str())) return false;
+    for (size_t i = 0; i < faces.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Selectable(faces[i].name.c_str(), i == chosen)) {
+            chosen = i;
+            is_changed = true;
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+    return is_changed;
+}
+
+void SetupPanel::State::draw_face_lists(Frame& frame, const std::string& body) {
+    ViewModel& model = frame.model;
+    if (listed_body_ != body) {
+        listed_body_ = body;
+        own_face_ = other_face_ = 0;
+        other_body_ = body == stock_name ? "" : stock_name;
+    }
+    const std::vector<SceneFace> own = faces_of(model, body);
+    field_name(frame, "Its face");
+    face_list(frame, "##own", own, own_face_);
+    field_name(frame, "To body");
+    ImGui::SetNextItemWidth(frame.px(208));
+    if (ImGui::BeginCombo("##other body", other_body_.c_str())) {
+        for (const std::string& name : bodies_to_meet(model))
+            if (name != body && ImGui::Selectable(name.c_str(), name == other_body_)) {
+                other_body_ = name;
+                other_face_ = 0;
+            }
+        ImGui::EndCombo();
+    }
+    const std::vector<SceneFace> other = faces_of(model, other_body_);
+    field_name(frame, "To face");
+    face_list(frame, "##other", other, other_face_);
+    field_name(frame, "");
+    ImGui::BeginDisabled(own.empty() || other.empty());
+    if (ImGui::Button("Put together"))
+        put_face_to_face(model, body, own[own_face_].plane, other[other_face_].plane);
+    ImGui::EndDisabled();
+}
+
+void SetupPanel::State::draw_placing(Frame& frame, const std::string& body) {
+    ViewModel& model = frame.model;
+    Placing& placing = model.placing;
+    if (!can_move(model, body)) return;
+    const auto begin = [&](PickGoal goal) {
+        placing.body = body;
+        begin_picking(model, goal);
+    };
+    field_name(frame, "Place");
+    if (ImGui::Button("Face to face")) begin(PickGoal::own_face);
+    tip(frame, "Click one of its faces, then the face to put it to");
+    ImGui::SameLine();
+    if (ImGui::Button("Centre")) begin(PickGoal::between_first);
+    tip(frame, "Click two parallel faces of other bodies: it comes into the middle between them");
+    field_name(frame, "");
+    ImGui::Checkbox("centred", &placing.centred);
+    tip(frame, "Face to face: also bring the middles of both faces together");
+    ImGui::SameLine();
+    ImGui::Checkbox("flush", &placing.flush);
+    tip(frame, "Face to face: the faces look the same way, in one plane");
+    field_name(frame, "Slide to touch");
+    constexpr std::pair<const char*, core::Vec3> ways[] = {
+        {"\xE2\x88\x92X", {-1, 0, 0}}, {"+X", {1, 0, 0}},
+        {"\xE2\x88\x92Y", {0, -1, 0}}, {"+Y", {0, 1, 0}},
+        {"\xE2\x88\x92Z", {0, 0, -1}}, {"+Z", {0, 0, 1}}};
+    for (const auto& [name, direction] : ways) {
+        if (direction != ways[0].second) ImGui::SameLine(0, frame.px(3));
+        if (ImGui::SmallButton(name)) slide_to_contact(model, body, direction);
+        tip(frame, "Slide it until it touches another body: close a jaw, put it down");
+    }
+    if (ImGui::TreeNodeEx("Faces from lists", ImGuiTreeNodeFlags_NoTreePushOnOpen))
+        draw_face_lists(frame, body);
+}
+
+void SetupPanel::State::draw_zero(Frame& frame, const std::string& offset) {
+    ViewModel& model = frame.model;
+    field_name(frame, "Set the zero");
+    if (ImGui::Button("By clicking")) {
+        model.placing.offset = offset;
+        model.placing.body.clear();
+        begin_picking(model, PickGoal::zero);
+    }
+    tip(frame,
+        "Click a corner, edge, face, bore or boss of the stock or a fixture, as a probe would");
+    field_name(frame, "or at the stock");
+    constexpr const char* sides[] = {"left\0middle\0right\0", "front\0middle\0back\0",
+                                     "bottom\0middle\0top\0"};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) ImGui::SameLine(0, frame.px(4));
+        ImGui::PushID(axis);
+        ImGui::SetNextItemWidth(frame.px(76));
+        ImGui::Combo("##side", &zero_[axis], sides[axis]);
+        ImGui::PopID();
+    }
+    field_name(frame, "");
+    if (!ImGui::Button("Set to there")) return;
+    const core::Aabb box = bounds_of_body(model, stock_name);
+    if (box.empty()) return;
+    core::FeaturePick corner{.kind = core::FeatureKind::corner};
+    for (int axis = 0; axis < 3; ++axis)
+        corner.point[axis] = zero_[axis] == 0   ? box.min[axis]
+                             : zero_[axis] == 1 ? box.center()[axis]
+                                                : box.max[axis];
+    set_zero(model, offset, corner);
+}
+
 void SetupPanel::State::draw_fixture(Frame& frame, const StatedBody& body) {
     ViewModel& model = frame.model;
     const auto path = path_of_fixture(model.workspace.document.text(), body.name);
@@ -629,6 +753,7 @@ void SetupPanel::State::draw_fixture(Frame& frame, const StatedBody& body) {
         rename_selected(model, *name);
     draw_shape(frame, body, *path, true);
     draw_pose(frame, body, *path);
+    draw_placing(frame, body.name);
     bool expendable = body.expendable;
     field_name(frame, "");
     if (ImGui::Checkbox("may be cut while feeding", &expendable))
@@ -802,7 +927,10 @@ void SetupPanel::State::draw(Frame& frame) {
     tip(frame, tip_of(Command::tolerances));
     ImGui::Separator();
     ImGui::BeginChild("item", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(frame.px(7), frame.px(2.5)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(frame.px(6), frame.px(4)));
     draw_item(frame);
+    ImGui::PopStyleVar(2);
     ImGui::EndChild();
     model.workspace.has_keys = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows);
     if (std::exchange(model.workspace.wants_focus, false)) ImGui::SetWindowFocus();
