@@ -119,6 +119,12 @@ TEST(ControlOffsets, SkipsWhatElseAFileOfProgramsHolds) {
     EXPECT_NE(read.notes[0].find("G10 L50 in line 6 is not read"), std::string::npos);
 }
 
+TEST(ControlOffsets, ReadsLinesThatBeginWithAMarkOrAComment) {
+    EXPECT_EQ(origin_of(offsets_in("\xEF\xBB\xBFG10 L2 P1 X1.\r\n"), 0, 0), 1.0);
+    EXPECT_EQ(origin_of(offsets_in("(a) g10 (b) l2 p1 (c) x1. (d)"), 0, 0), 1.0);
+    EXPECT_EQ(origin_of(offsets_in("G10 L2 P1 X1. ; a G10"), 0, 0), 1.0);
+}
+
 TEST(ControlOffsets, ReadsOneValueForEachNumber) {
     for (const char* text :
          {"G10 L11 P1 R120.\nG10 L11 P2 R98.\n", "G10 P1 R120.\nG10 P2 R98.\n"}) {
@@ -150,6 +156,8 @@ TEST(ControlOffsets, RefusesBlocksThatCannotBeRead) {
         {"G10 L2 P1 X5. X6.", "X is there twice"},
         {"G10 L2 P1 X", "no word with a number"},
         {"G10 L2 P1 X1. Ö", "no word with a number"},
+        {"IF[#1EQ0] G10 L2 P1 X1.", "no word with a number"},
+        {"#1=5 G10 L10 P1 R5.", "'#1=5 G10 L10 P1 R5.' is no word"},
     };
     for (const auto& [text, message] : cases)
         EXPECT_NE(mistake_in(text).find(message), std::string::npos)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/fuzz/chosen_program.h"
+#include "tests/fuzz/import_runs.h"
 #include "tests/fuzz/program_runs.h"
 
 namespace test_support {
@@ -38,6 +39,12 @@ TEST(FuzzSeeds, ChosenProgramsKeepEveryPromise) {
     const auto inputs = inputs_of("programs");
     ASSERT_FALSE(inputs.empty());
     for (const auto& input : inputs) run_chosen_program(input);
+}
+
+TEST(FuzzSeeds, ImportsKeepEveryPromise) {
+    const auto inputs = inputs_of("imports");
+    ASSERT_FALSE(inputs.empty());
+    for (const auto& input : inputs) run_any_import(input);
 }
 
 TEST(FuzzSeeds, RandomChoicesKeepEveryPromise) {

@@ -30,18 +30,9 @@ core::Error not_offsets(const std::string& path) {
             path};
 }
 
-/// The text of a line before its comment, in capitals.
-std::string code_of(const std::string& line) {
-    return core::upper_case(core::stripped(line.substr(0, line.find_first_of(";("))));
-}
-
 bool has_offset_block(const std::vector<std::string>& lines) {
-    return std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
-        const std::string code = code_of(line);
-        const size_t at = code.find("G10");
-        const char next = at == std::string::npos || at + 3 >= code.size() ? ' ' : code[at + 3];
-        return at != std::string::npos && (next < '0' || next > '9');
-    });
+    return std::any_of(lines.begin(), lines.end(),
+                       [](const std::string& line) { return has_offset_code(code_of(line)); });
 }
 
 /// The words of the first line with code.
@@ -154,7 +145,8 @@ core::Result<void> read_one(const OffsetStore& store) {
         note_unit(store);
         return read_haas_offsets(text, store);
     }
-    FEELER_TRY(const std::vector<std::string> lines, lines_of_file(store.path));
+    FEELER_TRY(std::vector<std::string> lines, lines_of_file(store.path));
+    if (!lines.empty() && lines[0].starts_with("\xEF\xBB\xBF")) lines[0].erase(0, 3);
     if (has_offset_block(lines)) return read_offset_blocks(lines, store);
     const std::vector<std::string> words = first_words(lines);
     const bool is_table =

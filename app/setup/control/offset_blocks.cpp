@@ -7,6 +7,7 @@
 
 #include "app/base/text.h"
 #include "app/setup/control/offset_store.h"
+#include "core/base/text.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/lexer.h"
@@ -285,10 +286,10 @@ core::Result<std::vector<OffsetEntry>> entries_of(const std::vector<OffsetWord>&
 core::Result<void> OffsetBlocks::take_line(const std::string& text, uint32_t line) {
     const OffsetWords found = words_with_numbers(text, line);
     for (const OffsetWord& word : found.words) take_modes(word);
-    FEELER_TRY(const std::vector<OffsetEntry> entries, entries_of(found.words));
-    if (entries.empty() || modes_.skips) return {};
+    if (modes_.skips) return {};
     // Lines of programs may hold anything else; one with offsets must be read to its end.
-    if (found.end) return tl::unexpected(*found.end);
+    if (found.end && has_offset_code(code_of(text))) return tl::unexpected(*found.end);
+    FEELER_TRY(const std::vector<OffsetEntry> entries, entries_of(found.words));
     for (const OffsetEntry& entry : entries)
         if (auto taken = take_entry(entry); !taken) return taken;
     return {};
@@ -323,6 +324,27 @@ void OffsetBlocks::finish() {
 }
 
 } // namespace
+
+std::string code_of(std::string_view line) {
+    std::string code;
+    bool is_comment = false;
+    for (const char c : line) {
+        if (c == ';' && !is_comment) break;
+        is_comment = is_comment || c == '(';
+        if (!is_comment) code += core::upper(c);
+        if (c == ')') is_comment = false;
+    }
+    return std::string(core::stripped(code));
+}
+
+bool has_offset_code(std::string_view code) {
+    for (size_t at = code.find("G10"); at != std::string_view::npos;
+         at = code.find("G10", at + 1)) {
+        const char next = at + 3 < code.size() ? code[at + 3] : ' ';
+        if (next != '.' && (next < '0' || next > '9')) return true;
+    }
+    return false;
+}
 
 core::Result<void> read_offset_blocks(const std::vector<std::string>& lines,
                                       const OffsetStore& store) {

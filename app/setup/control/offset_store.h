@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/setup/control/control_offsets.h"
@@ -28,6 +29,12 @@ struct OffsetStore {
 
     void note(const std::string& text) const;
 };
+
+/// A line in capitals without its comments.
+std::string code_of(std::string_view line);
+
+/// Whether code contains the word G10.
+bool has_offset_code(std::string_view code);
 
 /// Reads the lines of a file that contains blocks with G10.
 ///
