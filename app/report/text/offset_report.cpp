@@ -1,13 +1,12 @@
 #include "app/report/text/offset_report.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
 #include "app/base/version.h"
 #include "app/setup/control/offset_differences.h"
+#include "core/base/math.h"
 
 namespace app {
 namespace {
@@ -22,7 +21,7 @@ std::string cell_of(const std::optional<double>& value) {
 std::optional<double> difference_of(const ComparedOffset& value) {
     if (!value.setup || !value.control) return std::nullopt;
     constexpr double finest = 1e6;
-    return std::round((*value.control - *value.setup) * finest) / finest;
+    return core::round((*value.control - *value.setup) * finest) / finest;
 }
 
 std::string difference_cell(const ComparedOffset& value) {
