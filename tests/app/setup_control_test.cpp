@@ -63,6 +63,27 @@ TEST(SetupControl, WritesJsonToAFileButNotOverOneThatItRead) {
     EXPECT_EQ(test_support::bytes_of(job.setup), stated);
 }
 
+TEST(SetupControl, ALibraryWithHoldersStatesLengths) {
+    const ScopedFolder folder;
+    const std::string program = folder.write("plate.nc", drilled);
+    const std::string tool =
+        R"({"type": "drill", "unit": "millimeters", "geometry": {"DC": 6, "LCF":
+        30, "LB": 40, "SFDM": 6}, "post-process": {"number": 1})";
+    const std::string holder =
+        R"(, "holder": {"segments": [{"height": 80, "lower-diameter": 40, "upper-diameter": 40}]})";
+    folder.write("plate.toml", "tool_library = \"l.json\"\n[program]\ndialect = \"fanuc\"\nunit = "
+                               "\"mm\"\n[stock]\nbox = [[-9, -9, -9], [9, 9, 0]]\n");
+    const std::string control = folder.write("c.txt", "G10 L10 P1 R120.\n");
+    folder.write("l.json", R"({"data": [)" + tool + holder + "}]}");
+    const auto known = feeler({"setup", program, "--control", control});
+    EXPECT_EQ(known.status, 0) << known.out << known.err;
+    EXPECT_NE(known.out.find("H1                   120.000     120.000"), std::string::npos)
+        << known.out;
+    folder.write("l.json", R"({"data": [)" + tool + "}]}");
+    EXPECT_NE(feeler({"setup", program, "--control", control}).out.find("not in the set-up"),
+              std::string::npos);
+}
+
 TEST(SetupControl, WithoutASetUpAllThatTheProgramUsesIsMissingThere) {
     const ComparedJob job;
     const ScopedFolder alone;

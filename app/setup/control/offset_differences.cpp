@@ -57,6 +57,7 @@ private:
     bool states(size_t index) const;
     std::optional<double> length_in_setup(core::OffsetNumber number) const;
     std::optional<double> diameter_in_setup(core::OffsetNumber number) const;
+    bool guesses_length(core::ToolNumber number) const;
     const ControlToolOffset* tool(core::OffsetNumber number) const;
     void add(std::string name, bool is_angle, std::optional<double> setup,
              const std::optional<EffectiveValue>& control);
@@ -133,6 +134,15 @@ const ControlToolOffset* Comparison::tool(core::OffsetNumber number) const {
     return found == control_.tools.end() ? nullptr : &found->second;
 }
 
+/// Whether nobody has stated the length of a tool. A library with its holder and stick-out does.
+bool Comparison::guesses_length(core::ToolNumber number) const {
+    if (setup_.environment.guessed_lengths.contains(number)) return true;
+    if (!setup_.inferred_tools.contains(number)) return false;
+    const auto found = setup_.library.find(number);
+    return found == setup_.library.end() || found->second.tool.holder.empty()
+           || !found->second.tool.stick_out;
+}
+
 std::optional<double> Comparison::length_in_setup(core::OffsetNumber number) const {
     const gcode::Environment& environment = setup_.environment;
     if (const auto row = environment.length_offsets.find(number);
@@ -140,9 +150,7 @@ std::optional<double> Comparison::length_in_setup(core::OffsetNumber number) con
         return row->second.length + row->second.wear;
     const core::ToolNumber same{core::value_of(number)};
     const auto found = environment.tool_lengths.find(same);
-    if (found == environment.tool_lengths.end() || environment.guessed_lengths.contains(same)
-        || setup_.inferred_tools.contains(same))
-        return std::nullopt;
+    if (found == environment.tool_lengths.end() || guesses_length(same)) return std::nullopt;
     return found->second;
 }
 
@@ -153,8 +161,8 @@ std::optional<double> Comparison::diameter_in_setup(core::OffsetNumber number) c
         return row->second.diameter + 2.0 * row->second.radius_wear;
     const core::ToolNumber same{core::value_of(number)};
     const auto found = environment.tool_diameters.find(same);
-    if (found == environment.tool_diameters.end() || setup_.inferred_tools.contains(same))
-        return std::nullopt;
+    const bool is_guess = setup_.inferred_tools.contains(same) && !setup_.library.contains(same);
+    if (found == environment.tool_diameters.end() || is_guess) return std::nullopt;
     return found->second;
 }
 
