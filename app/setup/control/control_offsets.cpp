@@ -104,16 +104,16 @@ core::Result<void> read_table_offsets(const std::vector<std::string>& lines,
             if (const auto number = number_in(std::string_view(word).substr(1));
                 word[0] == 'T' && number)
                 places.emplace(static_cast<int>(*number), static_cast<uint32_t>(i + 1));
-    for (const auto& [number, entry] : table) {
-        const uint32_t line = places[core::value_of(number)];
-        ControlToolOffset& tool = store.offsets.tools[number];
-        const auto put = [&](std::optional<ControlValue>& place, double mm, const char* what) {
-            ControlValue value = store.length(mm, gcode::LengthUnit::mm, line);
+    for (const auto& [key, entry] : table) {
+        const int number = core::value_of(key);
+        ControlToolOffset& tool = store.offsets.tools[key];
+        const auto put = [&](std::optional<ControlValue>& place, double mm, char what) {
+            ControlValue value = store.length(mm, gcode::LengthUnit::mm, places[number]);
             value.in_inches = store.reading.unit == gcode::LengthUnit::inch;
-            store.put(place, value, fmt::format("{}{}", what, core::value_of(number)));
+            store.put(place, value, fmt::format("{}{}", what, number));
         };
-        put(tool.length, entry.length, "H");
-        if (entry.diameter != 0.0) put(tool.diameter, entry.diameter, "D");
+        put(tool.length, entry.length, 'H');
+        if (entry.diameter != 0.0) put(tool.diameter, entry.diameter, 'D');
     }
     return {};
 }
