@@ -11,9 +11,8 @@
 namespace render {
 namespace {
 
-/// How much of the colour of its side a body of the pair has, and the stock, whose raw and cut
-/// faces must stay apart.
-constexpr double body_share = 0.8, stock_share = 0.4;
+/// How much of the colour of its side the stock has: its raw and cut faces must stay apart.
+constexpr double stock_share = 0.4;
 
 /// Number of pictures after which an unused mesh is freed. Long enough for a turn of the view,
 /// during which bricks of the stock come and go.
@@ -154,8 +153,7 @@ BodyPass::Item BodyPass::item(const ViewFrame& frame, const Body& body, bool is_
     Item made{&body, body.stock_from_body,        bounds(body), color(theme, color_role(body.role)),
               {},    is_ghost ? 0.28 : body.alpha};
     if (is_ghost) made.color = mixed(made.color, color(theme, Role::accent), 0.6);
-    if (body.side != PairSide::none)
-        made.color = mixed(made.color, color(theme, color_role(body.side)), body_share);
+    if (body.side != PairSide::none) made.color = color(theme, color_role(body.side));
     made.second = made.color;
     const auto& section = frame.scene.section;
     made.cut = section && is_cut_by_section(frame.scene, body.role);

@@ -95,6 +95,8 @@ TEST(SceneWriter, WritesWhatScenesShareOnce) {
     EXPECT_EQ(first["bodies"][1]["at"], json({1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3.001}));
     EXPECT_EQ(first["bodies"][1]["state"], "violation");
     EXPECT_FALSE(first["bodies"][0].contains("state"));
+    EXPECT_EQ(first["bodies"][1]["pair"], "body");
+    EXPECT_FALSE(first["bodies"][0].contains("pair"));
     EXPECT_EQ(first["witness"], json({1, 2, 3, 4, 5, 6.123}));
     EXPECT_EQ(first["state"], "near");
 }

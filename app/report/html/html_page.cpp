@@ -52,7 +52,9 @@ constexpr Variable variables[] = {{"background", Role::background},
                                   {"part", Role::part},
                                   {"edge", Role::edge},
                                   {"rapid", Role::rapid},
-                                  {"current", Role::current}};
+                                  {"current", Role::current},
+                                  {"pair-tool", Role::pair_tool},
+                                  {"pair-body", Role::pair_body}};
 
 std::string declarations(render::ColorScheme theme) {
     std::string text;

@@ -171,10 +171,17 @@ std::optional<size_t> SceneWriter::State::stock_of(const render::StockBricks& br
 
 namespace {
 
+/// The side of a body of the pair, as a member of an object.
+const char* pair_json(render::PairSide side) {
+    constexpr const char* members[] = {"", R"(,"pair":"tool")", R"(,"pair":"body")"};
+    return members[static_cast<size_t>(side)];
+}
+
 std::string body_json(const render::Body& body, size_t mesh) {
     std::string json =
         fmt::format(R"({{"name":{},"role":"{}","mesh":{},"at":[{}])", script_string(body.name),
                     name_of(body.role), mesh, numbers(body.stock_from_body));
+    json += pair_json(body.side);
     if (body.side != render::PairSide::none)
         json += fmt::format(R"(,"state":"{}")", name_of(body.mark));
     return json + "}";
@@ -185,7 +192,8 @@ std::string body_json(const render::Body& body, size_t mesh) {
 std::string SceneWriter::State::bodies_json(const render::Scene& scene) {
     std::vector<std::string> bodies;
     if (const auto stock = stock_of(scene.stock))
-        bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}}})", *stock));
+        bodies.push_back(fmt::format(R"({{"name":"stock","role":"stock","mesh":{}{}}})", *stock,
+                                     pair_json(scene.stock_side)));
     for (const render::Body& body : scene.bodies) {
         const bool is_far =
             body.role == render::BodyRole::machine && body.side == render::PairSide::none;

@@ -52,15 +52,13 @@ function bodyOf(body, geometry, color) {
     roughness: 0.8, metalness: 0, side: DoubleSide, transparent: opacity < 1, opacity, depthWrite: opacity === 1,
     polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, // so that edges are drawn in front of faces
   });
+  const own = body.pair && color("pair-" + body.pair); // of the two bodies of a pair, each has its colour
   if (body.role === "stock") {
-    tint(geometry, color("stock"), color("stock-cut"));
+    const share = own ? 0.4 : 0; // raw and cut faces must stay apart
+    tint(geometry, color("stock").lerp(own || color("stock"), share), color("stock-cut").lerp(own || color("stock-cut"), share));
     material.vertexColors = true;
   } else {
-    material.color = color(body.role);
-  }
-  if (body.state) {
-    material.emissive = color(body.state);
-    material.emissiveIntensity = 0.25;
+    material.color = own || color(body.role);
   }
   const mesh = new Mesh(geometry, material);
   if (body.at) {
@@ -77,7 +75,7 @@ const creaseDegrees = 30;
 function edgesOf(body, geometry, color) {
   geometry.userData.edges ||= new EdgesGeometry(geometry, creaseDegrees);
   const opacity = body.state ? 0.9 : body.role === "stock" ? 0.2 : 0.4; // a coarse stock model has spurious edges
-  const material = new LineBasicMaterial({ color: color(body.state || "edge"), transparent: true, opacity });
+  const material = new LineBasicMaterial({ color: color(body.pair ? "pair-" + body.pair : "edge"), transparent: true, opacity });
   return new LineSegments(geometry.userData.edges, material);
 }
 
