@@ -86,4 +86,17 @@ expect 'the warning goes when the file is back' 'clamped_plate_low.nc, line [0-9
 
 press ctrl+q
 ended 'by Ctrl+Q'
+
+# A stock that moves out of sight when its set-up is read again: the view moves to it.
+printf 'G21 G90 G54\nT1 M6\nM3 S3000\nG0 X0 Y0 Z9.\nG1 Z-2. F300.\nG0 Z20.\nM30\n' >"$work/far.nc"
+printf '[stock]\nbox = [[-10, -10, -10], [60, 10, 0]]\n' >"$work/far.toml"
+top='#D6DEE9'
+open_window "$work/far.nc" --setup "$work/far.toml"
+shows 10-near 'the stock is in the view' has_color 10-near "$top" 10000
+printf '[stock]\nbox = [[990, -10, -10], [1060, 10, 0]]\n' >"$work/far.toml"
+expect 'the set-up is read again' 'far.nc, line'
+shows 11-far 'and in the view after it has moved' has_color 11-far "$top" 10000
+shows 11-far 'which has moved to it' differ 10-near 11-far 300
+press ctrl+q
+ended 'after moving the stock'
 printf 'passed\n'

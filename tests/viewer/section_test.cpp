@@ -212,6 +212,8 @@ TEST(SceneOf, PutsTheGroundBelowTheWorkWithoutATable) {
     model.settings.inch = true;
     EXPECT_TRUE(scene_of(model).ground->inch);
     EXPECT_FALSE(scene_of(ViewModel()).ground);
+    model.settings.shown.ground = false;
+    EXPECT_FALSE(scene_of(model).ground);
 }
 
 TEST(ViewModel, LearnsHowDeepAPairOverlapsFromTheFindings) {

@@ -331,7 +331,8 @@ render::Scene scene_of(const ViewModel& model) {
     }
     scene.measured = marked_points(model);
     add_triads(model, scene);
-    scene.ground = ground_of(model, scene);
+    if (model.settings.shown.ground) scene.ground = ground_of(model, scene);
+    if (!model.settings.shown.zeros) scene.triads.clear();
     reveal_work(model, scene);
     measure_overlap(model, scene);
     return scene;

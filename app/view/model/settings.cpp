@@ -65,6 +65,8 @@ Settings settings_in(const std::string& text) {
     take(table, "show_path", settings.shown.path);
     take(table, "show_witness", settings.shown.witness);
     take(table, "holder_xray", settings.shown.holder_xray);
+    take(table, "show_ground", settings.shown.ground);
+    take(table, "show_zeros", settings.shown.zeros);
     return settings;
 }
 
@@ -78,13 +80,14 @@ std::string text_of(const Settings& s) {
         "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
         "{:.1f}\n"
         "show_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = {}\n"
-        "show_path = {}\nshow_witness = {}\nholder_xray = {}\n",
+        "show_path = {}\nshow_witness = {}\nholder_xray = {}\n"
+        "show_ground = {}\nshow_zeros = {}\n",
         s.theme == render::ColorScheme::light ? "light" : "dark",
         s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
         s.has_own_unit, s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y,
         s.maximised, s.list_width, s.inspector_width, s.device_width, s.timeline_height,
         shown.stock, shown.fixtures, shown.tool, shown.machine, shown.path, shown.witness,
-        shown.holder_xray);
+        shown.holder_xray, shown.ground, shown.zeros);
 }
 
 Settings read_settings(const std::filesystem::path& file) {

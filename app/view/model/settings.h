@@ -23,6 +23,7 @@ constexpr const char* mouse_preset_names[] = {"Middle turns, Shift+middle moves"
 struct VisibleParts {
     bool stock = true, fixtures = true, tool = true, machine = true, path = true, witness = true;
     bool holder_xray = true;
+    bool ground = true, zeros = true; // zeros: the arrows at those of program and machine
 
     bool operator==(const VisibleParts&) const = default;
 };

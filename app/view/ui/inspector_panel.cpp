@@ -218,6 +218,8 @@ void draw_show(Frame& frame) {
     box("Path", shown.path);
     box("Machine", shown.machine);
     box("Witness line", shown.witness);
+    box("Zeros", shown.zeros);
+    box("Ground", shown.ground);
     ImGui::EndTable();
 }
 
