@@ -204,6 +204,35 @@ TEST(SceneOf, TellsIntendedContactFromACrash) {
     EXPECT_FALSE(scene_of(model).witness->is_contact);
 }
 
+TEST(SceneOf, SeesTheWorkThroughAPartOfTheMachineInFrontOfIt) {
+    core::Setup setup;
+    const auto machine_box = [&](const char* name, const Vec3& low, const Vec3& high) {
+        core::Fixture fixture;
+        fixture.name = name;
+        fixture.body = core::convex(core::Aabb{low, high});
+        fixture.is_machine = true;
+        setup.fixtures.push_back(fixture);
+    };
+    machine_box("door", {-200, -120, -100}, {200, -110, 100});
+    machine_box("table", {-200, -100, -30}, {200, 100, -10});
+    ViewModel model = with_stock(plate);
+    auto state = std::make_shared<BlockState>(*model.block_state);
+    state->scene = make_scene_setup(setup);
+    state->standing = core::AxisValues{};
+    model.block_state = state;
+    model.camera.target = plate.center();
+    const auto alphas = [&](render::StandardView view) {
+        model.camera = render::seen_from(model.camera, view);
+        const render::Scene scene = scene_of(model);
+        return std::pair(scene.bodies.at(0).alpha, scene.bodies.at(1).alpha);
+    };
+    EXPECT_EQ(alphas(render::StandardView::top), std::pair(1.0, 1.0));
+    EXPECT_LT(alphas(render::StandardView::front).first, 0.5);
+    EXPECT_LT(alphas(render::StandardView::bottom).second, 0.5);
+    const render::Scene scene = scene_of(model);
+    EXPECT_EQ(scene.ground->scene_from_ground.translation.z, -10.0); // the top of the table
+}
+
 TEST(SceneOf, PutsTheGroundBelowTheWorkWithoutATable) {
     ViewModel model = with_stock(plate);
     const render::Scene scene = scene_of(model);

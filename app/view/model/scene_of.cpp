@@ -268,8 +268,8 @@ void reveal_work(const ViewModel& model, render::Scene& scene) {
     const auto points = middles_of(stock);
     const core::Vec3 eye = render::eye(model.camera);
     for (render::Body& body : scene.bodies)
-        if (body.role == render::BodyRole::machine && body.visible && body.mesh
-            && hides(body, eye, points))
+        if (body.role == render::BodyRole::machine && body.side == render::PairSide::none
+            && body.visible && body.mesh && hides(body, eye, points))
             body.alpha = seen_through;
 }
 
