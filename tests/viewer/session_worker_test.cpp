@@ -74,6 +74,49 @@ private:
     }};
 };
 
+/// The arrows at the zero of the program after the first block of a line.
+std::optional<render::Triad> zero_after(Watcher& watcher, const std::string& line) {
+    const auto block = find_line(watcher.model, line);
+    if (!block) return {};
+    watcher.model.cursor = {*block, 1.0};
+    watcher.worker().show({*block, true});
+    const auto is_there = [&] {
+        const auto& state = watcher.model.block_state;
+        return state && state->block == *block && state->at_end;
+    };
+    return watcher.wait_for(is_there) ? program_triad(watcher.model) : std::nullopt;
+}
+
+TEST(SessionWorker, KnowsWhereTheZeroOfTheProgramIs) {
+    Watcher watcher;
+    watcher.open(clamped_plate());
+    ASSERT_TRUE(watcher.record());
+    const auto triad = zero_after(watcher, "44"); // the stock is given in coordinates of G54
+    ASSERT_TRUE(triad);
+    EXPECT_EQ(triad->name, "G54");
+    EXPECT_LT(glm::length(triad->origin), 1e-9);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(triad->axes[axis][axis], 1.0, 1e-9);
+    const render::Scene scene = scene_of(watcher.model);
+    ASSERT_EQ(scene.triads.size(), 2u);
+    EXPECT_EQ(scene.triads[1].name, "machine zero");
+    EXPECT_LT(glm::distance(scene.triads[1].origin, core::Vec3(470, 300, 592)), 1e-9);
+    ASSERT_TRUE(scene.ground); // the top of the table
+    EXPECT_NEAR(scene.ground->scene_from_ground.translation.z, -620.0 + 592.0, 1e-4);
+}
+
+TEST(SessionWorker, FollowsTheZeroIntoATiltedPlane) {
+    app::CheckJob job;
+    job.program = assets + "programs/tilted_faces.nc";
+    job.setup = assets + "setups/tilted_faces.toml";
+    Watcher watcher;
+    watcher.open(job);
+    ASSERT_TRUE(watcher.record());
+    const auto triad = zero_after(watcher, "84"); // after G68.2 X-40. Y0 Z-20. I270. J90.
+    ASSERT_TRUE(triad);
+    EXPECT_LT(glm::distance(triad->origin, core::Vec3(-40, 0, -20)), 1e-6);
+    EXPECT_LT(glm::distance(triad->axes[2], core::Vec3(-1, 0, 0)), 1e-6); // out of the left face
+}
+
 TEST(SessionWorker, PublishesTheResultOfACheck) {
     Watcher watcher;
     watcher.open(clamped_plate());
