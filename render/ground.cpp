@@ -48,15 +48,17 @@ GridStep step_of_at_least(double least, bool inch) {
     return step;
 }
 
-GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport) {
+GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport,
+                   double scale) {
     const double pixel = pixel_size(camera, viewport, camera.target);
-    const GridStep step = step_of_at_least(least_pixels * pixel, ground.inch);
+    const GridStep step = step_of_at_least(least_pixels * scale * pixel, ground.inch);
     return {step, Vec2(ground.scene_from_ground.inverse() * camera.target),
             reach_in_steps * step.fine};
 }
 
-core::Aabb ground_bounds(const Ground& ground, const Camera& camera, const Viewport& viewport) {
-    const GridView view = grid_view(ground, camera, viewport);
+core::Aabb ground_bounds(const Ground& ground, const Camera& camera, const Viewport& viewport,
+                         double scale) {
+    const GridView view = grid_view(ground, camera, viewport, scale);
     return box_in(ground.scene_from_ground, {Vec3(view.middle - Vec2(view.reach), 0.0),
                                              Vec3(view.middle + Vec2(view.reach), 0.0)});
 }

@@ -27,11 +27,13 @@ struct GridView {
     double fine_reach() const { return 0.5 * reach; }
 };
 
-/// Lines are at least 24 pixels apart where the camera looks.
-GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport);
+/// Lines are at least 24 pixels times `scale` apart where the camera looks.
+GridView grid_view(const Ground& ground, const Camera& camera, const Viewport& viewport,
+                   double scale = 1.0);
 
 /// The box of that part, in the scene.
-core::Aabb ground_bounds(const Ground& ground, const Camera& camera, const Viewport& viewport);
+core::Aabb ground_bounds(const Ground& ground, const Camera& camera, const Viewport& viewport,
+                         double scale = 1.0);
 
 /// An end of a grid line.
 struct GridPoint {

@@ -75,7 +75,7 @@ void GroundPass::draw_shadow(const ViewFrame& frame) const {
 
 void GroundPass::draw_grid(const ViewFrame& frame) {
     const Ground& ground = *frame.scene.ground;
-    const GridView view = grid_view(ground, frame.camera, frame.viewport);
+    const GridView view = grid_view(ground, frame.camera, frame.viewport, frame.options.scale);
     const std::vector<GridPoint> points = grid_lines(view);
     if (points.empty()) return;
     glBindVertexArray(lines_.id());

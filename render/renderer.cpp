@@ -127,7 +127,8 @@ constexpr double head_length = 2.6; // of the cone of an arrow, per radius
 
 /// The box of everything that the near and far planes must enclose, marks of constant size
 /// included.
-core::Aabb content_of(const Scene& scene, const Camera& camera, const Viewport& viewport) {
+core::Aabb content_of(const Scene& scene, const Camera& camera, const Viewport& viewport,
+                      double scale) {
     constexpr double mark_pixels = 120.0;
     core::Aabb box = bounds(scene);
     const auto add_mark = [&](const Vec3& at) {
@@ -136,7 +137,7 @@ core::Aabb content_of(const Scene& scene, const Camera& camera, const Viewport& 
     };
     for (const Triad& triad : scene.triads) add_mark(triad.origin);
     if (scene.witness) add_mark(scene.witness->a);
-    if (scene.ground) box.extend(ground_bounds(*scene.ground, camera, viewport));
+    if (scene.ground) box.extend(ground_bounds(*scene.ground, camera, viewport, scale));
     return box;
 }
 
@@ -248,12 +249,13 @@ core::Result<Renderer> Renderer::make() {
 void Renderer::draw(const Scene& scene, const Camera& camera, const DrawOptions& options,
                     Canvas& canvas) {
     const Viewport viewport = canvas.size();
-    ViewFrame frame{scene,
-                    camera,
-                    options,
-                    viewport,
-                    view_from_scene(camera),
-                    clip_from_view(camera, viewport, content_of(scene, camera, viewport))};
+    ViewFrame frame{
+        scene,
+        camera,
+        options,
+        viewport,
+        view_from_scene(camera),
+        clip_from_view(camera, viewport, content_of(scene, camera, viewport, options.scale))};
     set_state();
     if (options.hollows) frame.hollows = parts_->hollows.draw(frame, parts_->bodies);
     canvas.begin();

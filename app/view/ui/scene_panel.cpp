@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
+#include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include "app/setup/stated_setup.h"
@@ -23,6 +25,10 @@ namespace app::viewer {
 namespace {
 
 using render::Role;
+
+/// A picture that takes longer is drawn coarsely while the view turns: the panels need the rest of
+/// the 33 ms of a frame.
+constexpr std::chrono::milliseconds slow_picture(20);
 
 /// The effect of a mouse drag.
 enum class Drag : uint8_t { none, orbit, pan };
@@ -214,7 +220,7 @@ struct ScenePanel::State {
     void draw(Frame& frame, const Area& area);
 
     void place_camera(ViewModel& model, const render::Viewport& size);
-    void render_scene(Frame& frame, const render::Viewport& size);
+    void render_scene(Frame& frame, const render::Viewport& view);
     void take_mouse(Frame& frame, const Area& area, const render::Viewport& size);
     void take_drag(ViewModel& model, const render::Viewport& size);
     void take_click(Frame& frame, const Area& area, const render::Viewport& size);
@@ -224,6 +230,7 @@ struct ScenePanel::State {
     void draw_triads(Frame& frame, const Area& area, const render::Viewport& size);
     void draw_grid_note(Frame& frame, const Area& area, const render::Viewport& size);
     void find_again(ViewModel& model, const render::Viewport& size);
+    bool draws_coarsely();
     void draw_axes(Frame& frame, const Area& area);
     bool draw_gizmo(Frame& frame, const Area& area, const render::Viewport& size);
     void find_picks(Frame& frame, const Area& area, const render::Viewport& size);
@@ -240,6 +247,7 @@ struct ScenePanel::State {
     Gizmo gizmo_;
     render::Vec2 last_pick_ = render::Vec2(-1.0);  // position of the mouse
     float foot_ = 0.0F;                            // height of the bar at the lower edge, pixels
+    bool is_turning_ = false, is_slow_ = false;    // see draws_coarsely
     render::Vec2 last_hover_ = render::Vec2(-1.0); // of the mouse
     std::optional<size_t> hovered_;                // block of the path under the mouse
 };
@@ -267,7 +275,18 @@ void ScenePanel::State::find_again(ViewModel& model, const render::Viewport& siz
         model.camera = render::framing(model.camera, size, box);
 }
 
-void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& size) {
+/// Whether the view is being turned or moved, and its first picture took too long: the others then
+/// have half the size, until the button is released.
+bool ScenePanel::State::draws_coarsely() {
+    is_turning_ = is_turning_ && ImGui::IsAnyMouseDown();
+    if (!is_turning_) is_slow_ = false;
+    return is_turning_ && is_slow_;
+}
+
+void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& view) {
+    const bool is_coarse = draws_coarsely();
+    const render::Viewport size =
+        is_coarse ? render::Viewport{(view.width + 1) / 2, (view.height + 1) / 2} : view;
     const SceneKey key = key_of(frame.model, size);
     const bool fits = canvas_ && canvas_->size().width == size.width
                       && canvas_->size().height == size.height && canvas_->samples() == samples_;
@@ -283,16 +302,23 @@ void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& size)
     scene_ = scene_of(frame.model);
     render::DrawOptions options;
     options.theme = frame.palette.theme;
-    options.scale = frame.fonts.scale;
+    options.scale = frame.fonts.scale * (is_coarse ? 0.5 : 1.0);
+    options.edges = !is_coarse;
+    const auto begin = std::chrono::steady_clock::now();
     renderer_.draw(scene_, frame.model.camera, options, *canvas_);
     drawn_ = key;
+    if (!is_turning_ || is_coarse) return;
+    glFinish(); // with software OpenGL, the time is spent here
+    is_slow_ = std::chrono::steady_clock::now() - begin > slow_picture;
 }
 
 void ScenePanel::State::take_drag(ViewModel& model, const render::Viewport& size) {
     const ImGuiIO& io = ImGui::GetIO();
     const render::Vec2 by(io.MouseDelta.x, io.MouseDelta.y);
     if (by == render::Vec2(0.0)) return;
-    switch (drag_of(model.settings)) {
+    const Drag drag = drag_of(model.settings);
+    is_turning_ = is_turning_ || drag != Drag::none;
+    switch (drag) {
     case Drag::none:
         return;
     case Drag::orbit:
@@ -556,7 +582,8 @@ void ScenePanel::State::draw_triads(Frame& frame, const Area& area, const render
 void ScenePanel::State::draw_grid_note(Frame& frame, const Area& area,
                                        const render::Viewport& size) {
     if (!scene_.ground || area.width < frame.px(440)) return;
-    const render::GridStep step = render::grid_view(*scene_.ground, frame.model.camera, size).step;
+    const render::GridStep step =
+        render::grid_view(*scene_.ground, frame.model.camera, size, frame.fonts.scale).step;
     const double unit = scene_.ground->inch ? core::mm_per_inch : 1.0;
     const std::string words = fmt::format("Grid {:g} / {:g} {}", step.fine / unit,
                                           step.coarse / unit, length_unit(frame.model));
