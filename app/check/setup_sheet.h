@@ -54,6 +54,7 @@ struct SetupSheet {
     SetupSource stock_source = SetupSource::stated;
     std::string stock_why; // reason for assuming it, a sentence
     std::vector<SheetTool> tools;
+    std::vector<core::ToolDescription> library; // tools of the tool library, by number
     std::vector<SheetOffset> offsets;
     std::optional<double> allowance; // the general one; empty: the defaults
     /// Poses of the named frames relative to the stock: "machine", "stock", work offsets, fixtures.

@@ -118,6 +118,14 @@ tl::unexpected<core::Error> no_fixture(const std::string& name) {
                       fmt::format("there is no fixture \"{}\" in the set-up", name));
 }
 
+/// A value as TOML.
+std::string value_text(const toml::node& value) {
+    if (const auto text = value.value<std::string>()) return toml_text(*text);
+    std::ostringstream text;
+    value.visit([&](const auto& v) { text << v; });
+    return text.str();
+}
+
 /// The lines of a table without its header, from a text that begins with it.
 std::string body_of(const std::string& table) {
     const size_t header = table.find("]");
@@ -305,10 +313,8 @@ Result<std::string> with_tool(const std::string& text, const core::ToolDescripti
         if (!wanted.contains(key)) changes.erase(*path / std::string(key.str()));
     for (const auto& [key, value] : wanted) {
         const toml::node* old = before->get(key);
-        std::ostringstream now, then;
-        value.visit([&](const auto& v) { now << v; });
-        if (old) old->visit([&](const auto& v) { then << v; });
-        if (now.str() != then.str()) changes.set(*path / std::string(key.str()), now.str());
+        const std::string now = value_text(value);
+        if (!old || value_text(*old) != now) changes.set(*path / std::string(key.str()), now);
     }
     return std::move(changes).text();
 }

@@ -87,6 +87,7 @@ StatedSetup stated_in(const std::string& text) {
     if (const toml::table* offsets = (*root)["offsets"].as_table())
         for (const auto& [name, value] : *offsets) stated.offsets.emplace_back(name.str());
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());
+    stated.tool_library = (*root)["tool_library"].value_or(std::string());
     stated.has_no_fixtures = (*root)["fixtures"].value<std::string>() == "none";
     return stated;
 }

@@ -35,7 +35,7 @@ struct StatedSetup {
     std::vector<StatedBody> fixtures;
     std::vector<core::ToolNumber> tools;
     std::vector<std::string> offsets; // names as written
-    std::string machine_file;
+    std::string machine_file, tool_library;
     bool has_no_fixtures = false; // fixtures = "none"
 
     const StatedBody* fixture(const std::string& name) const;

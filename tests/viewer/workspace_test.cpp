@@ -118,6 +118,42 @@ TEST(Workspace, NamesMeshesRelativeToItsFolder) {
     EXPECT_THAT(text_of_setup(model), HasSubstr("name = \"vise\"\nmesh = \"meshes/vise.stl\""));
 }
 
+TEST(Workspace, AddsFilesByTheirKind) {
+    const test_support::ScopedFolder folder;
+    ViewModel model = opened_model("", folder / "p.toml");
+    EXPECT_TRUE(add_file(model, folder / "a/VISE.STL"));
+    EXPECT_TRUE(add_file(model, folder / "shop.tools"));
+    EXPECT_TRUE(add_file(model, folder.write("mill.toml", "[[axis]]\nname = \"X\"\n")));
+    EXPECT_FALSE(add_file(model, folder.write("other.toml", "[stock]\n"))) << "a set-up";
+    EXPECT_FALSE(add_file(model, folder / "p.nc"));
+    add_part(model, folder / "part.stl");
+    EXPECT_EQ(text_of_setup(model),
+              "tool_library = \"shop.tools\"\n\n[[fixture]]\nname = \"VISE\"\nmesh = "
+              "\"a/VISE.STL\"\nat = [0, 0, 0]\nframe = \"G54\"\n\n[machine]\nfile = "
+              "\"mill.toml\"\n\n[part]\nmesh = \"part.stl\"\nframe = \"G54\"\n");
+    EXPECT_EQ(model.workspace.selected.kind, Kind::part);
+    use_tool_library(model, "");
+    use_machine(model, "");
+    EXPECT_EQ(text_of_setup(model).find("shop"), std::string::npos);
+    EXPECT_EQ(text_of_setup(model).find("mill"), std::string::npos);
+}
+
+TEST(Workspace, ExchangesAToolForAnother) {
+    ViewModel model =
+        opened_model("[[tool]]\nnumber = 3 # in pocket 7\nshape = \"flat\"\ndiameter = 6\n"
+                     "flute_length = 18\ncorner_radius = 1\n");
+    core::ToolDescription tool;
+    tool.number = core::ToolNumber{40};
+    tool.shape = core::ToolShape::drill;
+    tool.diameter = 8.5;
+    tool.flute_length = 60.0;
+    tool.stick_out = 75.0;
+    take_library_tool(model, core::ToolNumber{3}, tool);
+    EXPECT_EQ(text_of_setup(model),
+              "[[tool]]\nnumber = 3 # in pocket 7\nshape = \"drill\"\ndiameter = 8.5\n"
+              "flute_length = 60\nstick_out = 75\n");
+}
+
 TEST(Workspace, MarksWhatAnErrorIsAbout) {
     ViewModel model =
         opened_model("mesh_size = 1\n[stock]\nbox = 3\n\n[[fixture]]\nname = \"a\"\n"

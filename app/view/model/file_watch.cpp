@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "app/setup/toml_file.h"
 #include "core/base/text.h"
 
 namespace app::viewer {
@@ -36,6 +37,17 @@ bool is_mesh_file(const std::string& path) {
 }
 
 bool is_setup_file(const std::string& path) { return has_ending(path, {".toml"}); }
+
+bool is_tool_library(const std::string& path) {
+    return has_ending(path, {".tools", ".json", ".hsmlib", ".fctl", ".fctb", ".tbl"});
+}
+
+bool is_machine_file(const std::string& path) {
+    if (has_ending(path, {".machine", ".mch"})) return true;
+    if (!is_setup_file(path)) return false;
+    const auto root = read_toml(path);
+    return root && root->contains("axis");
+}
 
 std::vector<std::string> files_of_setup(const std::string& setup) {
     std::vector<std::string> files{setup};

@@ -10,6 +10,11 @@ namespace app::viewer {
 bool is_mesh_file(const std::string& path);
 bool is_setup_file(const std::string& path);
 
+/// Whether a file is a tool library, by its extension, or a machine: by its extension, or a TOML
+/// file that describes axes.
+bool is_tool_library(const std::string& path);
+bool is_machine_file(const std::string& path);
+
 /// The set-up file and the files that it names: meshes, and the machine file with its meshes. Works
 /// even if the set-up has errors.
 std::vector<std::string> files_of_setup(const std::string& setup);

@@ -10,6 +10,7 @@
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
+#include "app/view/model/file_watch.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
 
@@ -51,13 +52,12 @@ SetupRow heading_row(std::string title) { return {.item = {}, .title = std::move
 
 void add_machine_rows(const Workspace& workspace, const SetupSheet& sheet,
                       std::vector<SetupRow>& rows) {
-    SetupRow row{item(Kind::machine), "Machine", "not described", SetupSource::usual};
+    const std::string& file = workspace.stated->machine_file;
+    SetupRow row{item(Kind::machine), "Machine", "not described",
+                 sheet.has_machine ? SetupSource::stated : SetupSource::usual};
     row.is_missing = !sheet.has_machine;
-    if (sheet.has_machine) {
-        row.detail =
-            std::filesystem::path(workspace.stated->machine_file).filename().generic_string();
-        row.source = SetupSource::stated;
-    }
+    if (sheet.has_machine) row.detail = "in the set-up";
+    if (!file.empty()) row.detail = std::filesystem::path(file).filename().generic_string();
     rows.push_back(std::move(row));
 }
 
@@ -287,6 +287,56 @@ void add_mesh(ViewModel& model, const std::string& file) {
     add_fixture(model, name.empty() ? "mesh" : name,
                 fmt::format("mesh = {}\nat = [0, 0, 0]\nframe = {}\n", toml_text(path),
                             toml_text(sheet ? sheet->frame : "G54")));
+}
+
+void add_part(ViewModel& model, const std::string& file) {
+    const SetupSheet* sheet = sheet_of(model);
+    const std::string path = path_in_setup(model, file);
+    const bool is_new = !model.workspace.stated->part;
+    if (edit_setup(model, "Set the part",
+                   [&](const std::string& text) -> core::Result<std::string> {
+                       FEELER_TRY(const std::string with, with_mesh(text, "part", path));
+                       return is_new ? toml_with_value(with, {"part", "frame"},
+                                                       toml_text(sheet ? sheet->frame : "G54"))
+                                     : core::Result<std::string>(with);
+                   }))
+        model.workspace.selected = item(Kind::part);
+}
+
+void use_tool_library(ViewModel& model, const std::string& file) {
+    const std::string path = path_in_setup(model, file);
+    edit_setup(model, "Open a tool library", [&](const std::string& text) {
+        return file.empty() ? toml_without(text, "tool_library")
+                            : toml_with_value(text, "tool_library", toml_text(path));
+    });
+}
+
+void use_machine(ViewModel& model, const std::string& file) {
+    const std::string path = path_in_setup(model, file);
+    if (edit_setup(model, "Change the machine", [&](const std::string& text) {
+            return file.empty() ? toml_without(text, {"machine", "file"})
+                                : toml_with_value(text, {"machine", "file"}, toml_text(path));
+        }))
+        model.workspace.selected = item(Kind::machine);
+}
+
+void take_library_tool(ViewModel& model, core::ToolNumber number, core::ToolDescription tool) {
+    tool.number = number;
+    edit_setup(model, fmt::format("Exchange T{}", core::value_of(number)),
+               [&](const std::string& text) { return with_tool(text, tool); });
+}
+
+bool add_file(ViewModel& model, const std::string& file) {
+    if (!model.workspace.stated) return false;
+    if (is_mesh_file(file))
+        add_mesh(model, file);
+    else if (is_tool_library(file))
+        use_tool_library(model, file);
+    else if (is_machine_file(file))
+        use_machine(model, file);
+    else
+        return false;
+    return true;
 }
 
 void copy_selected(ViewModel& model) {

@@ -15,6 +15,10 @@ enum class SetupSource : uint8_t;
 struct StatedSetup;
 } // namespace app
 
+namespace core {
+struct ToolDescription;
+}
+
 namespace app::viewer {
 
 struct ViewModel;
@@ -120,6 +124,16 @@ bool can_state(const ViewModel& model, const SetupItem& item);
 /// and selects it.
 void add_box(ViewModel& model);
 void add_mesh(ViewModel& model, const std::string& file);
+/// Compares the result with the mesh in a file.
+void add_part(ViewModel& model, const std::string& file);
+/// Takes tools from a library, or the machine from a file; without a file: no longer.
+void use_tool_library(ViewModel& model, const std::string& file);
+void use_machine(ViewModel& model, const std::string& file);
+/// Takes another tool for a number, such as one of the library.
+void take_library_tool(ViewModel& model, core::ToolNumber number, core::ToolDescription tool);
+/// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it
+/// is none of these.
+bool add_file(ViewModel& model, const std::string& file);
 /// Copies, removes or renames the selected thing, if that is possible.
 void copy_selected(ViewModel& model);
 void delete_selected(ViewModel& model);

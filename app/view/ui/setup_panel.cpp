@@ -104,6 +104,22 @@ const SheetTool* tool_of(const SetupSheet& sheet, core::ToolNumber number) {
     return found == sheet.tools.end() ? nullptr : &*found;
 }
 
+/// A box with another size. What the zero is at stays: a side, or the middle; else the lower side.
+core::Aabb resized(const core::Aabb& box, const core::Vec3& size) {
+    constexpr double same = 1e-9; // mm
+    core::Aabb other;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box.min[axis], high = box.max[axis];
+        const bool is_middle = std::abs(low + high) < same;
+        const double from = std::abs(high) < same ? -size[axis]
+                            : is_middle           ? -0.5 * size[axis]
+                                                  : low;
+        other.min[axis] = from;
+        other.max[axis] = from + size[axis];
+    }
+    return other;
+}
+
 /// A box or cylinder (kind 0 or 1) of the same size as a stock.
 core::Solid reshaped_stock(const core::Solid& stock, int kind) {
     const core::Aabb box = core::bounds(stock);
@@ -142,6 +158,7 @@ private:
     void draw_tool(Frame& frame, const SheetTool& shown);
     void draw_tool_sizes(Frame& frame, const SheetTool& shown);
     void draw_holder(Frame& frame, const SheetTool& shown);
+    void draw_library(Frame& frame, core::ToolNumber number);
     void draw_allowance(Frame& frame);
 
     /// A field for a number. Its new value when the field is left after a change.
@@ -164,7 +181,7 @@ private:
     std::optional<Typed> typed_;
     SetupItem focused_;       // of the tree, by the keyboard
     bool wants_name_ = false; // the name of the fixture gets the keyboard
-    std::string mesh_file_;
+    std::string mesh_file_, part_file_, library_file_;
     // of the lists of faces
     std::string listed_body_, other_body_;
     size_t own_face_ = 0, other_face_ = 0;
@@ -396,6 +413,22 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
             add_mesh(model, std::exchange(mesh_file_, {}));
             ImGui::CloseCurrentPopup();
         }
+        ImGui::SetNextItemWidth(frame.px(260));
+        const bool is_part =
+            ImGui::InputTextWithHint("##part", "Part: mesh file of the finished part", &part_file_,
+                                     ImGuiInputTextFlags_EnterReturnsTrue);
+        if (is_part && !part_file_.empty()) {
+            add_part(model, std::exchange(part_file_, {}));
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::SetNextItemWidth(frame.px(260));
+        const bool is_library =
+            ImGui::InputTextWithHint("##library", "Tool library (.tools, .json, .fctl, .tbl)",
+                                     &library_file_, ImGuiInputTextFlags_EnterReturnsTrue);
+        if (is_library && !library_file_.empty()) {
+            use_tool_library(model, std::exchange(library_file_, {}));
+            ImGui::CloseCurrentPopup();
+        }
         if (model.workspace.stated->fixtures.empty() && ImGui::MenuItem("There are no fixtures"))
             edit_setup(model, "State that there are no fixtures", [](const std::string& t) {
                 return toml_with_value(t, "fixtures", "\"none\"");
@@ -445,13 +478,9 @@ void SetupPanel::State::draw_machine(Frame& frame) {
     const StatedSetup& stated = *model.workspace.stated;
     draw_item_head(frame, "Machine", false, false);
     field_name(frame, "File");
-    const auto file = words(frame, "##file", stated.machine_file, "MACHINE.toml or .ini", 200);
-    if (file)
-        edit_setup(model, "Change the machine", [&](const std::string& t) {
-            return file->empty() ? toml_without(t, {"machine", "file"})
-                                 : toml_with_value(t, {"machine", "file"},
-                                                   toml_text(path_in_setup(model, *file)));
-        });
+    const auto file =
+        words(frame, "##file", stated.machine_file, "MACHINE.toml, .machine or .mch", 200);
+    if (file) use_machine(model, *file);
     wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  model.program->sheet->has_machine
                      ? "Its axes, limits and bodies are in that file."
@@ -502,7 +531,7 @@ void SetupPanel::State::draw_stock(Frame& frame) {
     if (auto* box = std::get_if<core::SolidBox>(&stock.shape); box && !is_mesh) {
         field_name(frame, "Size X Y Z");
         if (const auto size = vector(frame, "size", box->box.size())) {
-            box->box.max = box->box.min + *size;
+            box->box = resized(box->box, *size);
             restate(stock);
         }
         field_name(frame, "Lower corner");
@@ -797,6 +826,25 @@ void SetupPanel::State::draw_holder(Frame& frame, const SheetTool& shown) {
     source_mark(frame, shown.source_of("holder"));
 }
 
+/// The tools of the library, to exchange a tool for one of them.
+void SetupPanel::State::draw_library(Frame& frame, core::ToolNumber number) {
+    ViewModel& model = frame.model;
+    const SetupSheet& sheet = *model.program->sheet;
+    if (sheet.library.empty()) return;
+    field_name(frame, "Exchange for");
+    ImGui::SetNextItemWidth(frame.px(190));
+    if (!ImGui::BeginCombo("##library", "a tool of the library")) return;
+    for (const core::ToolDescription& tool : sheet.library) {
+        ImGui::PushID(core::value_of(tool.number));
+        const std::string label =
+            fmt::format("{}  {} {}  {}", core::value_of(tool.number), core::name_of(tool.shape),
+                        length_text(model, tool.diameter), tool.name);
+        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, tool);
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+}
+
 void SetupPanel::State::draw_tool_sizes(Frame& frame, const SheetTool& shown) {
     ViewModel& model = frame.model;
     const core::ToolNumber number = shown.tool.number;
@@ -852,6 +900,7 @@ void SetupPanel::State::draw_tool(Frame& frame, const SheetTool& shown) {
         source_mark(frame, shown.source_of("shape"));
         draw_tool_sizes(frame, shown);
         draw_holder(frame, shown);
+        draw_library(frame, number);
     }
     if (!shown.why.empty())
         wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), "Assumed: " + shown.why);

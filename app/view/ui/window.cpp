@@ -242,7 +242,7 @@ void Window::open(const CheckJob& check) {
 void Window::drop(const std::vector<std::string>& paths) {
     damage();
     const bool opens = std::any_of(paths.begin(), paths.end(),
-                                   [](const std::string& path) { return !is_mesh_file(path); });
+                                   [](const std::string& path) { return !is_part_of_setup(path); });
     Workspace& workspace = model.workspace;
     if (opens && workspace.document.is_modified() && !workspace.drops_edits) {
         workspace.leaving = Leaving::to_open;

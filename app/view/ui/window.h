@@ -40,6 +40,9 @@ struct WindowJob {
 /// Errors: unsupported, as a single line, without a display or OpenGL 3.3.
 core::Result<void> run_window(const WindowJob& job);
 
+/// Whether a file is added to the set-up when it is dropped: a mesh, a tool library, a machine.
+bool is_part_of_setup(const std::string& path);
+
 /// The job after files were dropped on the window: a program, a set-up, or both. A new program
 /// discards the set-up and the breakpoints of the old one. Empty if there is nothing to open; then
 /// a message says why.

@@ -6,18 +6,20 @@
 
 namespace app::viewer {
 
+bool is_part_of_setup(const std::string& path) {
+    return is_mesh_file(path) || is_tool_library(path) || is_machine_file(path);
+}
+
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
                                      ViewModel& model, double now) {
     const std::string before = check.program;
     bool has_program = false, has_setup = false;
     for (const std::string& path : paths) {
-        if (is_mesh_file(path)) {
-            if (model.program) {
-                add_mesh(model, path);
+        if (is_part_of_setup(path)) {
+            if (model.program && add_file(model, path))
                 show_setup(model, true);
-            } else {
-                say(model, "Open a program first: then a mesh is added to its set-up", now);
-            }
+            else
+                say(model, "Open a program first: then the file is added to its set-up", now);
         } else if (is_setup_file(path)) {
             check.setup = path;
             has_setup = true;
