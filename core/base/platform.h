@@ -36,11 +36,17 @@ unsigned process_id();
 /// The value of an environment variable; empty if it is unset or empty.
 std::string environment_variable(const char* name);
 
-/// Folders of this user: of settings, of what a program remembers, and of pictures. Empty if they
-/// are unknown; they may not exist yet.
+/// Folders of this user: of settings, of what a program remembers, of pictures, of documents, and
+/// the one that holds them. Empty if they are unknown; they may not exist yet.
 std::filesystem::path settings_folder();
 std::filesystem::path state_folder();
 std::filesystem::path pictures_folder();
+std::filesystem::path documents_folder();
+std::filesystem::path home_folder();
+
+/// The roots of drives that the user may have added: mounted below /media, /run/media or /mnt, or
+/// the drive letters. Their contents are not touched.
+std::vector<std::filesystem::path> drive_folders();
 
 /// Size of the main memory in bytes; 0 if it is unknown.
 double physical_memory();

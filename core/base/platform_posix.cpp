@@ -3,7 +3,9 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <span>
+#include <sstream>
 #include <utility>
 
 #include <elf.h>
@@ -94,6 +96,46 @@ std::filesystem::path user_folder(const char* variable, const char* below_home) 
 std::filesystem::path settings_folder() { return user_folder("XDG_CONFIG_HOME", ".config"); }
 std::filesystem::path state_folder() { return user_folder("XDG_STATE_HOME", ".local/state"); }
 std::filesystem::path pictures_folder() { return user_folder("XDG_PICTURES_DIR", "Pictures"); }
+std::filesystem::path documents_folder() { return user_folder("XDG_DOCUMENTS_DIR", "Documents"); }
+std::filesystem::path home_folder() { return environment_variable("HOME"); }
+
+namespace {
+
+/// A path as /proc writes it: blanks and the like are three octal digits after a backslash.
+std::string without_escapes(const std::string& text) {
+    const auto is_digit = [&](size_t at) {
+        return at < text.size() && text[at] >= '0' && text[at] <= '7';
+    };
+    std::string plain;
+    for (size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '\\' || !is_digit(i + 1) || !is_digit(i + 2) || !is_digit(i + 3)) {
+            plain += text[i];
+            continue;
+        }
+        const int code = 64 * (text[i + 1] - '0') + 8 * (text[i + 2] - '0') + (text[i + 3] - '0');
+        plain += static_cast<char>(code);
+        i += 3;
+    }
+    return plain;
+}
+
+} // namespace
+
+std::vector<std::filesystem::path> drive_folders() {
+    std::vector<std::filesystem::path> found;
+    std::ifstream mounts("/proc/self/mounts");
+    for (std::string line; std::getline(mounts, line);) {
+        std::istringstream words(line);
+        std::string device, target;
+        words >> device >> target;
+        target = without_escapes(target);
+        for (const char* below : {"/media/", "/run/media/", "/mnt/"})
+            if (target.starts_with(below)) found.emplace_back(target);
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
 
 double physical_memory() {
     const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGE_SIZE);

@@ -223,6 +223,17 @@ std::filesystem::path known_folder(const KNOWNFOLDERID& which) {
 std::filesystem::path settings_folder() { return known_folder(FOLDERID_RoamingAppData); }
 std::filesystem::path state_folder() { return known_folder(FOLDERID_LocalAppData); }
 std::filesystem::path pictures_folder() { return known_folder(FOLDERID_Pictures); }
+std::filesystem::path documents_folder() { return known_folder(FOLDERID_Documents); }
+std::filesystem::path home_folder() { return known_folder(FOLDERID_Profile); }
+
+std::vector<std::filesystem::path> drive_folders() {
+    std::vector<std::filesystem::path> found;
+    const DWORD drives = ::GetLogicalDrives();
+    for (int i = 0; i < 26; ++i)
+        if (drives & (DWORD{1} << i))
+            found.emplace_back(std::string(1, static_cast<char>('A' + i)) + ":/");
+    return found;
+}
 
 double physical_memory() {
     MEMORYSTATUSEX status{};
