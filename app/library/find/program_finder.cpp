@@ -223,11 +223,17 @@ std::optional<std::string> why_no_program_text(std::string_view text) {
     return "most of its lines are not NC blocks";
 }
 
-core::Result<std::optional<std::string>> why_no_program(const std::string& path) {
+std::string foreign_kind(const std::string& path) {
     const std::string ending = ending_of(path);
     for (const Kind& kind : foreign_kinds)
         if (std::find(kind.endings.begin(), kind.endings.end(), ending) != kind.endings.end())
-            return std::optional<std::string>(kind.what);
+            return kind.what;
+    return {};
+}
+
+core::Result<std::optional<std::string>> why_no_program(const std::string& path) {
+    const std::string ending = ending_of(path);
+    if (const std::string kind = foreign_kind(path); !kind.empty()) return std::optional(kind);
     if (core::platform::is_device(path)) return std::optional<std::string>("is a device");
     errno = 0;
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(

@@ -40,6 +40,9 @@ FoundPrograms find_programs(const std::vector<std::string>& words,
 /// Cost:   reads at most the first 64 KB; nothing if the extension decides.
 core::Result<std::optional<std::string>> why_no_program(const std::string& path);
 
+/// What a file is whose extension NC programs never have, such as "is a mesh"; empty otherwise.
+std::string foreign_kind(const std::string& path);
+
 /// As why_no_program, for the beginning of a text.
 std::optional<std::string> why_no_program_text(std::string_view text);
 
