@@ -2,10 +2,14 @@
 
 #include <filesystem>
 #include <set>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "app/setup/setup_text.h"
+#include "app/setup/toml_edit.h"
 #include "app/setup/toml_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/platform.h"
@@ -76,15 +80,35 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Visits all values with the key nearest above them.
-void visit(const toml::node& node, const std::string& key,
-           const std::function<void(const std::string&, const toml::node&)>& see) {
-    see(key, node);
+/// A path of a file in a set-up that is relative to the folder of the set-up.
+struct RelativeFile {
+    TomlPath place;
+    std::string path;
+};
+
+/// Collects the relative files below a node. `key`: the one nearest above it.
+void collect_files(const toml::node& node, const TomlPath& place, const std::string& key,
+                   std::vector<RelativeFile>& found) {
+    static const std::set<std::string> keys = {
+        "mesh",       "model",       "file",         "ini",         "parameters",
+        "tool_table", "search_path", "tool_library", "holder_file", "holder_mesh"};
+    const auto path = node.value<std::string>();
+    if (path && keys.contains(key) && fs::path(*path).is_relative())
+        found.push_back({place, *path});
     if (const toml::table* table = node.as_table())
-        for (const auto& [name, value] : *table)
-            visit(value, std::string(std::string_view(name)), see);
+        for (const auto& [name, value] : *table) {
+            const std::string below(std::string_view{name});
+            collect_files(value, place / below, below, found);
+        }
     if (const toml::array* list = node.as_array())
-        for (const toml::node& value : *list) visit(value, key, see);
+        for (size_t i = 0; i < list->size(); ++i)
+            collect_files(*list->get(i), place / i, key, found);
+}
+
+std::vector<RelativeFile> relative_files(const std::string& text) {
+    std::vector<RelativeFile> found;
+    if (const auto root = parsed_toml(text)) collect_files(*root, {}, "", found);
+    return found;
 }
 
 core::Result<void> check_target(const SetupDocument& document, const std::string& path,
@@ -112,18 +136,15 @@ core::Result<void> check_target(const SetupDocument& document, const std::string
 
 } // namespace
 
-bool names_relative_files(const std::string& text) {
-    const auto root = parsed_toml(text);
-    if (!root) return false;
-    static const std::set<std::string> keys = {
-        "mesh",       "model",       "file",         "ini",         "parameters",
-        "tool_table", "search_path", "tool_library", "holder_file", "holder_mesh"};
-    bool any = false;
-    visit(*root, "", [&](const std::string& key, const toml::node& node) {
-        const auto path = node.value<std::string>();
-        any = any || (keys.contains(key) && path && fs::path(*path).is_relative());
-    });
-    return any;
+bool names_relative_files(const std::string& text) { return !relative_files(text).empty(); }
+
+core::Result<std::string> with_whole_paths(const std::string& text, const std::string& folder) {
+    std::string whole = text;
+    for (const RelativeFile& file : relative_files(text)) {
+        const fs::path path = (fs::path(folder) / file.path).lexically_normal();
+        FEELER_TRY(whole, toml_with_value(whole, file.place, toml_text(path.generic_string())));
+    }
+    return whole;
 }
 
 core::Result<void> save_setup(SetupDocument& document, const std::string& path, Replacing replacing,

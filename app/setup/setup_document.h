@@ -82,4 +82,11 @@ core::Result<void> save_setup(SetupDocument& document, const std::string& path, 
 /// Whether a set-up names files by paths relative to its folder.
 bool names_relative_files(const std::string& text);
 
+/// The text of a set-up with the relative paths of files made whole, so that it can be saved in
+/// another folder.
+///
+/// `folder`: of the set-up, absolute.
+/// Errors: those of toml_with_value.
+core::Result<std::string> with_whole_paths(const std::string& text, const std::string& folder);
+
 } // namespace app
