@@ -13,12 +13,13 @@ program=$work/programs/clamped_plate_low.nc setup=$work/setups/clamped_plate.tom
 mesh=$(find "$work/meshes" -name "$(grep -o '[a-z_]*\.stl' "$setup" | head -1)")
 for file in "$program" "$setup" "$mesh"; do cp "$file" "$file.good"; done
 
-# broken FILE WHAT PICTURE: the file was just damaged. Waits for the explanation and restores it.
+# broken FILE WHAT PICTURE: the file was just damaged. The last good state stays, at the same block,
+# with a banner; restores the file.
 broken() {
-    expect "$2 is explained" 'could not be opened'
-    shows "$3" "$2 is shown in the colour of violations" has_color "$3" '#FF5A36' 20
+    expect "$2 leaves the last good state" "clamped_plate_low.nc, line $good_line.*, last good state - feeler"
+    shows "$3" "$2 is explained by a banner" has_color "$3" '#FF5A36' 5000
     cp "$1.good" "$1"
-    expect "$2 is opened again when it is corrected" 'clamped_plate_low.nc, line'
+    expect "$2 is read again when it is corrected" "line $good_line "'\([^,]*(, collision)?\) - feeler'
 }
 
 open_window "$program" --setup "$setup"
@@ -62,6 +63,11 @@ expect 'the original is reloaded' 'block [0-9]+ of 45'
 printf 'G21 G90\nG0 X1.\nG1 [[[\n' >"$program"
 expect 'the title says that the program stops early' 'of 1\), stopped at line 3'
 shows 03-stopped 'a large warning shows where the program stops' has_color 03-stopped '#FF5A36' 5000
+cp "$program.good" "$program"
+expect 'it is read again when it is corrected' 'of 45\) - feeler'
+press n
+expect 'N goes to the first problem' 'line 44 \(block 38 of 45, collision\)'
+good_line=44
 printf 'GARBAGE[[[' >"$program"
 broken "$program" 'a corrupted program' 03-program
 head -c 4000 /dev/urandom >"$program"

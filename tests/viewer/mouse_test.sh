@@ -128,6 +128,7 @@ click 1000 500
 [[ $(title) =~ 'block 16 of' ]] || die 'a click misses what the section has removed'
 xdotool mousemove 720 30
 # Its bar at the lower edge of the view: keys, slider, axis, side, a picked face.
+sleep 6 # clock: the message of the click is shown for 5 s
 still 08-section
 press period
 shows 08-moved '. moves the section' differ 08-section 08-moved 300

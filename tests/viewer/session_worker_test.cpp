@@ -1,4 +1,5 @@
 #include <chrono>
+#include <fstream>
 #include <future>
 
 #include <gtest/gtest.h>
@@ -379,6 +380,35 @@ TEST(SessionWorker, KeepsTheLastGoodStateIfTheSetupCannotBeRead) {
     watcher.open(job);
     ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.opening == 2; }));
     EXPECT_FALSE(watcher.model.workspace.error);
+}
+
+TEST(SessionWorker, KeepsTheLastGoodStateIfTheProgramCannotBeRead) {
+    const test_support::ScopedFolder folder;
+    const app::CheckJob job = slot(folder);
+    const std::string good = test_support::bytes_of(job.program);
+    Watcher watcher;
+    watcher.open(job);
+    ASSERT_TRUE(watcher.record());
+    const size_t rows = watcher.model.rows.size();
+    uint64_t opening = 1;
+    for (const std::string& bad : {std::string("GARBAGE[[["), std::string("%\n(only words)\n"),
+                                   std::string("G0 X0\n\0\0\0", 9), std::string()}) {
+        std::ofstream(job.program, std::ios::binary) << bad;
+        watcher.open(job);
+        ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.workspace.error.has_value(); }));
+        EXPECT_EQ(watcher.model.workspace.error->file, job.program);
+        EXPECT_NE(last_good_words(watcher.model), "");
+        EXPECT_NE(window_title(watcher.model).find(", last good state"), std::string::npos);
+        EXPECT_EQ(watcher.model.opening, opening);
+        EXPECT_EQ(watcher.model.rows.size(), rows);
+        EXPECT_FALSE(watcher.model.failure || watcher.model.stopped);
+        std::ofstream(job.program, std::ios::binary) << good;
+        watcher.open(job);
+        ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.opening == opening + 1; }));
+        EXPECT_FALSE(watcher.model.workspace.error);
+        EXPECT_EQ(last_good_words(watcher.model), "");
+        ++opening;
+    }
 }
 
 TEST(SessionWorker, ReadsOnlyTheLastOfManyEdits) {

@@ -132,13 +132,14 @@ xdotool windowsize "$window" 1440 900
 sed -i '6a (ANOTHER LINE)\nG4 P0.1' "$work/plate.nc"
 expect 'a saved file is reloaded' 'of 4[67]\)'
 printf 'GARBAGE[[[' >"$work/plate.nc"
-expect 'a program that cannot be run is explained' 'could not be opened'
-picture 12-garbage
+expect 'a program that cannot be run leaves the last good state' 'of 4[67]\), last good state - feeler'
+shows 12-garbage 'with a banner' has_color 12-garbage '#B3261E' 5000
 head -c 3000 /dev/urandom >"$work/plate.nc"
-expect 'a file that cannot be read is explained' 'could not be opened'
+sleep 1.5 # clock: the window reads it again
+expect 'a file that cannot be read likewise' 'of 4[67]\), last good state - feeler'
 picture 13-error
 cp "$assets/programs/clamped_plate.nc" "$work/plate.nc"
-expect 'and opens again when it is corrected' 'plate.nc, line'
+expect 'and it is read again when it is corrected' 'plate.nc, line [0-9]+ \([^,]*\) - feeler'
 
 press ctrl+q
 ended 'by Ctrl+Q'

@@ -5,6 +5,7 @@
 #include "app/check/block_runner.h"
 #include "app/check/prepared_check.h"
 #include "core/motion/path.h"
+#include "gcode/exec/interpreter.h"
 #include "gcode/language/canonical.h"
 #include "gcode/lower/lowering.h"
 #include "render/motion_path.h"
@@ -85,6 +86,14 @@ ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
             return track.add(block, events) && !is_closing();
         });
     return track;
+}
+
+std::optional<core::Error> why_nothing_runs(const PreparedCheck& check) {
+    gcode::InterpreterState control = gcode::initial_state(check.file.environment);
+    const auto next = gcode::Interpreter(*check.library, check.file.environment).next(control);
+    if (!next) return next.error();
+    if (*next) return std::nullopt;
+    return core::Error{core::ErrorCode::missing_value, {}, "the program has no executable block"};
 }
 
 } // namespace app::viewer

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/view/model/block_row.h"
+#include "core/base/result.h"
 #include "core/motion/event.h"
 #include "render/tool_path.h"
 
@@ -56,6 +57,9 @@ private:
 /// `is_closing` returns true. The set-up must outlive it.
 ProgramTrack track_of(const PreparedCheck& check, const core::Setup& setup,
                       const std::function<bool()>& is_closing);
+
+/// Why a program has no block that can be executed; empty if it has one.
+std::optional<core::Error> why_nothing_runs(const PreparedCheck& check);
 
 /// The values of all axes, 0 for axes that the machine lacks; empty if one is unknown.
 std::optional<core::AxisValues> known_values(const core::Machine& machine,

@@ -87,6 +87,10 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     auto check = read_check(job);
     if (is_superseded()) return;
     if (!check) return fail(check.error(), is_again);
+    if (auto why = is_again ? why_nothing_runs(*check) : std::nullopt) {
+        if (why->file.empty()) why->file = job.program;
+        return fail(*why, true);
+    }
     if (is_again) begin(job, true);
     job.is_stopped = wanted.is_stopped;
     OpenedProgram opened = opened_program(job, *check);

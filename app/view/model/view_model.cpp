@@ -236,6 +236,16 @@ std::string no_violation(const ViewModel& model) {
                      : "No problem in the checked blocks; blocks marked ? cannot be checked";
 }
 
+std::string last_good_words(const ViewModel& model) {
+    if (!model.workspace.error || model.shows_setup) return {};
+    const core::Error& error = *model.workspace.error;
+    std::string where = std::filesystem::path(error.file).filename().generic_string();
+    if (error.where.line > 0) where += fmt::format(":{}", error.where.line);
+    if (error.where.column > 0) where += fmt::format(":{}", error.where.column);
+    return fmt::format("{}{}{}\nThe last good state is shown.", where, where.empty() ? "" : ": ",
+                       error.message);
+}
+
 void say(ViewModel& model, const std::string& text, double now) {
     model.message = text;
     model.message_until = now + 5.0;

@@ -222,6 +222,10 @@ void take_in(ViewModel& model, SessionUpdate news, double now);
 /// The message that there is no problem, and how much was checked.
 std::string no_violation(const ViewModel& model);
 
+/// Why the last good state is shown and not the files as they are; empty if it is not, or if the
+/// panel of the set-up says so.
+std::string last_good_words(const ViewModel& model);
+
 /// Shows a message at the bottom of the view for some seconds.
 void say(ViewModel& model, const std::string& text, double now);
 

@@ -111,6 +111,8 @@ std::string warning_text(const Frame& frame) {
     if (!frame.model.missing.empty())
         words = fmt::format("{}  {} is missing or empty: this is its last known state", sign,
                             std::filesystem::path(frame.model.missing).filename().generic_string());
+    if (const std::string stale = last_good_words(frame.model); !stale.empty())
+        words += fmt::format("{}{}  {}", words.empty() ? "" : "\n", sign, stale);
     if (!frame.model.stopped) return words;
     const core::Error& error = *frame.model.stopped;
     return words + (words.empty() ? "" : "\n")
