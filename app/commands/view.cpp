@@ -37,6 +37,7 @@ ExitCode view(const ViewOptions& options) {
     if (const auto folder = core::platform::settings_folder(); !folder.empty()) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";
+        job.recent_file = folder / "feeler" / "recent.toml";
         job.unsaved = folder / "feeler" / "unsaved";
     }
     job.device = {options.device.file, options.device.shown};

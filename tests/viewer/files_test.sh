@@ -90,6 +90,23 @@ shows 09-gone 'and a large warning is shown' has_color 09-gone '#FF5A36' 5000
 cp "$program.good" "$program"
 expect 'the warning goes when the file is back' 'clamped_plate_low.nc, line [0-9]+ \(block [^)]*\) - feeler'
 
+# A path that is wrong ends nothing: what is open stays, and a message names the path.
+press ctrl+o
+frames
+xdotool type "$work/programs/clamped_plat.nc"
+press Return
+shows 10-mistyped 'a mistyped path is explained in the dialog' says_wrong 10-mistyped
+press Escape
+[[ $(title) =~ 'clamped_plate_low.nc, line 44' ]] || die 'a mistyped path leaves the program open'
+
+# Another program that cannot be read: Escape goes back to the one before it, at the same line.
+head -c 4000 /dev/urandom >"$work/random.nc"
+"$tools/drop_files" "$window" 700 400 "$work/random.nc"
+expect 'another program that cannot be read is explained' 'could not be opened'
+shows 11-unreadable 'with a way back' has_color 11-unreadable '#FF5A36' 20
+press Escape
+expect 'Escape goes back' 'clamped_plate_low.nc, line 44 \(block 38 of 45, collision\) - feeler'
+
 press ctrl+q
 ended 'by Ctrl+Q'
 

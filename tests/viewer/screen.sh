@@ -19,6 +19,8 @@ mkdir -p "$pictures"
 rm -f "$pictures"/*.png
 work=$(mktemp -d)
 mkdir "$work/pictures"
+# Tests use the file browser and not the dialog of the system that runs them.
+export FEELER_FILE_DIALOG=own
 export XDG_CONFIG_HOME=$work/config XDG_PICTURES_DIR=$work/pictures LC_ALL=C.UTF-8
 
 exec 3<>"$work/display" 2>/dev/null || true
@@ -130,6 +132,14 @@ same() { (($(differing "$1" "$2") < 200)); }
 differ() { (($(differing "$1" "$2") > ${3:-0})); }
 has_color() { (($(of_color "$1" "$2") > $3)); }
 has_no_color() { [[ $(of_color "$1" "$2") == 0 ]]; }
+# Condition: the file browser, in a window of 1440x900, says in its lower left corner what is wrong.
+# Small letters have hardly a pixel of the pure colour.
+says_wrong() {
+    local pixels
+    pixels=$(convert "$pictures/$1.png" -crop 600x60+260+640 -fuzz 30% -fill black +opaque '#FF5A36' \
+        -fill white -opaque '#FF5A36' -format '%[fx:round(mean*w*h)]' info:)
+    ((pixels > 100))
+}
 # press KEY...: GLFW takes a key that is pressed again within 20 ms for one that is held down, so each
 # waits until the one before it has been processed.
 press() {

@@ -10,6 +10,7 @@ TEST(ViewerSettings, ComeBackAsTheyWere) {
     Settings settings;
     settings.theme = render::ColorScheme::light;
     settings.inch = true;
+    settings.system_dialog = false;
     settings.scale = 1.25;
     settings.mouse = MousePreset::middle_pans;
     settings.projection = render::Projection::orthographic;

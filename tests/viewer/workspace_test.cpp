@@ -1,9 +1,12 @@
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
 #include "app/setup/stated_setup.h"
+#include "app/view/model/samples.h"
 #include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
 #include "app/view/model/workspace.h"
@@ -193,6 +196,36 @@ TEST(Workspace, SavesUnderItsNameOrAsksForOne) {
     model.workspace.may_replace = true;
     EXPECT_TRUE(save_document(model, "", app::write_output, 0.0));
     EXPECT_EQ(bytes_of(folder / "s.toml"), text_of_setup(model));
+}
+
+TEST(Workspace, SavesNothingAmongTheSamples) {
+    const test_support::ScopedFolder folder;
+    std::filesystem::create_directories(folder.path() / "samples/setups");
+    std::filesystem::create_directories(folder.path() / "mine");
+    const std::string sample = folder / "samples/setups/plate.toml";
+    const std::string text = "[machine]\nfile = \"../machines/mill.toml\" # of the shop\n\n"
+                             "[[fixture]]\nname = \"a\"\nmesh = \"../meshes/a.stl\"\n\n"
+                             "[[fixture]]\nname = \"b\"\nmesh = \"/whole/b.stl\"\n";
+    std::ofstream(sample) << text;
+    ViewModel model = opened_model(text, sample);
+    model.samples = folder / "samples";
+    add_box(model);
+    for (const std::string& target : {std::string(), sample, folder / "samples/new.toml"}) {
+        model.workspace.may_replace = true;
+        EXPECT_FALSE(save_document(model, target, app::write_output, 0.0));
+        EXPECT_TRUE(model.workspace.is_naming);
+        EXPECT_FALSE(is_below(model.workspace.file_name, model.samples));
+        EXPECT_THAT(model.workspace.refusal, HasSubstr("samples"));
+    }
+    EXPECT_EQ(bytes_of(sample), text);
+    EXPECT_FALSE(std::filesystem::exists(folder / "samples/new.toml"));
+    ASSERT_TRUE(save_document(model, folder / "mine/plate.toml", app::write_output, 0.0))
+        << model.workspace.refusal;
+    const std::string saved = bytes_of(folder / "mine/plate.toml");
+    EXPECT_THAT(saved, HasSubstr(folder / "samples/machines/mill.toml\" # of the shop"));
+    EXPECT_THAT(saved, HasSubstr("mesh = \"" + (folder / "samples/meshes/a.stl")));
+    EXPECT_THAT(saved, HasSubstr("mesh = \"/whole/b.stl\""));
+    EXPECT_EQ(model.workspace.document.path(), folder / "mine/plate.toml");
 }
 
 TEST(UnsavedSetups, AreFoundAgainUntilForgotten) {

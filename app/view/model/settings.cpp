@@ -58,6 +58,7 @@ Settings settings_in(const std::string& text) {
     take_within(table, "inspector_width", settings.inspector_width, 120.0, 2000.0);
     take_within(table, "device_width", settings.device_width, 120.0, 2000.0);
     take_within(table, "timeline_height", settings.timeline_height, 60.0, 1000.0);
+    take(table, "system_dialog", settings.system_dialog);
     take(table, "show_stock", settings.shown.stock);
     take(table, "show_fixtures", settings.shown.fixtures);
     take(table, "show_tool", settings.shown.tool);
@@ -79,15 +80,16 @@ std::string text_of(const Settings& s) {
         "width = {}\nheight = {}\nx = {}\ny = {}\nmaximised = {}\n"
         "list_width = {:.1f}\ninspector_width = {:.1f}\ndevice_width = {:.1f}\ntimeline_height = "
         "{:.1f}\n"
-        "show_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = {}\n"
+        "system_dialog = {}\nshow_stock = {}\nshow_fixtures = {}\nshow_tool = {}\nshow_machine = "
+        "{}\n"
         "show_path = {}\nshow_witness = {}\nholder_xray = {}\n"
         "show_ground = {}\nshow_zeros = {}\n",
         s.theme == render::ColorScheme::light ? "light" : "dark",
         s.projection == render::Projection::orthographic ? "parallel" : "perspective", s.inch,
         s.has_own_unit, s.scale, static_cast<int>(s.mouse), s.width, s.height, s.x, s.y,
         s.maximised, s.list_width, s.inspector_width, s.device_width, s.timeline_height,
-        shown.stock, shown.fixtures, shown.tool, shown.machine, shown.path, shown.witness,
-        shown.holder_xray, shown.ground, shown.zeros);
+        s.system_dialog, shown.stock, shown.fixtures, shown.tool, shown.machine, shown.path,
+        shown.witness, shown.holder_xray, shown.ground, shown.zeros);
 }
 
 Settings read_settings(const std::filesystem::path& file) {

@@ -36,6 +36,7 @@ struct Settings {
     double scale = 1.0;        // multiplied with the scale of the screen
     MousePreset mouse = MousePreset::middle_orbits;
     render::Projection projection = render::Projection::perspective;
+    bool system_dialog = true; // for files, if the system has one
     VisibleParts shown;
     int width = 1440, height = 900; // of the window, screen coordinates
     int x = -1, y = -1;             // of its corner; -1: left to the system

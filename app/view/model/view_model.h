@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/debug/what_if.h"
+#include "app/view/model/file_browser.h"
 #include "app/view/model/finding_group.h"
 #include "app/view/model/row_filter.h"
 #include "app/view/model/session_update.h"
@@ -156,6 +157,13 @@ struct ViewModel {
     Workspace workspace; // the set-up
     Placing placing;
 
+    // files to open
+    FileBrowser browser;
+    std::vector<RecentProgram> recent; // the last one first
+    std::string unwanted_recent;       // program to be taken off that list; empty: none
+    std::string samples;               // folder of the samples; empty: none
+    std::string back_to;               // program to which wants_back returns; empty: none
+
     // input of the user
     Cursor cursor;
     BodyNames shown_pair; // of the finding that is shown; empty: the deciding pair of the block
@@ -197,11 +205,12 @@ struct ViewModel {
     bool breakpoints_changed = false;
     std::vector<std::string> watches; // expressions
     bool watches_changed = false;
-    std::string wanted_path; // a program, set-up or mesh that was dropped or typed
+    std::vector<std::string> wanted_paths; // program, set-up or meshes to open
 
     // requests to the window
     bool notes_changed = false;
     bool wants_picture = false, wants_reload = false, wants_quit = false;
+    bool wants_back = false;    // to the program that was open before one that cannot be opened
     bool wants_saving = false;  // of the set-up, under its name
     std::string save_path = {}; // the set-up is to be saved under this name
 

@@ -11,6 +11,7 @@
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
 #include "app/view/model/file_watch.h"
+#include "app/view/model/samples.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
 
@@ -406,6 +407,30 @@ std::string path_in_setup(const ViewModel& model, const std::string& file) {
     return (is_below ? relative : full).generic_string();
 }
 
+namespace {
+
+/// Prepares to save under a path: nothing is saved in the folder of the samples, and a set-up from
+/// there names the files that it needs by whole paths elsewhere. False: another name is needed.
+bool leave_samples(ViewModel& model, const std::string& target) {
+    namespace fs = std::filesystem;
+    Workspace& workspace = model.workspace;
+    if (is_below(target, model.samples)) {
+        workspace.is_naming = true;
+        workspace.file_name = (own_folder() / fs::path(target).filename()).generic_string();
+        workspace.refusal = "The samples stay as they are: save the set-up in another folder";
+        return false;
+    }
+    std::error_code failure;
+    const fs::path own = fs::absolute(workspace.document.path(), failure).parent_path();
+    if (workspace.document.path().empty() || !is_below(own, model.samples)) return true;
+    workspace.is_naming = true;
+    return edit_setup(model, "Name files by whole paths", [&](const std::string& text) {
+        return with_whole_paths(text, own.generic_string());
+    });
+}
+
+} // namespace
+
 bool save_document(ViewModel& model, const std::string& path, const FileWriter& write, double now) {
     Workspace& workspace = model.workspace;
     const std::string target = path.empty() ? workspace.document.path() : path;
@@ -414,6 +439,7 @@ bool save_document(ViewModel& model, const std::string& path, const FileWriter& 
         return false;
     }
     const bool may_replace = std::exchange(workspace.may_replace, false);
+    if (!leave_samples(model, target)) return false;
     const auto saved = save_setup(workspace.document, target,
                                   may_replace ? Replacing::allowed : Replacing::refused,
                                   model.program ? model.program->program : "", write);

@@ -102,6 +102,8 @@ constexpr KeyBinding bindings[] = {
     {C::smaller, G::window, key::minus, control, "Ctrl+-", "Smaller text and controls"},
     {C::picture, G::window, key::function(12), 0, "F12", "Save a picture"},
     {C::open, G::window, key::of('O'), control, "Ctrl+O", "Open a program or set-up"},
+    {C::open_last, G::window, key::of('O'), control | shift, "Ctrl+Shift+O",
+     "Open the program before this one"},
     {C::reload, G::window, key::of('R'), control, "Ctrl+R", "Reload the files"},
     {C::shortcuts, G::window, key::function(1), 0, "F1", "List of keys (also ?)"},
     {C::shortcuts, G::window, key::slash, shift, "?", ""},

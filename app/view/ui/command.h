@@ -77,6 +77,7 @@ enum class Command : uint8_t {
     smaller,
     picture,
     open,
+    open_last,
     reload,
     what_if,
     edit_setup,

@@ -141,7 +141,7 @@ void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
         place(frame, error_, "failure", below, ImVec2(0, 0));
     } else if (!model.program && !model.is_busy) {
         place(frame, toolbar_, "toolbar", {0, 0, size.x, frame.px(48)}, ImVec2(0, 0));
-        place(frame, welcome_, "welcome", below, ImVec2(0, 0));
+        place(frame, welcome_, "welcome", below, ImVec2(0, 0), false, true);
     } else {
         draw_body(frame, area);
     }

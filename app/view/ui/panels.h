@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/view/model/finding_group.h"
+#include "app/view/model/samples.h"
 #include "app/view/ui/panel.h"
 
 namespace core {
@@ -19,6 +21,7 @@ class Renderer;
 namespace app::viewer {
 
 enum class Popup : uint8_t;
+struct RecentProgram;
 
 /// The toolbar along the upper edge.
 class ToolbarPanel : public Panel {
@@ -118,6 +121,19 @@ private:
     std::unique_ptr<State> state_;
 };
 
+/// The file browser in the current ImGui window, which it fills.
+void draw_file_browser(Frame& frame);
+
+/// While the browser is open, the page keys belong to its list and not to ImGui's navigation.
+void claim_page_keys(bool claimed);
+
+/// A program of the recent ones as a row that can be clicked, with a button that takes it off the
+/// list if it is missing. `width`: pixels.
+void draw_recent(Frame& frame, const RecentProgram& recent, float width);
+
+/// The message of the model, if there is one, in the lower left corner of an area.
+void draw_message(const Frame& frame, const Area& area);
+
 /// The dialogs on top of the panels: keys, go to line, open file, what-if, breakpoints, settings,
 /// tolerances, unsaved edits.
 class PopupPanel : public Panel {
@@ -126,14 +142,13 @@ public:
 
 private:
     void draw_go_to_line(Frame& frame);
-    void draw_open_file(Frame& frame);
     void draw_breakpoint(Frame& frame);
     void draw_what_if(Frame& frame);
     void draw_leaving(Frame& frame);
     void draw_lengths(Frame& frame, const core::Setup& setup);
     void draw_fixture(Frame& frame, const core::Setup& setup);
 
-    std::string line_, path_, condition_;
+    std::string line_, condition_;
     Popup shown_{};
     // fields of the what-if dialog
     size_t fixture_ = 0;
@@ -142,10 +157,13 @@ private:
     double origin_ = 0.0;
 };
 
-/// The screen that is shown without a program.
+/// The screen that is shown without a program: recent programs and samples, one click away.
 class WelcomePanel : public Panel {
 public:
     void draw(Frame& frame, const Area& area) override;
+
+private:
+    std::optional<std::vector<Sample>> samples_; // read when first shown
 };
 
 /// The error in a program, set-up or mesh that could not be opened, and what to do.

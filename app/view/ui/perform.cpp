@@ -314,7 +314,13 @@ void perform(ViewModel& model, Command command, double now) {
         if (model.program) open_popup(model, Popup::tolerances);
         break;
     case Command::open:
-        open_popup(model, Popup::open_file);
+        if (model.popup == Popup::open_file)
+            close_browser(model);
+        else
+            browse(model, FileWish::open);
+        break;
+    case Command::open_last:
+        open_last(model, now);
         break;
     case Command::break_if:
         open_popup(model, Popup::breakpoint);
@@ -329,8 +335,9 @@ void perform(ViewModel& model, Command command, double now) {
         model.wants_saving = true;
         break;
     case Command::save_setup_as:
-        show_setup(model, true);
+        if (!model.program) break;
         model.workspace.is_naming = true;
+        browse(model, FileWish::save_setup);
         break;
     case Command::undo:
         undo(model, now);
@@ -354,8 +361,9 @@ void perform(ViewModel& model, Command command, double now) {
             break;
         }
         if (model.popup == Popup::none && !end_picking(model)) model.section.reset();
+        model.wants_back = model.popup == Popup::none && !model.back_to.empty();
         model.workspace.leaving = Leaving::no;
-        model.popup = Popup::none;
+        close_browser(model);
         model.playback.running = false;
         stay(model);
         break;

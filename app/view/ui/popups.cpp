@@ -72,6 +72,8 @@ void draw_settings(Frame& frame) {
     if (ImGui::Button("Larger")) frame.perform(Command::larger);
     bool perspective = settings.projection == render::Projection::perspective;
     if (ImGui::Checkbox("Perspective", &perspective)) frame.perform(Command::projection);
+    if (ImGui::Checkbox("File dialog of the system", &settings.system_dialog))
+        frame.model.browser.uses_system = settings.system_dialog;
     ImGui::Checkbox("Slow motion through a minimum", &frame.model.playback.slow_near);
 }
 
@@ -128,7 +130,7 @@ const char* title_of(Popup popup) {
     case Popup::go_to_line:
         return "Go to line";
     case Popup::open_file:
-        return "Open";
+        return "Files";
     case Popup::what_if:
         return "What if";
     case Popup::breakpoint:
@@ -189,18 +191,6 @@ void PopupPanel::draw_go_to_line(Frame& frame) {
     if (!done || !found) return;
     go_to(model, *found);
     model.popup = Popup::none;
-}
-
-void PopupPanel::draw_open_file(Frame& frame) {
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(frame.px(460));
-    const bool done = ImGui::InputTextWithHint("##path", "Program, set-up (.toml)", &path_,
-                                               ImGuiInputTextFlags_EnterReturnsTrue);
-    text(frame.fonts.small, frame.palette.color(Role::dim),
-         "You can also drop files on the window.");
-    if (!done || path_.empty()) return;
-    frame.model.wanted_path = path_;
-    frame.model.popup = Popup::none;
 }
 
 void PopupPanel::draw_breakpoint(Frame& frame) {
@@ -328,6 +318,7 @@ void PopupPanel::draw_leaving(Frame& frame) {
 
 void PopupPanel::draw(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
+    claim_page_keys(model.popup == Popup::open_file);
     if (model.popup == Popup::none) return;
     const bool is_wide = model.popup == Popup::shortcuts;
     const bool is_table = model.popup == Popup::tolerances;
@@ -338,11 +329,16 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
                                         ImVec2(area.width - 20, 0.88F * area.height));
     if (is_wide) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(1120), area.width - 20), 0));
     if (is_table) ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(980), area.width - 20), 0));
+    if (model.popup == Popup::open_file)
+        ImGui::SetNextWindowSize(ImVec2(std::min(frame.px(940), area.width - 20),
+                                        std::min(frame.px(600), 0.88F * area.height)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0F);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.palette.color(Role::panel, 0.98));
     bool open = true;
-    ImGui::Begin(title_of(model.popup), &open,
+    const char* const title =
+        model.popup == Popup::open_file ? title_of(model.browser.wish) : title_of(model.popup);
+    ImGui::Begin(title, &open,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize
                      | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
     if (shown_ != model.popup) ImGui::SetWindowFocus();
@@ -355,7 +351,7 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
         draw_go_to_line(frame);
         break;
     case Popup::open_file:
-        draw_open_file(frame);
+        draw_file_browser(frame);
         break;
     case Popup::what_if:
         draw_what_if(frame);
@@ -379,36 +375,10 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(2);
     if (!open) {
-        model.popup = Popup::none;
         model.workspace.leaving = Leaving::no;
+        close_browser(model);
     }
     if (model.popup == Popup::none) shown_ = Popup::none;
-}
-
-void WelcomePanel::draw(Frame& frame, const Area& area) {
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    const Theme& palette = frame.palette;
-    list.AddRectFilledMultiColor(area.corner(), area.far_corner(), palette.color(Role::view_top),
-                                 palette.color(Role::view_top), palette.color(Role::view_bottom),
-                                 palette.color(Role::view_bottom));
-    const float width = std::min(frame.px(520), area.width - frame.px(40)), height = frame.px(220);
-    const Area box{area.x + 0.5F * (area.width - width), area.y + 0.42F * (area.height - height),
-                   width, height};
-    list.AddRect(box.corner(), box.far_corner(), palette.color(Role::dim, 0.7), frame.px(12), 0,
-                 frame.px(1.5));
-    const auto put = [&](ImFont* font, const char* words, float y, Role role) {
-        const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words);
-        list.AddText(font, font->FontSize, {box.x + 0.5F * (box.width - size.x), box.y + y},
-                     palette.color(role), words);
-    };
-    put(frame.fonts.big, "feeler", frame.px(26), Role::text);
-    put(frame.fonts.strong, "Drop an NC program here", frame.px(90), Role::text);
-    put(frame.fonts.text, "and a set-up (.toml), if you have one. Otherwise stock and tools",
-        frame.px(118), Role::dim);
-    put(frame.fonts.text, "are inferred from the program, and all assumptions are listed.",
-        frame.px(138), Role::dim);
-    put(frame.fonts.text, "Ctrl+O: open a file \xC2\xB7 F1: list of keys", frame.px(176),
-        Role::accent);
 }
 
 void ErrorPanel::draw(Frame& frame, const Area& area) {
@@ -447,9 +417,15 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
     if (ImGui::Button("Reload")) frame.perform(Command::reload);
     ImGui::SameLine();
     if (ImGui::Button("Open another file")) frame.perform(Command::open);
+    if (!model.back_to.empty()) {
+        ImGui::SameLine();
+        if (ImGui::Button(fmt::format("Back to {} (Esc)", model.back_to).c_str()))
+            frame.model.wants_back = true;
+    }
     ImGui::EndChild();
     ImGui::PopStyleVar(2);
     ImGui::PopStyleColor();
+    draw_message(frame, area);
 }
 
 } // namespace app::viewer

@@ -137,7 +137,6 @@ struct SetupPanel::State {
 
 private:
     void draw_head(Frame& frame);
-    void draw_naming(Frame& frame);
     void draw_banners(Frame& frame);
     void draw_tree(Frame& frame, const std::vector<SetupRow>& rows);
     void draw_row(Frame& frame, const SetupRow& row, int index);
@@ -181,7 +180,7 @@ private:
     std::optional<Typed> typed_;
     SetupItem focused_;       // of the tree, by the keyboard
     bool wants_name_ = false; // the name of the fixture gets the keyboard
-    std::string mesh_file_, part_file_, library_file_;
+    std::string part_file_, library_file_;
     // of the lists of faces
     std::string listed_body_, other_body_;
     size_t own_face_ = 0, other_face_ = 0;
@@ -239,28 +238,6 @@ std::optional<std::string> SetupPanel::State::words(Frame& frame, const char* id
     return typed->words;
 }
 
-void SetupPanel::State::draw_naming(Frame& frame) {
-    Workspace& workspace = frame.model.workspace;
-    if (workspace.file_name.empty() && frame.model.program)
-        workspace.file_name = frame.model.program->proposed_path;
-    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-    const bool entered = ImGui::InputTextWithHint(
-        "##file", "Save as FILE.toml", &workspace.file_name, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (ImGui::IsItemEdited()) workspace.refusal.clear();
-    const bool exists = workspace.refusal.ends_with("already exists")
-                        || workspace.refusal.ends_with("since it was read");
-    const bool pressed = ImGui::Button(exists ? "Replace it" : "Save");
-    ImGui::SameLine();
-    if (ImGui::Button("Cancel")) {
-        workspace.is_naming = false;
-        workspace.leaving = Leaving::no;
-        workspace.refusal.clear();
-    }
-    if (!entered && !pressed) return;
-    workspace.may_replace = exists && pressed;
-    frame.model.save_path = workspace.file_name;
-}
-
 void SetupPanel::State::draw_head(Frame& frame) {
     Workspace& workspace = frame.model.workspace;
     const SetupDocument& document = workspace.document;
@@ -289,7 +266,6 @@ void SetupPanel::State::draw_head(Frame& frame) {
     button(Icon::redo, Command::redo, !redo.empty(), redo.empty() ? "" : ": " + redo);
     ImGui::SameLine(0, frame.px(5));
     button(Icon::save, Command::save_setup, document.is_modified() || document.path().empty(), "");
-    if (workspace.is_naming) draw_naming(frame);
 }
 
 void SetupPanel::State::draw_banners(Frame& frame) {
@@ -405,14 +381,7 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(10), frame.px(8)));
     if (ImGui::BeginPopup("add")) {
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
-        ImGui::SetNextItemWidth(frame.px(260));
-        const bool entered =
-            ImGui::InputTextWithHint("##mesh", "Fixture: mesh file (STL, OBJ, PLY, OFF)",
-                                     &mesh_file_, ImGuiInputTextFlags_EnterReturnsTrue);
-        if (entered && !mesh_file_.empty()) {
-            add_mesh(model, std::exchange(mesh_file_, {}));
-            ImGui::CloseCurrentPopup();
-        }
+        if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
         ImGui::SetNextItemWidth(frame.px(260));
         const bool is_part =
             ImGui::InputTextWithHint("##part", "Part: mesh file of the finished part", &part_file_,
@@ -480,6 +449,7 @@ void SetupPanel::State::draw_machine(Frame& frame) {
     field_name(frame, "File");
     const auto file =
         words(frame, "##file", stated.machine_file, "MACHINE.toml, .machine or .mch", 200);
+    if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, FileWish::machine);
     if (file) use_machine(model, *file);
     wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  model.program->sheet->has_machine

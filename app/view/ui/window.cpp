@@ -17,8 +17,12 @@
 
 #include "app/check/check_job.h"
 #include "app/view/model/device_worker.h"
+#include "app/view/model/file_browser.h"
 #include "app/view/model/file_watch.h"
+#include "app/view/model/folder_listing.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/recent_files.h"
+#include "app/view/model/samples.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/settings.h"
 #include "app/view/model/tolerance_sheet.h"
@@ -28,6 +32,7 @@
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
 #include "app/view/ui/panels.h"
+#include "app/view/ui/system_dialog.h"
 #include "core/base/file_reads.h"
 #include "core/base/platform.h"
 #include "render/image.h"
@@ -130,10 +135,15 @@ public:
           gui_(window),
           layout_(std::move(renderer)),
           unsaved_(job.unsaved, job.write),
+          recent_(job.recent_file, job.write),
           log_(job.frame_log),
           worker_([] { glfwPostEmptyEvent(); }),
+          folders_([] { glfwPostEmptyEvent(); }),
+          dialog_([] { glfwPostEmptyEvent(); }),
           device_([] { glfwPostEmptyEvent(); }),
-          tolerances_([] { glfwPostEmptyEvent(); }) {}
+          tolerances_([] { glfwPostEmptyEvent(); }) {
+        model.recent = recent_.programs();
+    }
 
     ViewModel model;
 
@@ -153,6 +163,11 @@ private:
     void save_picture();
     void watch_files();
     void open(const CheckJob& check);
+    void go_back();
+    void remember_opened();
+    void read_recent();
+    void ask_system_dialog();
+    void take_answer();
     void take_changed_files(double now);
     void update_setup(double now);
     void leave();
@@ -160,8 +175,19 @@ private:
     void set_title();
     double wanted_scale() const;
 
+    /// A program that another one replaces, with what was entered for it.
+    struct Left {
+        CheckJob check;
+        Workspace workspace;
+        std::vector<Breakpoint> breakpoints;
+        std::set<size_t> bookmarks;
+        std::optional<BlockRow> row;
+    };
+
     WindowJob job_;
     std::optional<CheckJob> check_; // the open job
+    std::optional<Left> left_;      // the one before it, until it is read
+    RecentProgram remembered_;      // in the list of recent programs
     GLFWwindow* window_;
     Gui gui_;
     Layout layout_;
@@ -170,6 +196,7 @@ private:
     std::optional<render::ColorScheme> styled_;
     FileWatch files_;
     UnsavedSetups unsaved_;
+    RecentFiles recent_;
     uint64_t opened_version_ = 0;           // of the document that is checked
     std::optional<double> keep_unsaved_at_; // seconds
     FrameLog log_;
@@ -178,6 +205,9 @@ private:
     bool asked_ = false; // a request has just been sent to the worker
     int frames_ = 3;     // still to draw: ImGui needs several to settle the layout
     SessionWorker worker_;
+    FolderWorker folders_;
+    SystemDialog dialog_;
+    uint64_t asked_dialog_ = 0; // number of the question
     DeviceWorker device_;
     ToleranceWorker tolerances_; // last, so that the threads end before the other members
 };
@@ -229,6 +259,10 @@ void Window::watch_files() {
 
 /// Opens a program with the set-up of a job.
 void Window::open(const CheckJob& check) {
+    if (check_ && model.program && !model.failure && check.program != check_->program)
+        left_ = Left{*check_, model.workspace, model.breakpoints, model.bookmarks,
+                     model.has_rows() ? std::optional(model.row()) : std::nullopt};
+    if (check_ && check.program != check_->program) model.breakpoints.clear();
     check_ = check;
     const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
     open_document(model, SetupDocument(check.setup, text));
@@ -239,8 +273,79 @@ void Window::open(const CheckJob& check) {
     if (model.workspace.found) show_setup(model, true);
 }
 
+/// Returns from a program that cannot be opened to the one before it.
+void Window::go_back() {
+    if (!left_) return;
+    Left left = *std::exchange(left_, std::nullopt);
+    check_ = std::move(left.check);
+    model.workspace = std::move(left.workspace);
+    model.breakpoints = std::move(left.breakpoints);
+    model.bookmarks = std::move(left.bookmarks);
+    model.resume = std::move(left.row);
+    model.opens_another = false;
+    open_job();
+}
+
+/// Shows what other windows have added to the list of recent programs.
+void Window::read_recent() {
+    recent_.read();
+    if (model.recent == recent_.programs()) return;
+    model.recent = recent_.programs();
+    damage();
+}
+
+/// Opens the file dialog of the system, if that is requested.
+void Window::ask_system_dialog() {
+    FileBrowser& browser = model.browser;
+    if (!std::exchange(browser.wants_system, false)) return;
+    browser.is_asking = true;
+    asked_dialog_ = dialog_.start({.wish = browser.wish,
+                                   .title = title_of(browser.wish),
+                                   .folder = browser.wanted,
+                                   .name = browser.typed,
+                                   .window = native_window(window_)});
+}
+
+/// Takes the answer of the user in that dialog, or opens the browser if the system has none.
+void Window::take_answer() {
+    const DialogUpdate answer = dialog_.take();
+    FileBrowser& browser = model.browser;
+    if (!answer.has_news || answer.run != asked_dialog_ || !browser.is_asking) return;
+    browser.is_asking = false;
+    damage();
+    if (answer.is_absent) {
+        browser.uses_system = false;
+        return browse_here(model, browser.wish);
+    }
+    if (!answer.path) return close_browser(model);
+    // That dialog has asked whether an existing file may be replaced.
+    model.workspace.may_replace = browser.wish == FileWish::save_setup;
+    choose_file(model, *answer.path);
+}
+
+/// Puts the open program into the list of recent ones, and forgets the one before it.
+void Window::remember_opened() {
+    const bool is_open = check_ && model.program && model.has_rows() && !model.failure
+                         && model.program->program == check_->program;
+    const bool has_failed = model.failure || (model.is_recorded && !model.has_rows());
+    const std::string back =
+        left_ && has_failed
+            ? std::filesystem::path(left_->check.program).filename().generic_string()
+            : std::string();
+    if (back != model.back_to) damage();
+    model.back_to = back;
+    if (!is_open) return;
+    left_.reset();
+    RecentProgram opened{check_->program, model.workspace.document.path()};
+    if (opened == remembered_) return;
+    recent_.add(opened.program, opened.setup);
+    model.recent = recent_.programs();
+    remembered_ = std::move(opened);
+}
+
 void Window::drop(const std::vector<std::string>& paths) {
     damage();
+    if (!can_open(paths, model, glfwGetTime())) return;
     const bool opens = std::any_of(paths.begin(), paths.end(),
                                    [](const std::string& path) { return !is_part_of_setup(path); });
     Workspace& workspace = model.workspace;
@@ -300,8 +405,10 @@ void Window::update_setup(double now) {
     if (saves && check_) {
         const std::string before = workspace.document.path();
         if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
-            show_setup(model, true);
+            if (workspace.is_naming && model.popup != Popup::open_file)
+                browse(model, FileWish::save_setup);
         } else {
+            if (model.popup == Popup::open_file) model.popup = Popup::none;
             unsaved_.forget(check_->program, before);
             keep_unsaved_at_.reset();
             check_->setup = workspace.document.path();
@@ -374,7 +481,17 @@ void Window::update() {
     take_in(model, std::move(found));
     if (play(model, std::min(now - last_frame_, 0.2))) damage();
     last_frame_ = now;
-    if (!model.wanted_path.empty()) drop({std::exchange(model.wanted_path, {})});
+    if (take_in(model, folders_.take())) damage();
+    if (!model.unwanted_recent.empty()) {
+        recent_.remove(std::exchange(model.unwanted_recent, {}));
+        model.recent = recent_.programs();
+    }
+    take_answer();
+    ask_system_dialog();
+    remember_opened();
+    if (std::exchange(model.wants_back, false)) go_back();
+    if (!model.wanted_paths.empty()) drop(std::exchange(model.wanted_paths, {}));
+    if (send_browser_orders(model, folders_, now)) read_recent();
     if (std::exchange(model.wants_reload, false)) open_job();
     if (now - last_watch_ > watch_interval) {
         last_watch_ = now;
@@ -530,6 +647,10 @@ core::Result<void> run_window(const WindowJob& job) {
     shown->model.settings = settings;
     shown->model.device.file = job.device.file;
     shown->model.device.shown = job.device.shown;
+    shown->model.browser.uses_system =
+        settings.system_dialog
+        && core::platform::environment_variable("FEELER_FILE_DIALOG") != "own";
+    shown->model.samples = samples_folder().generic_string();
     shown->model.notes = notes_in(core::file_bytes(job.notes_file).value_or(""));
     listen_to_keys(window.get());
     glfwSetWindowUserPointer(window.get(), shown.get());

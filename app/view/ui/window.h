@@ -29,6 +29,7 @@ struct WindowJob {
     DeviceChoice device;
     std::filesystem::path settings_file; // read when opened, written when closed; empty: none
     std::filesystem::path notes_file;    // notes on findings; empty: not stored
+    std::filesystem::path recent_file;   // programs opened last; empty: not stored
     std::filesystem::path pictures;      // folder for pictures saved with F12
     std::filesystem::path unsaved;       // folder for unsaved set-ups; empty: they are not kept
     FileWriter write;                    // for set-ups and notes
@@ -42,6 +43,10 @@ core::Result<void> run_window(const WindowJob& job);
 
 /// Whether a file is added to the set-up when it is dropped: a mesh, a tool library, a machine.
 bool is_part_of_setup(const std::string& path);
+
+/// Whether all paths are those of files; otherwise says which one is not. A folder is shown in the
+/// file browser.
+bool can_open(const std::vector<std::string>& paths, ViewModel& model, double now);
 
 /// The job after files were dropped on the window: a program, a set-up, or both. A new program
 /// discards the set-up and the breakpoints of the old one. Empty if there is nothing to open; then

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "app/check/check_job.h"
+#include "app/view/model/file_browser.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
@@ -8,6 +11,20 @@ namespace app::viewer {
 
 bool is_part_of_setup(const std::string& path) {
     return is_mesh_file(path) || is_tool_library(path) || is_machine_file(path);
+}
+
+bool can_open(const std::vector<std::string>& paths, ViewModel& model, double now) {
+    for (const std::string& path : paths) {
+        if (core::is_folder(path)) {
+            browse_here(model, FileWish::open, path);
+            return false;
+        }
+        const std::string why = core::why_no_file(path);
+        if (why.empty()) continue;
+        say(model, fmt::format("{}: {}", readable_name(path), why), now);
+        return false;
+    }
+    return true;
 }
 
 std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
@@ -36,7 +53,6 @@ std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::stri
     if (has_program && !has_setup) check.setup.clear();
     if (check.program != before) {
         model.opens_another = true;
-        model.breakpoints.clear();
     }
     check.setup_text.reset();
     return check;
