@@ -405,8 +405,9 @@ void Window::update_setup(double now) {
     if (saves && check_) {
         const std::string before = workspace.document.path();
         if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
+            // The browser says why a name was refused; the dialog of the system cannot.
             if (workspace.is_naming && model.popup != Popup::open_file)
-                browse(model, FileWish::save_setup);
+                (workspace.refusal.empty() ? browse : browse_here)(model, FileWish::save_setup, {});
         } else {
             if (model.popup == Popup::open_file) model.popup = Popup::none;
             unsaved_.forget(check_->program, before);
