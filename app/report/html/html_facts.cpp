@@ -12,6 +12,7 @@
 #include "app/check/conclusion.h"
 #include "app/report/html/html_text.h"
 #include "app/report/text/text_report.h"
+#include "app/setup/coverage.h"
 #include "app/tolerance/tolerances.h"
 #include "core/motion/path.h"
 #include "core/motion/timing.h"
@@ -55,6 +56,20 @@ std::optional<double> widest_interval(const CheckRun& run) {
 }
 
 } // namespace
+
+const char* verdict_class(const CheckRun& run) {
+    if (run.verdict != core::Verdict::clear) return core::name_of(run.verdict);
+    if (run.stopped || run.has_errors()) return "error";
+    const Coverage coverage = run.full_coverage();
+    return coverage.is_complete() && coverage.moves ? "clear" : "partly";
+}
+
+std::string uncovered_html(const CheckRun& run) {
+    const std::string uncovered = uncovered_text(run.full_coverage());
+    if (uncovered.empty()) return {};
+    return "<p class=\"uncovered\" role=\"note\"><b>Not checked:</b> " + html_text(uncovered)
+           + "</p>\n";
+}
 
 std::string fact_row(const std::string& name, const std::string& html) {
     return fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name), html);

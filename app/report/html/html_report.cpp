@@ -13,26 +13,9 @@
 #include "app/report/html/html_text.h"
 #include "app/report/json/json_report.h"
 #include "app/report/text/text_report.h"
-#include "app/setup/coverage.h"
 
 namespace app {
 namespace {
-
-/// CSS class that colours the headline.
-const char* verdict_of(const CheckRun& run) {
-    if (run.verdict != core::Verdict::clear) return core::name_of(run.verdict);
-    if (run.stopped || run.has_errors()) return "error";
-    const Coverage coverage = run.full_coverage();
-    return coverage.is_complete() && coverage.moves ? "clear" : "partly";
-}
-
-/// What was not checked, above everything else; empty if the set-up describes all of it.
-std::string uncovered_html(const CheckRun& run) {
-    const std::string uncovered = uncovered_text(run.full_coverage());
-    if (uncovered.empty()) return {};
-    return "<p class=\"uncovered\" role=\"note\"><b>Not checked:</b> " + html_text(uncovered)
-           + "</p>\n";
-}
 
 std::string name_of_file(const std::string& path) {
     const std::string name = std::filesystem::path(path).filename().generic_string();
@@ -79,7 +62,7 @@ std::string views_json(const ReportViews& views) {
 std::string html_report(const CheckRun& run, const ReportViews& views) {
     const PageAssets assets = page_assets();
     return filled_page(assets.page, {{"version", version},
-                                     {"verdict", verdict_of(run)},
+                                     {"verdict", verdict_class(run)},
                                      {"outcome", html_text(run.headline())},
                                      {"program", html_text(run.program_file)},
                                      {"name", html_text(name_of_file(run.program_file))},
