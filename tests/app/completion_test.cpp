@@ -28,7 +28,7 @@ TEST(Completion, OffersEveryOptionInEveryShell) {
     for (const std::string shell : {"bash", "zsh", "fish"}) {
         const auto ran = feeler({"completion", shell});
         EXPECT_EQ(ran.status, 0) << ran.err;
-        for (const std::string command : {"check", "debug", "shot"})
+        for (const std::string command : {"check", "debug", "sheet", "shot"})
             for (const std::string& name : options_of(command))
                 EXPECT_THAT(ran.out, HasSubstr(shell == "fish" ? "-l " + name.substr(2) : name))
                     << shell;
