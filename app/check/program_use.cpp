@@ -31,6 +31,11 @@ bool is_shifted(const gcode::Offsets& offsets) {
            || !std::all_of(offsets.axis.begin(), offsets.axis.end(), is_known_zero);
 }
 
+template <typename Value>
+void keep(std::set<Value>& values, const Value& value) {
+    if (values.size() < most_kept_values) values.insert(value);
+}
+
 /// Collects the use of tools and offsets from the states after the blocks that move.
 class UseCollector {
 public:
@@ -48,11 +53,9 @@ public:
 
 private:
     ToolUse& entry_of(const std::optional<core::ToolNumber>& tool) {
-        const auto found = std::find_if(use.tools.begin(), use.tools.end(),
-                                        [&](const ToolUse& known) { return known.tool == tool; });
-        if (found != use.tools.end()) return *found;
-        use.tools.push_back({.tool = tool});
-        return use.tools.back();
+        const auto [at, is_new] = places_.try_emplace(tool, use.tools.size());
+        if (is_new) use.tools.push_back({.tool = tool});
+        return use.tools[at->second];
     }
 
     /// Rapids without a tool are on the way to the first tool change.
@@ -62,7 +65,7 @@ private:
         ToolUse& entry = entry_of(tool);
         if (feeds) add_length(entry);
         if (modal.compensation != gcode::Side::none && modal.radius_number > 0)
-            entry.radii.insert(modal.radius_number);
+            keep(entry.radii, modal.radius_number);
         if (modal.spindle == core::SpindleDirection::stopped) return;
         entry.has_surface_speed = entry.has_surface_speed || modal.surface_speed;
         entry.least_speed = std::min(entry.least_speed.value_or(modal.speed), modal.speed);
@@ -74,8 +77,8 @@ private:
         const bool has_length = length_ && (length_->number || length_->offset[2] != 0.0);
         entry.feeds_without_length = entry.feeds_without_length || !has_length;
         if (!has_length) return;
-        if (length_->number) entry.lengths.insert(*length_->number);
-        entry.control_lengths.insert(length_->offset[2]);
+        if (length_->number) keep(entry.lengths, *length_->number);
+        keep(entry.control_lengths, length_->offset[2]);
         entry.length_is_assumed = entry.length_is_assumed || length_->is_assumed;
     }
 
@@ -99,7 +102,8 @@ private:
     }
 
     const PreparedCheck& check_;
-    std::optional<gcode::UseToolLengthOffset> length_; // the last one
+    std::map<std::optional<core::ToolNumber>, size_t> places_; // in the list of tools
+    std::optional<gcode::UseToolLengthOffset> length_;         // the last one
 };
 
 } // namespace

@@ -14,7 +14,10 @@ namespace app {
 
 struct PreparedCheck;
 
-/// What a program does with one tool.
+/// The most numbers or lengths that are kept of one tool: a program can make any number of them.
+constexpr size_t most_kept_values = 12;
+
+/// What a program does with one tool. Of each set, the first most_kept_values are kept.
 struct ToolUse {
     std::optional<core::ToolNumber> tool; // empty: no tool is known to be in the spindle
     std::set<core::OffsetNumber> lengths; // H numbers in effect while it feeds
@@ -43,6 +46,7 @@ struct ProgramUse {
 
 /// Reads the program once more, to its end or to its first error. `is_stopped` is polled; true
 /// ends it.
+/// Cost: that of reading the program without a check.
 ProgramUse program_use(const PreparedCheck& check, const std::function<bool()>& is_stopped = {});
 
 } // namespace app

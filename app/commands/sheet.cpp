@@ -85,12 +85,13 @@ core::Result<ExitCode> write_sheet(const SheetOptions& options) {
         FEELER_TRY(Tolerances tolerances,
                    tolerances_of(job, run, [](double) { return !is_interrupted(); }));
         run.tolerances = std::make_shared<const Tolerances>(std::move(tolerances));
+        content.tolerances_were_stopped = is_interrupted();
     }
     content.pictures = options.no_pictures ? SheetPictures{.missing = "they were not wanted"}
                                            : sheet_pictures(run.setup, zeros_of(content));
     if (auto written = write_output(options.output, html_sheet(run, content), read); !written)
         return tl::unexpected(written.error());
-    if (options.tolerances && is_interrupted()) return ExitCode::failed;
+    if (content.tolerances_were_stopped) return ExitCode::failed;
     return run.has_errors() ? ExitCode::findings : ExitCode::clear;
 }
 

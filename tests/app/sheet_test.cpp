@@ -196,6 +196,18 @@ TEST(ProgramUse, StopsWhenItIsTold) {
     EXPECT_LE(asked, 10);
 }
 
+/// A program can use any number of values; a page can not show them.
+TEST(ProgramUse, KeepsAFewValuesOfEachTool) {
+    std::string program = "O1\nG21 G90 G54\nT1 M6\nS1000 M3\n#1=1\nWHILE [#1 LT 200] DO1\n"
+                          "G10 L10 P1 R#1\nG43 H1\nG1 X#1 F100.\n#1=#1+1\nEND1\nM30\n";
+    const SmallJob small(program);
+    const auto check = app::read_check(small.job());
+    ASSERT_TRUE(check) << check.error().message;
+    const app::ProgramUse use = app::program_use(*check);
+    ASSERT_EQ(use.tools.size(), 1U);
+    EXPECT_EQ(use.tools[0].control_lengths.size(), app::most_kept_values);
+}
+
 TEST(Sheet, SaysWhereEverythingIs) {
     const std::string words = words_of_page(sheet_of_job(SmallJob().job()));
     EXPECT_THAT(words, HasSubstr("G54 | the left front top corner of the stock"));
@@ -279,6 +291,11 @@ TEST(Sheet, ShowsTolerancesNextToTheValues) {
                                  "holder near stock)"));
     EXPECT_THAT(words, HasSubstr("may be off: X, Y 20 mm or more either way\n"));
     EXPECT_THAT(words, HasSubstr("may be off: Y not studied: there was no time"));
+    EXPECT_THAT(words, HasSubstr("a value without a line has no effect on the check"));
+    SheetContent stopped = content_of(small.job());
+    stopped.tolerances_were_stopped = true;
+    EXPECT_THAT(words_of_page(app::html_sheet(*run, stopped)),
+                HasSubstr("a value without a line was not studied"));
     tolerances = {.refusal = "the check has errors"};
     run->tolerances = std::make_shared<const app::Tolerances>(tolerances);
     EXPECT_THAT(words_of_page(app::html_sheet(*run, content_of(small.job()))),

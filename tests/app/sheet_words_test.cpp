@@ -134,6 +134,14 @@ TEST(HeightAboveJaws, NeedsTwoThatHoldOppositeSides) {
     EXPECT_FALSE(height({left, higher}));
     EXPECT_FALSE(height({left, beside}));
     EXPECT_FALSE(height({}));
+    const auto of_meshes = [&](const std::string& name) {
+        core::Setup setup;
+        for (const core::Aabb& box : {left, right})
+            setup.fixtures.push_back({.name = name, .body = core::solid_mesh(core::mesh_of(box))});
+        return height_above_jaws(placed_fixtures(setup, {}), stock);
+    };
+    EXPECT_EQ(of_meshes("fixed-jaw"), 12.0);
+    EXPECT_FALSE(of_meshes("step block"));
 }
 
 } // namespace

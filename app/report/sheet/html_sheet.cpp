@@ -56,11 +56,13 @@ std::string machine_text(const CheckRun& run, const SheetContent& content) {
     return run.setup.machine.bodies.empty() ? "not described" : "bodies as in the set-up";
 }
 
-std::string tolerance_fact(const CheckRun& run) {
+std::string tolerance_fact(const CheckRun& run, const SheetContent& content) {
     if (!run.tolerances) return "not studied: run feeler sheet with --tolerances";
     if (!run.tolerances->refusal.empty()) return "none: " + run.tolerances->refusal;
-    return "each value alone may be off by what its line says, and the check is proven to stay "
-           "clear";
+    return std::string("each value alone may be off by what its line says, and the check is proven "
+                       "to stay clear; a value without a line ")
+           + (content.tolerances_were_stopped ? "was not studied, because the search was stopped"
+                                              : "has no effect on the check");
 }
 
 std::string facts_html(const CheckRun& run, const SheetContent& content) {
@@ -76,7 +78,7 @@ std::string facts_html(const CheckRun& run, const SheetContent& content) {
     rows += fact("Check",
                  fmt::format("{}{}Feeler {}: {}", content.check_date,
                              content.check_date.empty() ? "" : ", ", version, counts_text(run)));
-    return rows + fact("How wrong", tolerance_fact(run));
+    return rows + fact("How wrong", tolerance_fact(run, content));
 }
 
 std::string picture_html(const SheetPicture& picture, const std::string& caption) {

@@ -24,6 +24,7 @@ struct SheetContent {
     std::set<core::OffsetNumber> stated_lengths; // H numbers with a length in the set-up
     std::string control;                         // "fanuc", "fanuc-0i-mf"
     bool calls_zero_datum = false;               // Klartext: there is no G54
+    bool tolerances_were_stopped = false;        // by the user: some are missing
     bool touches_off = false;                    // assumed: Z is touched off with each tool
     SheetUnit unit;
     SheetPictures pictures;

@@ -367,6 +367,7 @@ std::string length_words(const ToolUse& use, const SheetTool* shown, const Sheet
         names.push_back(fmt::format("H{}", core::value_of(number)));
     for (const double length : use.control_lengths) lengths.push_back(content.unit.length(length));
     if (use.feeds_without_length) lengths.emplace_back("none");
+    if (use.control_lengths.size() == most_kept_values) lengths.emplace_back("others");
     const bool is_assumed = assumes_length_of(use, shown, content);
     return fmt::format("{}{}{}{}", is_assumed ? assumed_mark : "", fmt::join(names, ", "),
                        names.empty() ? "" : ": ",
@@ -376,6 +377,7 @@ std::string length_words(const ToolUse& use, const SheetTool* shown, const Sheet
 std::string radius_words(const ToolUse& use) {
     std::vector<std::string> names;
     for (const int number : use.radii) names.push_back(fmt::format("D{}", number));
+    if (names.size() == most_kept_values) names.emplace_back("others");
     return names.empty() ? nothing : fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -147,14 +147,19 @@ bool holds_side(const core::Aabb& jaw, const core::Aabb& stock, int axis, int si
            && jaw.max.z > stock.min.z && jaw.max.z < stock.max.z;
 }
 
-/// The top of the highest convex fixture at a side; empty if there is none.
+/// The box of a mesh need not be where its material is, so another mesh than a jaw does not count.
+bool may_be_jaw(const core::Fixture& fixture) {
+    return fixture.is_there
+           && (render::is_vise(fixture.name)
+               || std::holds_alternative<core::ConvexShape>(fixture.body));
+}
+
+/// The top of the highest fixture that holds a side; empty if there is none.
 std::optional<double> jaw_top(const std::vector<PlacedFixture>& fixtures, const core::Aabb& stock,
                               int axis, int sign) {
     std::optional<double> top;
     for (const PlacedFixture& placed : fixtures)
-        if (placed.fixture->is_there
-            && std::holds_alternative<core::ConvexShape>(placed.fixture->body)
-            && holds_side(placed.box, stock, axis, sign))
+        if (may_be_jaw(*placed.fixture) && holds_side(placed.box, stock, axis, sign))
             top = std::max(top.value_or(placed.box.max.z), placed.box.max.z);
     return top;
 }

@@ -55,8 +55,9 @@ struct PlacedFixture {
 std::vector<PlacedFixture> placed_fixtures(const core::Setup& setup,
                                            const core::Transform& zero_from_stock);
 
-/// How far the stock stands out above two convex fixtures that hold it on opposite sides, mm; empty
-/// if there are no such fixtures.
+/// How far the stock stands out above two fixtures that hold it on opposite sides, mm; empty if
+/// there are none. They touch these sides, end below the top of the stock, and are convex or jaws
+/// by their names.
 std::optional<double> height_above_jaws(const std::vector<PlacedFixture>& fixtures,
                                         const core::Aabb& stock);
 
