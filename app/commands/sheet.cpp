@@ -1,4 +1,3 @@
-#include <chrono>
 #include <ctime>
 #include <memory>
 #include <string>
@@ -10,16 +9,13 @@
 #include "app/base/file_stamp.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
-#include "app/check/prepared_check.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
 #include "app/commands/suggestion.h"
-#include "app/report/sheet/html_sheet.h"
-#include "app/tolerance/tolerances.h"
-#include "core/base/file_reads.h"
+#include "app/report/sheet/sheet_run.h"
 
 namespace app {
 namespace {
@@ -41,63 +37,41 @@ std::string date_of_file(const std::string& path) {
                          : std::string();
 }
 
-/// The content of the sheet of this very program: it may have been saved again since the check.
-///
-/// Errors: those of read_check.
-core::Result<SheetContent> content_of(const CheckJob& job, const CheckRun& run) {
-    FEELER_TRY(const PreparedCheck check, read_check(job));
-    if (check.run.sha256 != run.sha256)
-        return tl::unexpected<core::Error>(
-            {core::ErrorCode::io, {}, "was changed while it was checked: try again", job.program});
-    SheetContent content =
-        sheet_content(check, core::file_bytes(job.setup).value_or(std::string()));
-    content.program_date = date_of_file(job.program);
-    content.check_date = minute_text(std::time(nullptr));
-    return content;
-}
-
-core::Result<CheckRun> checked_program(CheckJob job) {
+core::Result<MadeSheet> made(CheckJob job, const SheetOptions& options) {
     ProgressLine line;
+    job.is_stopped = is_interrupted;
     job.after_block = [&line](const CheckProgress& progress) {
         line.show(progress);
         return !is_interrupted();
     };
-    auto run = run_check(job);
+    auto sheet = make_sheet(job, {.tolerances = options.tolerances,
+                                  .pictures = !options.no_pictures,
+                                  .program_date = date_of_file(job.program),
+                                  .check_date = minute_text(std::time(nullptr)),
+                                  .goes_on = [] { return !is_interrupted(); }});
     line.clear();
-    return run;
+    return sheet;
 }
 
 core::Result<ExitCode> write_sheet(const SheetOptions& options) {
     ReadFiles read;
-    FEELER_TRY(CheckJob job, job_of(options.what));
-    job.is_stopped = is_interrupted;
+    FEELER_TRY(const CheckJob job, job_of(options.what));
     for (const std::string& path : {job.program, job.setup}) read.add(path);
     if (auto safe = read.check(options.output); !safe) return tl::unexpected(safe.error());
     stop_on_interrupt();
-    FEELER_TRY(CheckRun run, checked_program(job));
-    if (run.stopped) {
-        print_error(*run.stopped);
-        return core::fail(core::ErrorCode::invalid_value,
-                          "there is no sheet: the program did not run to its end");
-    }
-    FEELER_TRY(SheetContent content, content_of(job, run));
-    if (options.tolerances) {
-        FEELER_TRY(Tolerances tolerances,
-                   tolerances_of(job, run, [](double) { return !is_interrupted(); }));
-        run.tolerances = std::make_shared<const Tolerances>(std::move(tolerances));
-        content.tolerances_were_stopped = is_interrupted();
-    }
-    content.pictures = options.no_pictures ? SheetPictures{.missing = "they were not wanted"}
-                                           : sheet_pictures(run.setup, zeros_of(content));
-    if (auto written = write_output(options.output, html_sheet(run, content), read); !written)
+    FEELER_TRY(const MadeSheet sheet, made(job, options));
+    if (auto written = write_output(options.output, sheet.html, read); !written)
         return tl::unexpected(written.error());
-    if (content.tolerances_were_stopped) return ExitCode::failed;
-    return run.has_errors() ? ExitCode::findings : ExitCode::clear;
+    if (sheet.tolerances_were_stopped) return ExitCode::failed;
+    return sheet.has_errors ? ExitCode::findings : ExitCode::clear;
 }
 
 ExitCode sheet(const SheetOptions& options) {
     const auto written = write_sheet(options);
-    return written ? *written : failed(written.error());
+    if (written) return *written;
+    const ExitCode code = failed(written.error());
+    print_note("feeler: there is no sheet\n");
+    return code;
 }
 
 constexpr const char* sheet_examples = R"(
