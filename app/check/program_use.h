@@ -25,8 +25,8 @@ struct ToolUse {
     std::set<double> control_lengths;     // lengths that the control adds with it, mm
     bool feeds_without_length = false;    // in at least one block
     bool length_is_assumed = false;       // nobody states one of the lengths
-    // While the spindle turns: rev/min, and m/min with a constant surface speed. Empty: it never
-    // does.
+    // While the spindle turns: rev/min, or as programmed with a constant surface speed. Empty: it
+    // never does.
     std::optional<double> least_speed, most_speed;
     bool has_surface_speed = false;
 };

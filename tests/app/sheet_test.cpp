@@ -220,6 +220,13 @@ TEST(Sheet, SaysWhereEverythingIs) {
     EXPECT_LT(words.find("T2 | drill"), words.find("T1 | bull"));
 }
 
+TEST(Sheet, TellsASurfaceSpeedFromRevolutions) {
+    const std::string program =
+        std::regex_replace(small_program, std::regex("S6000 M3"), "G96 S120 M3");
+    EXPECT_THAT(words_of_page(sheet_of_job(SmallJob(program).job())),
+                HasSubstr("H1: 95 | D11 | 120 (surface speed)"));
+}
+
 /// The numbers of the program's own zero count, not those of the set-up.
 TEST(Sheet, FollowsAZeroThatTheProgramSets) {
     std::string program = small_program;

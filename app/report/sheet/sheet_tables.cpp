@@ -384,8 +384,8 @@ std::string radius_words(const ToolUse& use) {
 std::string tool_row(const ToolUse& use, const SheetTool* shown, const core::Setup& setup,
                      const AllowedWords& allowed, const SheetContent& content) {
     const SheetUnit& unit = content.unit;
-    const std::string speed =
-        number_words(use.least_speed, use.most_speed, use.has_surface_speed ? " m/min" : "");
+    const std::string speed = number_words(use.least_speed, use.most_speed,
+                                           use.has_surface_speed ? " (surface speed)" : "");
     const std::string number =
         use.tool ? fmt::format("T{}", core::value_of(*use.tool)) : std::string(nothing);
     std::string html = "<tr>" + row_head(number);
