@@ -102,6 +102,7 @@ TEST(FileBrowser, EnterGoesIntoFoldersAndOpensFiles) {
 
 TEST(FileBrowser, GoesUpAndSelectsTheFolderThatWasLeft) {
     Job job;
+    std::filesystem::create_directory(job.folder.path() / "a"); // before it in the list
     type(job.model, "old/");
     enter(job.model);
     EXPECT_EQ(job.browser.folder, job.folder / "old");
