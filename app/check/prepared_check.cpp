@@ -167,6 +167,7 @@ core::Result<PreparedCheck> read_check(const CheckJob& job) {
     if (const auto whole = complete_setup(file, *check.program); !whole)
         return tl::unexpected(
             core::in_file(whole.error(), file.is_inferred ? job.program : setup_path(job)));
+    check.stock_is_stated = check.stock_is_stated || is_stock_of_program(file);
     run.assumptions.insert(run.assumptions.begin(), file.assumptions.begin(),
                            file.assumptions.end());
     run.coverage = coverage_of(file);

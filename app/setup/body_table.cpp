@@ -48,6 +48,9 @@ core::Transform read_frame(TableReader& table, const BodyContext& context) {
     std::string frame = table.string("frame").value_or("G54");
     if (const auto offset = gcode::offset_of_name(frame)) frame = gcode::name_of_offset(*offset);
     if (const auto found = context.frames.find(frame)) return *found;
+    // Where no work offset is stated, those with numbers are where the others are.
+    if (context.file.infers_frame && gcode::offset_of_name(frame))
+        return context.frames.machine_from.at("G54");
     std::vector<std::string> known;
     for (const auto& [name, transform] : context.frames.machine_from) known.push_back(name);
     table.refuse("frame", fmt::format("\"{}\" is not known; known frames: {}", frame,
@@ -265,9 +268,14 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
 }
 
 void infer_stock(BodyContext& context) {
-    context.file.needs_stock = true;
-    const core::Transform frame = context.frames.machine_from.at("G54");
-    context.file.setup.stock_mount = {context.file.setup.machine.table, frame};
+    SetupFile& file = context.file;
+    file.needs_stock = true;
+    // At the first work offset that is stated.
+    const bool has_others = !file.offsets_set.empty() && !file.offsets_set.contains(0);
+    if (has_others)
+        file.stock_frame = gcode::name_of_offset(static_cast<size_t>(*file.offsets_set.begin()));
+    const core::Transform frame = context.frames.machine_from.at(file.stock_frame);
+    file.setup.stock_mount = {file.setup.machine.table, frame};
     context.frames.machine_from["stock"] = frame;
 }
 

@@ -441,12 +441,14 @@ core::Vec3 assumed_start(const SetupFile& file) {
     const core::Setup& setup = file.setup;
     core::Vec3 start(0.0);
     double top = -core::infinity;
-    if (!file.needs_stock)
+    if (file.needs_stock)
+        top = setup.stock_mount.link_from_body.translation.z;
+    else
         top = top_of(core::bounds(setup.stock), setup.stock_mount.link_from_body);
     for (const core::Fixture& fixture : setup.fixtures)
         if (!fixture.is_machine)
             top = std::max(top, top_of(core::bounds(fixture.body), fixture.mount.link_from_body));
-    double longest = file.infers_tools ? usual_longest : 0.0;
+    double longest = file.is_partial ? usual_longest : 0.0;
     for (const auto& [number, tool] : setup.tools) longest = std::max(longest, tool.length);
     if (top + longest + room > 0.0) start.z = top + longest + above;
     for (int axis = 0; axis < 3; ++axis) {
@@ -458,14 +460,45 @@ core::Vec3 assumed_start(const SetupFile& file) {
     return start;
 }
 
+bool is_own(const core::Fixture& fixture) { return !fixture.is_machine; }
+
+/// Whether a set-up leaves so much open that it is completed like one that states nothing.
+bool is_partial(const SetupFile& file) {
+    const core::Setup& setup = file.setup;
+    const bool has_tools =
+        !setup.tools.empty() || !file.library.empty() || !file.tool_table.empty();
+    const bool has_work =
+        !file.needs_stock || std::any_of(setup.fixtures.begin(), setup.fixtures.end(), is_own);
+    return file.infers_frame || !has_tools || !has_work;
+}
+
+/// Whether a set-up describes nothing that an assumed start position could be compared with.
+bool start_is_free(const SetupFile& file) {
+    const std::vector<core::Fixture>& fixtures = file.setup.fixtures;
+    return file.is_partial && std::none_of(fixtures.begin(), fixtures.end(), is_own);
+}
+
+/// Assumes a home position where the start position is assumed, too.
+void assume_home(SetupFile& file) {
+    if (!start_is_free(file) || file.environment.home) return;
+    file.infers_home = true;
+    gcode::AxisValues& values = file.environment.home.emplace();
+    const core::AxisPosition home = file.setup.machine.home();
+    for (size_t axis = 0; axis < 3; ++axis) values[axis] = home[axis].value_or(0.0);
+    file.assumptions.push_back(
+        "the set-up does not state the home position: machine zero is assumed");
+}
+
 /// Assumes the start position of X, Y and Z where nothing states it.
 void assume_start(SetupFile& file) {
     const core::Vec3 assumed = assumed_start(file);
+    const bool is_free = start_is_free(file);
     std::string axes;
     for (size_t i = 0; i < 3; ++i) {
         if (file.environment.start[i]) continue;
         file.environment.start[i] = assumed[static_cast<int>(i)];
-        file.setup.start_is_assumed[i] = true;
+        file.setup.start_is_assumed[i] = !is_free;
+        file.infers_start = file.infers_start || is_free;
         axes += fmt::format("{}{}{}", axes.empty() ? "" : " ", core::axis_letters[i],
                             core::number_text(assumed[static_cast<int>(i)], 3));
     }
@@ -487,6 +520,7 @@ void settle_start(SetupFile& file) {
             fmt::format("axis {} is at 0 at the first block", core::axis_letters[i]));
     }
     assume_start(file);
+    assume_home(file);
     if (file.setup.machine.has_rotary())
         file.environment.machine = std::make_shared<const core::Machine>(file.setup.machine);
 }
@@ -620,7 +654,6 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
     for (const auto& [number, found] : file.library)
         if (!setup.tools.contains(number))
             file.environment.tool_names.emplace(found.tool.name, number);
-    file.infers_tools = setup.tools.empty() && file.library.empty() && file.tool_table.empty();
     for (TableReader& table : root.tables("length_offset", "[[length_offset]]"))
         read_length_offset(table, file);
     place_machine_bodies(context);
@@ -635,6 +668,7 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
             "axis limits are not checked, because the work offsets are only assumed");
     file.limits_known = known_limits(setup.machine);
     if (auto table = root.table("rules", "[rules]")) read_rules(*table, file);
+    file.is_partial = is_partial(file);
     root.finish();
 }
 

@@ -54,6 +54,7 @@ struct SetupFile {
     StatedControl control;
     std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
     std::set<size_t> offsets_used;            // work offsets in which the program moves
+    std::set<core::ToolNumber> tools_used;    // that the program calls or has in the spindle
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
     std::map<core::ToolNumber, PartialTool> partial_tools;
@@ -63,16 +64,20 @@ struct SetupFile {
     std::string stock_frame = "G54";               // frame of the stock's coordinates
     std::map<std::string, core::Transform> frames; // poses of the named frames in the machine
     std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, a sentence
+    std::map<core::ToolNumber, FoundTool> found_tools;      // likewise, what their sources state
+    std::vector<std::string> import_notes;                  // about the file of --from
     std::string inferred_stock;                             // reason; empty: stated
     bool speed_by_hand = false;                             // M3 starts the spindle without S
     bool allow_comments = false;  // (feeler: allow RULE) in the program has effect
     bool is_inferred = false;     // no file was read
     bool has_axes = false;        // it states all of the machine's axes
     bool uses_other_axes = false; // the program moves axes that no machine describes
-    bool infers_tools = false;    // no tool is stated: those of the program are inferred
     bool infers_frame = false;    // no work offset is stated
-    bool mesh_is_stated = false;  // the mesh size
-    bool touches_off = false;     // assumed: Z is touched off with each tool
+    // It does not describe a job yet, for which it would have to state work offsets, tools, and a
+    // stock or a fixture. What it leaves open is inferred as if it stated nothing.
+    bool is_partial = false;
+    bool mesh_is_stated = false; // the mesh size
+    bool touches_off = false;    // assumed: Z is touched off with each tool
     bool loses_machine = false; // machine bodies are left out: nobody knows where the work is on it
     Known stock_known{}, fixtures_known{}, offsets_known{}, limits_known{}; // missing
     bool limits_need_offsets = false; // the limits were dropped because no work offset is stated

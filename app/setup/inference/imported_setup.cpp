@@ -36,9 +36,9 @@ void take_job(FreeCadJob job, const std::string& path, SetupFile& file) {
     std::string about = fmt::format("tools{} are those of the job \"{}\" in {}",
                                     job.stock ? " and stock" : "", job.name, path);
     if (const std::string facts = facts_of(job); !facts.empty()) about += " (" + facts + ")";
-    file.assumptions.push_back(std::move(about));
+    file.import_notes.push_back(std::move(about));
     for (const std::string& note : job.notes)
-        file.assumptions.push_back(fmt::format("{}: {}", path, note));
+        file.import_notes.push_back(fmt::format("{}: {}", path, note));
     file.library = std::move(job.tools);
     if (!job.stock) return;
     file.setup.stock = *std::move(job.stock);
@@ -54,7 +54,7 @@ core::Result<void> take_import(const gcode::Program& program, const std::string&
     }
     const auto unit = unit_of_program(program, unit_at_start(file.environment));
     FEELER_TRY(file.library, read_tool_library(path, unit));
-    file.assumptions.push_back("tools are those of " + path);
+    file.import_notes.push_back("tools are those of " + path);
     return {};
 }
 
@@ -69,6 +69,8 @@ core::Result<SetupFile> infer_setup_with(const gcode::Program& program,
     FEELER_TRY(file.environment.dialect, gcode::supported(*file.dialect));
     if (auto taken = take_import(program, path, file); !taken)
         return tl::unexpected(core::in_file(std::move(taken).error(), path));
+    file.assumptions.insert(file.assumptions.end(), file.import_notes.begin(),
+                            file.import_notes.end());
     if (auto whole = complete_setup(file, program); !whole) return tl::unexpected(whole.error());
     return file;
 }

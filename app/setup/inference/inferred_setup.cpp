@@ -53,28 +53,68 @@ bool assume_extended_offsets(gcode::Environment& environment, const ProgramSurve
     return has_any;
 }
 
-/// Moves the work offsets of a bare set-up apart, as for workpieces clamped side by side, unless
-/// the program sets them itself.
+/// Puts the work offsets that a partial set-up leaves out where one is that it states.
+///
+/// Result: whether there is one.
+bool assume_other_offsets(SetupFile& file) {
+    if (!file.is_partial || file.infers_frame || file.offsets_set.empty()) return false;
+    gcode::Environment& environment = file.environment;
+    const gcode::AxisValues stated =
+        environment.work_offset(static_cast<size_t>(*file.offsets_set.begin()));
+    for (size_t i = 0; i < gcode::plain_offset_count; ++i)
+        if (environment.work_offsets[i] == gcode::AxisValues{}
+            && !file.offsets_set.contains(static_cast<int>(i)))
+            environment.work_offsets[i] = stated;
+    return true;
+}
+
+/// Moves the work offsets that nobody has stated apart, as for workpieces clamped side by side,
+/// unless the program sets them itself.
 ///
 /// Result: the assumptions; empty if nothing was moved.
-std::vector<std::string> move_apart(gcode::Environment& environment, const ProgramSurvey& seen) {
+std::vector<std::string> move_apart(SetupFile& file, const ProgramSurvey& seen) {
     const auto main = main_offset(seen);
     if (!main || seen.work_areas.size() < 2 || seen.sets_offsets) return {};
+    const auto is_stated = [&](size_t offset) {
+        return file.offsets_set.contains(static_cast<int>(offset));
+    };
+    const bool has_stated = std::any_of(seen.work_areas.begin(), seen.work_areas.end(),
+                                        [&](const auto& area) { return is_stated(area.first); });
+    const auto stays = [&](size_t offset) {
+        return has_stated ? is_stated(offset) : offset == *main;
+    };
+    double edge = -core::infinity;
     std::vector<std::string> others;
-    double edge = seen.work_areas.at(*main).reach.max.x;
     for (const auto& [offset, area] : seen.work_areas) {
-        if (offset == *main) continue;
-        others.push_back(gcode::name_of_offset(offset));
-        const double shift = edge + between - area.reach.min.x;
-        environment.writable_work_offset(offset)[0] += shift;
-        edge = area.reach.max.x + shift;
+        if (stays(offset)) edge = std::max(edge, area.reach.max.x);
+        if (offset != *main) others.push_back(gcode::name_of_offset(offset));
     }
+    bool has_moved = false;
+    for (const auto& [offset, area] : seen.work_areas) {
+        if (stays(offset)) continue;
+        const double shift = edge + between - area.reach.min.x;
+        file.environment.writable_work_offset(offset)[0] += shift;
+        edge = area.reach.max.x + shift;
+        has_moved = true;
+    }
+    if (!has_moved) return {};
     return {fmt::format("the program cuts in {} and {}, assumed to be separate workpieces. The "
                         "stock is at {}, where most is cut; there is none at {}, so cuts there "
                         "are not checked: to check them, state the offsets and a stock in a "
                         "set-up",
                         gcode::name_of_offset(*main), fmt::join(others, ", "),
                         gcode::name_of_offset(*main), fmt::join(others, ", "))};
+}
+
+/// Moves a stated stock with the work offset in whose coordinates it is, if nobody has stated that.
+void move_stock(SetupFile& file) {
+    const auto offset = gcode::offset_of_name(file.stock_frame);
+    const bool moves = offset && !file.offsets_set.contains(static_cast<int>(*offset))
+                       && !file.needs_stock && file.setup.fixtures.empty()
+                       && !file.setup.machine.has_rotary();
+    if (!moves) return;
+    const gcode::AxisValues origin = file.environment.work_offset(*offset);
+    file.setup.stock_mount.link_from_body.translation = {origin[0], origin[1], origin[2]};
 }
 
 /// A number for the tool in the spindle before the first tool call: that of the only partly
@@ -86,6 +126,12 @@ ToolNumber free_number(const ProgramSurvey& seen, const SetupFile& file) {
     while (std::find(seen.tools.begin(), seen.tools.end(), ToolNumber{number}) != seen.tools.end())
         ++number;
     return ToolNumber{number};
+}
+
+/// Whether a number is that of a tool, and neither the program nor the set-up has this tool.
+bool is_free(ToolNumber number, const ProgramSurvey& seen, const SetupFile& file) {
+    return core::value_of(number) > 0 && !file.setup.tools.contains(number)
+           && std::find(seen.tools.begin(), seen.tools.end(), number) == seen.tools.end();
 }
 
 /// A tool called a drill that cuts sideways becomes a mill of that diameter.
@@ -165,18 +211,18 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
     std::vector<FoundTool> missing;
     std::vector<ToolNumber> wanted = seen.tools;
     const bool only_empties = seen.tools.empty() && seen.empties_spindle;
-    if (file.infers_tools && only_empties) wanted.push_back(ToolNumber{0}); // it cuts after T0 M6
+    if (file.is_partial && only_empties) wanted.push_back(ToolNumber{0}); // it cuts after T0 M6
     for (const ToolNumber number : wanted) {
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
         // The only tool of a program whose calls have variables, as in T#1 M6.
         const bool is_only =
-            file.infers_tools && offered.in_spindle && offered.tools.empty() && wanted.size() == 1;
+            file.is_partial && offered.in_spindle && offered.tools.empty() && wanted.size() == 1;
         if (found != offered.tools.end() || is_only) {
             FoundTool tool = is_only ? *offered.in_spindle : found->second;
             tool.tool.number = number;
-            missing.push_back(file.infers_tools ? as_used(std::move(tool), seen) : tool);
-        } else if (file.infers_tools || file.partial_tools.contains(number)) {
+            missing.push_back(file.is_partial ? as_used(std::move(tool), seen) : tool);
+        } else if (file.is_partial || file.partial_tools.contains(number)) {
             missing.push_back(unknown_tool(number, mills(number), unit));
         }
     }
@@ -185,16 +231,22 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         if (name != seen.tool_names.end()) found.tool.name = name->second;
     }
     const bool one_is_held = seen.feeds_before_call || !seen.calls_tools;
-    if (!one_is_held || !file.setup.tools.empty() || file.setup.tool_at_start) return missing;
-    if (offered.in_spindle) {
+    const bool is_held_besides = file.is_partial && seen.calls_tools;
+    const bool is_stated = !file.setup.tools.empty() && !is_held_besides;
+    const std::optional<ToolNumber> at_start = file.setup.tool_at_start;
+    const bool is_known = at_start && (!file.is_partial || !is_free(*at_start, seen, file));
+    if (!one_is_held || is_stated || is_known) return missing;
+    const ToolNumber held = at_start.value_or(free_number(seen, file));
+    if (file.setup.tools.contains(held)) {
+        file.setup.tool_at_start = held;
+    } else if (offered.in_spindle) {
         missing.push_back(*offered.in_spindle);
-        if (core::value_of(missing.back().tool.number) == 0)
-            missing.back().tool.number = free_number(seen, file);
-    } else if (file.infers_tools) {
-        missing.push_back(unknown_tool(free_number(seen, file), mills(ToolNumber{0}), unit));
+        if (core::value_of(missing.back().tool.number) == 0) missing.back().tool.number = held;
+    } else if (file.is_partial) {
+        missing.push_back(unknown_tool(held, mills(ToolNumber{0}), unit));
     }
-    if (file.infers_tools && seen.calls_tools) {
-        file.setup.tool_at_start = missing.back().tool.number;
+    if (file.is_partial && seen.calls_tools && !at_start) {
+        if (!file.setup.tool_at_start) file.setup.tool_at_start = missing.back().tool.number;
         file.assumptions.push_back(
             fmt::format("the program cuts before its first tool call: tool {} is in the spindle",
                         core::value_of(*file.setup.tool_at_start)));
@@ -311,7 +363,8 @@ std::string stock_mismatch(const SetupFile& file, const gcode::Program& program,
 std::optional<std::string> leave_out_stock(SetupFile& file, const gcode::Program& program) {
     std::string why;
     if (const auto turning = turning_reason(program);
-        turning && (file.is_inferred || stands_for_no_stock(file.setup.stock))) {
+        turning
+        && (file.is_inferred || file.needs_stock || stands_for_no_stock(file.setup.stock))) {
         why = fmt::format("this is a lathe program, because {}. Turning is not checked: there is "
                           "no stock, and only the codes are checked",
                           *turning);
@@ -348,6 +401,17 @@ void assume_touch_off(SetupFile& file) {
         "the program uses no tool length offset: Z is touched off with each tool");
 }
 
+/// Whether nothing contradicts that Z is touched off with each tool: a stated work offset does,
+/// with a tool of which the true length counts.
+bool may_touch_off(const SetupFile& file) {
+    const auto& tools = file.setup.tools;
+    const auto is_touched_off = [](const auto& tool) {
+        return tool.second.description.touched_off.has_value();
+    };
+    return file.infers_frame
+           || (file.is_partial && std::all_of(tools.begin(), tools.end(), is_touched_off));
+}
+
 /// Assumes what an operator does by hand when running such a program.
 void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
     const bool cuts = !seen.mills.empty();
@@ -359,7 +423,6 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
         file.speed_by_hand = true;
         file.assumptions.push_back("the program has no spindle speed: it is set by hand");
     }
-    if (!seen.offsets_lengths) assume_touch_off(file);
 }
 
 /// Whether the set-up or the program states every work offset in whose coordinates the program
@@ -381,7 +444,7 @@ Known known_offsets(const SetupFile& file, const ProgramSurvey& seen) {
 void choose_mesh_size(SetupFile& file) {
     constexpr double cells = 600.0, usual = 0.5, finest = 0.05, least_cells = 40.0;
     constexpr double thin_cells = 4.0; // across the shortest side, whatever that takes
-    if (file.mesh_is_stated || !file.infers_tools || !file.infers_frame) return;
+    if (file.mesh_is_stated || !file.is_partial) return;
     const Vec3 size = core::bounds(file.setup.stock).size();
     const double longest = std::max({size.x, size.y, size.z});
     const double shortest = std::min({size.x, size.y, size.z});
@@ -452,7 +515,7 @@ std::vector<std::string> unknown_reaches(const core::Setup& setup) {
 
 core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     SetupFile file;
-    file.is_inferred = file.infers_tools = file.infers_frame = file.needs_stock = true;
+    file.is_inferred = file.is_partial = file.infers_frame = file.needs_stock = true;
     FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
@@ -482,22 +545,29 @@ core::Result<SetupFile> infer_setup(const gcode::Program& program,
 
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
     withdraw_start(file, program);
+    const bool has_other_offsets = assume_other_offsets(file);
     ProgramSurvey first = survey(program, file.environment, sizes(file, true));
     if (file.infers_frame && assume_extended_offsets(file.environment, first))
         first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(std::vector<FoundTool> tools, missing_tools(file, program, first));
     if (const auto fits = overlay(file, tools); !fits) return tl::unexpected(fits.error());
     add_notes_on_unused(file, tools);
-    if (file.infers_frame && !file.infers_tools && !first.offsets_lengths) assume_touch_off(file);
+    const bool touches_off = !first.offsets_lengths && may_touch_off(file);
+    if (touches_off && !file.setup.tools.empty()) assume_touch_off(file);
     put_tools(file, tools, first, 0.0);
+    file.tools_used.insert(first.tools.begin(), first.tools.end());
+    for (const FoundTool& tool : tools) file.tools_used.insert(tool.tool.number);
     assume_axes(file, first);
     file.stock_known = file.needs_stock ? Known::missing : Known::described;
     file.offsets_known = known_offsets(file, first);
     for (const auto& [offset, is_set] : first.offsets)
         if (offset < gcode::no_work_offset) file.offsets_used.insert(offset);
-    if (file.infers_tools) assume_handwork(file, first);
+    if (file.is_partial) assume_handwork(file, first);
+    if (touches_off && !file.touches_off) assume_touch_off(file);
     std::vector<std::string> about_stock;
-    if (file.infers_frame) about_stock = move_apart(file.environment, first);
+    if (file.infers_frame || has_other_offsets) about_stock = move_apart(file, first);
+    const bool is_apart = file.infers_frame || !about_stock.empty();
+    if (has_other_offsets) move_stock(file);
     if (!file.needs_stock) {
         choose_mesh_size(file);
         file.stock_mismatch = stock_mismatch(file, program, first);
@@ -505,7 +575,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     const bool has_stock = !file.needs_stock && !stands_for_no_stock(file.setup.stock);
     if (has_stock && tools.empty() && !file.is_inferred) return {};
     const SurveyTools known = sizes(file, first.calls_tools);
-    const auto offset = file.infers_frame ? main_offset(first) : std::nullopt;
+    const auto offset = is_apart ? main_offset(first) : std::nullopt;
     const ProgramSurvey seen = survey(program, file.environment, known, offset);
     if (const auto why = leave_out_stock(file, program)) {
         about_stock = {*why};
@@ -519,14 +589,34 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         core::bounds(file.setup.stock).max.z + file.setup.stock_mount.link_from_body.translation.z;
     const double deep = seen.feeds ? std::max(0.0, top - seen.lowest + 1.0) : 0.0;
     std::vector<std::string> notes = put_tools(file, tools, first, deep);
-    for (size_t i = 0; i < tools.size(); ++i)
+    for (size_t i = 0; i < tools.size(); ++i) {
         file.inferred_tools.insert_or_assign(tools[i].tool.number, notes[i]);
+        file.found_tools.insert_or_assign(tools[i].tool.number, tools[i]);
+    }
     if (!about_stock.empty()) file.inferred_stock = about_stock.back();
     for (std::string& note : unknown_reaches(file.setup)) notes.push_back(std::move(note));
     if (!file.not_judged.empty()) notes.clear(); // irrelevant: motions are not checked
     notes.insert(notes.end(), about_stock.begin(), about_stock.end());
     file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
     return {};
+}
+
+core::Result<SetupFile> completed_setup(const std::string& text, const std::string& path,
+                                        const gcode::Program& program,
+                                        const ProgramSettings& settings) {
+    FEELER_TRY(SetupFile file, read_setup_text(text, path, settings));
+    if (!file.dialect) {
+        FEELER_TRY(file.dialect, gcode::supported(gcode::recognise(program)));
+    }
+    FEELER_TRY(file.environment.dialect, gcode::supported(*file.dialect));
+    file.is_partial = true;
+    if (auto whole = complete_setup(file, program); !whole)
+        return tl::unexpected(core::in_file(std::move(whole).error(), path));
+    return file;
+}
+
+bool is_stock_of_program(const SetupFile& file) {
+    return file.needs_stock && file.stock_known == Known::described;
 }
 
 bool stands_for_no_stock(const core::Solid& stock) {
@@ -591,6 +681,7 @@ FoundTool unknown_tool(ToolNumber number, std::optional<bool> mills, gcode::Leng
     guess.tool.shape = mills.value_or(true) ? core::ToolShape::flat : core::ToolShape::drill;
     guess.tool.diameter = usual_diameter(unit);
     guess.has_shape = true;
+    guess.is_described = false;
     guess.source = fmt::format("its use alone: it {}, and nothing describes it",
                                !mills   ? "cuts nothing"
                                : *mills ? "cuts sideways"
@@ -605,7 +696,9 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     const auto partial = file.partial_tools.find(tool.number);
     const bool states_length =
         partial != file.partial_tools.end() && partial->second.stated.contains("touched_off");
-    if ((file.infers_tools || file.touches_off) && !states_length) {
+    const bool knows_lengths = !file.library.empty() || !file.tool_table.empty();
+    const bool is_guess = file.is_inferred || (file.is_partial && !knows_lengths);
+    if ((is_guess || file.touches_off) && !states_length) {
         tool.touched_off = control_length;
         tool.length_is_guess = control_length == 0.0;
     }
@@ -614,8 +707,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
         file.environment.length_offsets.find(core::OffsetNumber{core::value_of(tool.number)});
     const bool longer = entry != file.environment.length_offsets.end()
                         && entry->second.length > tool.stick_out.value_or(0.0);
-    if (!file.infers_tools && longer && !tool.gauge_length)
-        tool.gauge_length = entry->second.length;
+    if (!is_guess && longer && !tool.gauge_length) tool.gauge_length = entry->second.length;
     const bool is_held =
         found.tool.stick_out || found.tool.gauge_length || !found.tool.holder.empty();
     auto assembled = core::assemble(tool);

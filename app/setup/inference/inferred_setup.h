@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 
 #include "app/setup/tools/found_tool.h"
 #include "core/base/ids.h"
@@ -34,12 +35,22 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings);
 core::Result<SetupFile> infer_setup(const gcode::Program& program, const ProgramSettings& settings);
 
 /// Adds what a set-up does not state and the program implies: tools from its comments and from the
-/// set-up's library, the stock from the program or its cutting moves; if the set-up states no tools
-/// at all, also unknown tools, and a spindle switched on by hand. Stated values stay. Every guess
-/// becomes an assumption. So a set-up that states little is completed as one that states nothing.
+/// set-up's library, the stock from the program or its cutting moves; if the set-up is partial,
+/// also unknown tools, and a spindle switched on by hand. Stated values stay. Every guess becomes
+/// an assumption. So a set-up that states little is completed as one that states nothing.
 ///
 /// Errors: a tool table that cannot be read.
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program);
+
+/// The set-up in a text, completed as a partial one, whatever it states.
+///
+/// `path`: of its file. Errors: those of the text and of the files that it names.
+core::Result<SetupFile> completed_setup(const std::string& text, const std::string& path,
+                                        const gcode::Program& program,
+                                        const ProgramSettings& settings);
+
+/// Whether the stock of a complete set-up is the one that the program states.
+bool is_stock_of_program(const SetupFile& file);
 
 /// Whether a stock is the one that `feeler setup` writes for programs that are not known to cut.
 bool stands_for_no_stock(const core::Solid& stock);

@@ -17,6 +17,7 @@ struct FoundTool {
     bool has_diameter = true;           // else a common diameter is assumed
     std::string source;                 // "the comment in line 12", to follow "according to"
     std::vector<std::string> assumed{}; // what its reader assumed, each to precede "is assumed"
+    bool is_described = true;           // else only its use is known
 };
 
 /// A tool completed with the sizes that such tools usually have.
