@@ -42,7 +42,9 @@ core::Result<void> write_setup(const SetupOptions& options) {
     FEELER_TRY(const SetupFile setup, options.import.empty()
                                           ? infer_setup(program, settings)
                                           : infer_setup_with(program, settings, options.import));
-    return write_output(options.output, setup_text(setup, options.program), read);
+    const std::string folder = std::filesystem::path(options.output).parent_path().generic_string();
+    return write_output(options.output, setup_text(setup, {options.program, settings, folder}),
+                        read);
 }
 
 core::Result<ExitCode> carry_out(const SetupOptions& options) {

@@ -1,5 +1,9 @@
 #include "app/setup/setup_text.h"
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -7,9 +11,9 @@
 
 #include "app/base/text.h"
 #include "app/setup/coverage.h"
+#include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
 #include "gcode/language/canonical.h"
-#include "gcode/language/control.h"
 #include "gcode/language/dialect.h"
 
 namespace app {
@@ -91,34 +95,12 @@ std::string tool_table(const core::ToolDescription& tool) {
     return text;
 }
 
-std::string stock_table(const core::Solid& stock, std::string_view frame) {
-    const auto triple = [](const core::Vec3& v) {
-        return fmt::format("[{}, {}, {}]", toml_number(v.x), toml_number(v.y), toml_number(v.z));
-    };
-    std::string text = "\n[stock]";
-    if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
-        text += fmt::format("     # two corners\nbox = [{}, {}]\n", triple(box->box.min),
-                            triple(box->box.max));
-    } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
-        text += fmt::format(
-            "     # base centre at `at`\ncylinder = {{ radius = {}, height = {}, axis = "
-            "\"{}\" }}\nat = {}\n",
-            toml_number(round->radius), toml_number(round->height), "XYZ"[round->axis],
-            triple(round->base));
-    } else {
-        return {};
-    }
-    text += fmt::format("frame = {}\n", toml_text(frame));
-    if (stock.tolerance > 0.0) text += key("tolerance", stock.tolerance);
-    return text;
-}
-
 namespace {
 
 /// A text as comment lines; a line end in it does not end the comment.
 std::string comment(const std::string& text) {
     std::string lines;
-    for (const char c : wrapped(utf8_text(text), 1, 2)) {
+    for (const char c : wrapped(utf8_text(text), 1)) {
         const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
         lines += is_control && c != '\n' ? ' ' : c;
     }
@@ -131,128 +113,260 @@ std::string comment(const std::string& text) {
     return commented;
 }
 
-std::string program_text(const SetupFile& setup) {
-    const gcode::Position& start = setup.environment.start;
-    std::string text = "\n[program]\n";
-    if (setup.dialect)
-        text += fmt::format("dialect = \"{}\"\n", gcode::dialect(*setup.dialect).name);
-    text += fmt::format("start = {{ X = {}, Y = {}, Z = {} }}     # machine coordinates\n",
-                        toml_number(start[0].value_or(0.0)), toml_number(start[1].value_or(0.0)),
-                        toml_number(start[2].value_or(0.0)));
-    if (setup.environment.machine_unit == gcode::LengthUnit::inch) text += "unit = \"inch\"\n";
-    if (const auto units = setup.environment.units_at_start)
-        text += fmt::format("units_at_start = \"{}\"\n",
-                            *units == gcode::LengthUnit::inch ? "inch" : "mm");
-    if (setup.environment.counts_smallest_steps) text += "no_decimal_point = \"steps\"\n";
-    if (setup.environment.block_delete) text += "block_delete = true\n";
-    if (setup.setup.tool_at_start)
-        text += fmt::format("tool_at_start = {}\n", core::value_of(*setup.setup.tool_at_start));
-    if (setup.setup.spindle_at_start == core::SpindleDirection::clockwise)
-        text += "spindle_at_start = \"clockwise\"     # the program never starts it\n";
-    if (setup.speed_by_hand) text += "speed_by_hand = true     # the program has no S\n";
+/// A line of the file with a remark in a common column. `is_known`: else it is commented out.
+std::string line(bool is_known, const std::string& statement, const std::string& remark = {}) {
+    constexpr size_t column = 30;
+    std::string text = (is_known ? "" : "#") + statement;
+    if (remark.empty()) return text + "\n";
+    text.resize(std::max(text.size() + 2, column), ' ');
+    return text + "# " + remark + "\n";
+}
+
+std::string stated(std::string_view key, const std::string& value) {
+    return fmt::format("{} = {}", key, value);
+}
+
+std::string position_text(const gcode::Position& position) {
+    std::vector<std::string> axes;
+    for (size_t i = 0; i < position.size(); ++i)
+        if (position[i] && (i < 3 || *position[i] != 0.0))
+            axes.push_back(
+                fmt::format("{} = {}", core::axis_letters[i], setup_number(*position[i])));
+    return fmt::format("{{ {} }}", fmt::join(axes, ", "));
+}
+
+std::string origin_text(const gcode::AxisValues& origin) {
+    gcode::Position position;
+    for (size_t i = 0; i < position.size(); ++i) position[i] = origin[i];
+    return position_text(position);
+}
+
+/// A path as it is stated in a file of this folder.
+std::string path_text(const std::string& path, const std::string& folder) {
+    std::error_code failed;
+    const auto near = std::filesystem::proximate(path, folder.empty() ? "." : folder, failed);
+    return toml_text((failed ? std::filesystem::path(path) : near).generic_string());
+}
+
+/// What the options of the command line state.
+std::string options_text(const SetupFile& setup, const SetupOrigin& origin) {
+    const ProgramSettings& options = origin.settings;
+    const gcode::Environment& environment = setup.environment;
+    std::string text;
+    const auto state = [&](const char* key, const std::string& value) {
+        text += line(true, stated(key, value));
+    };
+    if (environment.machine_unit == gcode::LengthUnit::inch) state("unit", "\"inch\"");
+    if (const auto units = environment.units_at_start)
+        state("units_at_start", *units == gcode::LengthUnit::inch ? "\"inch\"" : "\"mm\"");
+    if (environment.counts_smallest_steps) state("no_decimal_point", "\"steps\"");
+    if (environment.block_delete) state("block_delete", "true");
+    if (options.max_blocks) state("max_blocks", fmt::format("{}", *options.max_blocks));
+    if (!options.parameters.empty())
+        state("parameters", path_text(options.parameters, origin.folder));
+    if (!options.tool_table.empty())
+        state("tool_table", path_text(options.tool_table, origin.folder));
+    std::vector<std::string> folders;
+    for (const std::string& path : options.search_path)
+        folders.push_back(path_text(path, origin.folder));
+    if (!folders.empty()) state("search_path", fmt::format("[{}]", fmt::join(folders, ", ")));
     return text;
 }
 
-/// The parameters of the control that a user should state, as comments.
-std::string control_text(const SetupFile& setup) {
-    if (!setup.dialect) return {};
-    std::string text;
-    for (const gcode::ControlParameter& parameter : gcode::control_parameters()) {
-        if (!parameter.is_open() || parameter.key.empty()
-            || gcode::find_parameter(parameter.key, *setup.dialect) != &parameter)
-            continue;
-        const gcode::ParameterValue& other = parameter.values[1];
-        text += comment(fmt::format(
-            "\"{}\" = {}, {}; {}: {}", parameter.key, parameter.choices(), parameter.name,
-            other.word.empty() ? fmt::format("{:g}", other.number) : std::string(other.word),
-            other.text));
-    }
-    return text.empty() ? text : "\n# [control]     # how the control is set\n" + text;
+std::string program_text(const SetupFile& setup, const SetupOrigin& origin) {
+    const std::optional<core::ToolNumber> tool = setup.setup.tool_at_start;
+    std::string text = "\n[program]\n";
+    if (setup.dialect)
+        text += line(true, stated("dialect", toml_text(gcode::dialect(*setup.dialect).name)));
+    text += options_text(setup, origin);
+    text += line(!setup.infers_start, stated("start", position_text(setup.environment.start)),
+                 "machine coordinates");
+    if (tool)
+        text += line(false, stated("tool_at_start", fmt::format("{}", core::value_of(*tool))),
+                     "it cuts before the first tool call");
+    if (setup.setup.spindle_at_start == core::SpindleDirection::clockwise)
+        text +=
+            line(false, stated("spindle_at_start", "\"clockwise\""), "the program never starts it");
+    if (setup.speed_by_hand)
+        text += line(false, stated("speed_by_hand", "true"), "the program has no S");
+    return text;
 }
 
 /// The axes with their assumed home.
 std::string machine_text(const SetupFile& setup) {
-    if (!setup.environment.home) return {};
-    constexpr const char* directions[] = {"[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"};
-    std::string text;
+    std::string text = "\n" + line(false, "[machine]", "or file = \"MACHINE.toml\"");
     if (setup.uses_other_axes)
-        text +=
-            "\n[machine]\nother_axes = \"not described\"     # remove it when all axes are below\n";
+        text += line(false, stated("other_axes", "\"not described\""),
+                     "remove it when all axes are below");
+    const gcode::AxisValues home = setup.environment.home.value_or(gcode::AxisValues{});
+    std::vector<std::string> axes;
     for (size_t axis = 0; axis < 3; ++axis)
-        text += fmt::format("\n[[machine.axis]]{}\nname = \"{}\"\ndirection = {}\nhome = {}\n",
-                            axis == 0 ? "     # add min, max and rapid (mm/min)" : "",
-                            gcode::axis_letters[axis], directions[axis],
-                            toml_number((*setup.environment.home)[axis]));
-    return text;
+        axes.push_back(fmt::format("{{ name = \"{}\", home = {} }}", core::axis_letters[axis],
+                                   setup_number(home[axis])));
+    return text + comment("  add min, max and rapid (mm/min) of each axis")
+           + line(false, stated("axis", fmt::format("[{}]", fmt::join(axes, ", "))));
 }
 
-std::string offsets_text(const SetupFile& setup) {
-    std::string text = "\n[offsets]     # machine coordinates of each origin\n";
-    const auto add = [&](size_t index, const gcode::AxisValues& origin) {
-        const std::string name = gcode::name_of_offset(index);
-        const bool is_bare_key = name.find_first_of(". ") == std::string::npos;
-        text +=
-            fmt::format("{} = {{ X = {}, Y = {}, Z = {} }}\n", is_bare_key ? name : toml_text(name),
-                        toml_number(origin[0]), toml_number(origin[1]), toml_number(origin[2]));
-    };
-    for (size_t i = 0; i < gcode::plain_offset_count; ++i)
-        add(i, setup.environment.work_offsets[i]);
-    for (const auto& [index, origin] : setup.environment.extended_offsets) add(index, origin);
-    return text;
-}
-
-/// The work offset at whose origin the stock is mounted.
-std::string stock_frame(const SetupFile& setup) {
-    const core::Vec3& mount = setup.setup.stock_mount.link_from_body.translation;
-    const auto is_mount = [&](const gcode::AxisValues& origin) {
-        return core::Vec3(origin[0], origin[1], origin[2]) == mount;
-    };
-    for (size_t i = 0; i < gcode::plain_offset_count; ++i)
-        if (is_mount(setup.environment.work_offsets[i])) return gcode::name_of_offset(i);
-    for (const auto& [index, origin] : setup.environment.extended_offsets)
-        if (is_mount(origin)) return gcode::name_of_offset(index);
-    return "G54";
-}
-
-std::string rules_text(const SetupFile& setup) {
-    if (setup.setup.rules.empty()) return {};
-    std::string text = "\n[rules]\n";
-    for (const auto& [rule, severity] : setup.setup.rules)
-        text += fmt::format("{} = \"{}\"\n", rule, core::name_of(severity));
-    return text;
-}
-
-/// What the file states and nobody knows yet.
-std::string assumed_text(const SetupFile& setup) {
-    std::vector<std::string> words;
-    const auto add = [&](bool is_assumed, std::string_view word) {
-        if (is_assumed) words.push_back(fmt::format("\"{}\"", word));
-    };
-    add(setup.stock_known == Known::inferred, "stock");
-    add(setup.offsets_known == Known::inferred, "offsets");
-    add(setup.infers_start, "start");
-    if (words.empty()) return {};
-    return fmt::format("assumed = [{}]     # remove each word when you have compared it with the "
-                       "machine\n",
-                       fmt::join(words, ", "));
+std::string offset_key(size_t index) {
+    const std::string name = gcode::name_of_offset(index);
+    return name.find_first_of(". ") == std::string::npos ? name : toml_text(name);
 }
 
 } // namespace
 
-std::string setup_text(const SetupFile& setup, const std::string& program) {
-    std::string text = comment("Set-up inferred from the program " + program
-                               + ", with these assumptions. Compare it with the real machine, "
-                                 "add the fixtures, and check the program against it.");
-    text += "#\n";
-    for (const std::string& assumption : setup.assumptions) text += comment("- " + assumption);
-    text += fmt::format("\nmesh_size = {}\n", toml_number(setup.setup.mesh_size));
-    text += assumed_text(setup);
-    if (setup.setup.allowance)
-        text += fmt::format("allowance = {}\n", toml_number(*setup.setup.allowance));
-    text += program_text(setup) + control_text(setup) + machine_text(setup) + offsets_text(setup)
-            + stock_table(setup.setup.stock, stock_frame(setup));
-    for (const auto& [tool_number, tool] : setup.setup.tools) text += tool_table(tool.description);
-    return text + rules_text(setup);
+std::string offsets_header() {
+    return "\n" + line(false, "[offsets]", "machine coordinates of each origin, without a tool");
+}
+
+std::string offset_line(const SetupFile& setup, size_t index) {
+    return line(false,
+                stated(offset_key(index), origin_text(setup.environment.work_offset(index))));
+}
+
+namespace {
+
+/// The work offsets of the program.
+std::string offsets_text(const SetupFile& setup) {
+    std::string text = offsets_header();
+    std::set<size_t> used = setup.offsets_used;
+    if (used.empty()) used.insert(0);
+    for (const size_t index : used) text += offset_line(setup, index);
+    return text;
+}
+
+/// The work offset at whose origin the stock is mounted, if possible one of the program.
+std::string stock_frame(const SetupFile& setup) {
+    const core::Vec3& mount = setup.setup.stock_mount.link_from_body.translation;
+    const auto is_mount = [&](size_t index) {
+        const gcode::AxisValues origin = setup.environment.work_offset(index);
+        return core::Vec3(origin[0], origin[1], origin[2]) == mount;
+    };
+    for (const size_t index : setup.offsets_used)
+        if (is_mount(index)) return gcode::name_of_offset(index);
+    return "G54";
+}
+
+/// A `[stock]` that gives this box or cylinder; empty for a mesh, which needs a file.
+std::string stock_table(const core::Solid& stock, std::string_view frame) {
+    std::string text = "[stock]";
+    if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
+        text += fmt::format("                       # two corners\nbox = [{}, {}]\n",
+                            setup_vector(box->box.min), setup_vector(box->box.max));
+    } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
+        text += fmt::format("                       # base centre at `at`\ncylinder = {{ radius = "
+                            "{}, height = {}, axis = "
+                            "\"{}\" }}\nat = {}\n",
+                            setup_number(round->radius), setup_number(round->height),
+                            "XYZ"[round->axis], setup_vector(round->base));
+    } else {
+        return {};
+    }
+    text += fmt::format("frame = {}\n", toml_text(frame));
+    if (stock.tolerance > 0.0)
+        text += line(true, stated("tolerance", setup_number(stock.tolerance)));
+    return text;
+}
+
+/// A table as lines that are commented out.
+std::string commented_out(const std::string& table) {
+    std::string text;
+    for (size_t at = 0; at < table.size();) {
+        const size_t end = std::min(table.find('\n', at), table.size());
+        text += (end > at ? "#" : "") + table.substr(at, end - at) + "\n";
+        at = end + 1;
+    }
+    return text;
+}
+
+bool has_stock(const SetupFile& setup) {
+    const core::Vec3 size = core::bounds(setup.setup.stock).size();
+    return std::min({size.x, size.y, size.z}) > 0.0 && setup.not_judged.empty()
+           && setup.stock_known != Known::missing;
+}
+
+} // namespace
+
+std::string stock_text(const SetupFile& setup) {
+    if (!has_stock(setup)) return {};
+    const std::string table = stock_table(setup.setup.stock, stock_frame(setup));
+    const std::string why = setup.inferred_stock.empty() ? "" : comment(setup.inferred_stock);
+    if (table.empty()) return {};
+    return "\n" + why + (setup.stock_known == Known::described ? table : commented_out(table));
+}
+
+namespace {
+
+/// An example: a plate below the stock, where it is not in the way.
+std::string fixture_text(const SetupFile& setup) {
+    constexpr double gap = 10.0, thickness = 20.0; // mm
+    core::Aabb box{core::Vec3(0.0, 0.0, -100.0), core::Vec3(100.0, 100.0, 0.0)};
+    if (has_stock(setup)) box = core::bounds(setup.setup.stock);
+    const double top = std::floor(box.min.z - gap);
+    const core::Vec3 low(std::floor(box.min.x), std::floor(box.min.y), top - thickness);
+    const core::Vec3 high(std::ceil(box.max.x), std::ceil(box.max.y), top);
+    return "\n" + comment("Examples of a fixture: a plate below the stock, or mesh = \"VISE.stl\".")
+           + line(false, "[[fixture]]") + line(false, stated("name", "\"plate\""))
+           + line(false,
+                  stated("box", fmt::format("[{}, {}]", setup_vector(low), setup_vector(high))))
+           + line(false, stated("frame", toml_text(stock_frame(setup))));
+}
+
+/// What a source says about a tool, and as comments what is assumed.
+std::string partial_tool_text(const FoundTool& found, const core::ToolDescription& whole) {
+    std::string text =
+        "\n"
+        + comment(fmt::format("{}, according to {}", core::description_of(found.tool.shape),
+                              found.source))
+        + "[[tool]]\n"
+        + line(true, stated("number", fmt::format("{}", core::value_of(whole.number))));
+    if (!whole.name.empty()) text += line(false, stated("name", toml_text(whole.name)));
+    for (const core::ToolSize& size : core::tool_sizes()) {
+        const auto value = size.of(whole);
+        if (!value || !size.shapes.contains(whole.shape)) continue;
+        const std::string_view key = size.key;
+        const bool is_diameter = key == "diameter";
+        const bool is_known =
+            found.is_described && size.of(found.tool) && (!is_diameter || found.has_diameter);
+        if (key == "shank_diameter" && !is_known) continue;
+        text += line(is_known, stated(key, setup_number(*value)),
+                     key == "stick_out" ? "from the tip to the holder" : "");
+    }
+    return text + line(false, stated("holder", "\"BT40-ER32\""), "or other cones, see the manual");
+}
+
+/// A tool of a library, which describes it completely.
+std::string library_tool_text(core::ToolDescription tool) {
+    const bool is_plain =
+        tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
+    if (is_plain && tool.stick_out) {
+        tool.shank_diameter = tool.shank[0].lower_diameter;
+        tool.shank.clear();
+    }
+    return tool_table(tool);
+}
+
+} // namespace
+
+std::string tool_text(const SetupFile& setup, core::ToolNumber number) {
+    const core::ToolDescription& tool = setup.setup.tools.at(number).description;
+    const auto found = setup.found_tools.find(number);
+    const bool is_partial = found != setup.found_tools.end() && !setup.library.contains(number);
+    return is_partial ? partial_tool_text(found->second, tool) : library_tool_text(tool);
+}
+
+std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {
+    std::string text = comment("Set-up of the program " + origin.program + ".");
+    for (const std::string& note : setup.import_notes) text += comment("- " + note);
+    text += "#\n"
+            + comment("A line that begins with # and no blank is an assumption or an example. "
+                      "Remove the # when you have compared it with the machine, and that of the "
+                      "[table] above it.");
+    text += "\n" + line(false, stated("mesh_size", setup_number(setup.setup.mesh_size)))
+            + line(false, stated("fixtures", "\"none\""), "or describe them below");
+    text += program_text(setup, origin) + machine_text(setup) + offsets_text(setup)
+            + stock_text(setup) + fixture_text(setup);
+    for (const auto& [number, tool] : setup.setup.tools) text += tool_text(setup, number);
+    return text;
 }
 
 } // namespace app

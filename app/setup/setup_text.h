@@ -3,14 +3,23 @@
 #include <string>
 #include <string_view>
 
+#include "app/setup/program_settings.h"
+#include "core/base/ids.h"
+
 namespace core {
-struct Solid;
 struct ToolDescription;
 } // namespace core
 
 namespace app {
 
 struct SetupFile;
+
+/// Where a set-up comes from.
+struct SetupOrigin {
+    std::string program; // path
+    ProgramSettings settings{};
+    std::string folder{}; // of the set-up file; empty: the current one
+};
 
 /// A number in TOML, exact to the last bit; whole numbers are written without a fraction.
 std::string toml_number(double value);
@@ -21,12 +30,19 @@ std::string toml_text(std::string_view text);
 /// A `[[tool]]` that gives this tool when read, exact to the last bit.
 std::string tool_table(const core::ToolDescription& tool);
 
-/// A `[stock]` that gives this box or cylinder when read; empty for a mesh, which needs a file.
-std::string stock_table(const core::Solid& stock, std::string_view frame);
+/// Parts of a set-up file, each after an empty line, with assumed lines commented out. A tool or a
+/// stock of which the file is to state nothing gives only comments.
+std::string tool_text(const SetupFile& setup, core::ToolNumber number);
+std::string stock_text(const SetupFile& setup);
+std::string offsets_header();
+/// The line of a work offset, which is commented out.
+std::string offset_line(const SetupFile& setup, size_t index);
 
-/// A set-up as a file for `check --setup`, with the assumptions as comments.
+/// A complete set-up as a file for `check --setup`. It states what the program and the options
+/// state, and has assumptions and examples as lines that are commented out. So a check with it
+/// completes it as it completes no set-up.
 ///
-/// Result: numbers are exact to the last bit, so the file gives the same set-up when read.
-std::string setup_text(const SetupFile& setup, const std::string& program);
+/// Result: lengths are rounded to 1e-6 mm.
+std::string setup_text(const SetupFile& setup, const SetupOrigin& origin);
 
 } // namespace app

@@ -171,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(
                      std::string(fanuc_head)
                          + "G54 G0 X0. Y0. S1000 M3\nG43 H2 Z50.\nZ5.\nG1 Z-2. F200.\nX50.\n"
                            "G0 Z50.\nG49\nG65 P9000 A1.\nM30\nO9000\nM99\n%\n",
-                     "open-premise 11", "touched_off = \"unknown\""},
+                     "open-premise 11", "[[tool]]\nnumber = 2\n"},
         WrittenSetUp{"numbered.nc",
                      std::string(fanuc_head)
                          + "G54.1 P3 G0 X0. Y0. S1000 M3\nG43 H2 Z50.\nZ5.\nG1 Z-2. F200.\n"

@@ -324,7 +324,7 @@ TEST(InferredSetup, WrittenToAFileMeansTheSame) {
         const auto program = gcode::read_program(path);
         const auto setup = app::infer_setup(*program, {});
         ASSERT_TRUE(before && setup);
-        job.setup = folder.write("s.toml", app::setup_text(*setup, path));
+        job.setup = folder.write("s.toml", app::setup_text(*setup, {.program = path}));
         const auto after = app::read_check(job);
         ASSERT_TRUE(after) << path << ": " << after.error().message;
         expect_same(*before, *after, path);
@@ -334,7 +334,8 @@ TEST(InferredSetup, WrittenToAFileMeansTheSame) {
 TEST(InferredSetup, IsUtf8ForAnyNameOfTheProgram) {
     const test_support::ScopedFolder folder;
     const auto program = gcode::read_program(folder.write("p.nc", pocket));
-    const std::string text = app::setup_text(*app::infer_setup(*program, {}), "fr\xE4s.nc");
+    const std::string text =
+        app::setup_text(*app::infer_setup(*program, {}), {.program = "fr\xE4s.nc"});
     EXPECT_THAT(text, HasSubstr("fr\xC3\xA4s.nc"));
 }
 
