@@ -2,7 +2,9 @@
 #include <memory>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "app/base/text.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
@@ -14,6 +16,8 @@
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
+#include "app/setup/setup_update.h"
+#include "core/base/file_reads.h"
 #include "gcode/text/source.h"
 
 namespace app {
@@ -21,22 +25,31 @@ namespace {
 
 struct SetupOptions {
     std::string program, output, import;
-    bool force = false;
+    bool force = false, update = false;
     ProgramArguments reading;
     ControlArguments control;
 };
 
-core::Result<void> write_setup(const SetupOptions& options) {
-    const ReadFiles read;
+/// Refuses to replace the program, or without --force a file that is there already.
+core::Result<void> check_place(const SetupOptions& options) {
     if (auto safe = check_output(options.output, {options.program}); !safe) return safe;
     std::error_code ignored;
     if (!options.force && std::filesystem::is_regular_file(options.output, ignored))
         return tl::unexpected<core::Error>(
             {core::ErrorCode::invalid_value,
              {},
-             "is there already and may contain what you have written: choose another file for -o, "
-             "or replace it with --force",
+             "is there already and may contain what you have written: add to it with --update, "
+             "choose another file for -o, or replace it with --force",
              options.output});
+    return {};
+}
+
+core::Result<void> write_setup(const SetupOptions& options) {
+    const ReadFiles read;
+    if (!options.control.setup.empty())
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::invalid_value, {}, "--setup needs --update or --control", {}});
+    if (auto free = check_place(options); !free) return free;
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
     FEELER_TRY(const SetupFile setup, options.import.empty()
@@ -47,7 +60,49 @@ core::Result<void> write_setup(const SetupOptions& options) {
                         read);
 }
 
+void print_update(const SetupUpdate& update, const std::string& path) {
+    std::string text;
+    for (const std::string& each : update.added) text += wrapped("added: " + each, 0, 2);
+    for (const std::string& each : update.unused)
+        text += wrapped("not used by the program: " + each, 0, 2);
+    if (update.added.empty()) text += path + " has everything that the program says already\n";
+    std::fputs(printable(text).c_str(), stdout);
+}
+
+core::Result<void> update_setup(const SetupOptions& options) {
+    const ReadFiles read;
+    const std::string path =
+        options.control.setup.empty() ? setup_next_to(options.program) : options.control.setup;
+    if (path.empty())
+        return tl::unexpected<core::Error>(
+            {core::ErrorCode::invalid_value,
+             {},
+             "has no set-up next to it: name one with --setup, or write one with -o",
+             options.program});
+    const std::string output = options.output.empty() ? path : options.output;
+    if (output != path) {
+        if (auto free = check_place(options); !free) return free;
+    }
+    FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
+    FEELER_TRY(const gcode::Program program, gcode::read_program(options.program));
+    const auto text = core::file_bytes(path);
+    if (!text)
+        return tl::unexpected<core::Error>({core::ErrorCode::io, {}, "cannot be read", path});
+    FEELER_TRY(const SetupFile file, completed_setup(*text, path, program, settings));
+    auto update = updated_setup(*text, file);
+    if (!update) return tl::unexpected(core::in_file(std::move(update).error(), path));
+    if (output != path || update->text != *text) {
+        if (auto written = write_output(output, update->text); !written) return written;
+    }
+    print_update(*update, output);
+    return {};
+}
+
 core::Result<ExitCode> carry_out(const SetupOptions& options) {
+    if (options.update) {
+        if (auto done = update_setup(options); !done) return tl::unexpected(done.error());
+        return ExitCode::clear;
+    }
     if (!options.control.files.empty())
         return compare_with_control(options.program, options.reading, options.control,
                                     options.output);
@@ -69,11 +124,15 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
     add_path(command, "program", options->program, "NC program")->required();
     add_path(command, "-o,--output", options->output, "File for the set-up");
     command.add_flag("--force", options->force, "Replace the file if it is there already");
+    command.add_flag("--update", options->update,
+                     "Add to the set-up what the program says and the set-up lacks");
     add_path(command, "--from", options->import,
              "Take tools and stock from a FreeCAD job (.FCStd), or tools from a library (.tools, "
              ".hsmlib, .json, .fctl, .fctb, .tbl)");
     add_control_arguments(command, options->control);
     command.get_option("--from")->excludes(command.get_option("--control"));
+    for (const char* other : {"--from", "--control"})
+        command.get_option("--update")->excludes(command.get_option(other));
     add_program_arguments(command, options->reading);
     command.callback([options, &exit_code] { exit_code = setup(*options); });
 }

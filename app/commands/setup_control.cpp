@@ -38,8 +38,7 @@ void add_control_arguments(CLI::App& command, ControlArguments& arguments) {
                  "repeated")
             ->allow_extra_args(false);
     add_path(command, "--setup", arguments.setup,
-             "The set-up to be compared; default: NAME.toml next to NAME.nc")
-        ->needs(files);
+             "The set-up to be compared or updated; default: NAME.toml next to NAME.nc");
     command.add_option("--format", arguments.format, "Of the comparison: text or json")
         ->check(one_of({"text", "json"}))
         ->capture_default_str()
