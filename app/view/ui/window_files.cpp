@@ -3,6 +3,7 @@
 #include "app/check/check_job.h"
 #include "app/view/model/file_browser.h"
 #include "app/view/model/file_watch.h"
+#include "app/view/model/folder_listing.h"
 #include "app/view/model/navigation.h"
 #include "app/view/ui/window.h"
 #include "core/base/file_reads.h"
