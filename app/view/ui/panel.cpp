@@ -344,6 +344,16 @@ void wrapped_text(ImFont* font, ImU32 color, const std::string& words) {
     ImGui::PopTextWrapPos();
 }
 
+void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::string& words) {
+    ImFont* const font = frame.fonts.text;
+    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
+    const float x = frame.px(11), y = frame.px(6);
+    list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
+                       frame.palette.color(render::Role::panel, 0.86), frame.px(5));
+    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y},
+                 frame.palette.color(render::Role::text), words.c_str());
+}
+
 std::string clock_text(double seconds) {
     constexpr double longest = 3.6e9; // a million hours
     if (!(seconds < longest)) return "> 1,000,000 h";

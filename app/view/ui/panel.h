@@ -139,6 +139,9 @@ void text(ImFont* font, ImU32 color, const std::string& words);
 /// As text(), wrapped at the edge of the panel.
 void wrapped_text(ImFont* font, ImU32 color, const std::string& words);
 
+/// Draws words in a box with round corners, in front of a picture.
+void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::string& words);
+
 /// A tooltip for the last item.
 void tip(const Frame& frame, const std::string& words);
 

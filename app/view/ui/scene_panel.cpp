@@ -7,14 +7,12 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include "app/setup/stated_setup.h"
 #include "app/view/model/navigation.h"
-#include "app/view/model/placing.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/section.h"
 #include "app/view/model/view_model.h"
-#include "app/view/ui/gizmo.h"
 #include "app/view/ui/panels.h"
+#include "app/view/ui/placing_overlay.h"
 #include "core/base/math.h"
 #include "core/base/units.h"
 #include "render/ground.h"
@@ -61,16 +59,6 @@ void draw_tag(const Frame& frame, ImDrawList& list, ImVec2 middle, const std::st
     const ImVec2 b(middle.x + 0.5F * size.x + x, middle.y + 0.5F * size.y + y);
     list.AddRectFilled(a, b, fill, frame.px(4));
     list.AddText(font, font->FontSize, {a.x + x, a.y + y}, ink, words.c_str());
-}
-
-void draw_pill(const Frame& frame, ImDrawList& list, ImVec2 corner, const std::string& words) {
-    ImFont* const font = frame.fonts.text;
-    const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9F, 0.0F, words.c_str());
-    const float x = frame.px(11), y = frame.px(6);
-    list.AddRectFilled(corner, {corner.x + size.x + 2 * x, corner.y + size.y + 2 * y},
-                       frame.palette.color(Role::panel, 0.86), frame.px(5));
-    list.AddText(font, font->FontSize, {corner.x + x, corner.y + y},
-                 frame.palette.color(Role::text), words.c_str());
 }
 
 /// Draws the summary of an inferred set-up over the view, so that it cannot be overlooked.
@@ -234,10 +222,6 @@ struct ScenePanel::State {
     void find_again(ViewModel& model, const render::Viewport& size);
     bool draws_coarsely();
     void draw_axes(Frame& frame, const Area& area);
-    bool draw_gizmo(Frame& frame, const Area& area, const render::Viewport& size);
-    void find_picks(Frame& frame, const Area& area, const render::Viewport& size);
-    void draw_picks(Frame& frame, const Area& area, const render::Viewport& size);
-    void select_clicked(ViewModel& model, const render::Pick& found);
 
     render::Renderer renderer_;
     std::optional<render::Canvas> canvas_;
@@ -246,8 +230,7 @@ struct ScenePanel::State {
     int samples_ = 1;
     uint64_t framed_ = 0; // number of the opened program for which the camera was placed
     uint64_t found_ = 0;  // and of that for which the work was in sight
-    Gizmo gizmo_;
-    render::Vec2 last_pick_ = render::Vec2(-1.0);  // position of the mouse
+    PlacingOverlay placing_;
     float foot_ = 0.0F;                            // height of the bar at the lower edge, pixels
     bool is_turning_ = false, is_slow_ = false;    // see draws_coarsely
     render::Vec2 last_hover_ = render::Vec2(-1.0); // of the mouse
@@ -343,12 +326,7 @@ void ScenePanel::State::take_click(Frame& frame, const Area& area, const render:
         if (const auto surface = found.surface()) take_section_click(model, *surface, frame.now);
         return;
     }
-    if (model.placing.goal != PickGoal::none) {
-        if (const ScenePick* meant = meant_pick(model))
-            take_pick(model, ScenePick(*meant), frame.now);
-        last_pick_ = render::Vec2(-1.0);
-        return;
-    }
+    if (placing_.take_pick_click(frame)) return;
     if (model.measuring.on) {
         const auto surface = found.surface();
         if (!surface) return;
@@ -356,7 +334,7 @@ void ScenePanel::State::take_click(Frame& frame, const Area& area, const render:
         model.measuring.positions.push_back(surface->point);
         return;
     }
-    if (model.shows_setup && (found.body || found.stock)) return select_clicked(model, found);
+    if (placing_.take_selection(model, found, scene_)) return;
     if (found.path) return go_to(model, found.path->block);
     if (found.stock && found.stock->block) {
         go_to(model, *found.stock->block);
@@ -368,109 +346,6 @@ void ScenePanel::State::take_click(Frame& frame, const Area& area, const render:
         say(model, scene_.bodies[found.body->body].name, frame.now);
     else if (found.stock)
         say(model, "Raw stock: no block has cut here", frame.now);
-}
-
-/// Selects the body that was clicked in the set-up.
-void ScenePanel::State::select_clicked(ViewModel& model, const render::Pick& found) {
-    const auto surface = found.surface();
-    const bool is_body = found.body && surface && found.body->at.distance <= surface->distance;
-    if (!is_body) {
-        model.workspace.selected = {SetupItem::Kind::stock, {}, {}};
-        return;
-    }
-    const std::string& name = scene_.bodies[found.body->body].name;
-    if (model.workspace.stated && model.workspace.stated->fixture(name))
-        model.workspace.selected = {SetupItem::Kind::fixture, name, {}};
-    else if (scene_.bodies[found.body->body].role == render::BodyRole::machine)
-        model.workspace.selected = {SetupItem::Kind::machine, {}, {}};
-}
-
-/// Draws the handles of the selected body, and moves it. Whether they take the mouse.
-bool ScenePanel::State::draw_gizmo(Frame& frame, const Area& area, const render::Viewport& size) {
-    ViewModel& model = frame.model;
-    Placing& placing = model.placing;
-    const SetupItem& selected = model.workspace.selected;
-    const bool is_stock = selected.kind == SetupItem::Kind::stock;
-    const bool is_shown = model.shows_setup && model.popup == Popup::none
-                          && placing.goal == PickGoal::none
-                          && (is_stock || selected.kind == SetupItem::Kind::fixture);
-    const std::string name = is_stock ? stock_name : selected.name;
-    if (!is_shown || !can_move(model, name)) {
-        placing.drag.reset();
-        return false;
-    }
-    const core::Aabb box = bounds_of_body(model, name);
-    if (box.empty()) return false;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.PushClipRect(area.corner(), area.far_corner(), true);
-    const Gizmo::Drag drag = gizmo_.draw(frame, area, size, box.center(), !is_stock);
-    placing.drag = drag.by;
-    placing.body = name;
-    if (drag.by) {
-        const ImVec2 mouse = ImGui::GetIO().MousePos;
-        draw_pill(frame, list, {mouse.x + frame.px(16), mouse.y + frame.px(12)}, drag.words);
-    }
-    list.PopClipRect();
-    if (drag.is_done && drag.by) {
-        const core::Transform by = *drag.by;
-        placing.drag.reset();
-        if (by != core::Transform()) move_body(model, name, by, "Move " + name);
-    }
-    return drag.takes_mouse;
-}
-
-/// Finds what is under the mouse while a feature is waited for.
-void ScenePanel::State::find_picks(Frame& frame, const Area& area, const render::Viewport& size) {
-    ViewModel& model = frame.model;
-    Placing& placing = model.placing;
-    if (placing.goal == PickGoal::none || !ImGui::IsItemHovered()) return;
-    if (ImGui::IsKeyPressed(key::tab, false)) ++placing.turn;
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const render::Vec2 at(mouse.x - area.x, mouse.y - area.y);
-    std::vector<ScenePick>& hovered = placing.picks->hovered;
-    if (at == last_pick_ && !hovered.empty()) return;
-    last_pick_ = at;
-    placing.turn = 0;
-    hovered.clear();
-    const render::Pick found = render::pick(scene_, model.camera, size, at, frame.px(6));
-    const auto surface = found.surface();
-    if (!surface) return;
-    const bool is_body = found.body && found.body->at.distance <= surface->distance;
-    const std::string name = is_body ? scene_.bodies[found.body->body].name : stock_name;
-    constexpr double reach = 10.0; // pixels
-    hovered = picks_at(model, name, surface->point,
-                       frame.px(reach) * render::pixel_size(model.camera, size, surface->point));
-}
-
-/// Draws what a click would mean.
-void ScenePanel::State::draw_picks(Frame& frame, const Area& area, const render::Viewport& size) {
-    ViewModel& model = frame.model;
-    const std::string hint = pick_hint(model);
-    if (hint.empty()) return;
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(50)},
-              hint + "  (Tab: next feature, Esc: cancel)");
-    const ScenePick* meant = meant_pick(model);
-    if (!meant) return;
-    const ImU32 color = frame.palette.color(Role::accent);
-    const auto on_screen = [&](const core::Vec3& point) -> std::optional<ImVec2> {
-        const auto seen = render::project(model.camera, size, point);
-        if (!seen) return std::nullopt;
-        return ImVec2(area.x + static_cast<float>(seen->position.x),
-                      area.y + static_cast<float>(seen->position.y));
-    };
-    for (const std::vector<core::Vec3>& line : outline_of(model, *meant)) {
-        std::vector<ImVec2> points;
-        for (const core::Vec3& point : line)
-            if (const auto at = on_screen(point)) points.push_back(*at);
-        list.AddPolyline(points.data(), static_cast<int>(points.size()), color, 0, frame.px(3));
-    }
-    if (const auto at = on_screen(meant->feature.point);
-        at && meant->feature.kind != core::FeatureKind::face)
-        list.AddCircleFilled(*at, frame.px(5), color);
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    draw_pill(frame, list, {mouse.x + frame.px(16), mouse.y + frame.px(12)},
-              meant->body + ": " + words_of(model, meant->feature));
 }
 
 void ScenePanel::State::take_mouse(Frame& frame, const Area& area, const render::Viewport& size) {
@@ -620,7 +495,7 @@ void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render
     draw_triads(frame, area, size);
     draw_witness(frame, area, size);
     draw_measure(frame, area, size);
-    draw_picks(frame, area, size);
+    placing_.draw_picks(frame, area, size);
     draw_grid_note(frame, area, size);
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)},
@@ -669,8 +544,8 @@ void ScenePanel::State::draw(Frame& frame, const Area& area) {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle
                                | ImGuiButtonFlags_MouseButtonRight);
     ImGui::SetItemAllowOverlap();
-    if (!draw_gizmo(frame, area, size)) {
-        find_picks(frame, area, size);
+    if (!placing_.draw_handles(frame, area, size)) {
+        placing_.find_picks(frame, area, size, scene_);
         take_mouse(frame, area, size);
     }
     foot_ = draw_section_bar(frame, area);
