@@ -1,0 +1,111 @@
+#!/usr/bin/env bash
+# Builds a job in the window with keys and mouse: a vise is put under the stock and closed on it,
+# undone, saved, lost in a crash and restored.
+# setup_test.sh FEELER ASSETS PICTURES TOOLS
+set -euo pipefail
+
+feeler=$1 assets=$2 pictures=$3 tools=$4
+# shellcheck source=tests/viewer/screen.sh
+. "$(dirname "$0")/screen.sh"
+
+cp "$assets"/meshes/vise6-*.stl "$work"
+cat >"$work/job.nc" <<'EOF'
+%
+O1001
+G90 G54 G21
+T2 M6
+S8000 M3
+G43 H2 Z15
+G0 X0 Y0
+Z2
+G1 Z-10 F300
+X20 F1200
+G0 Z15
+M30
+%
+EOF
+cat >"$work/job.toml" <<'EOF'
+# The bracket in the vise.
+[stock]
+box = [[-45, -30, -25], [45, 30, 0]]
+
+[[fixture]]
+name = "vise"
+mesh = "vise6-body.stl"
+at = [0, 60, -60]
+
+[[fixture]]
+name = "fixed jaw"
+mesh = "vise6-fixed-jaw.stl"
+frame = "vise"
+
+[[fixture]]
+name = "jaw"
+mesh = "vise6-moving-jaw.stl"
+at = [0, -150, 0] # open
+frame = "vise"
+EOF
+cp "$work/job.toml" "$work/before.toml"
+sed 's/at = \[0, 60, -60\]/at = [0, 30, -25]/; s/at = \[0, -150, 0\]/at = [0, -60, 0]/' \
+    "$work/before.toml" >"$work/closed.toml"
+
+is_closed() { cmp -s "$work/job.toml" "$work/closed.toml"; }
+is_as_before() { cmp -s "$work/job.toml" "$work/before.toml"; }
+has_unsaved() { compgen -G "$work/config/feeler/unsaved/*.toml" >/dev/null; }
+vise_row() { click 60 245; }
+jaw_row() { click 60 286; }
+
+# close_vise: slides the vise to the stock, upwards and to the back, and the jaw to the front.
+close_vise() {
+    vise_row
+    click 200 636 # -Y
+    expect 'an edit marks the program' '^\* job.nc'
+    click 300 636 # +Z
+    jaw_row
+    click 235 636 # +Y
+}
+
+open_window "$work/job.nc" --setup "$work/job.toml"
+expect 'opens' '^job.nc, line 2'
+press e
+still 01-setup
+close_vise
+press ctrl+s
+wait_for is_closed || die 'the vise is closed, exactly, and comments stay'
+expect 'it is saved' '^job.nc'
+picture 02-closed
+
+press ctrl+z ctrl+z ctrl+z
+expect 'edits are undone after saving' '^\* job.nc'
+press ctrl+s
+wait_for is_as_before || die 'all edits are undone'
+press ctrl+y ctrl+y ctrl+y
+wait_for has_unsaved || die 'unsaved edits are kept'
+press ctrl+q
+still 03-leaving
+! has_ended || die 'closing asks before edits are dropped'
+press Escape
+expect 'Esc keeps the window open' '^\* job.nc'
+
+kill -9 "$view"
+wait_for has_ended || die 'the window is killed'
+wait "$view" 2>/dev/null || true
+view='' window=''
+is_as_before || die 'a crash changes no file'
+open_window "$work/job.nc" --setup "$work/job.toml"
+still 04-found
+click 60 162 # Restore them
+expect 'unsaved edits are restored' '^\* job.nc'
+press ctrl+s
+wait_for is_closed || die 'the restored edits are saved'
+! has_unsaved || die 'saved edits are not kept as unsaved'
+
+printf '[[[\n' >"$work/job.toml"
+expect 'a damaged set-up keeps the last good state' 'last good state'
+picture 05-damaged
+cp "$work/closed.toml" "$work/job.toml"
+wait_for title_matches '^job.nc, line [0-9]+ \(block [0-9]+ of [0-9]+[^)]*\) - feeler$' \
+    || die 'and is read again when it is mended'
+press ctrl+q
+ended 'by Ctrl+Q'
+printf 'passed\n'
