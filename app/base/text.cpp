@@ -163,6 +163,13 @@ std::string without_controls(std::string_view text, std::string_view stay) {
 
 std::string printable(std::string_view text) { return without_controls(utf8_text(text), "\n"); }
 
+std::string absolute_path(const std::string& path) {
+    if (path.empty()) return path;
+    std::error_code failure;
+    const std::filesystem::path whole = std::filesystem::absolute(path, failure);
+    return failure ? path : whole.lexically_normal().generic_string();
+}
+
 std::string trimmed(std::string_view text) {
     const std::string result = without_controls(text, "");
     const size_t first = result.find_first_not_of(' ');

@@ -37,6 +37,10 @@ std::optional<double> number_in(std::string_view text);
 /// An error in a line of a file; lines are numbered from 1.
 core::Error line_error(const std::string& path, size_t line, std::string message);
 
+/// A path from the root, without `.` and `..`; as it is if it is empty or there is no current
+/// folder.
+std::string absolute_path(const std::string& path);
+
 /// Without white space at both ends and without control characters, so on one line.
 std::string trimmed(std::string_view text);
 

@@ -57,6 +57,19 @@ const char* name_of(SetupSource source) {
     return "";
 }
 
+const SheetTool* SetupSheet::tool(core::ToolNumber number) const {
+    const auto found = std::find_if(tools.begin(), tools.end(), [&](const SheetTool& one) {
+        return one.tool.number == number;
+    });
+    return found == tools.end() ? nullptr : &*found;
+}
+
+const SheetOffset* SetupSheet::offset(const std::string& name) const {
+    const auto found = std::find_if(offsets.begin(), offsets.end(),
+                                    [&](const SheetOffset& one) { return one.name == name; });
+    return found == offsets.end() ? nullptr : &*found;
+}
+
 SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     SetupSheet sheet;
     sheet.path = file.path;

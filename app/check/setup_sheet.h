@@ -61,6 +61,10 @@ struct SetupSheet {
     std::map<std::string, core::Transform> frames;
     bool knows_fixtures = false; // it describes some, or states that there are none
     bool has_machine = false;    // it describes axes
+
+    /// The tool or offset; null if there is none.
+    const SheetTool* tool(core::ToolNumber number) const;
+    const SheetOffset* offset(const std::string& name) const;
 };
 
 /// The values of a check after read_check.

@@ -32,24 +32,13 @@ public:
     void apply(const std::function<Result<std::string>(const std::string&)>& change) {
         if (text_) text_ = change(*text_);
     }
-    /// The values so far; empty after an error.
-    toml::table root() const {
-        auto parsed = text_ ? parsed_toml(*text_) : Result<toml::table>(toml::table{});
-        return parsed ? *std::move(parsed) : toml::table{};
-    }
+    /// Whether the text so far has a value; false after an error.
+    bool has(const TomlPath& path) const { return text_ && toml_has(*text_, path); }
     Result<std::string> text() && { return std::move(text_); }
 
 private:
     Result<std::string> text_;
 };
-
-const toml::node* node_at(const toml::table& root, const TomlPath& path) {
-    toml::node_view<const toml::node> view{static_cast<const toml::node&>(root)};
-    for (const TomlPath::Step& step : path.steps())
-        view = std::holds_alternative<std::string>(step) ? view[std::get<std::string>(step)]
-                                                         : view[std::get<size_t>(step)];
-    return view.node();
-}
 
 /// The element of a list of tables whose key has a value.
 template <typename Value>
@@ -73,15 +62,14 @@ toml::table root_of(const std::string& text) {
 
 /// Removes the keys of a body's shape, apart from one.
 void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape) {
-    const toml::table root = changes.root();
     for (const char* key : {"box", "cylinder", "mesh", "model", "margin"})
-        if (key != shape && node_at(root, body / key)) changes.erase(body / key);
+        if (key != shape) changes.erase(body / key);
 }
 
 bool is_zero(const core::Vec3& v) { return v == core::Vec3(0.0); }
 
 void set_vector(Changes& changes, const TomlPath& path, const core::Vec3& value) {
-    if (!is_zero(value) || node_at(changes.root(), path)) changes.set(path, setup_vector(value));
+    if (!is_zero(value) || changes.has(path)) changes.set(path, setup_vector(value));
 }
 
 /// Whether bodies other than the stock stand in the frame of a body.
@@ -157,7 +145,7 @@ std::optional<TomlPath> path_of_tool(const std::string& text, core::ToolNumber n
 Result<std::string> with_stock(const std::string& text, const core::Solid& stock,
                                std::string_view frame) {
     const TomlPath path = "stock";
-    const bool is_new = !node_at(root_of(text), path);
+    const bool is_new = !toml_has(text, path);
     Changes changes(text);
     if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
         for (const char* key : {"at", "rotate_deg"}) changes.erase(path / key);
@@ -307,7 +295,8 @@ Result<std::string> with_tool(const std::string& text, const core::ToolDescripti
     // Value by value, so that the comments of the values that stay are kept.
     const toml::table wanted = root_of(body);
     const toml::table root = root_of(text);
-    const toml::table* before = node_at(root, *path)->as_table();
+    const size_t index = std::get<size_t>(path->steps()[1]);
+    const toml::table* before = root["tool"][index].as_table();
     Changes changes(text);
     for (const auto& [key, value] : *before)
         if (!wanted.contains(key)) changes.erase(*path / std::string(key.str()));
@@ -327,7 +316,7 @@ Result<std::string> without_tool(const std::string& text, core::ToolNumber numbe
 Result<std::string> with_offset(const std::string& text, const std::string& name,
                                 const core::Vec3& origin) {
     const TomlPath path{"offsets", name};
-    const bool is_new = !node_at(root_of(text), path);
+    const bool is_new = !toml_has(text, path);
     Changes changes(text);
     if (is_new)
         changes.set(path, fmt::format("{{ X = {}, Y = {}, Z = {} }}", setup_number(origin.x),
@@ -339,12 +328,11 @@ Result<std::string> with_offset(const std::string& text, const std::string& name
 }
 
 Result<std::string> without_offset(const std::string& text, const std::string& name) {
-    Changes changes(text);
-    changes.erase({"offsets", name});
-    const toml::table root = changes.root();
+    FEELER_TRY(std::string left, toml_without(text, {"offsets", name}));
+    const toml::table root = root_of(left);
     const toml::table* offsets = root["offsets"].as_table();
-    if (offsets && offsets->empty()) changes.erase("offsets");
-    return std::move(changes).text();
+    if (offsets && offsets->empty()) return toml_without(left, "offsets");
+    return left;
 }
 
 Result<std::string> with_allowance(const std::string& text, std::optional<double> distance) {

@@ -124,13 +124,14 @@ core::Result<void> check_target(const SetupDocument& document, const std::string
         if (core::file_bytes(path) != document.saved_text())
             return core::fail_file(path, "has been changed by another program since it was read");
     }
+    // A set-up without a file is read as if it were next to the program.
+    const std::string& place = document.path().empty() ? program : document.path();
     const bool is_elsewhere =
-        !document.path().empty()
-        && !core::platform::is_same_file(folder_of(path), folder_of(document.path()));
+        !place.empty() && !core::platform::is_same_file(folder_of(path), folder_of(place));
     if (is_elsewhere && names_relative_files(document.text()))
         return core::fail_file(
             path, fmt::format("the set-up names files by relative paths: save it in {}",
-                              folder_of(document.path()).generic_string()));
+                              folder_of(place).generic_string()));
     return {};
 }
 

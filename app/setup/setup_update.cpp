@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "app/base/text.h"
 #include "app/setup/coverage.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
@@ -27,29 +28,22 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// A line without the blanks at its beginning and end.
-std::string_view trimmed(std::string_view line) {
-    constexpr std::string_view blanks = " \t\r";
-    const size_t first = line.find_first_not_of(blanks);
-    if (first == std::string_view::npos) return {};
-    return line.substr(first, line.find_last_not_of(blanks) - first + 1);
-}
-
 /// A statement that may be commented out, without its comment sign.
-std::string_view uncommented(std::string_view line) {
-    line = trimmed(line);
-    while (!line.empty() && line.front() == '#') line = trimmed(line.substr(1));
-    return line;
+std::string uncommented(std::string_view line) {
+    std::string left = trimmed(line);
+    while (!left.empty() && left.front() == '#') left = trimmed(left.substr(1));
+    return left;
 }
 
 /// Whether a line states an offset, in force or commented out.
-bool is_entry_of(std::string_view line, const std::string& name) {
-    line = uncommented(line);
-    if (!line.empty() && (line.front() == '"' || line.front() == '\'')) line.remove_prefix(1);
-    if (!line.starts_with(name)) return false;
-    line.remove_prefix(name.size());
-    if (!line.empty() && (line.front() == '"' || line.front() == '\'')) line.remove_prefix(1);
-    return trimmed(line).starts_with('=');
+bool is_entry_of(const std::string& line, const std::string& name) {
+    const std::string statement = uncommented(line);
+    std::string_view left = statement;
+    if (!left.empty() && (left.front() == '"' || left.front() == '\'')) left.remove_prefix(1);
+    if (!left.starts_with(name)) return false;
+    left.remove_prefix(name.size());
+    if (!left.empty() && (left.front() == '"' || left.front() == '\'')) left.remove_prefix(1);
+    return trimmed(left).starts_with('=');
 }
 
 bool is_header(std::string_view line) { return uncommented(line).starts_with('['); }
@@ -130,9 +124,7 @@ void add_stock(SetupUpdate& update, const SetupFile& file, const StatedSetup& st
 
 void add_tools(SetupUpdate& update, const SetupFile& file, const StatedSetup& stated) {
     for (const auto& [number, found] : file.found_tools) {
-        const bool is_stated =
-            std::find(stated.tools.begin(), stated.tools.end(), number) != stated.tools.end();
-        if (is_stated || file.library.contains(number)) continue;
+        if (stated.has_tool(number) || file.library.contains(number)) continue;
         update.text += with_line_ends_of(tool_text(file, number), update.text);
         update.added.push_back(
             fmt::format("tool {}, according to {}", core::value_of(number), found.source));

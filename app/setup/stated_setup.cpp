@@ -72,6 +72,14 @@ const StatedBody* StatedSetup::fixture(const std::string& name) const {
     return found == fixtures.end() ? nullptr : &*found;
 }
 
+bool StatedSetup::has_tool(core::ToolNumber number) const {
+    return std::find(tools.begin(), tools.end(), number) != tools.end();
+}
+
+bool StatedSetup::has_offset(const std::string& name) const {
+    return std::find(offsets.begin(), offsets.end(), name) != offsets.end();
+}
+
 StatedSetup stated_in(const std::string& text) {
     StatedSetup stated;
     const auto root = parsed_toml(text);

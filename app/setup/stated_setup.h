@@ -38,7 +38,10 @@ struct StatedSetup {
     std::string machine_file, tool_library;
     bool has_no_fixtures = false; // fixtures = "none"
 
+    /// Null if it states none of this name.
     const StatedBody* fixture(const std::string& name) const;
+    bool has_tool(core::ToolNumber number) const;
+    bool has_offset(const std::string& name) const;
 };
 
 /// Reads a text that may be in the middle of an edit: wrong values are left out. Text that is not

@@ -652,6 +652,11 @@ core::Result<std::string> toml_body_of(const std::string& text, const std::strin
     return body;
 }
 
+bool toml_has(const std::string& text, const TomlPath& path) {
+    const auto root = parsed_toml(text);
+    return root && node_at<const toml::node>(*root, path);
+}
+
 core::SourceSpan toml_span(const std::string& text, const TomlPath& path) {
     const auto root = parsed_toml(text);
     const toml::node* node = root ? node_at<const toml::node>(*root, path) : nullptr;

@@ -67,6 +67,9 @@ core::Result<std::string> toml_with_table(const std::string& text, const std::st
 core::Result<std::string> toml_body_of(const std::string& text, const std::string& list,
                                        size_t index);
 
+/// Whether a text has a value; false if it is not TOML.
+bool toml_has(const std::string& text, const TomlPath& path);
+
 /// The line of a value, and its column and length if it is on one line; all 0 if there is none.
 core::SourceSpan toml_span(const std::string& text, const TomlPath& path);
 

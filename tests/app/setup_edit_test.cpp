@@ -497,6 +497,23 @@ TEST(SavedSetup, NeverReplacesAFileUnasked) {
     EXPECT_EQ(own.folder.names().size(), 2u) << "no other file remains";
 }
 
+TEST(SavedSetup, StaysNextToTheProgramIfItNamesFilesThere) {
+    OwnProgram own;
+    const test_support::ScopedFolder other;
+    SetupDocument document("", "");
+    ASSERT_TRUE(document.edit("Add", [](const std::string& text) {
+        return app::with_fixture(text, "vise", "mesh = \"vise.stl\"\n");
+    }));
+    const auto save = [&](const std::string& path) {
+        return app::save_setup(document, path, app::Replacing::refused, own.job.program,
+                               app::write_output);
+    };
+    const auto refused = save(other / "s.toml");
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("save it in"));
+    EXPECT_TRUE(save(own.folder / "s.toml"));
+}
+
 TEST(SavedSetup, StaysInTheFolderOfTheFilesThatItNames) {
     const test_support::ScopedFolder folder;
     const std::string path = assets + "setups/clamped_plate.toml";

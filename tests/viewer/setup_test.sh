@@ -69,6 +69,31 @@ open_window "$work/job.nc" --setup "$work/job.toml"
 expect 'opens' '^job.nc, line 2'
 press e
 still 01-setup
+
+# The arrow along X moves the vise by whole millimetres along X only.
+vise_row
+frames
+xdotool mousemove 826 469
+frames
+xdotool mousedown 1
+for _ in 1 2 3 4 5; do
+    xdotool mousemove_relative 9 5
+    frames
+done
+xdotool mouseup 1
+expect 'a drag of an arrow is an edit' '^\* job.nc'
+press ctrl+s
+is_moved() { grep -Eq '^at = \[[1-9][0-9]*, 60, -60\]$' "$work/job.toml"; }
+wait_for is_moved || die 'the arrow along X moves along X, in whole millimetres'
+press ctrl+z ctrl+s
+wait_for is_as_before || die 'the drag is one edit'
+
+click 38 65 # the tab of the program
+press Right
+expect 'after a click on its tab the program has the keys' 'block 1 of'
+press Home e
+expect 'Home' 'block 0 of'
+
 close_vise
 press ctrl+s
 wait_for is_closed || die 'the vise is closed, exactly, and comments stay'

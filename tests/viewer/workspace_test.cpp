@@ -233,7 +233,7 @@ TEST(UnsavedSetups, AreFoundAgainUntilForgotten) {
     const UnsavedSetups kept(folder / "unsaved", app::write_output);
     const std::string text = "# set-up: no\nmesh_size = 2\r\n\n";
     EXPECT_FALSE(kept.find("a.nc", "", ""));
-    kept.keep("a.nc", "", "", text);
+    kept.keep("a.nc", "", text);
     ASSERT_TRUE(kept.find("a.nc", "", ""));
     EXPECT_EQ(kept.find("./a.nc", "", "")->text, text);
     EXPECT_FALSE(kept.find("a.nc", "a.toml", "")) << "another set-up";
@@ -244,7 +244,7 @@ TEST(UnsavedSetups, AreFoundAgainUntilForgotten) {
 }
 
 TEST(UnsavedSetups, DamagedFilesAreIgnored) {
-    const UnsavedSetup unsaved{"/p.nc", "", "0f", "x = 1\n"};
+    const UnsavedSetup unsaved{"/p.nc", "", "x = 1\n"};
     const std::string whole = text_of(unsaved);
     for (size_t length = 0; length + unsaved.text.size() < whole.size(); ++length) {
         const auto read = unsaved_in(whole.substr(0, length));

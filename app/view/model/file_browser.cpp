@@ -7,6 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "app/base/text.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_edit.h"
 #include "app/view/model/folder_listing.h"
@@ -347,11 +348,7 @@ void open_recent(ViewModel& model, const RecentProgram& recent) {
 }
 
 void open_last(ViewModel& model, double now) {
-    std::error_code failure;
-    const std::string current =
-        model.program
-            ? fs::absolute(model.program->program, failure).lexically_normal().generic_string()
-            : "";
+    const std::string current = model.program ? absolute_path(model.program->program) : "";
     for (const RecentProgram& recent : model.recent)
         if (recent.program != current && !model.browser.missing.contains(recent.program))
             return open_recent(model, recent);

@@ -165,8 +165,7 @@ std::optional<StretchIndex> selected_stretch(const ViewModel& model) {
 
 void show_findings(ViewModel& model, bool shown) {
     model.shows_findings = shown;
-    model.shows_setup = false;
-    model.list_follows = true;
+    show_setup(model, false);
 }
 
 void show_setup(ViewModel& model, bool shown) {
@@ -179,9 +178,7 @@ void show_setup(ViewModel& model, bool shown) {
 
 std::string notes_key(const ViewModel& model) {
     if (!model.program) return {};
-    std::error_code failure; // without a current folder the path stays relative
-    const auto path = std::filesystem::absolute(model.program->program, failure);
-    return utf8_text(failure ? model.program->program : path.lexically_normal().generic_string());
+    return utf8_text(absolute_path(model.program->program));
 }
 
 std::string note_at(const ViewModel& model, const StretchIndex& which) {

@@ -76,10 +76,6 @@ struct SceneBody {
     core::Transform pose; // of the body in the scene
 };
 
-const SetupSheet* sheet_in(const ViewModel& model) {
-    return model.program && model.program->sheet ? model.program->sheet.get() : nullptr;
-}
-
 std::shared_ptr<const SceneSetup> scene_setup(const ViewModel& model) {
     if (model.block_state) return model.block_state->scene;
     return model.program ? model.program->scene : nullptr;
@@ -236,7 +232,7 @@ const ScenePick* meant_pick(const ViewModel& model) {
 }
 
 bool can_move(const ViewModel& model, const std::string& body) {
-    if (!model.workspace.stated || !sheet_in(model)) return false;
+    if (!model.workspace.stated || !sheet_of(model)) return false;
     return body == stock_name || model.workspace.stated->fixture(body) != nullptr;
 }
 
@@ -250,6 +246,7 @@ core::Aabb bounds_of_body(const ViewModel& model, const std::string& name) {
     const auto body = body_named(model, name);
     core::Aabb box;
     if (!body) return box;
+    if (body->pose == core::Transform()) return core::bounds(body->body); // each frame: no search
     for (int axis = 0; axis < 3; ++axis) {
         core::Vec3 along(0.0);
         along[axis] = 1.0;
@@ -271,7 +268,7 @@ std::vector<std::string> moved_with(const ViewModel& model, const std::string& b
 
 bool move_body(ViewModel& model, const std::string& body, const core::Transform& by,
                const std::string& title) {
-    const SetupSheet* sheet = sheet_in(model);
+    const SetupSheet* sheet = sheet_of(model);
     if (!sheet || !can_move(model, body)) return refuse(model, body + " cannot be moved here");
     const auto stated = model.workspace.stated;
     return edit_setup(model, title, [&](const std::string& text) {
@@ -333,7 +330,7 @@ ZeroAxes zero_axes(const core::FeaturePick& feature) {
 }
 
 bool set_zero(ViewModel& model, const std::string& offset, const core::FeaturePick& feature) {
-    const SetupSheet* sheet = sheet_in(model);
+    const SetupSheet* sheet = sheet_of(model);
     if (!sheet || !model.workspace.stated) return false;
     const auto frame = sheet->frames.find(offset);
     if (frame == sheet->frames.end())
@@ -359,11 +356,8 @@ bool set_zero(ViewModel& model, const std::string& offset, const core::FeaturePi
             const auto path = path_of_fixture(*text, body.name);
             text = with_pose(*text, *path, body.at - by, body.rotate_deg);
         }
-        const auto& names = stated->offsets;
-        const auto is_it = [&](const SheetOffset& one) { return one.name == offset; };
-        const auto known = std::find_if(values.offsets.begin(), values.offsets.end(), is_it);
-        const bool is_stated = contains(names, offset);
-        if (text && known != values.offsets.end() && (is_stated || values.frame != offset))
+        const SheetOffset* known = values.offset(offset);
+        if (text && known && (stated->has_offset(offset) || values.frame != offset))
             text = with_offset(*text, offset, known->origin + by);
         return text;
     });

@@ -16,13 +16,6 @@ namespace {
 /// The most bytes of a list that are read: paths are shorter than 4 KB.
 constexpr size_t most_bytes = most_recent * 4 * 4096;
 
-std::string whole_path(const std::string& path) {
-    if (path.empty()) return {};
-    std::error_code failure;
-    const auto whole = std::filesystem::absolute(path, failure).lexically_normal();
-    return failure ? path : whole.generic_string();
-}
-
 } // namespace
 
 std::vector<RecentProgram> recent_in(const std::string& text) {
@@ -69,7 +62,7 @@ void RecentFiles::read() {
 }
 
 void RecentFiles::add(const std::string& program, const std::string& setup) {
-    RecentProgram opened{whole_path(program), whole_path(setup)};
+    RecentProgram opened{absolute_path(program), absolute_path(setup)};
     // The list is UTF-8: it cannot name other files.
     if (utf8_text(opened.program + opened.setup) != opened.program + opened.setup) return;
     read();

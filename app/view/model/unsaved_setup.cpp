@@ -4,20 +4,14 @@
 #include <utility>
 
 #include "app/base/sha256.h"
+#include "app/base/text.h"
 #include "core/base/file_reads.h"
 
 namespace app::viewer {
 namespace {
 
 constexpr std::string_view heading = "# A set-up with edits that were not saved.";
-constexpr std::array<std::string_view, 3> labels = {"# program: ", "# set-up: ", "# edited from: "};
-
-std::string absolute(const std::string& path) {
-    if (path.empty()) return {};
-    std::error_code failure;
-    const auto full = std::filesystem::absolute(path, failure).lexically_normal();
-    return failure ? path : full.generic_string();
-}
+constexpr std::array<std::string_view, 2> labels = {"# program: ", "# set-up: "};
 
 /// Takes a line off the beginning of a text; without its end.
 std::string_view take_line(std::string_view& text) {
@@ -31,8 +25,7 @@ std::string_view take_line(std::string_view& text) {
 
 std::string text_of(const UnsavedSetup& unsaved) {
     std::string text = std::string(heading) + "\n";
-    const std::array<const std::string*, 3> values = {&unsaved.program, &unsaved.setup,
-                                                      &unsaved.of};
+    const std::array<const std::string*, 2> values = {&unsaved.program, &unsaved.setup};
     for (size_t i = 0; i < labels.size(); ++i) text += std::string(labels[i]) + *values[i] + "\n";
     return text + unsaved.text;
 }
@@ -41,7 +34,7 @@ std::optional<UnsavedSetup> unsaved_in(const std::string& text) {
     std::string_view rest = text;
     if (take_line(rest) != heading) return std::nullopt;
     UnsavedSetup unsaved;
-    const std::array<std::string*, 3> values = {&unsaved.program, &unsaved.setup, &unsaved.of};
+    const std::array<std::string*, 2> values = {&unsaved.program, &unsaved.setup};
     for (size_t i = 0; i < labels.size(); ++i) {
         const std::string_view line = take_line(rest);
         if (!line.starts_with(labels[i])) return std::nullopt;
@@ -54,17 +47,17 @@ std::optional<UnsavedSetup> unsaved_in(const std::string& text) {
 std::filesystem::path UnsavedSetups::file_of(const std::string& program,
                                              const std::string& setup) const {
     return folder_
-           / (sha256_of(absolute(program) + "\n" + absolute(setup)).substr(0, 24) + ".toml");
+           / (sha256_of(absolute_path(program) + "\n" + absolute_path(setup)).substr(0, 24)
+              + ".toml");
 }
 
 void UnsavedSetups::keep(const std::string& program, const std::string& setup,
-                         const std::string& saved, const std::string& text) const {
+                         const std::string& text) const {
     if (folder_.empty() || !write_) return;
     std::error_code ignored; // writing the file fails then
     std::filesystem::create_directories(folder_, ignored);
-    static_cast<void>(
-        write_(file_of(program, setup).generic_string(),
-               text_of({absolute(program), absolute(setup), sha256_of(saved), text})));
+    static_cast<void>(write_(file_of(program, setup).generic_string(),
+                             text_of({absolute_path(program), absolute_path(setup), text})));
 }
 
 void UnsavedSetups::forget(const std::string& program, const std::string& setup) const {

@@ -11,7 +11,6 @@ namespace app::viewer {
 /// The text of a set-up with edits that were not saved, as found after a crash or a loss of power.
 struct UnsavedSetup {
     std::string program, setup; // absolute paths; `setup` is empty for one without a file
-    std::string of;             // SHA-256 of the text that was edited
     std::string text;
 };
 
@@ -29,8 +28,7 @@ public:
         : folder_(std::move(folder)), write_(std::move(write)) {}
 
     /// Keeps a text. Errors are ignored: the user can still save.
-    void keep(const std::string& program, const std::string& setup, const std::string& saved,
-              const std::string& text) const;
+    void keep(const std::string& program, const std::string& setup, const std::string& text) const;
     void forget(const std::string& program, const std::string& setup) const;
     /// What is kept of this program and set-up, unless it is the text in the file.
     std::optional<UnsavedSetup> find(const std::string& program, const std::string& setup,

@@ -266,6 +266,10 @@ std::vector<const core::Finding*> findings_of(const ViewModel& model, std::optio
     return found;
 }
 
+const SetupSheet* sheet_of(const ViewModel& model) {
+    return model.program ? model.program->sheet.get() : nullptr;
+}
+
 std::string coverage_words(const ViewModel& model) {
     if (!model.program || !model.program->coverage) return {};
     Coverage coverage = *model.program->coverage;

@@ -19,6 +19,7 @@
 
 namespace app {
 struct CheckJob;
+struct SetupSheet;
 struct Tolerances;
 } // namespace app
 
@@ -217,6 +218,9 @@ struct ViewModel {
     bool has_rows() const { return !rows.empty(); }
     const BlockRow& row() const { return rows[cursor.block]; }
 };
+
+/// The set-up with the sources of its values, as it was read last; null if none was.
+const SetupSheet* sheet_of(const ViewModel& model);
 
 /// What the check of the program does not cover, with the headline if it found nothing; empty if
 /// the set-up describes everything and the program moves.

@@ -20,10 +20,6 @@ namespace {
 
 using Kind = SetupItem::Kind;
 
-const SetupSheet* sheet_of(const ViewModel& model) {
-    return model.program && model.program->sheet ? model.program->sheet.get() : nullptr;
-}
-
 SetupItem item(Kind kind, std::string name = {}, core::ToolNumber tool = {}) {
     return {kind, std::move(name), tool};
 }
@@ -122,27 +118,13 @@ void step_back_or_forth(ViewModel& model, bool back, double now) {
         document.redo();
     take_in_text(model.workspace);
     keep_selection(model.workspace);
-    say(model, (back ? "Undone: " : "Done again: ") + title, now);
-}
-
-const SheetTool* tool_of(const SetupSheet& sheet, core::ToolNumber number) {
-    const auto found =
-        std::find_if(sheet.tools.begin(), sheet.tools.end(),
-                     [&](const SheetTool& tool) { return tool.tool.number == number; });
-    return found == sheet.tools.end() ? nullptr : &*found;
-}
-
-const SheetOffset* offset_of(const SetupSheet& sheet, const std::string& name) {
-    const auto found = std::find_if(sheet.offsets.begin(), sheet.offsets.end(),
-                                    [&](const SheetOffset& offset) { return offset.name == name; });
-    return found == sheet.offsets.end() ? nullptr : &*found;
+    say(model, (back ? "Undone: " : "Redone: ") + title, now);
 }
 
 core::Result<std::string> stated_offset(const std::string& text, const StatedSetup& stated,
                                         const SheetOffset& offset) {
-    const bool is_there = std::find(stated.offsets.begin(), stated.offsets.end(), offset.name)
-                          != stated.offsets.end();
-    return is_there ? with_known(text, "offsets") : with_offset(text, offset.name, offset.origin);
+    return stated.has_offset(offset.name) ? with_known(text, "offsets")
+                                          : with_offset(text, offset.name, offset.origin);
 }
 
 /// Adds a fixture and selects it. `lines`: its shape and position.
@@ -156,10 +138,9 @@ void add_fixture(ViewModel& model, const std::string& wanted_name, const std::st
 } // namespace
 
 void open_document(ViewModel& model, SetupDocument document) {
-    Workspace workspace;
-    workspace.document = std::move(document);
-    workspace.stated = std::make_shared<const StatedSetup>(stated_in(workspace.document.text()));
-    model.workspace = std::move(workspace);
+    model.workspace = {};
+    model.workspace.document = std::move(document);
+    take_in_text(model.workspace);
 }
 
 bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument::Edit& edit,
@@ -240,11 +221,11 @@ bool can_state(const ViewModel& model, const SetupItem& item) {
         return sheet->stock_source == SetupSource::assumed
                && !std::holds_alternative<core::SolidMesh>(sheet->stock.shape);
     if (item.kind == Kind::offset) {
-        const SheetOffset* offset = offset_of(*sheet, item.name);
+        const SheetOffset* offset = sheet->offset(item.name);
         return offset && offset->source == SetupSource::assumed;
     }
     if (item.kind != Kind::tool) return false;
-    const SheetTool* tool = tool_of(*sheet, item.tool);
+    const SheetTool* tool = sheet->tool(item.tool);
     return tool && tool->source == SetupSource::assumed;
 }
 
@@ -259,11 +240,11 @@ void state_item(ViewModel& model, const SetupItem& item) {
                              : with_stock(text, sheet->stock, sheet->frame);
         });
     } else if (item.kind == Kind::offset) {
-        const SheetOffset offset = *offset_of(*sheet, item.name);
+        const SheetOffset offset = *sheet->offset(item.name);
         edit_setup(model, "State " + offset.name,
                    [&](const std::string& text) { return stated_offset(text, stated, offset); });
     } else {
-        const SheetTool& tool = *tool_of(*sheet, item.tool);
+        const SheetTool& tool = *sheet->tool(item.tool);
         edit_setup(model, fmt::format("State T{}", core::value_of(item.tool)),
                    [&](const std::string& text) { return with_tool(text, tool.tool); });
     }
@@ -424,7 +405,7 @@ bool leave_samples(ViewModel& model, const std::string& target) {
     const fs::path own = fs::absolute(workspace.document.path(), failure).parent_path();
     if (workspace.document.path().empty() || !is_below(own, model.samples)) return true;
     workspace.is_naming = true;
-    return edit_setup(model, "Name files by whole paths", [&](const std::string& text) {
+    return edit_setup(model, "Use absolute paths", [&](const std::string& text) {
         return with_whole_paths(text, own.generic_string());
     });
 }

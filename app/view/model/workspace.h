@@ -120,8 +120,7 @@ void state_item(ViewModel& model, const SetupItem& item);
 /// Whether state_item() has something to write.
 bool can_state(const ViewModel& model, const SetupItem& item);
 
-/// Adds a block as a fixture on the upper side of the stock, or the mesh in a file at the origin,
-/// and selects it.
+/// Adds a block beside the stock as a fixture, or the mesh in a file at the origin, and selects it.
 void add_box(ViewModel& model);
 void add_mesh(ViewModel& model, const std::string& file);
 /// Compares the result with the mesh in a file.

@@ -124,6 +124,7 @@ void Layout::draw_body(Frame& frame, const Area& area) {
 
 void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
     Frame frame{model, fonts, Theme{model.settings.theme}, now};
+    model.workspace.has_keys = false; // unless its panel is drawn, with the focus
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const Area area{0, 0, size.x, size.y};
     ImGui::SetNextWindowPos(ImVec2(0, 0));

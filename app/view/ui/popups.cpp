@@ -296,7 +296,7 @@ void PopupPanel::draw_leaving(Frame& frame) {
     Workspace& workspace = model.workspace;
     const std::string& path = workspace.document.path();
     text(frame.fonts.text, frame.palette.color(Role::text),
-         path.empty() ? "They are in no file yet." : "They are not in " + path + " yet.");
+         path.empty() ? "They are not saved in a file yet." : "They are not in " + path + " yet.");
     ImGui::Dummy(ImVec2(0, frame.px(4)));
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     if (ImGui::Button("Save")) {
@@ -305,7 +305,7 @@ void PopupPanel::draw_leaving(Frame& frame) {
         model.popup = Popup::none;
     }
     ImGui::SameLine();
-    if (ImGui::Button("Drop the edits")) {
+    if (ImGui::Button("Discard the edits")) {
         workspace.drops_edits = true;
         model.popup = Popup::none;
     }

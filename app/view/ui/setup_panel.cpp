@@ -97,13 +97,6 @@ void draw_banner(Frame& frame, Role role, const std::string& words) {
     ImGui::SetCursorScreenPos({from.x, end.y + frame.px(5)});
 }
 
-const SheetTool* tool_of(const SetupSheet& sheet, core::ToolNumber number) {
-    const auto found =
-        std::find_if(sheet.tools.begin(), sheet.tools.end(),
-                     [&](const SheetTool& tool) { return tool.tool.number == number; });
-    return found == sheet.tools.end() ? nullptr : &*found;
-}
-
 /// A box with another size. What the zero is at stays: a side, or the middle; else the lower side.
 core::Aabb resized(const core::Aabb& box, const core::Vec3& size) {
     constexpr double same = 1e-9; // mm
@@ -284,10 +277,10 @@ void SetupPanel::State::draw_banners(Frame& frame) {
     if (workspace.on_disk) {
         draw_banner(frame, Role::near,
                     "The file has been changed by another program, and there are edits here.");
-        if (ImGui::SmallButton("Take the file"))
+        if (ImGui::SmallButton("Load the file"))
             take_file(model, *std::exchange(workspace.on_disk, std::nullopt));
         ImGui::SameLine();
-        if (workspace.on_disk && ImGui::SmallButton("Keep the edits"))
+        if (workspace.on_disk && ImGui::SmallButton("Keep my edits"))
             workspace.document.keep_over(*std::exchange(workspace.on_disk, std::nullopt));
     }
     if (workspace.found) {
@@ -353,7 +346,8 @@ void SetupPanel::State::take_tree_keys(Frame& frame) {
     if (!ImGui::IsWindowFocused() || ImGui::GetIO().WantTextInput) return;
     const auto is_pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
     if (is_pressed(key::remove)) delete_selected(frame.model);
-    if (is_pressed(key::function(2))) wants_name_ = true;
+    if (is_pressed(key::function(2)))
+        wants_name_ = frame.model.workspace.selected.kind == Kind::fixture;
 }
 
 void SetupPanel::State::draw_tree(Frame& frame, const std::vector<SetupRow>& rows) {
@@ -404,10 +398,7 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
             });
         for (int number = 54; number <= 59; ++number) {
             const std::string name = "G" + std::to_string(number);
-            const auto& offsets = model.program->sheet->offsets;
-            if (std::any_of(offsets.begin(), offsets.end(),
-                            [&](const SheetOffset& offset) { return offset.name == name; }))
-                continue;
+            if (model.program->sheet->offset(name)) continue;
             if (!ImGui::MenuItem(("Work offset " + name).c_str())) break;
             if (edit_setup(model, "Add " + name, [&](const std::string& t) {
                     return with_offset(t, name, core::Vec3(0.0));
@@ -460,9 +451,8 @@ void SetupPanel::State::draw_machine(Frame& frame) {
 
 void SetupPanel::State::draw_offset(Frame& frame, const SheetOffset& offset) {
     ViewModel& model = frame.model;
-    const auto& names = model.workspace.stated->offsets;
-    const bool is_stated = std::find(names.begin(), names.end(), offset.name) != names.end();
-    draw_item_head(frame, "Work offset " + offset.name, false, is_stated);
+    draw_item_head(frame, "Work offset " + offset.name, false,
+                   model.workspace.stated->has_offset(offset.name));
     field_name(frame, "X Y Z");
     const auto origin = vector(frame, "origin", offset.origin);
     source_mark(frame, offset.source);
@@ -609,7 +599,7 @@ void SetupPanel::State::draw_pose(Frame& frame, const StatedBody& body, const Bo
     if (const auto at = vector(frame, "at", body.at))
         edit_setup(model, "Move " + name,
                    [&](const std::string& t) { return with_pose(t, path, *at, body.rotate_deg); });
-    field_name(frame, "Turned \xC2\xB0");
+    field_name(frame, "Rotation \xC2\xB0");
     if (const auto turn = vector(frame, "turn", body.rotate_deg, true))
         edit_setup(model, "Turn " + name,
                    [&](const std::string& t) { return with_pose(t, path, body.at, *turn); });
@@ -670,7 +660,7 @@ void SetupPanel::State::draw_face_lists(Frame& frame, const std::string& body) {
     face_list(frame, "##other", other, other_face_);
     field_name(frame, "");
     ImGui::BeginDisabled(own.empty() || other.empty());
-    if (ImGui::Button("Put together"))
+    if (ImGui::Button("Place"))
         put_face_to_face(model, body, own[own_face_].plane, other[other_face_].plane);
     ImGui::EndDisabled();
 }
@@ -705,14 +695,14 @@ void SetupPanel::State::draw_placing(Frame& frame, const std::string& body) {
         if (ImGui::SmallButton(name)) slide_to_contact(model, body, direction);
         tip(frame, "Slide it until it touches another body: close a jaw, put it down");
     }
-    if (ImGui::TreeNodeEx("Faces from lists", ImGuiTreeNodeFlags_NoTreePushOnOpen))
+    if (ImGui::TreeNodeEx("Choose faces from lists", ImGuiTreeNodeFlags_NoTreePushOnOpen))
         draw_face_lists(frame, body);
 }
 
 void SetupPanel::State::draw_zero(Frame& frame, const std::string& offset) {
     ViewModel& model = frame.model;
     field_name(frame, "Set the zero");
-    if (ImGui::Button("By clicking")) {
+    if (ImGui::Button("By clicking \xE2\x80\xA6")) {
         model.placing.offset = offset;
         model.placing.body.clear();
         begin_picking(model, PickGoal::zero);
@@ -730,7 +720,7 @@ void SetupPanel::State::draw_zero(Frame& frame, const std::string& offset) {
         ImGui::PopID();
     }
     field_name(frame, "");
-    if (!ImGui::Button("Set to there")) return;
+    if (!ImGui::Button("Set the zero there")) return;
     const core::Aabb box = bounds_of_body(model, stock_name);
     if (box.empty()) return;
     core::FeaturePick corner{.kind = core::FeatureKind::corner};
@@ -847,8 +837,7 @@ void SetupPanel::State::draw_tool_sizes(Frame& frame, const SheetTool& shown) {
 void SetupPanel::State::draw_tool(Frame& frame, const SheetTool& shown) {
     ViewModel& model = frame.model;
     const core::ToolNumber number = shown.tool.number;
-    const auto& stated = model.workspace.stated->tools;
-    const bool is_stated = std::find(stated.begin(), stated.end(), number) != stated.end();
+    const bool is_stated = model.workspace.stated->has_tool(number);
     ImGui::PushID(core::value_of(number));
     draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), false, is_stated);
     if (shown.tool.shape == core::ToolShape::profile) {
@@ -905,8 +894,7 @@ void SetupPanel::State::draw_item(Frame& frame) {
     case Kind::machine:
         return draw_machine(frame);
     case Kind::offset:
-        for (const SheetOffset& offset : sheet.offsets)
-            if (offset.name == selected.name) return draw_offset(frame, offset);
+        if (const SheetOffset* offset = sheet.offset(selected.name)) draw_offset(frame, *offset);
         return;
     case Kind::stock:
         return draw_stock(frame);
@@ -917,7 +905,7 @@ void SetupPanel::State::draw_item(Frame& frame) {
         if (stated.part) draw_part(frame, *stated.part);
         return;
     case Kind::tool:
-        if (const SheetTool* tool = tool_of(sheet, selected.tool)) draw_tool(frame, *tool);
+        if (const SheetTool* tool = sheet.tool(selected.tool)) draw_tool(frame, *tool);
         return;
     case Kind::allowance:
         return draw_allowance(frame);

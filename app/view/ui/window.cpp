@@ -430,7 +430,7 @@ void Window::update_setup(double now) {
     keep_unsaved_at_.reset();
     const SetupDocument& document = workspace.document;
     if (document.is_modified())
-        unsaved_.keep(check_->program, document.path(), document.saved_text(), document.text());
+        unsaved_.keep(check_->program, document.path(), document.text());
     else
         unsaved_.forget(check_->program, document.path());
 }
