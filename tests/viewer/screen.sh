@@ -24,7 +24,8 @@ export FEELER_FILE_DIALOG=own
 export XDG_CONFIG_HOME=$work/config XDG_PICTURES_DIR=$work/pictures LC_ALL=C.UTF-8
 
 exec 3<>"$work/display" 2>/dev/null || true
-Xvfb -displayfd 3 -screen 0 "${screen_size:-1440x900}x24" -noreset 3>"$work/display" 2>/dev/null &
+# -r: on a busy machine a key that is released late would count as several presses.
+Xvfb -displayfd 3 -screen 0 "${screen_size:-1440x900}x24" -noreset -r 3>"$work/display" 2>/dev/null &
 screen=$!
 view='' window=''
 patience=${FEELER_PATIENCE:-120}

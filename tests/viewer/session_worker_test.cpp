@@ -347,13 +347,17 @@ TEST(SessionWorker, ChecksAgainWithAnEditedSetup) {
 
     job.setup_text = "[[tool]]\nnumber = 1\ndiameter = 12\n";
     watcher.open(job);
-    bool was_blank = false;
+    bool was_blank = false, was_outdated = false;
     ASSERT_TRUE(watcher.wait_for([&] {
         const ViewModel& model = watcher.model;
         was_blank = was_blank || !model.program || !model.has_rows() || !model.block_state;
+        was_outdated = was_outdated || (model.opening == 2 && model.block_state->is_outdated);
         return model.opening == 2 && model.is_recorded;
     }));
     EXPECT_FALSE(was_blank) << "the program stays on screen";
+    EXPECT_TRUE(was_outdated) << "with the stock of the set-up before";
+    watcher.worker().show({4, true});
+    EXPECT_TRUE(watcher.wait_for([&] { return !watcher.model.block_state->is_outdated; }));
     EXPECT_EQ(watcher.model.cursor.block, 4u);
     EXPECT_EQ(watcher.model.bookmarks, (std::set<size_t>{3}));
     const app::SetupSheet& edited = *watcher.model.program->sheet;

@@ -88,6 +88,7 @@ wait_for is_moved || die 'the arrow along X moves along X, in whole millimetres'
 press ctrl+z ctrl+s
 wait_for is_as_before || die 'the drag is one edit'
 
+vise_row # the panel has the keys
 click 38 65 # the tab of the program
 press Right
 expect 'after a click on its tab the program has the keys' 'block 1 of'

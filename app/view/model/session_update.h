@@ -75,7 +75,8 @@ struct BlockState {
     render::StockBricks stock;
     std::vector<ShownValue> modal, axes, offsets, parameters;
     std::vector<ShownValue> watched;
-    uint64_t serial = 0; // consecutive number of the view
+    uint64_t serial = 0;      // consecutive number of the view
+    bool is_outdated = false; // its stock is that of the set-up before
 };
 
 /// The facts about a program when it was opened.

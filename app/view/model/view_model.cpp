@@ -48,6 +48,7 @@ std::shared_ptr<const BlockState> with_bodies_of(const std::shared_ptr<const Blo
     auto state = std::make_shared<BlockState>(*before);
     state->scene = opened.scene;
     state->mounted_fixtures.clear();
+    state->is_outdated = true;
     return state;
 }
 

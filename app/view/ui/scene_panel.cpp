@@ -253,7 +253,7 @@ void ScenePanel::State::place_camera(ViewModel& model, const render::Viewport& s
 
 /// Places the camera again if the work of a program that has just been opened is out of sight.
 void ScenePanel::State::find_again(ViewModel& model, const render::Viewport& size) {
-    if (found_ == model.opening || !model.block_state) return;
+    if (found_ == model.opening || !model.block_state || model.block_state->is_outdated) return;
     found_ = model.opening;
     const core::Aabb box = render::work_bounds(scene_of(model));
     if (!box.empty() && !render::is_in_sight(model.camera, size, box))
