@@ -25,15 +25,20 @@ std::filesystem::path pictures_folder(const std::string& program) {
 struct ViewOptions {
     CheckArguments what;
     DeviceArguments device;
+    std::vector<std::string> programs;
     std::string frame_log;
 };
 
 ExitCode view(const ViewOptions& options) {
-    const CheckArguments& arguments = options.what;
-    auto check = job_of(arguments);
-    if (!check) return failed(check.error());
     viewer::WindowJob job;
-    if (!arguments.program.empty()) job.check = std::make_shared<const CheckJob>(*std::move(check));
+    CheckArguments arguments = options.what;
+    for (const std::string& program : options.programs) {
+        arguments.program = program;
+        auto check = job_of(arguments);
+        if (!check) return failed(check.error());
+        job.checks.push_back(std::make_shared<const CheckJob>(*std::move(check)));
+    }
+    const std::string first = options.programs.empty() ? "" : options.programs.front();
     if (const auto folder = core::platform::settings_folder(); !folder.empty()) {
         job.settings_file = folder / "feeler" / "view.toml";
         job.notes_file = folder / "feeler" / "notes.toml";
@@ -44,13 +49,12 @@ ExitCode view(const ViewOptions& options) {
     job.write = [](const std::string& path, const std::string& text) {
         return write_output(path, text);
     };
-    job.pictures = pictures_folder(arguments.program);
+    job.pictures = pictures_folder(first);
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);
     if (shown) return ExitCode::clear;
     print_note(fmt::format("feeler: {}; feeler shot {} --worst -o picture.png needs no display\n",
-                           shown.error().message,
-                           arguments.program.empty() ? "PROGRAM" : arguments.program));
+                           shown.error().message, first.empty() ? "PROGRAM" : first));
     return ExitCode::failed;
 }
 
@@ -59,8 +63,9 @@ ExitCode view(const ViewOptions& options) {
 void add_view(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<ViewOptions>();
     CLI::App& command = *cli.add_subcommand("view", "Step through a program in a window, in 3D");
-    add_check_arguments(command, options->what)
-        ->description("NC program; it can also be dropped on the window");
+    add_path(command, "program", options->programs,
+             "NC programs, each in a tab; they can also be dropped on the window");
+    add_check_options(command, options->what);
     add_device_arguments(command, options->device);
     add_path(command, "--frame-log", options->frame_log, "")->group(""); // for measuring
     command.callback([options, &exit_code] { exit_code = view(*options); });

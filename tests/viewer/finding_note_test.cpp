@@ -113,12 +113,37 @@ TEST(DroppedFiles, OfAnotherProgramTakeNoEditsAlong) {
     job.program = "a.nc";
     job.setup = "s.toml";
     job.setup_text = "allowance = 3\n";
-    EXPECT_FALSE(with_dropped(job, {"clamp.STL"}, model, 0.0));
-    EXPECT_FALSE(with_dropped({}, {"s.toml"}, model, 0.0));
-    const auto other = with_dropped(job, {"b.nc"}, model, 0.0);
-    EXPECT_TRUE(other && other->setup.empty() && !other->setup_text);
-    const auto with_setup = with_dropped(job, {"t.TOML"}, model, 0.0);
-    EXPECT_TRUE(with_setup && with_setup->program == "a.nc" && with_setup->setup == "t.TOML");
+    EXPECT_TRUE(dropped_programs(job, {"clamp.STL"}, model, 0.0).empty());
+    EXPECT_TRUE(dropped_programs({}, {"s.toml"}, model, 0.0).empty());
+    const auto other = dropped_programs(job, {"b.nc"}, model, 0.0);
+    ASSERT_EQ(other.size(), 1u);
+    EXPECT_TRUE(other[0].program == "b.nc" && other[0].setup.empty() && !other[0].setup_text);
+    const auto with_setup = dropped_programs(job, {"t.TOML"}, model, 0.0);
+    ASSERT_EQ(with_setup.size(), 1u);
+    EXPECT_TRUE(with_setup[0].program == "a.nc" && with_setup[0].setup == "t.TOML");
+}
+
+TEST(DroppedFiles, GiveEachProgramItsSetup) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "dropped";
+    std::filesystem::create_directories(folder);
+    const auto path = [&](const char* name) { return (folder / name).generic_string(); };
+    for (const char* name : {"a.nc", "b.nc", "b.toml", "c.nc"}) {
+        const auto written = app::write_output(path(name), "%\n");
+        ASSERT_TRUE(written);
+    }
+    ViewModel model;
+    const auto setups_of = [&](const std::vector<std::string>& paths) {
+        std::vector<std::string> setups;
+        for (const app::CheckJob& job : dropped_programs({}, paths, model, 0.0))
+            setups.push_back(std::filesystem::path(job.setup).filename().generic_string());
+        return setups;
+    };
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(setups_of({path("a.nc"), path("b.nc")}), (Names{"", "b.toml"})) << "next to it";
+    EXPECT_EQ(setups_of({path("a.nc"), path("b.nc"), "one.toml"}), (Names{"one.toml", "one.toml"}));
+    EXPECT_EQ(setups_of({"c.toml", path("a.nc"), path("c.nc"), "a.toml"}),
+              (Names{"a.toml", "c.toml"}));
+    EXPECT_EQ(setups_of({"x.toml", path("b.nc"), "y.toml"}), (Names{"b.toml"})) << "neither is its";
 }
 
 } // namespace

@@ -65,6 +65,27 @@ picture 07-dropped
 still 07-folder
 enter '2'
 expect 'a folder that is dropped is shown' 'plate 2.nc, line 2 \(block 0 of 45'
+press ctrl+q
+ended 'by Ctrl+Q'
+
+# Several programs at once: each keeps its block; a click or Ctrl+Tab shows another one.
+open_window "$jobs/plate.nc" "$jobs/later/plate 2.nc"
+expect 'the first of several programs is shown' '^plate.nc, line 2 \(block 0 of 45'
+press Right Right Right
+expect 'Right' '^plate.nc, .*block 3 of'
+press ctrl+Tab
+expect 'Ctrl+Tab shows the next one' '^plate 2.nc, line 2 \(block 0 of'
+press ctrl+Next
+expect 'and the first one again, at its block' '^plate.nc, .*block 3 of'
+"$tools/drop_files" "$window" 700 400 "$jobs/plate.nc"
+picture 07-tabs
+expect 'an open program is not opened again' '^plate.nc, .*block 3 of'
+click 300 15
+expect 'a click on its tab shows a program' '^plate 2.nc'
+press ctrl+w
+expect 'Ctrl+W closes it' '^plate.nc, .*block 3 of'
+press ctrl+w
+expect 'the last one leaves the empty screen' '^feeler$'
 rm "$jobs/later/plate 2.nc"
 press ctrl+q
 ended 'by Ctrl+Q'

@@ -113,6 +113,18 @@ still 03-leaving
 press Escape
 expect 'Esc keeps the window open' '^\* job.nc'
 
+# Another program takes a tab of its own: nothing is asked, and no edit is lost.
+cp "$work/job.nc" "$work/other.nc"
+"$tools/drop_files" "$window" 700 400 "$work/other.nc"
+expect 'a program is opened beside edits' '^other.nc'
+press ctrl+q
+expect 'closing shows the program with edits' '^\* job.nc'
+still 03-leaving-both
+press Escape ctrl+w Escape
+expect 'Ctrl+W asks as well' '^\* job.nc'
+press ctrl+Tab ctrl+w
+expect 'a program without edits is closed' '^\* job.nc'
+
 kill -9 "$view"
 wait_for has_ended || die 'the window is killed'
 wait "$view" 2>/dev/null || true

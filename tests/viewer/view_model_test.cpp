@@ -2,6 +2,7 @@
 
 #include "app/setup/coverage.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/open_programs.h"
 #include "app/view/model/view_model.h"
 #include "tests/viewer/rows.h"
 
@@ -61,15 +62,41 @@ TEST(ViewModel, KeepsTheCursorWhileAFileCannotBeRead) {
     EXPECT_EQ(model.cursor.block, 7U);
 }
 
-TEST(ViewModel, BeginsAnotherProgramAtItsBeginning) {
-    ViewModel model = looked_at();
-    model.opens_another = true;
-    take_in(model, opening_again(model, 10), 0.0);
-    EXPECT_EQ(model.cursor.block, 0U);
-    EXPECT_TRUE(model.bookmarks.empty());
-    EXPECT_FALSE(model.section);
-    EXPECT_FALSE(model.camera_placed);
-    EXPECT_FALSE(model.opens_another);
+TEST(ViewModel, GivesSettingsAndFilesToTheProgramThatIsShownNext) {
+    ViewModel a = looked_at(), b;
+    a.settings.scale = 1.5;
+    a.popup = Popup::leaving;
+    a.workspace.leaving = Leaving::to_close;
+    a.playback.running = true;
+    a.samples = "/samples";
+    OpenedProgram inch;
+    inch.is_inch = true;
+    b.program = std::make_shared<const OpenedProgram>(inch);
+    b.cursor.block = 3;
+    show_in_place(b, a);
+    EXPECT_EQ(b.settings.scale, 1.5);
+    EXPECT_TRUE(b.settings.inch) << "as its program, while the user has not chosen";
+    EXPECT_EQ(b.samples, "/samples");
+    EXPECT_EQ(b.cursor.block, 3u);
+    EXPECT_EQ(a.popup, Popup::none);
+    EXPECT_EQ(a.workspace.leaving, Leaving::no) << "a question that is not answered is withdrawn";
+    EXPECT_FALSE(a.playback.running);
+}
+
+TEST(ViewModel, TellsOpenProgramsApart) {
+    ViewModel a = looked_at(), b, c, empty;
+    a.opened_path = "/op10/plate.nc";
+    b.opened_path = "/op20/plate.nc";
+    b.failure = core::Error{core::ErrorCode::io, {}, "it is gone"};
+    c.opened_path = "lid.nc";
+    const auto titles = tab_titles({&a, &b, &c, &empty});
+    ASSERT_EQ(titles.size(), 4u);
+    EXPECT_EQ(titles[0].name, "op10/plate.nc");
+    EXPECT_EQ(titles[1].name, "op20/plate.nc");
+    EXPECT_EQ(titles[1].state, render::ClearanceState::violation);
+    EXPECT_EQ(titles[2].name, "lid.nc");
+    EXPECT_EQ(titles[2].state, render::ClearanceState::none);
+    EXPECT_EQ(titles[3].name, "Start");
 }
 
 TEST(ViewModel, MarksABlockByTheWorstOfItsFindings) {

@@ -292,7 +292,7 @@ struct SessionWorker::State {
     std::deque<Task> tasks_;
     std::optional<ShowRequest> wanted_;
     SessionUpdate news_;
-    std::atomic<bool> stopping_ = false;
+    std::atomic<bool> stopping_ = false, rests_ = false;
     std::atomic<uint64_t> opens_ = 0;       // requested
     std::atomic<uint64_t> walks_ = 0;       // requested
     std::atomic<uint64_t> interrupted_ = 0; // walks up to this number
@@ -352,7 +352,7 @@ void SessionWorker::State::run() {
         {
             std::unique_lock lock(mutex_);
             changed_.wait(lock, [&] {
-                return stopping_ || !tasks_.empty() || session.has_work()
+                return stopping_ || !tasks_.empty() || (session.has_work() && !rests_)
                        || (wanted_ && session.can_show(*wanted_));
             });
             if (!tasks_.empty()) {
@@ -415,6 +415,15 @@ void SessionWorker::change(const WhatIf& change, size_t block) {
 
 void SessionWorker::take_back() {
     state_->post([](WorkerSession& session) { session.take_back(); });
+}
+
+void SessionWorker::rest(bool rests) {
+    {
+        const std::lock_guard lock(state_->mutex_);
+        if (state_->rests_ == rests) return;
+        state_->rests_ = rests;
+    }
+    state_->changed_.notify_all();
 }
 
 SessionUpdate SessionWorker::take() {

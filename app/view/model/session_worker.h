@@ -118,6 +118,9 @@ public:
     void change(const WhatIf& change, size_t block);
     void take_back();
 
+    /// While it rests, the check does not go on; requests are answered as far as it has come.
+    void rest(bool rests);
+
     /// What is new since the last call.
     SessionUpdate take();
 

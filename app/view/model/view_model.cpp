@@ -29,18 +29,6 @@ struct ShownLength {
           decimals(model.settings.inch ? decimals_of_mm + 2 : decimals_of_mm) {}
 };
 
-/// Drops what applies to one program only, before another one is opened.
-void forget_view_state(ViewModel& model) {
-    model.resume.reset();
-    model.cursor = {};
-    model.shown_pair = {};
-    model.bookmarks.clear();
-    model.section.reset();
-    model.measuring.positions.clear();
-    model.follows_timeline = true;
-    model.camera_placed = false;
-}
-
 /// The last known state of the stock, with the bodies of another set-up.
 std::shared_ptr<const BlockState> with_bodies_of(const std::shared_ptr<const BlockState>& before,
                                                  const OpenedProgram& opened) {
@@ -55,7 +43,6 @@ std::shared_ptr<const BlockState> with_bodies_of(const std::shared_ptr<const Blo
 /// Prepares for a new opening. If it is the same program, what the user has entered stays.
 void start_anew(ViewModel& model, uint64_t opening) {
     if (model.opening != 0 && model.has_rows()) model.resume = model.row();
-    if (std::exchange(model.opens_another, false)) forget_view_state(model);
     model.opening = opening;
     model.program = nullptr;
     model.rows.clear();

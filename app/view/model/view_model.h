@@ -132,6 +132,15 @@ struct Section {
     bool is_flipped() const { return glm::dot(normal, plane.normal) < 0.0; }
 };
 
+/// The tab of an open program.
+struct TabTitle {
+    std::string name, path;
+    render::ClearanceState state{}; // clear: checked to its end without a problem; none: not yet
+    bool is_modified = false;       // its set-up has unsaved edits
+
+    bool operator==(const TabTitle&) const = default;
+};
+
 /// Everything the window shows, and the input of the user, independent of a window. Functions that
 /// change it are here and in navigation.h.
 struct ViewModel {
@@ -163,7 +172,11 @@ struct ViewModel {
     std::vector<RecentProgram> recent; // the last one first
     std::string unwanted_recent;       // program to be taken off that list; empty: none
     std::string samples;               // folder of the samples; empty: none
-    std::string back_to;               // program to which wants_back returns; empty: none
+
+    // the open programs, in the window of the shown one
+    std::string opened_path; // of this program, as it was asked for; empty: none
+    std::vector<TabTitle> tabs;
+    size_t shown_tab = 0;
 
     // input of the user
     Cursor cursor;
@@ -186,7 +199,6 @@ struct ViewModel {
     std::optional<size_t> hovered;    // block under the mouse in the last frame
     std::optional<size_t> pointed_at; // in this frame
     std::optional<BlockRow> resume;   // row to return to when the program is read again
-    bool opens_another = false;       // the program to be opened next is a different one
     std::optional<Section> section;
     Measuring measuring;
     Popup popup = Popup::none;
@@ -211,9 +223,9 @@ struct ViewModel {
     // requests to the window
     bool notes_changed = false;
     bool wants_picture = false, wants_reload = false, wants_quit = false;
-    bool wants_back = false;    // to the program that was open before one that cannot be opened
-    bool wants_saving = false;  // of the set-up, under its name
-    std::string save_path = {}; // the set-up is to be saved under this name
+    std::optional<size_t> wanted_tab, unwanted_tab; // to be shown; to be closed
+    bool wants_saving = false;                      // of the set-up, under its name
+    std::string save_path = {};                     // the set-up is to be saved under this name
 
     bool has_rows() const { return !rows.empty(); }
     const BlockRow& row() const { return rows[cursor.block]; }

@@ -44,7 +44,7 @@ struct SetupRow {
 };
 
 /// What the user is asked before unsaved edits are dropped.
-enum class Leaving : uint8_t { no, to_close, to_open };
+enum class Leaving : uint8_t { no, to_close, to_close_tab, to_open };
 
 /// The set-up while it is edited.
 ///
@@ -61,7 +61,7 @@ struct Workspace {
     bool forgets_found = false;         // the user does not want them
     Leaving leaving = Leaving::no;
     bool drops_edits = false;             // the user wants to leave without saving
-    std::vector<std::string> leaving_for; // files to open then
+    std::vector<std::string> leaving_for; // files to open then, with `to_open`
 
     // of the panel
     bool has_keys = false;    // the panel has the keyboard

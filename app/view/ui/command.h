@@ -88,6 +88,9 @@ enum class Command : uint8_t {
     copy_item,
     tolerances,
     shortcuts,
+    next_program,
+    previous_program,
+    close_program,
     close_popup,
     quit
 };

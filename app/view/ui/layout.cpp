@@ -126,7 +126,8 @@ void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
     Frame frame{model, fonts, Theme{model.settings.theme}, now};
     model.workspace.has_keys = false; // unless its panel is drawn, with the focus
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const Area area{0, 0, size.x, size.y};
+    const float top = std::min(TabStrip::height_of(frame), size.y);
+    const Area area{0, top, size.x, size.y - top};
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(size);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
@@ -135,13 +136,15 @@ void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav
                      | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PopStyleVar(2);
-    const Area below{0, frame.px(48), size.x, size.y - frame.px(48)};
+    const Area bar{0, top, size.x, frame.px(48)};
+    const Area below{0, top + bar.height, size.x, area.height - bar.height};
+    if (top > 0.0F) place(frame, tabs_, "tabs", {0, 0, size.x, top}, ImVec2(0, 0));
     const bool runs_nothing = model.is_recorded && !model.has_rows();
     if (model.failure || runs_nothing) {
-        place(frame, toolbar_, "toolbar", {0, 0, size.x, frame.px(48)}, ImVec2(0, 0));
+        place(frame, toolbar_, "toolbar", bar, ImVec2(0, 0));
         place(frame, error_, "failure", below, ImVec2(0, 0));
     } else if (!model.program && !model.is_busy) {
-        place(frame, toolbar_, "toolbar", {0, 0, size.x, frame.px(48)}, ImVec2(0, 0));
+        place(frame, toolbar_, "toolbar", bar, ImVec2(0, 0));
         place(frame, welcome_, "welcome", below, ImVec2(0, 0), false, true);
     } else {
         draw_body(frame, area);

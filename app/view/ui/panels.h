@@ -23,6 +23,15 @@ namespace app::viewer {
 enum class Popup : uint8_t;
 struct RecentProgram;
 
+/// The tabs of the open programs, along the upper edge if there are several.
+class TabStrip : public Panel {
+public:
+    void draw(Frame& frame, const Area& area) override;
+
+    /// Its height, pixels; 0 for a single program.
+    static float height_of(const Frame& frame);
+};
+
 /// The toolbar along the upper edge.
 class ToolbarPanel : public Panel {
 public:
@@ -195,6 +204,7 @@ private:
     void draw_body(Frame& frame, const Area& area);
     void draw_splitters(Frame& frame, const Parts& parts);
 
+    TabStrip tabs_;
     ToolbarPanel toolbar_;
     ProgramPanel program_;
     FindingsPanel findings_;

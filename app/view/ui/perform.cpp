@@ -286,6 +286,12 @@ bool show(ViewModel& model, Command command) {
     }
 }
 
+/// Shows the next or previous open program, from the last on to the first.
+void go_to_tab(ViewModel& model, bool forward) {
+    const size_t count = model.tabs.size();
+    if (count > 1) model.wanted_tab = (model.shown_tab + (forward ? 1 : count - 1)) % count;
+}
+
 } // namespace
 
 void Frame::perform(Command command) { viewer::perform(model, command, now); }
@@ -361,7 +367,8 @@ void perform(ViewModel& model, Command command, double now) {
             break;
         }
         if (model.popup == Popup::none && !end_picking(model)) model.section.reset();
-        model.wants_back = model.popup == Popup::none && !model.back_to.empty();
+        if (model.popup == Popup::none && model.failure && model.tabs.size() > 1)
+            model.unwanted_tab = model.shown_tab;
         model.workspace.leaving = Leaving::no;
         close_browser(model);
         model.playback.running = false;
@@ -372,6 +379,13 @@ void perform(ViewModel& model, Command command, double now) {
         break;
     case Command::reload:
         model.wants_reload = true;
+        break;
+    case Command::next_program:
+    case Command::previous_program:
+        go_to_tab(model, command == Command::next_program);
+        break;
+    case Command::close_program:
+        model.unwanted_tab = model.shown_tab;
         break;
     case Command::quit:
         model.wants_quit = true;

@@ -5,6 +5,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/view/model/folder_listing.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/settings.h"
@@ -296,7 +297,9 @@ void PopupPanel::draw_leaving(Frame& frame) {
     Workspace& workspace = model.workspace;
     const std::string& path = workspace.document.path();
     text(frame.fonts.text, frame.palette.color(Role::text),
-         path.empty() ? "They are not saved in a file yet." : "They are not in " + path + " yet.");
+         path.empty() ? fmt::format("That of {} is not saved in a file yet.",
+                                    readable_name(model.opened_path))
+                      : "They are not in " + path + " yet.");
     ImGui::Dummy(ImVec2(0, frame.px(4)));
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     if (ImGui::Button("Save")) {
@@ -417,10 +420,9 @@ void ErrorPanel::draw(Frame& frame, const Area& area) {
     if (ImGui::Button("Reload")) frame.perform(Command::reload);
     ImGui::SameLine();
     if (ImGui::Button("Open another file")) frame.perform(Command::open);
-    if (!model.back_to.empty()) {
+    if (model.tabs.size() > 1) {
         ImGui::SameLine();
-        if (ImGui::Button(fmt::format("Back to {} (Esc)", model.back_to).c_str()))
-            frame.model.wants_back = true;
+        if (ImGui::Button("Close (Esc)")) frame.perform(Command::close_program);
     }
     ImGui::EndChild();
     ImGui::PopStyleVar(2);

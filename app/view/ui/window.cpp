@@ -15,23 +15,19 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "app/check/check_job.h"
-#include "app/view/model/device_worker.h"
+#include "app/base/text.h"
 #include "app/view/model/file_browser.h"
-#include "app/view/model/file_watch.h"
 #include "app/view/model/folder_listing.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/open_programs.h"
 #include "app/view/model/recent_files.h"
 #include "app/view/model/samples.h"
-#include "app/view/model/session_worker.h"
 #include "app/view/model/settings.h"
-#include "app/view/model/tolerance_sheet.h"
-#include "app/view/model/tolerance_worker.h"
-#include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/command.h"
 #include "app/view/ui/imgui_backends.h"
 #include "app/view/ui/panels.h"
+#include "app/view/ui/program_tab.h"
 #include "app/view/ui/system_dialog.h"
 #include "core/base/file_reads.h"
 #include "core/base/platform.h"
@@ -99,6 +95,8 @@ constexpr double frame_time = 1.0 / 60.0;
 /// Typical time to make the view of a block, seconds. After a step the window waits this long, to
 /// draw one frame instead of two.
 constexpr double answer_time = 0.015;
+/// Open programs at a time. Each keeps its record and the model of its stock.
+constexpr size_t most_tabs = 20;
 
 struct Glfw {
     bool is_open = glfwInit() == GLFW_TRUE;
@@ -128,88 +126,73 @@ struct Gui {
 
 class Window {
 public:
-    Window(const WindowJob& job, GLFWwindow* window, render::Renderer renderer)
+    Window(const WindowJob& job, GLFWwindow* window, const Settings& settings)
         : job_(job),
-          check_(job.check ? std::optional(*job.check) : std::nullopt),
           window_(window),
           gui_(window),
-          layout_(std::move(renderer)),
-          unsaved_(job.unsaved, job.write),
           recent_(job.recent_file, job.write),
           log_(job.frame_log),
-          worker_([] { glfwPostEmptyEvent(); }),
-          folders_([] { glfwPostEmptyEvent(); }),
-          dialog_([] { glfwPostEmptyEvent(); }),
-          device_([] { glfwPostEmptyEvent(); }),
-          tolerances_([] { glfwPostEmptyEvent(); }) {
-        model.recent = recent_.programs();
+          folders_(wake),
+          dialog_(wake) {
+        start_.settings = settings;
+        start_.recent = recent_.programs();
     }
 
-    ViewModel model;
-
-    void run();
+    core::Result<void> run();
     void press(int code, int modifiers);
     void type(int code, bool is_down) { keys_.add(code, is_down); }
     void drop(const std::vector<std::string>& paths);
     void damage() { frames_ = 3; }
-    void open_job();
     /// Closes, or asks first if there are unsaved edits.
-    void close();
+    void ask_to_close();
 
 private:
+    static void wake() { glfwPostEmptyEvent(); }
+
+    ProgramTab& tab() { return *tabs_[shown_]; }
+    ViewModel& shown_model() { return tab().model; }
+
     void update();
     void draw();
     void rebuild_fonts();
     void save_picture();
-    void watch_files();
     void open(const CheckJob& check);
-    void go_back();
+    core::Result<void> add_tab(size_t index);
+    void show_tab(size_t index);
+    void close_tab(size_t index);
+    void ask_to_close_tab(size_t index);
+    void take_turns();
+    void list_tabs();
     void remember_opened();
     void read_recent();
     void ask_system_dialog();
     void take_answer();
-    void take_changed_files(double now);
     void update_setup(double now);
     void leave();
+    void close();
     void remember_geometry();
     void set_title();
     double wanted_scale() const;
 
-    /// A program that another one replaces, with what was entered for it.
-    struct Left {
-        CheckJob check;
-        Workspace workspace;
-        std::vector<Breakpoint> breakpoints;
-        std::set<size_t> bookmarks;
-        std::optional<BlockRow> row;
-    };
-
-    WindowJob job_;
-    std::optional<CheckJob> check_; // the open job
-    std::optional<Left> left_;      // the one before it, until it is read
-    RecentProgram remembered_;      // in the list of recent programs
+    const WindowJob& job_;
+    ViewModel start_; // of a window without programs: settings and files
+    std::vector<std::unique_ptr<ProgramTab>> tabs_; // in the order of their tabs; never empty
+    size_t shown_ = 0;
+    const ProgramTab* shown_before_ = nullptr;
+    RecentProgram remembered_; // in the list of recent programs
     GLFWwindow* window_;
     Gui gui_;
-    Layout layout_;
     Fonts fonts_;
     std::string title_;
     std::optional<render::ColorScheme> styled_;
-    FileWatch files_;
-    UnsavedSetups unsaved_;
     RecentFiles recent_;
-    uint64_t opened_version_ = 0;           // of the document that is checked
-    std::optional<double> keep_unsaved_at_; // seconds
     FrameLog log_;
     KeyQueue keys_;
     double last_watch_ = 0.0, last_frame_ = 0.0;
-    bool asked_ = false; // a request has just been sent to the worker
-    int frames_ = 3;     // still to draw: ImGui needs several to settle the layout
-    SessionWorker worker_;
+    int frames_ = 3; // still to draw: ImGui needs several to settle the layout
     FolderWorker folders_;
     SystemDialog dialog_;
     uint64_t asked_dialog_ = 0; // number of the question
-    DeviceWorker device_;
-    ToleranceWorker tolerances_; // last, so that the threads end before the other members
 };
 
 double Window::wanted_scale() const {
@@ -221,74 +204,127 @@ double Window::wanted_scale() const {
     // If screen coordinates are not pixels, the system already scales the window.
     const double scaled = width > 0 ? static_cast<double>(pixels) / width : 1.0;
     return std::clamp(static_cast<double>(x) / std::max(scaled, 1.0), 0.5, 4.0)
-           * model.settings.scale;
+           * tabs_[shown_]->model.settings.scale;
 }
 
 void Window::rebuild_fonts() {
     const double scale = wanted_scale();
-    if (fonts_.text && fonts_.scale == scale && styled_ == model.settings.theme) return;
+    const render::ColorScheme theme = shown_model().settings.theme;
+    if (fonts_.text && fonts_.scale == scale && styled_ == theme) return;
     if (!fonts_.text || fonts_.scale != scale) {
         fonts_ = load_fonts(scale);
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }
-    apply_style(Theme{model.settings.theme}, scale);
-    styled_ = model.settings.theme;
+    apply_style(Theme{theme}, scale);
+    styled_ = theme;
 }
 
-/// Checks the open program with the set-up as it is now.
-void Window::open_job() {
-    if (!check_) return;
-    const SetupDocument& document = model.workspace.document;
-    opened_version_ = document.version();
-    check_->setup = document.path();
-    check_->setup_text.reset();
-    if (document.is_modified()) check_->setup_text = document.text();
-    worker_.set_breakpoints(model.breakpoints);
-    worker_.open(*check_);
-    watch_files();
+/// Adds an empty place for a program and shows it.
+core::Result<void> Window::add_tab(size_t index) {
+    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
+    auto added = std::make_unique<ProgramTab>(job_, std::move(renderer), wake);
+    show_in_place(added->model, tabs_.empty() ? start_ : shown_model());
+    if (!tabs_.empty()) shown_before_ = &tab();
+    tabs_.insert(tabs_.begin() + static_cast<ptrdiff_t>(index), std::move(added));
+    shown_ = index;
+    return {};
+}
+
+void Window::show_tab(size_t index) {
     damage();
+    if (index >= tabs_.size() || index == shown_) return;
+    tab().keep_edits();
+    show_in_place(tabs_[index]->model, shown_model());
+    shown_before_ = &tab();
+    shown_ = index;
+    last_watch_ = 0.0; // its files may have changed meanwhile
 }
 
-void Window::watch_files() {
-    std::vector<std::string> files = files_of_setup(check_->setup);
-    files.push_back(check_->program);
-    if (!job_.device.file.empty()) files.push_back(job_.device.file);
-    files_.set(std::move(files));
+/// Closes a program. The one that was shown before it is shown then.
+void Window::close_tab(size_t index) {
+    damage();
+    if (index >= tabs_.size()) return;
+    const auto before = std::find_if(tabs_.begin(), tabs_.end(), [&](const auto& each) {
+        return each.get() == shown_before_ && each != tabs_[index];
+    });
+    if (index == shown_) {
+        if (tabs_.size() == 1 && !add_tab(1)) return;
+        show_tab(before != tabs_.end()      ? static_cast<size_t>(before - tabs_.begin())
+                 : index + 1 < tabs_.size() ? index + 1
+                                            : index - 1);
+    }
+    if (shown_before_ == tabs_[index].get()) shown_before_ = nullptr;
+    tabs_.erase(tabs_.begin() + static_cast<ptrdiff_t>(index));
+    if (shown_ > index) --shown_;
 }
 
-/// Opens a program with the set-up of a job.
+void Window::ask_to_close_tab(size_t index) {
+    if (index >= tabs_.size()) return;
+    if (!tabs_[index]->model.workspace.document.is_modified()) return close_tab(index);
+    show_tab(index);
+    shown_model().workspace.leaving = Leaving::to_close_tab;
+    shown_model().popup = Popup::leaving;
+}
+
+/// Opens a program in a tab of its own; one that is open is shown.
 void Window::open(const CheckJob& check) {
-    if (check_ && model.program && !model.failure && check.program != check_->program)
-        left_ = Left{*check_, model.workspace, model.breakpoints, model.bookmarks,
-                     model.has_rows() ? std::optional(model.row()) : std::nullopt};
-    if (check_ && check.program != check_->program) model.breakpoints.clear();
-    check_ = check;
-    const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
-    open_document(model, SetupDocument(check.setup, text));
-    if (auto unsaved = unsaved_.find(check.program, check.setup, text))
-        model.workspace.found = std::move(unsaved->text);
-    keep_unsaved_at_.reset();
-    open_job();
-    if (model.workspace.found) show_setup(model, true);
+    const std::string path = absolute_path(check.program);
+    const auto known = std::find_if(tabs_.begin(), tabs_.end(), [&](const auto& each) {
+        return each->check() && absolute_path(each->check()->program) == path;
+    });
+    if (known == tabs_.end()) {
+        if (tab().is_vacant()) {
+            const size_t index = shown_;
+            if (tab().check() && add_tab(index + 1)) close_tab(index);
+        } else if (tabs_.size() >= most_tabs) {
+            return say(shown_model(), "Close a program first: as many are open as there can be",
+                       glfwGetTime());
+        } else if (const auto added = add_tab(shown_ + 1); !added) {
+            return say(shown_model(), added.error().message, glfwGetTime());
+        }
+        return tab().open(check);
+    }
+    show_tab(static_cast<size_t>(known - tabs_.begin()));
+    Workspace& workspace = shown_model().workspace;
+    const std::string& setup = workspace.document.path();
+    const bool is_same = check.setup.empty() || absolute_path(check.setup) == absolute_path(setup);
+    if (is_same && !tab().is_vacant()) return;
+    if (!workspace.document.is_modified() || workspace.drops_edits) return tab().open(check);
+    workspace.leaving = Leaving::to_open;
+    workspace.leaving_for = {check.program, check.setup};
+    shown_model().popup = Popup::leaving;
 }
 
-/// Returns from a program that cannot be opened to the one before it.
-void Window::go_back() {
-    if (!left_) return;
-    Left left = *std::exchange(left_, std::nullopt);
-    check_ = std::move(left.check);
-    model.workspace = std::move(left.workspace);
-    model.breakpoints = std::move(left.breakpoints);
-    model.bookmarks = std::move(left.bookmarks);
-    model.resume = std::move(left.row);
-    model.opens_another = false;
-    open_job();
+/// Lets the other programs be checked once the shown one is, one after the other.
+void Window::take_turns() {
+    bool is_busy = tab().is_checking();
+    for (const auto& each : tabs_) {
+        if (each.get() == &tab()) {
+            each->rest(false);
+            continue;
+        }
+        each->rest(is_busy);
+        is_busy = is_busy || each->is_checking();
+    }
+}
+
+/// Gives the shown model the titles of all tabs.
+void Window::list_tabs() {
+    std::vector<const ViewModel*> models;
+    models.reserve(tabs_.size());
+    for (const auto& each : tabs_) models.push_back(&each->model);
+    std::vector<TabTitle> titles = tab_titles(models);
+    ViewModel& model = shown_model();
+    if (titles != model.tabs || model.shown_tab != shown_) damage();
+    model.tabs = std::move(titles);
+    model.shown_tab = shown_;
 }
 
 /// Shows what other windows have added to the list of recent programs.
 void Window::read_recent() {
     recent_.read();
+    ViewModel& model = shown_model();
     if (model.recent == recent_.programs()) return;
     model.recent = recent_.programs();
     damage();
@@ -296,7 +332,7 @@ void Window::read_recent() {
 
 /// Opens the file dialog of the system, if that is requested.
 void Window::ask_system_dialog() {
-    FileBrowser& browser = model.browser;
+    FileBrowser& browser = shown_model().browser;
     if (!std::exchange(browser.wants_system, false)) return;
     browser.is_asking = true;
     asked_dialog_ = dialog_.start({.wish = browser.wish,
@@ -309,6 +345,7 @@ void Window::ask_system_dialog() {
 /// Takes the answer of the user in that dialog, or opens the browser if the system has none.
 void Window::take_answer() {
     const DialogUpdate answer = dialog_.take();
+    ViewModel& model = shown_model();
     FileBrowser& browser = model.browser;
     if (!answer.has_news || answer.run != asked_dialog_ || !browser.is_asking) return;
     browser.is_asking = false;
@@ -323,20 +360,13 @@ void Window::take_answer() {
     choose_file(model, *answer.path);
 }
 
-/// Puts the open program into the list of recent ones, and forgets the one before it.
+/// Puts the shown program into the list of recent ones.
 void Window::remember_opened() {
-    const bool is_open = check_ && model.program && model.has_rows() && !model.failure
-                         && model.program->program == check_->program;
-    const bool has_failed = model.failure || (model.is_recorded && !model.has_rows());
-    const std::string back =
-        left_ && has_failed
-            ? std::filesystem::path(left_->check.program).filename().generic_string()
-            : std::string();
-    if (back != model.back_to) damage();
-    model.back_to = back;
+    ViewModel& model = shown_model();
+    const bool is_open = tab().check() && model.program && model.has_rows() && !model.failure
+                         && model.program->program == tab().check()->program;
     if (!is_open) return;
-    left_.reset();
-    RecentProgram opened{check_->program, model.workspace.document.path()};
+    RecentProgram opened{tab().check()->program, model.workspace.document.path()};
     if (opened == remembered_) return;
     recent_.add(opened.program, opened.setup);
     model.recent = recent_.programs();
@@ -345,94 +375,56 @@ void Window::remember_opened() {
 
 void Window::drop(const std::vector<std::string>& paths) {
     damage();
+    ViewModel& model = shown_model();
     if (!can_open(paths, model, glfwGetTime())) return;
-    const bool opens = std::any_of(paths.begin(), paths.end(),
-                                   [](const std::string& path) { return !is_part_of_setup(path); });
-    Workspace& workspace = model.workspace;
-    if (opens && workspace.document.is_modified() && !workspace.drops_edits) {
-        workspace.leaving = Leaving::to_open;
-        workspace.leaving_for = paths;
-        model.popup = Popup::leaving;
-        return;
-    }
-    const auto check = with_dropped(check_.value_or(CheckJob{}), paths, model, glfwGetTime());
-    if (check) open(*check);
+    const std::vector<CheckJob> checks =
+        dropped_programs(tab().check().value_or(CheckJob{}), paths, model, glfwGetTime());
+    for (const CheckJob& check : checks) open(check);
 }
 
+void Window::ask_to_close() {
+    for (const auto& each : tabs_) each->may_drop = false;
+    close();
+}
+
+/// Closes if no program has unsaved edits that the user has not agreed to drop.
 void Window::close() {
-    Workspace& workspace = model.workspace;
-    if (!workspace.document.is_modified()) return glfwSetWindowShouldClose(window_, GLFW_TRUE);
-    workspace.leaving = Leaving::to_close;
-    model.popup = Popup::leaving;
-    damage();
+    for (size_t i = 0; i < tabs_.size(); ++i) {
+        if (tabs_[i]->may_drop || !tabs_[i]->model.workspace.document.is_modified()) continue;
+        show_tab(i);
+        shown_model().workspace.leaving = Leaving::to_close;
+        shown_model().popup = Popup::leaving;
+        return damage();
+    }
+    for (const auto& each : tabs_)
+        if (each->may_drop) each->forget_edits();
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
 /// Does what the user wanted to do when edits were not saved, after they were saved or dropped.
 void Window::leave() {
-    Workspace& workspace = model.workspace;
+    Workspace& workspace = shown_model().workspace;
     const Leaving leaving = std::exchange(workspace.leaving, Leaving::no);
-    if (check_) unsaved_.forget(check_->program, workspace.document.path());
-    keep_unsaved_at_.reset();
-    if (leaving == Leaving::to_close) return glfwSetWindowShouldClose(window_, GLFW_TRUE);
     const std::vector<std::string> paths = std::exchange(workspace.leaving_for, {});
+    if (leaving == Leaving::to_close) {
+        tab().may_drop = true;
+        return close();
+    }
+    tab().forget_edits();
+    if (leaving == Leaving::to_close_tab) return close_tab(shown_);
     workspace.drops_edits = true;
     drop(paths);
-    model.workspace.drops_edits = false;
-}
-
-/// Reads changed files again. Edits of the set-up are never lost that way.
-void Window::take_changed_files(double now) {
-    Workspace& workspace = model.workspace;
-    const std::string& path = workspace.document.path();
-    const auto text = path.empty() ? std::nullopt : core::file_bytes(path);
-    if (text && *text != workspace.document.saved_text()) {
-        if (workspace.document.is_modified()) {
-            workspace.on_disk = *text;
-            show_setup(model, true);
-        } else {
-            take_file(model, *text);
-        }
-    }
-    open_job();
-    say(model, "A file has changed: reloading", now);
+    shown_model().workspace.drops_edits = false;
 }
 
 /// Carries out the requests about the set-up, and checks the program again after an edit.
 void Window::update_setup(double now) {
-    constexpr double keep_delay = 1.0; // seconds
-    Workspace& workspace = model.workspace;
-    const bool saves = std::exchange(model.wants_saving, false) || !model.save_path.empty();
-    if (saves && check_) {
-        const std::string before = workspace.document.path();
-        if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
-            // The browser says why a name was refused; the dialog of the system cannot.
-            if (workspace.is_naming && model.popup != Popup::open_file)
-                (workspace.refusal.empty() ? browse : browse_here)(model, FileWish::save_setup, {});
-        } else {
-            if (model.popup == Popup::open_file) model.popup = Popup::none;
-            unsaved_.forget(check_->program, before);
-            keep_unsaved_at_.reset();
-            check_->setup = workspace.document.path();
-            watch_files();
-            if (workspace.document.path() != before) open_job();
-            if (workspace.leaving != Leaving::no) leave();
-        }
+    if (tab().save_if_wanted(now)) {
         damage();
+        if (shown_model().workspace.leaving != Leaving::no) leave();
     }
-    if (std::exchange(workspace.drops_edits, false)) leave();
-    if (std::exchange(workspace.forgets_found, false) && check_)
-        unsaved_.forget(check_->program, workspace.document.path());
-    if (check_ && workspace.document.version() != opened_version_) {
-        open_job();
-        keep_unsaved_at_ = now + keep_delay;
-    }
-    if (!keep_unsaved_at_ || now < *keep_unsaved_at_ || !check_) return;
-    keep_unsaved_at_.reset();
-    const SetupDocument& document = workspace.document;
-    if (document.is_modified())
-        unsaved_.keep(check_->program, document.path(), document.text());
-    else
-        unsaved_.forget(check_->program, document.path());
+    if (std::exchange(shown_model().workspace.drops_edits, false)) leave();
+    tab().take_edits(now);
 }
 
 void Window::press(int code, int modifiers) {
@@ -445,6 +437,7 @@ void Window::press(int code, int modifiers) {
     const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
     const bool moves_text = code >= key::enter && code <= key::end;
     if (is_typing && (is_plain || moves_text)) return;
+    ViewModel& model = shown_model();
     const bool keeps_keys = (model.popup != Popup::none && model.popup != Popup::shortcuts)
                             || (model.popup == Popup::none && model.workspace.has_keys);
     const bool closes = *command == Command::close_popup || *command == Command::what_if
@@ -454,7 +447,7 @@ void Window::press(int code, int modifiers) {
 }
 
 void Window::set_title() {
-    const std::string title = window_title(model);
+    const std::string title = window_title(shown_model());
     if (title == title_) return;
     title_ = title;
     glfwSetWindowTitle(window_, title.c_str());
@@ -465,54 +458,47 @@ void Window::save_picture() {
     glfwGetFramebufferSize(window_, &width, &height);
     const std::filesystem::path path = free_picture_name(job_.pictures);
     const auto written = render::write_png(screen_picture(width, height), path);
-    say(model, written ? "Saved " + path.generic_string() : written.error().message, glfwGetTime());
+    say(shown_model(), written ? "Saved " + path.generic_string() : written.error().message,
+        glfwGetTime());
     damage();
 }
 
 void Window::update() {
     const double now = glfwGetTime();
-    SessionUpdate news = worker_.take();
-    if (news.has_news) damage();
-    take_in(model, std::move(news), now);
-    DeviceUpdate answers = device_.take();
-    if (answers.has_news) damage();
-    take_in(model, std::move(answers));
-    ToleranceUpdate found = tolerances_.take();
-    if (found.has_news) damage();
-    take_in(model, std::move(found));
-    if (play(model, std::min(now - last_frame_, 0.2))) damage();
-    last_frame_ = now;
-    if (take_in(model, folders_.take())) damage();
-    if (!model.unwanted_recent.empty()) {
-        recent_.remove(std::exchange(model.unwanted_recent, {}));
-        model.recent = recent_.programs();
+    for (const auto& each : tabs_)
+        if (each->take_updates(now) && each.get() == &tab()) damage();
+    {
+        ViewModel& model = shown_model();
+        if (play(model, std::min(now - last_frame_, 0.2))) damage();
+        last_frame_ = now;
+        if (take_in(model, folders_.take())) damage();
+        if (!model.unwanted_recent.empty()) {
+            recent_.remove(std::exchange(model.unwanted_recent, {}));
+            model.recent = recent_.programs();
+        }
+        take_answer();
+        ask_system_dialog();
+        remember_opened();
+        if (const auto wanted = std::exchange(model.wanted_tab, {})) show_tab(*wanted);
     }
-    take_answer();
-    ask_system_dialog();
-    remember_opened();
-    if (std::exchange(model.wants_back, false)) go_back();
-    if (!model.wanted_paths.empty()) drop(std::exchange(model.wanted_paths, {}));
-    if (send_browser_orders(model, folders_, now)) read_recent();
-    if (std::exchange(model.wants_reload, false)) open_job();
+    // Another program may be shown from here on.
+    if (const auto unwanted = std::exchange(shown_model().unwanted_tab, {}))
+        ask_to_close_tab(*unwanted);
+    if (!shown_model().wanted_paths.empty()) drop(std::exchange(shown_model().wanted_paths, {}));
+    if (send_browser_orders(shown_model(), folders_, now)) read_recent();
+    if (std::exchange(shown_model().wants_reload, false)) tab().reload();
     if (now - last_watch_ > watch_interval) {
         last_watch_ = now;
-        if (files_.has_changed()) take_changed_files(now);
-        if (model.missing != files_.missing()) {
-            model.missing = files_.missing();
-            damage();
-        }
-        if (now < model.message_until + watch_interval) damage();
+        if (tab().take_changed_files(now)) damage();
+        if (now < shown_model().message_until + watch_interval) damage();
     }
     update_setup(now);
-    if (send_device_orders(model, device_, check_)) damage();
-    if (send_tolerance_orders(model, tolerances_, check_)) damage();
-    if (send_requests(model, worker_)) {
-        asked_ = true;
-        damage();
-    }
-    if (std::exchange(model.notes_changed, false))
-        keep_notes(model, job_.notes_file, job_.write, now);
-    if (std::exchange(model.wants_quit, false)) close();
+    take_turns();
+    list_tabs();
+    if (tab().send_orders()) damage();
+    if (std::exchange(shown_model().notes_changed, false))
+        keep_notes(shown_model(), job_.notes_file, job_.write, now);
+    if (std::exchange(shown_model().wants_quit, false)) ask_to_close();
 }
 
 void Window::draw() {
@@ -522,7 +508,8 @@ void Window::draw() {
     ImGui_ImplGlfw_NewFrame();
     if (keys_.feed(ImGui::GetIO())) damage();
     ImGui::NewFrame();
-    layout_.draw(model, fonts_, glfwGetTime());
+    ViewModel& model = shown_model();
+    tab().layout.draw(model, fonts_, glfwGetTime());
     set_title();
     ImGui::Render();
     int width = 0, height = 0;
@@ -539,18 +526,26 @@ void Window::draw() {
 }
 
 void Window::remember_geometry() {
-    Settings& settings = model.settings;
+    Settings& settings = shown_model().settings;
     settings.maximised = glfwGetWindowAttrib(window_, GLFW_MAXIMIZED) == GLFW_TRUE;
     if (settings.maximised) return;
     glfwGetWindowSize(window_, &settings.width, &settings.height);
     glfwGetWindowPos(window_, &settings.x, &settings.y);
 }
 
-void Window::run() {
-    if (check_) open(*check_);
+core::Result<void> Window::run() {
+    start_.browser.uses_system =
+        start_.settings.system_dialog
+        && core::platform::environment_variable("FEELER_FILE_DIALOG") != "own";
+    start_.samples = samples_folder().generic_string();
+    start_.notes = notes_in(core::file_bytes(job_.notes_file).value_or(""));
+    if (auto added = add_tab(0); !added) return added;
+    glfwSetWindowUserPointer(window_, this);
+    for (const auto& check : job_.checks) open(*check);
+    show_tab(0);
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
         update();
-        if (std::exchange(asked_, false) && !model.playback.running) {
+        if (tab().has_asked() && !shown_model().playback.running) {
             glfwWaitEventsTimeout(answer_time);
             update();
         }
@@ -558,15 +553,17 @@ void Window::run() {
             --frames_;
             draw();
         }
-        if (model.playback.running)
+        if (shown_model().playback.running)
             glfwWaitEventsTimeout(frame_time);
-        else if (frames_ > 0 || model.wanted)
+        else if (frames_ > 0 || shown_model().wanted)
             glfwPollEvents();
         else
             glfwWaitEventsTimeout(watch_interval);
     }
+    glfwSetWindowUserPointer(window_, nullptr);
     remember_geometry();
-    write_settings(model.settings, job_.settings_file);
+    write_settings(shown_model().settings, job_.settings_file);
+    return {};
 }
 
 Window& window_of(GLFWwindow* window) {
@@ -583,7 +580,7 @@ void listen(GLFWwindow* window) {
     glfwSetWindowCloseCallback(window, [](GLFWwindow* w) {
         if (!glfwGetWindowUserPointer(w)) return;
         glfwSetWindowShouldClose(w, GLFW_FALSE);
-        window_of(w).close();
+        window_of(w).ask_to_close();
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         if (glfwGetWindowUserPointer(w))
@@ -643,22 +640,10 @@ core::Result<void> run_window(const WindowJob& job) {
     const OpenWindow window = make_window(settings);
     if (!window)
         return core::fail(core::ErrorCode::unsupported, "OpenGL 3.3 is not available for a window");
-    FEELER_TRY(render::Renderer renderer, render::Renderer::make());
-    const auto shown = std::make_unique<Window>(job, window.get(), std::move(renderer));
-    shown->model.settings = settings;
-    shown->model.device.file = job.device.file;
-    shown->model.device.shown = job.device.shown;
-    shown->model.browser.uses_system =
-        settings.system_dialog
-        && core::platform::environment_variable("FEELER_FILE_DIALOG") != "own";
-    shown->model.samples = samples_folder().generic_string();
-    shown->model.notes = notes_in(core::file_bytes(job.notes_file).value_or(""));
+    const auto shown = std::make_unique<Window>(job, window.get(), settings);
     listen_to_keys(window.get());
-    glfwSetWindowUserPointer(window.get(), shown.get());
     core::platform::close_own_console(); // from here on, the window shows what there is to say
-    shown->run();
-    glfwSetWindowUserPointer(window.get(), nullptr);
-    return {};
+    return shown->run();
 }
 
 namespace {

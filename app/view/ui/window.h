@@ -25,7 +25,7 @@ struct DeviceChoice {
 
 /// The options of the window.
 struct WindowJob {
-    std::shared_ptr<const CheckJob> check; // null: show the welcome screen
+    std::vector<std::shared_ptr<const CheckJob>> checks; // empty: show the welcome screen
     DeviceChoice device;
     std::filesystem::path settings_file; // read when opened, written when closed; empty: none
     std::filesystem::path notes_file;    // notes on findings; empty: not stored
@@ -48,11 +48,12 @@ bool is_part_of_setup(const std::string& path);
 /// file browser.
 bool can_open(const std::vector<std::string>& paths, ViewModel& model, double now);
 
-/// The job after files were dropped on the window: a program, a set-up, or both. A new program
-/// discards the set-up and the breakpoints of the old one. Empty if there is nothing to open; then
-/// a message says why.
-std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
-                                     ViewModel& model, double now);
+/// What is to be opened after files were dropped on the window, with the options of `check`, the
+/// shown program. Each program gets the dropped set-up of the same name, or the only one, or the
+/// one next to it; without a program, the set-up is for the shown one. Meshes, tools and machines
+/// are added to its set-up. If there is nothing to open, a message says why.
+std::vector<CheckJob> dropped_programs(CheckJob check, const std::vector<std::string>& paths,
+                                       ViewModel& model, double now);
 
 /// Saves the notes of the open program, merged with those saved by other windows.
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,

@@ -9,6 +9,17 @@
 #include "core/base/file_reads.h"
 
 namespace app::viewer {
+namespace {
+
+/// The set-up of the same name as the program, or the only one; empty: none.
+std::string setup_for(const std::string& program, const std::vector<std::string>& setups) {
+    const auto name = std::filesystem::path(program).stem();
+    for (const std::string& setup : setups)
+        if (std::filesystem::path(setup).stem() == name) return setup;
+    return setups.size() == 1 ? setups.front() : std::string();
+}
+
+} // namespace
 
 bool is_part_of_setup(const std::string& path) {
     return is_mesh_file(path) || is_tool_library(path) || is_machine_file(path);
@@ -28,35 +39,34 @@ bool can_open(const std::vector<std::string>& paths, ViewModel& model, double no
     return true;
 }
 
-std::optional<CheckJob> with_dropped(CheckJob check, const std::vector<std::string>& paths,
-                                     ViewModel& model, double now) {
-    const std::string before = check.program;
-    bool has_program = false, has_setup = false;
+std::vector<CheckJob> dropped_programs(CheckJob check, const std::vector<std::string>& paths,
+                                       ViewModel& model, double now) {
+    std::vector<std::string> programs, setups;
     for (const std::string& path : paths) {
-        if (is_part_of_setup(path)) {
-            if (model.program && add_file(model, path))
-                show_setup(model, true);
-            else
-                say(model, "Open a program first: then the file is added to its set-up", now);
-        } else if (is_setup_file(path)) {
-            check.setup = path;
-            has_setup = true;
-        } else {
-            check.program = path;
-            has_program = true;
-        }
-    }
-    if (!has_program && !has_setup) return {};
-    if (check.program.empty()) {
-        say(model, "Drop a program as well", now);
-        return {};
-    }
-    if (has_program && !has_setup) check.setup.clear();
-    if (check.program != before) {
-        model.opens_another = true;
+        if (!is_part_of_setup(path))
+            (is_setup_file(path) ? setups : programs).push_back(path);
+        else if (model.program && add_file(model, path))
+            show_setup(model, true);
+        else
+            say(model, "Open a program first: then the file is added to its set-up", now);
     }
     check.setup_text.reset();
-    return check;
+    if (programs.empty() && !setups.empty()) {
+        if (check.program.empty()) say(model, "Drop a program as well", now);
+        if (check.program.empty()) return {};
+        check.setup = setups.back();
+        check.setup_was_found = false;
+        return {check};
+    }
+    std::vector<CheckJob> jobs;
+    for (const std::string& program : programs) {
+        check.program = program;
+        check.setup = setup_for(program, setups);
+        check.setup_was_found = false;
+        find_setup_next_to(check); // as all commands do
+        jobs.push_back(check);
+    }
+    return jobs;
 }
 
 void keep_notes(ViewModel& model, const std::filesystem::path& path, const FileWriter& write,

@@ -1,0 +1,150 @@
+#include "app/view/ui/program_tab.h"
+
+#include <utility>
+
+#include "app/view/model/file_browser.h"
+#include "app/view/model/navigation.h"
+#include "app/view/model/tolerance_sheet.h"
+#include "app/view/ui/command.h"
+#include "app/view/ui/window.h"
+#include "core/base/file_reads.h"
+#include "render/renderer.h"
+
+namespace app::viewer {
+
+ProgramTab::ProgramTab(const WindowJob& job, render::Renderer renderer, std::function<void()> wake)
+    : layout(std::move(renderer)),
+      job_(job),
+      unsaved_(job.unsaved, job.write),
+      worker_(wake),
+      device_(wake),
+      tolerances_(wake) {
+    model.device.file = job.device.file;
+    model.device.shown = job.device.shown;
+}
+
+bool ProgramTab::is_vacant() const {
+    const bool runs_nothing = model.is_recorded && !model.has_rows();
+    return !check_ || ((model.failure || runs_nothing) && !model.workspace.document.is_modified());
+}
+
+void ProgramTab::open(const CheckJob& check) {
+    check_ = check;
+    model.opened_path = check.program;
+    const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
+    open_document(model, SetupDocument(check.setup, text));
+    if (auto unsaved = unsaved_.find(check.program, check.setup, text))
+        model.workspace.found = std::move(unsaved->text);
+    keep_at_.reset();
+    reload();
+    if (model.workspace.found) show_setup(model, true);
+}
+
+void ProgramTab::reload() {
+    if (!check_) return;
+    const SetupDocument& document = model.workspace.document;
+    checked_version_ = document.version();
+    check_->setup = document.path();
+    check_->setup_text.reset();
+    if (document.is_modified()) check_->setup_text = document.text();
+    worker_.set_breakpoints(model.breakpoints);
+    worker_.open(*check_);
+    watch_files();
+}
+
+void ProgramTab::watch_files() {
+    std::vector<std::string> files = files_of_setup(check_->setup);
+    files.push_back(check_->program);
+    if (!job_.device.file.empty()) files.push_back(job_.device.file);
+    files_.set(std::move(files));
+}
+
+bool ProgramTab::take_updates(double now) {
+    SessionUpdate news = worker_.take();
+    DeviceUpdate answers = device_.take();
+    ToleranceUpdate found = tolerances_.take();
+    const bool has_news = news.has_news || answers.has_news || found.has_news;
+    take_in(model, std::move(news), now);
+    take_in(model, std::move(answers));
+    take_in(model, std::move(found));
+    return has_news;
+}
+
+bool ProgramTab::send_orders() {
+    bool any = send_device_orders(model, device_, check_);
+    any = send_tolerance_orders(model, tolerances_, check_) || any;
+    const bool asks = send_requests(model, worker_);
+    has_asked_ = has_asked_ || asks;
+    return any || asks;
+}
+
+bool ProgramTab::has_asked() { return std::exchange(has_asked_, false); }
+
+bool ProgramTab::take_changed_files(double now) {
+    const bool has_changed = check_ && files_.has_changed();
+    const bool is_news = has_changed || model.missing != files_.missing();
+    model.missing = files_.missing();
+    if (!has_changed) return is_news;
+    Workspace& workspace = model.workspace;
+    const std::string& path = workspace.document.path();
+    const auto text = path.empty() ? std::nullopt : core::file_bytes(path);
+    if (text && *text != workspace.document.saved_text()) {
+        if (workspace.document.is_modified()) {
+            workspace.on_disk = *text;
+            show_setup(model, true);
+        } else {
+            take_file(model, *text);
+        }
+    }
+    reload();
+    say(model, "A file has changed: reloading", now);
+    return true;
+}
+
+bool ProgramTab::save_if_wanted(double now) {
+    Workspace& workspace = model.workspace;
+    const bool saves = std::exchange(model.wants_saving, false) || !model.save_path.empty();
+    if (!saves || !check_) return false;
+    const std::string before = workspace.document.path();
+    if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
+        // The browser says why a name was refused; the dialog of the system cannot.
+        if (workspace.is_naming && model.popup != Popup::open_file)
+            (workspace.refusal.empty() ? browse : browse_here)(model, FileWish::save_setup, {});
+        return false;
+    }
+    if (model.popup == Popup::open_file) model.popup = Popup::none;
+    unsaved_.forget(check_->program, before);
+    keep_at_.reset();
+    check_->setup = workspace.document.path();
+    watch_files();
+    if (workspace.document.path() != before) reload();
+    return true;
+}
+
+void ProgramTab::take_edits(double now) {
+    constexpr double keep_delay = 1.0; // seconds
+    if (!check_) return;
+    if (std::exchange(model.workspace.forgets_found, false))
+        unsaved_.forget(check_->program, model.workspace.document.path());
+    if (model.workspace.document.version() != checked_version_) {
+        reload();
+        keep_at_ = now + keep_delay;
+    }
+    if (keep_at_ && now >= *keep_at_) keep_edits();
+}
+
+void ProgramTab::keep_edits() {
+    if (!check_ || !std::exchange(keep_at_, std::nullopt)) return;
+    const SetupDocument& document = model.workspace.document;
+    if (document.is_modified())
+        unsaved_.keep(check_->program, document.path(), document.text());
+    else
+        unsaved_.forget(check_->program, document.path());
+}
+
+void ProgramTab::forget_edits() {
+    if (check_) unsaved_.forget(check_->program, model.workspace.document.path());
+    keep_at_.reset();
+}
+
+} // namespace app::viewer
