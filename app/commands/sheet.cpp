@@ -1,3 +1,5 @@
+#include "app/commands/sheet.h"
+
 #include <ctime>
 #include <memory>
 #include <string>
@@ -15,7 +17,6 @@
 #include "app/commands/progress.h"
 #include "app/commands/read_files.h"
 #include "app/commands/suggestion.h"
-#include "app/report/sheet/sheet_run.h"
 
 namespace app {
 namespace {
@@ -44,14 +45,22 @@ core::Result<MadeSheet> made(CheckJob job, const SheetOptions& options) {
         line.show(progress);
         return !is_interrupted();
     };
-    auto sheet = make_sheet(job, {.tolerances = options.tolerances,
-                                  .pictures = !options.no_pictures,
-                                  .program_date = date_of_file(job.program),
-                                  .check_date = minute_text(std::time(nullptr)),
-                                  .goes_on = [] { return !is_interrupted(); }});
+    auto sheet = make_dated_sheet(job, {.tolerances = options.tolerances,
+                                        .pictures = !options.no_pictures,
+                                        .goes_on = [] { return !is_interrupted(); }});
     line.clear();
     return sheet;
 }
+
+} // namespace
+
+core::Result<MadeSheet> make_dated_sheet(const CheckJob& job, SheetWishes wishes) {
+    wishes.program_date = date_of_file(job.program);
+    wishes.check_date = minute_text(std::time(nullptr));
+    return make_sheet(job, wishes);
+}
+
+namespace {
 
 core::Result<ExitCode> write_sheet(const SheetOptions& options) {
     ReadFiles read;

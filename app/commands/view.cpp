@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include "app/check/check_job.h"
+#include "app/check/check_run.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
+#include "app/commands/sheet.h"
 #include "app/commands/suggestion.h"
 #include "app/view/ui/window.h"
 #include "core/base/platform.h"
@@ -29,6 +31,13 @@ struct ViewOptions {
     std::string frame_log;
 };
 
+core::Result<std::string> sheet_page(CheckJob check, const std::function<bool()>& goes_on) {
+    check.is_stopped = [&goes_on] { return !goes_on(); };
+    check.after_block = [&goes_on](const CheckProgress&) { return goes_on(); };
+    FEELER_TRY(MadeSheet sheet, make_dated_sheet(check, {.goes_on = goes_on}));
+    return std::move(sheet.html);
+}
+
 ExitCode view(const ViewOptions& options) {
     viewer::WindowJob job;
     CheckArguments arguments = options.what;
@@ -48,6 +57,9 @@ ExitCode view(const ViewOptions& options) {
     job.device = {options.device.file, options.device.shown};
     job.write = [](const std::string& path, const std::string& text) {
         return write_output(path, text);
+    };
+    job.make_sheet = [](const CheckJob& check, const std::function<bool()>& goes_on) {
+        return sheet_page(check, goes_on);
     };
     job.pictures = pictures_folder(first);
     job.frame_log = options.frame_log;

@@ -93,6 +93,27 @@ TEST(Placing, ClosesTheJawsOfAVise) {
     EXPECT_THAT(job.model.workspace.refusal, HasSubstr("Nothing is in the way"));
 }
 
+TEST(Placing, KeepsABodyWhereItIsWhenItsFrameChanges) {
+    Job job("[offsets]\nG54 = { X = -300, Y = -200, Z = -400 }\n" + stock
+            + "[[fixture]]\nname = \"base\"\nbox = [[0, 0, 0], [50, 40, 30]]\nat = [80, 10, -40]\n"
+              "rotate_deg = [0, 0, 30]\n[[fixture]]\nname = \"clamp\"\nbox = [[0, 0, 0], [9, 8, "
+              "7]]\nat = [100, 5, 3]\nrotate_deg = [10, 20, -70]\n");
+    const core::Aabb before = job.box("clamp");
+    const auto frame_is = [&](const char* frame) {
+        job.expect(change_frame(job.model, "clamp", frame));
+        EXPECT_THAT(job.model.workspace.document.text(),
+                    HasSubstr(fmt::format("frame = \"{}\"", frame)));
+        expect_near(job.box("clamp"), before, frame);
+    };
+    for (const char* frame : {"machine", "stock", "G54"}) frame_is(frame);
+    undo(job.model, 0.0);
+    EXPECT_THAT(job.model.workspace.document.text(), HasSubstr("frame = \"stock\"")) << "one edit";
+    job.reopen();
+    frame_is("base");
+    job.expect(slide_to_contact(job.model, "base", {-1, 0, 0}));
+    EXPECT_LT(job.box("clamp").min.x, before.min.x - 1.0) << "now it goes with the base";
+}
+
 TEST(Placing, MovesBodiesInTurnedFrames) {
     std::mt19937 random(7);
     const auto number = [&](double most) {

@@ -113,6 +113,23 @@ TEST(Workspace, AddsCopiesRenamesAndDeletesWithUndo) {
     EXPECT_NE(model.workspace.stated->fixture("block-2"), nullptr);
 }
 
+TEST(Workspace, DeletesAFixtureWithWhatStandsOnIt) {
+    const std::string clamp = "[[fixture]]\nname = \"clamp\"\nbox = [[0, 0, 0], [1, 1, 1]]\n";
+    const std::string text = "[[fixture]]\nname = \"vise\"\nbox = [[0, 0, 0], [9, 9, 9]]\n"
+                             "[[fixture]] # fixed\nname = \"jaw\"\nbox = [[0, 0, 0], [1, 1, 1]]\n"
+                             "frame = \"vise\"\n[[fixture]]\nname = \"pad\"\nbox = [[0, 0, 0], "
+                             "[1, 1, 1]]\nframe = \"jaw\"\n"
+                             + clamp;
+    ViewModel model = opened_model(text, "/jobs/plate.toml");
+    model.workspace.selected = {Kind::fixture, "vise", {}};
+    delete_selected(model);
+    EXPECT_EQ(model.workspace.refusal, "");
+    EXPECT_EQ(text_of_setup(model), clamp);
+    EXPECT_EQ(model.workspace.document.undo_title(), "Delete vise and 2 that stand on it");
+    undo(model, 0.0);
+    EXPECT_EQ(text_of_setup(model), text);
+}
+
 TEST(Workspace, NamesMeshesRelativeToItsFolder) {
     ViewModel model = opened_model();
     EXPECT_EQ(path_in_setup(model, "/jobs/meshes/vise.stl"), "meshes/vise.stl");

@@ -36,6 +36,10 @@ bool passes(FileFilter filter, FileKind kind) {
         return kind == FileKind::machine;
     case FileFilter::meshes:
         return kind == FileKind::mesh;
+    case FileFilter::tools:
+        return kind == FileKind::tools;
+    case FileFilter::pages:
+        return kind == FileKind::page;
     case FileFilter::all:
         return true;
     }
@@ -47,11 +51,16 @@ FileFilter filter_for(FileWish wish) {
     case FileWish::open:
         return FileFilter::openable;
     case FileWish::mesh:
+    case FileWish::part:
         return FileFilter::meshes;
+    case FileWish::tools:
+        return FileFilter::tools;
     case FileWish::machine:
         return FileFilter::machines;
     case FileWish::save_setup:
         return FileFilter::setups;
+    case FileWish::save_sheet:
+        return FileFilter::pages;
     }
     return FileFilter::all;
 }
@@ -92,13 +101,14 @@ std::string file_in_question(const ViewModel& model, FileWish wish) {
     const std::string& setup = model.workspace.document.path();
     if (wish == FileWish::save_setup && !model.workspace.file_name.empty())
         return model.workspace.file_name;
-    const bool saves = wish == FileWish::save_setup;
     const std::string opened = !model.program ? std::string()
-                               : saves        ? model.program->proposed_path
+                               : saves(wish)  ? model.program->proposed_path
                                               : model.program->program;
-    const std::string& file = wish == FileWish::open || setup.empty() ? opened : setup;
+    std::string file = wish == FileWish::open || setup.empty() ? opened : setup;
+    if (wish == FileWish::save_sheet)
+        file = fs::path(file).replace_extension(".html").generic_string();
     // Nothing is saved among the samples.
-    if (saves && is_below(file, model.samples))
+    if (saves(wish) && is_below(file, model.samples))
         return (own_folder() / fs::path(file).filename()).generic_string();
     return file;
 }
@@ -126,17 +136,23 @@ void choose_file(ViewModel& model, const std::string& path) {
     case FileWish::save_setup:
         model.save_path = path; // the browser closes once it is saved
         return;
+    case FileWish::save_sheet:
+        model.sheet_path = path; // likewise
+        return;
     case FileWish::open:
         model.wanted_paths = {path};
         break;
     case FileWish::mesh:
         add_mesh(model, path);
         break;
+    case FileWish::part:
+        add_part(model, path);
+        break;
+    case FileWish::tools:
+        use_tool_library(model, path);
+        break;
     case FileWish::machine:
-        edit_setup(model, "Change the machine", [&](const std::string& text) {
-            return toml_with_value(text, {"machine", "file"},
-                                   toml_text(path_in_setup(model, path)));
-        });
+        use_machine(model, path);
         break;
     }
     model.popup = Popup::none;
@@ -149,7 +165,7 @@ void show_listing(FileBrowser& browser, std::shared_ptr<const FolderListing> lis
     const bool is_new = listing->folder != browser.folder;
     browser.folder = listing->folder;
     const bool is_typed_for = browser.typed == browser.typed_before; // and not for the new folder
-    const bool is_name = browser.wish == FileWish::save_setup && !browser.typed.ends_with('/');
+    const bool is_name = saves(browser.wish) && !browser.typed.ends_with('/');
     if (is_new && is_typed_for && !is_name) set_typed(browser, "");
     if (is_new) browser.selected = 0;
     const std::string name =
@@ -188,16 +204,43 @@ bool is_earlier(const FolderEntry& a, const FolderEntry& b, FileOrder order) {
 
 } // namespace
 
+bool saves(FileWish wish) { return wish == FileWish::save_setup || wish == FileWish::save_sheet; }
+
+FileEndings endings_for(FileWish wish) {
+    switch (wish) {
+    case FileWish::mesh:
+    case FileWish::part:
+        return {"Meshes", {"stl", "obj", "ply", "off"}};
+    case FileWish::tools:
+        return {"Tool libraries", {"tools", "json", "hsmlib", "fctl", "fctb", "tbl"}};
+    case FileWish::machine:
+        return {"Machines", {"toml", "machine", "mch"}};
+    case FileWish::save_setup:
+        return {"Set-ups", {"toml"}};
+    case FileWish::save_sheet:
+        return {"Pages", {"html"}};
+    case FileWish::open:
+        break;
+    }
+    return {};
+}
+
 const char* title_of(FileWish wish) {
     switch (wish) {
     case FileWish::open:
         return "Open a program or a set-up";
     case FileWish::mesh:
         return "Add a mesh as a fixture";
+    case FileWish::part:
+        return "Choose the finished part";
+    case FileWish::tools:
+        return "Open a tool library";
     case FileWish::machine:
         return "Choose the machine";
     case FileWish::save_setup:
         return "Save the set-up";
+    case FileWish::save_sheet:
+        return "Save the set-up sheet";
     }
     return "";
 }
@@ -214,6 +257,10 @@ const char* name_of(FileFilter filter) {
         return "Machines";
     case FileFilter::meshes:
         return "Meshes (STL, OBJ, PLY, OFF)";
+    case FileFilter::tools:
+        return "Tool libraries";
+    case FileFilter::pages:
+        return "Pages (.html)";
     case FileFilter::all:
         return "All files";
     }
@@ -236,8 +283,7 @@ void browse_here(ViewModel& model, FileWish wish, const std::string& folder) {
     if (start != browser.folder) browser.listing.reset();
     browser.wish = wish;
     browser.filter = filter_for(wish);
-    set_typed(browser,
-              wish == FileWish::save_setup ? fs::path(file).filename().generic_string() : "");
+    set_typed(browser, saves(wish) ? fs::path(file).filename().generic_string() : "");
     browser.selected = 0;
     browser.wants_focus = true;
     browser.places = places_of(model);
@@ -279,7 +325,7 @@ void go_up(FileBrowser& browser) {
 void update_rows(FileBrowser& browser) {
     browser.rows.clear();
     if (!browser.listing) return;
-    const bool filters = browser.wish != FileWish::save_setup && !is_path(browser.typed);
+    const bool filters = !saves(browser.wish) && !is_path(browser.typed);
     const std::string typed = filters ? core::lower_case(browser.typed) : std::string();
     const bool shows_hidden = browser.shows_hidden || typed.starts_with('.');
     std::optional<size_t> first; // row whose name begins so
@@ -313,11 +359,11 @@ void move_selection(FileBrowser& browser, int rows) {
 void enter_typed(ViewModel& model) {
     FileBrowser& browser = model.browser;
     const std::string& typed = browser.typed;
-    const bool saves = browser.wish == FileWish::save_setup;
     const bool is_folder = typed.ends_with('/') || typed == ".." || typed == "~";
-    if (saves && !typed.empty() && !is_folder) {
+    if (saves(browser.wish) && !typed.empty() && !is_folder) {
         std::string path = meant_path(browser, typed);
-        if (fs::path(path).extension().empty()) path += ".toml";
+        if (fs::path(path).extension().empty())
+            path += browser.wish == FileWish::save_setup ? ".toml" : ".html";
         return choose_file(model, path);
     }
     if (!typed.empty() && (is_path(typed) || browser.rows.empty()))
@@ -334,7 +380,7 @@ void open_row(ViewModel& model, size_t row) {
         browser.error = entry.shown + " leads nowhere or cannot be read";
     } else if (entry.kind == FileKind::folder) {
         look_at(browser, path_of_row(browser, row));
-    } else if (browser.wish == FileWish::save_setup) {
+    } else if (saves(browser.wish)) {
         set_typed(browser, entry.name);
     } else {
         choose_file(model, path_of_row(browser, row));
@@ -365,7 +411,7 @@ bool take_in(ViewModel& model, FolderUpdate news) {
     }
     if (news.is_file && !browser.wanted.empty() && model.popup == Popup::open_file) {
         const std::string path = std::exchange(browser.wanted, {});
-        if (browser.wish == FileWish::save_setup)
+        if (saves(browser.wish))
             browser.error = readable_name(path) + " is a file, not a folder";
         else
             choose_file(model, path);

@@ -22,16 +22,26 @@ struct RecentProgram {
 };
 
 /// What a file is wanted for.
-enum class FileWish : uint8_t { open, mesh, machine, save_setup };
+enum class FileWish : uint8_t { open, mesh, part, tools, machine, save_setup, save_sheet };
+
+/// Whether a file is to be written.
+bool saves(FileWish wish);
 
 /// Which files are listed; folders always are.
-enum class FileFilter : uint8_t { openable, programs, setups, machines, meshes, all };
+enum class FileFilter : uint8_t { openable, programs, setups, machines, meshes, tools, pages, all };
 
-constexpr FileFilter file_filters[] = {FileFilter::openable, FileFilter::programs,
-                                       FileFilter::setups,   FileFilter::machines,
-                                       FileFilter::meshes,   FileFilter::all};
+constexpr FileFilter file_filters[] = {
+    FileFilter::openable, FileFilter::programs, FileFilter::setups, FileFilter::machines,
+    FileFilter::meshes,   FileFilter::tools,    FileFilter::pages,  FileFilter::all};
 
 const char* name_of(FileFilter filter);
+
+/// The endings of the files that are wanted, without a dot, and what they are called; none: any.
+struct FileEndings {
+    std::string name;
+    std::vector<std::string> endings;
+};
+FileEndings endings_for(FileWish wish);
 
 /// The title of the dialog.
 const char* title_of(FileWish wish);

@@ -56,7 +56,7 @@ std::vector<std::string> files_of_setup(const std::string& setup) {
         if (!is_setup_file(files[i])) continue;
         const std::filesystem::path folder = std::filesystem::path(files[i]).parent_path();
         for (const std::string& name : quoted_in(files[i])) {
-            if (!is_mesh_file(name) && !is_setup_file(name)) continue;
+            if (!is_mesh_file(name) && !is_setup_file(name) && !is_tool_library(name)) continue;
             const std::string path = (folder / name).generic_string();
             if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
         }

@@ -15,8 +15,8 @@ bool is_setup_file(const std::string& path);
 bool is_tool_library(const std::string& path);
 bool is_machine_file(const std::string& path);
 
-/// The set-up file and the files that it names: meshes, and the machine file with its meshes. Works
-/// even if the set-up has errors.
+/// The set-up file and the files that it names: meshes, tools, the machine file with its meshes.
+/// Works even if the set-up has errors.
 std::vector<std::string> files_of_setup(const std::string& setup);
 
 /// Polls files for changes.

@@ -125,6 +125,8 @@ std::string readable_name(const std::string& name) {
 
 FileKind kind_by_name(const std::string& path) {
     if (is_mesh_file(path)) return FileKind::mesh;
+    if (is_tool_library(path)) return FileKind::tools;
+    if (core::lower_case(path).ends_with(".html")) return FileKind::page;
     if (is_setup_file(path)) return FileKind::setup;
     if (is_autodesk_machine(path) || core::lower_case(ending_of_name(path)) == ".ini")
         return FileKind::machine;

@@ -11,7 +11,7 @@
 namespace app::viewer {
 
 /// What a file is, mostly by its extension.
-enum class FileKind : uint8_t { folder, program, setup, machine, mesh, other };
+enum class FileKind : uint8_t { folder, program, setup, machine, mesh, tools, page, other };
 
 /// A file or folder as the browser lists it.
 struct FolderEntry {

@@ -277,6 +277,29 @@ bool move_body(ViewModel& model, const std::string& body, const core::Transform&
     });
 }
 
+bool change_frame(ViewModel& model, const std::string& name, const std::string& frame) {
+    const SetupSheet* sheet = sheet_of(model);
+    const auto stated = model.workspace.stated;
+    if (!sheet || !stated) return false;
+    const StatedBody* body = stated->fixture(name);
+    if (name == stock_name && stated->stock) body = &*stated->stock;
+    if (name == part_name && stated->part) body = &*stated->part;
+    if (!body) return false;
+    const auto from = sheet->frames.find(body->frame), to = sheet->frames.find(frame);
+    if (from == sheet->frames.end() || to == sheet->frames.end())
+        return refuse(model, "The place of " + (to == sheet->frames.end() ? frame : body->frame)
+                                 + " is not known");
+    const core::Transform pose = to->second.inverse() * from->second * pose_of(*body);
+    return edit_setup(
+        model, "Change the frame of " + name,
+        [&](const std::string& text) -> core::Result<std::string> {
+            const BodyPath path = path_of_fixture(text, name).value_or(BodyPath{name});
+            FEELER_TRY(const std::string placed, with_pose(text, path, pose.translation,
+                                                           core::angles_xyz_deg(pose.rotation)));
+            return toml_with_value(placed, path / "frame", toml_text(frame));
+        });
+}
+
 bool slide_to_contact(ViewModel& model, const std::string& name, const core::Vec3& direction) {
     const std::vector<SceneBody> all = bodies_of(model);
     const std::vector<std::string> group = moved_with(model, name);

@@ -18,6 +18,8 @@ struct ViewModel;
 
 /// The name of the stock among the bodies that can be placed; all others are fixtures.
 inline constexpr const char* stock_name = "stock";
+/// Of the finished part, where it can be meant too.
+inline constexpr const char* part_name = "part";
 
 /// A feature of a body. Frame: the scene's.
 struct ScenePick {
@@ -60,6 +62,9 @@ std::vector<std::string> moved_with(const ViewModel& model, const std::string& b
 /// `title`. False: it cannot be moved so, and `Workspace::refusal` says why.
 bool move_body(ViewModel& model, const std::string& body, const core::Transform& by,
                const std::string& title);
+
+/// States the position of the stock, the part or a fixture in another frame; it stays where it is.
+bool change_frame(ViewModel& model, const std::string& body, const std::string& frame);
 
 /// Slides a body along a direction until it first touches another one: closes a jaw, or puts the
 /// body down.

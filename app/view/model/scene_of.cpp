@@ -449,6 +449,7 @@ std::string tool_line(const ViewModel& model, const SheetTool& tool) {
 
 std::vector<std::string> inferred_summary(const ViewModel& model) {
     if (!model.program || !model.program->is_inferred || !model.program->sheet) return {};
+    if (model.shows_setup) return {}; // its panel says all of this
     const SetupSheet& sheet = *model.program->sheet;
     std::vector<std::string> lines = {"Inferred set-up: press E to edit", stock_line(model, sheet)};
     for (size_t i = 0; i < std::min(sheet.tools.size(), most_tools); ++i)

@@ -225,7 +225,8 @@ struct ViewModel {
     bool wants_picture = false, wants_reload = false, wants_quit = false;
     std::optional<size_t> wanted_tab, unwanted_tab; // to be shown; to be closed
     bool wants_saving = false;                      // of the set-up, under its name
-    std::string save_path = {};                     // the set-up is to be saved under this name
+    std::string sheet_path = {}; // the set-up sheet is to be saved under this name
+    std::string save_path = {};  // the set-up is to be saved under this name
 
     bool has_rows() const { return !rows.empty(); }
     const BlockRow& row() const { return rows[cursor.block]; }

@@ -11,6 +11,7 @@
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
 #include "app/view/model/file_watch.h"
+#include "app/view/model/placing.h"
 #include "app/view/model/samples.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
@@ -331,6 +332,26 @@ void copy_selected(ViewModel& model) {
         model.workspace.selected = item(Kind::fixture, copy);
 }
 
+namespace {
+
+/// Deletes a fixture with all that stands on it: the jaws of a vise go with the vise.
+void delete_fixture(ViewModel& model, const std::string& name) {
+    std::vector<std::string> gone = moved_with(model, name);
+    std::reverse(gone.begin(), gone.end()); // those in the frame of another one first
+    std::string title = "Delete " + name;
+    if (gone.size() > 1)
+        title +=
+            fmt::format(" and {} that stand{} on it", gone.size() - 1, gone.size() == 2 ? "s" : "");
+    edit_setup(model, title, [&](const std::string& before) {
+        core::Result<std::string> text = before;
+        for (const std::string& each : gone)
+            if (text) text = without_fixture(*text, each);
+        return text;
+    });
+}
+
+} // namespace
+
 void delete_selected(ViewModel& model) {
     const SetupItem selected = model.workspace.selected;
     const auto remove = [&](const std::string& what, const SetupDocument::Edit& edit) {
@@ -338,8 +359,7 @@ void delete_selected(ViewModel& model) {
     };
     switch (selected.kind) {
     case Kind::fixture:
-        remove(selected.name,
-               [&](const std::string& text) { return without_fixture(text, selected.name); });
+        delete_fixture(model, selected.name);
         break;
     case Kind::stock:
         remove("the stock", [](const std::string& text) { return toml_without(text, "stock"); });

@@ -90,6 +90,8 @@ constexpr KeyBinding bindings[] = {
     {C::save_setup, G::window, key::of('S'), control, "Ctrl+S", "Save the set-up"},
     {C::save_setup_as, G::window, key::of('S'), control | shift, "Ctrl+Shift+S",
      "Save the set-up under another name"},
+    {C::print_sheet, G::window, key::of('P'), control, "Ctrl+P",
+     "Set-up sheet: a page to print for the machine"},
     {C::undo, G::window, key::of('Z'), control, "Ctrl+Z", "Undo an edit of the set-up"},
     {C::redo, G::window, key::of('Y'), control, "Ctrl+Y", "Redo it"},
     {C::redo, G::window, key::of('Z'), control | shift, "Ctrl+Shift+Z", ""},

@@ -83,6 +83,7 @@ enum class Command : uint8_t {
     edit_setup,
     save_setup,
     save_setup_as,
+    print_sheet,
     undo,
     redo,
     copy_item,

@@ -31,13 +31,16 @@ Icon icon_of(FileKind kind) {
         return Icon::settings;
     case FileKind::mesh:
         return Icon::section;
+    case FileKind::tools:
+        return Icon::tool;
+    case FileKind::page:
     case FileKind::other:
         return Icon::note;
     }
     return Icon::note;
 }
 
-const char* verb_of(FileWish wish) { return wish == FileWish::save_setup ? "Save" : "Open"; }
+const char* verb_of(FileWish wish) { return saves(wish) ? "Save" : "Open"; }
 
 /// The keys that move in the list while the field has the keyboard.
 void take_list_keys(FileBrowser& browser, bool was_empty) {
@@ -67,11 +70,16 @@ int replace_text(ImGuiInputTextCallbackData* data) {
 
 void draw_field(Frame& frame) {
     FileBrowser& browser = frame.model.browser;
-    const bool was_empty = browser.typed.empty(), saves = browser.wish == FileWish::save_setup;
+    const bool was_empty = browser.typed.empty(),
+               saves_setup = browser.wish == FileWish::save_setup;
     if (std::exchange(browser.wants_focus, false)) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     const bool entered = ImGui::InputTextWithHint(
-        "##typed", saves ? "FILE.toml" : "Type a part of the name, or a path", &browser.typed,
+        "##typed",
+        saves_setup           ? "FILE.toml"
+        : saves(browser.wish) ? "FILE.html"
+                              : "Type a part of the name, or a path",
+        &browser.typed,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackHistory
             | ImGuiInputTextFlags_CallbackAlways,
         replace_text, &browser);
@@ -150,7 +158,7 @@ void draw_entry(Frame& frame, size_t row) {
                               | ImGuiSelectableFlags_AllowDoubleClick)) {
         browser.selected = row;
         browser.wants_focus = true;
-        if (browser.wish == FileWish::save_setup && !is_folder) set_typed(browser, entry.name);
+        if (saves(browser.wish) && !is_folder) set_typed(browser, entry.name);
         if (ImGui::IsMouseDoubleClicked(0)) open_row(frame.model, row);
     }
     if (entry.is_broken) tip(frame, "Leads nowhere, or cannot be read");
@@ -219,7 +227,7 @@ void draw_table(Frame& frame, float height) {
 std::pair<std::string, Role> status_of(const ViewModel& model) {
     const FileBrowser& browser = model.browser;
     const std::string& refusal = model.workspace.refusal;
-    if (browser.wish == FileWish::save_setup && !refusal.empty()) return {refusal, Role::violation};
+    if (saves(browser.wish) && !refusal.empty()) return {refusal, Role::violation};
     if (!browser.error.empty()) return {browser.error, Role::violation};
     if (!browser.listing) return {"Reading the folder", Role::dim};
     if (!browser.listing->error.empty()) return {browser.listing->error, Role::violation};
@@ -237,7 +245,7 @@ void draw_end(Frame& frame) {
     const auto [words, role] = status_of(model);
     const std::string& refusal = model.workspace.refusal;
     const bool exists =
-        browser.wish == FileWish::save_setup
+        saves(browser.wish)
         && (refusal.ends_with("already exists") || refusal.ends_with("since it was read"));
     const char* const verb = exists ? "Replace it" : verb_of(browser.wish);
     const ImGuiStyle& style = ImGui::GetStyle();

@@ -345,6 +345,9 @@ void perform(ViewModel& model, Command command, double now) {
         model.workspace.is_naming = true;
         browse(model, FileWish::save_setup);
         break;
+    case Command::print_sheet:
+        if (model.program) browse(model, FileWish::save_sheet);
+        break;
     case Command::undo:
         undo(model, now);
         break;

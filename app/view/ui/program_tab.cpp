@@ -1,5 +1,6 @@
 #include "app/view/ui/program_tab.h"
 
+#include <chrono>
 #include <utility>
 
 #include "app/view/model/file_browser.h"
@@ -16,11 +17,17 @@ ProgramTab::ProgramTab(const WindowJob& job, render::Renderer renderer, std::fun
     : layout(std::move(renderer)),
       job_(job),
       unsaved_(job.unsaved, job.write),
+      wake_(wake),
       worker_(wake),
       device_(wake),
       tolerances_(wake) {
     model.device.file = job.device.file;
     model.device.shown = job.device.shown;
+}
+
+ProgramTab::~ProgramTab() {
+    sheet_goes_on_ = false; // and its thread ends before the other members
+    if (sheet_.valid()) sheet_.wait();
 }
 
 bool ProgramTab::is_vacant() const {
@@ -63,7 +70,8 @@ bool ProgramTab::take_updates(double now) {
     SessionUpdate news = worker_.take();
     DeviceUpdate answers = device_.take();
     ToleranceUpdate found = tolerances_.take();
-    const bool has_news = news.has_news || answers.has_news || found.has_news;
+    const bool has_sheet = take_sheet(now);
+    const bool has_news = news.has_news || answers.has_news || found.has_news || has_sheet;
     take_in(model, std::move(news), now);
     take_in(model, std::move(answers));
     take_in(model, std::move(found));
@@ -118,6 +126,46 @@ bool ProgramTab::save_if_wanted(double now) {
     check_->setup = workspace.document.path();
     watch_files();
     if (workspace.document.path() != before) reload();
+    return true;
+}
+
+void ProgramTab::make_sheet_if_wanted(double now) {
+    if (!check_ || model.sheet_path.empty()) return;
+    Workspace& workspace = model.workspace;
+    std::string path = std::exchange(model.sheet_path, {});
+    const bool may_replace = std::exchange(workspace.may_replace, false);
+    if (sheet_.valid()) return say(model, "Another set-up sheet is being made: wait for it", now);
+    if (!may_replace && core::why_no_file(path).empty()) {
+        workspace.refusal = path + " already exists";
+        if (model.popup != Popup::open_file) say(model, workspace.refusal, now);
+        return;
+    }
+    model.popup = Popup::none;
+    workspace.refusal.clear();
+    sheet_path_ = std::move(path);
+    sheet_goes_on_ = true;
+    say(model, "The set-up sheet is being made", now);
+    sheet_ = std::async(std::launch::async, [this, check = *check_, make = job_.make_sheet] {
+        auto sheet = make(check, [this] { return sheet_goes_on_.load(); });
+        wake_();
+        return sheet;
+    });
+}
+
+/// Saves a sheet that is made. True if there was one.
+bool ProgramTab::take_sheet(double now) {
+    if (!sheet_.valid() || sheet_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return false;
+    const core::Result<std::string> sheet = sheet_.get();
+    if (!sheet) {
+        say(model, "There is no set-up sheet: " + sheet.error().message, now);
+        return true;
+    }
+    const auto written = job_.write(sheet_path_, *sheet);
+    say(model,
+        written ? "Saved " + sheet_path_ + ": open it in a browser to print it"
+                : sheet_path_ + " cannot be written: " + written.error().message,
+        now);
     return true;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,8 @@ public:
     /// `wake`: called from the threads when there is something new. Needs the context of the
     /// window.
     ProgramTab(const WindowJob& job, render::Renderer renderer, std::function<void()> wake);
+    /// Aborts all that the threads do.
+    ~ProgramTab();
 
     ViewModel model;
     Layout layout;
@@ -55,6 +59,8 @@ public:
 
     /// Saves the set-up if the user wants it. True if it was saved.
     bool save_if_wanted(double now);
+    /// Makes the set-up sheet in a thread of its own if the user wants it, and saves it.
+    void make_sheet_if_wanted(double now);
     /// Checks the program again after an edit, and keeps the edit a moment later.
     void take_edits(double now);
     /// Keeps edits at once, before another program is shown or the window ends.
@@ -64,6 +70,7 @@ public:
 
 private:
     void watch_files();
+    bool take_sheet(double now);
 
     const WindowJob& job_;
     std::optional<CheckJob> check_;
@@ -72,6 +79,10 @@ private:
     uint64_t checked_version_ = 0;  // of the document
     std::optional<double> keep_at_; // seconds
     bool has_asked_ = false;
+    std::string sheet_path_; // of the sheet that is being made
+    std::atomic<bool> sheet_goes_on_ = true;
+    std::future<core::Result<std::string>> sheet_;
+    std::function<void()> wake_;
     SessionWorker worker_;
     DeviceWorker device_;
     ToleranceWorker tolerances_; // last, so that the threads end before the other members

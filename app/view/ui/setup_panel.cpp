@@ -173,7 +173,6 @@ private:
     std::optional<Typed> typed_;
     SetupItem focused_;       // of the tree, by the keyboard
     bool wants_name_ = false; // the name of the fixture gets the keyboard
-    std::string part_file_, library_file_;
     // of the lists of faces
     std::string listed_body_, other_body_;
     size_t own_face_ = 0, other_face_ = 0;
@@ -371,27 +370,14 @@ void SetupPanel::State::draw_tree(Frame& frame, const std::vector<SetupRow>& row
 void SetupPanel::State::draw_add_menu(Frame& frame) {
     ViewModel& model = frame.model;
     if (ImGui::Button("Add \xE2\x80\xA6")) ImGui::OpenPopup("add");
-    tip(frame, "Add a fixture, the part, a work offset, or state that there are no fixtures");
+    tip(frame, "Add a fixture, the part, a tool library, a work offset, or state that there are no "
+               "fixtures");
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(10), frame.px(8)));
     if (ImGui::BeginPopup("add")) {
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
         if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
-        ImGui::SetNextItemWidth(frame.px(260));
-        const bool is_part =
-            ImGui::InputTextWithHint("##part", "Part: mesh file of the finished part", &part_file_,
-                                     ImGuiInputTextFlags_EnterReturnsTrue);
-        if (is_part && !part_file_.empty()) {
-            add_part(model, std::exchange(part_file_, {}));
-            ImGui::CloseCurrentPopup();
-        }
-        ImGui::SetNextItemWidth(frame.px(260));
-        const bool is_library =
-            ImGui::InputTextWithHint("##library", "Tool library (.tools, .json, .fctl, .tbl)",
-                                     &library_file_, ImGuiInputTextFlags_EnterReturnsTrue);
-        if (is_library && !library_file_.empty()) {
-            use_tool_library(model, std::exchange(library_file_, {}));
-            ImGui::CloseCurrentPopup();
-        }
+        if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
+        if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
         if (model.workspace.stated->fixtures.empty() && ImGui::MenuItem("There are no fixtures"))
             edit_setup(model, "State that there are no fixtures", [](const std::string& t) {
                 return toml_with_value(t, "fixtures", "\"none\"");
@@ -610,9 +596,7 @@ void SetupPanel::State::draw_pose(Frame& frame, const StatedBody& body, const Bo
         if (frame_name == body.name || (path.key() == "stock" && frame_name == "stock")) continue;
         if (ImGui::Selectable(frame_name.c_str(), frame_name == body.frame)
             && frame_name != body.frame)
-            edit_setup(model, "Change the frame of " + name, [&, to = frame_name](const auto& t) {
-                return toml_with_value(t, path / "frame", toml_text(to));
-            });
+            change_frame(model, name, frame_name);
     }
     ImGui::EndCombo();
 }
@@ -932,6 +916,9 @@ void SetupPanel::State::draw(Frame& frame) {
     ImGui::SameLine();
     if (ImGui::Button("Tolerances")) frame.perform(Command::tolerances);
     tip(frame, tip_of(Command::tolerances));
+    ImGui::SameLine();
+    if (ImGui::Button("Sheet")) frame.perform(Command::print_sheet);
+    tip(frame, tip_of(Command::print_sheet));
     ImGui::Separator();
     ImGui::BeginChild("item", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(frame.px(7), frame.px(2.5)));

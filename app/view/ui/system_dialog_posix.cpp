@@ -143,16 +143,14 @@ void append_bytes(DBusIter& to, const std::string& path) {
 
 /// Writes a list of one filter: a name and its patterns.
 void append_filters(DBusIter& to, FileWish wish) {
-    const bool is_mesh = wish == FileWish::mesh;
-    const char* const name = is_mesh ? "Meshes" : "Set-ups";
+    const FileEndings kind = endings_for(wish);
     DBusIter filters{}, filter{}, patterns{}, pattern{};
     dbus().open(&to, type_array, "(sa(us))", &filters);
     dbus().open(&filters, type_struct, nullptr, &filter);
-    append_text(filter, name);
+    append_text(filter, kind.name);
     dbus().open(&filter, type_array, "(us)", &patterns);
     const uint32_t glob = 0;
-    for (const std::string_view each : {"stl", "obj", "ply", "off", "toml"}) {
-        if ((each == "toml") == is_mesh) continue;
+    for (const std::string_view each : kind.endings) {
         dbus().open(&patterns, type_struct, nullptr, &pattern);
         dbus().append(&pattern, type_uint32, &glob);
         std::string either = "*.";
@@ -167,10 +165,10 @@ void append_filters(DBusIter& to, FileWish wish) {
 
 /// The call that opens the dialog.
 DBusMessage* call_for(const DialogJob& job) {
-    const bool saves = job.wish == FileWish::save_setup;
+    const bool is_saving = saves(job.wish);
     DBusMessage* const call =
         dbus().new_call("org.freedesktop.portal.Desktop", "/org/freedesktop/portal/desktop",
-                        "org.freedesktop.portal.FileChooser", saves ? "SaveFile" : "OpenFile");
+                        "org.freedesktop.portal.FileChooser", is_saving ? "SaveFile" : "OpenFile");
     if (!call) return nullptr;
     DBusIter arguments{}, options{};
     dbus().begin_append(call, &arguments);
@@ -184,10 +182,10 @@ DBusMessage* call_for(const DialogJob& job) {
     if (!job.folder.empty())
         append_option(options, "current_folder", "ay",
                       [&](DBusIter& to) { append_bytes(to, job.folder); });
-    if (saves)
+    if (is_saving)
         append_option(options, "current_name", "s",
                       [&](DBusIter& to) { append_text(to, job.name); });
-    if (saves || job.wish == FileWish::mesh)
+    if (!endings_for(job.wish).endings.empty())
         append_option(options, "filters", "a(sa(us))",
                       [&](DBusIter& to) { append_filters(to, job.wish); });
     dbus().close(&arguments, &options);

@@ -55,13 +55,15 @@ std::string utf8_of(const wchar_t* wide) {
 }
 
 void set_filters(IFileDialog& dialog, FileWish wish) {
-    static constexpr COMDLG_FILTERSPEC meshes[] = {{L"Meshes", L"*.stl;*.obj;*.ply;*.off"},
-                                                   {L"All files", L"*.*"}};
-    static constexpr COMDLG_FILTERSPEC setups[] = {{L"Set-ups", L"*.toml"}, {L"All files", L"*.*"}};
-    if (wish == FileWish::mesh) dialog.SetFileTypes(2, meshes);
-    if (wish != FileWish::save_setup) return;
-    dialog.SetFileTypes(2, setups);
-    dialog.SetDefaultExtension(L"toml");
+    const FileEndings kind = endings_for(wish);
+    if (kind.endings.empty()) return;
+    std::string patterns;
+    for (const std::string& each : kind.endings)
+        patterns += (patterns.empty() ? "*." : ";*.") + each;
+    const std::wstring name = wide_text(kind.name), wide = wide_text(patterns);
+    const COMDLG_FILTERSPEC filters[] = {{name.c_str(), wide.c_str()}, {L"All files", L"*.*"}};
+    dialog.SetFileTypes(2, filters);
+    if (saves(wish)) dialog.SetDefaultExtension(wide_text(kind.endings.front()).c_str());
 }
 
 void set_folder(IFileDialog& dialog, const std::string& folder) {
@@ -93,11 +95,12 @@ uintptr_t native_window(GLFWwindow* window) {
 
 DialogUpdate ask_system(const DialogJob& job, const std::function<bool()>& is_over) {
     const ComThread com;
-    const bool saves = job.wish == FileWish::save_setup;
+    const bool is_saving = saves(job.wish);
     ComPointer<IFileDialog> dialog;
     if (FAILED(com.state)
-        || FAILED(::CoCreateInstance(saves ? CLSID_FileSaveDialog : CLSID_FileOpenDialog, nullptr,
-                                     CLSCTX_INPROC_SERVER, IID_IFileDialog, dialog.target())))
+        || FAILED(::CoCreateInstance(is_saving ? CLSID_FileSaveDialog : CLSID_FileOpenDialog,
+                                     nullptr, CLSCTX_INPROC_SERVER, IID_IFileDialog,
+                                     dialog.target())))
         return {.is_absent = true};
     FILEOPENDIALOGOPTIONS options = 0;
     dialog.object->GetOptions(&options);
@@ -106,7 +109,7 @@ DialogUpdate ask_system(const DialogJob& job, const std::function<bool()>& is_ov
     dialog.object->SetTitle(wide_text(job.title).c_str());
     set_filters(*dialog.object, job.wish);
     if (!job.folder.empty()) set_folder(*dialog.object, job.folder);
-    if (saves) dialog.object->SetFileName(wide_text(job.name).c_str());
+    if (is_saving) dialog.object->SetFileName(wide_text(job.name).c_str());
     if (is_over()) return {};
     const HRESULT shown = dialog.object->Show(reinterpret_cast<HWND>(job.window));
     if (shown == HRESULT_FROM_WIN32(ERROR_CANCELLED)) return {};

@@ -356,7 +356,7 @@ void Window::take_answer() {
     }
     if (!answer.path) return close_browser(model);
     // That dialog has asked whether an existing file may be replaced.
-    model.workspace.may_replace = browser.wish == FileWish::save_setup;
+    model.workspace.may_replace = saves(browser.wish);
     choose_file(model, *answer.path);
 }
 
@@ -424,6 +424,7 @@ void Window::update_setup(double now) {
         if (shown_model().workspace.leaving != Leaving::no) leave();
     }
     if (std::exchange(shown_model().workspace.drops_edits, false)) leave();
+    tab().make_sheet_if_wanted(now);
     tab().take_edits(now);
 }
 

@@ -23,6 +23,11 @@ struct DeviceChoice {
     bool shown = false;
 };
 
+/// Makes the set-up sheet of a program, an HTML page. `goes_on` is polled: false ends it with an
+/// error.
+using SheetMaker = std::function<core::Result<std::string>(const CheckJob& check,
+                                                           const std::function<bool()>& goes_on)>;
+
 /// The options of the window.
 struct WindowJob {
     std::vector<std::shared_ptr<const CheckJob>> checks; // empty: show the welcome screen
@@ -32,8 +37,9 @@ struct WindowJob {
     std::filesystem::path recent_file;   // programs opened last; empty: not stored
     std::filesystem::path pictures;      // folder for pictures saved with F12
     std::filesystem::path unsaved;       // folder for unsaved set-ups; empty: they are not kept
-    FileWriter write;                    // for set-ups and notes
-    std::filesystem::path frame_log;     // log of frames; empty: none
+    FileWriter write;                    // for set-ups, sheets and notes
+    SheetMaker make_sheet;
+    std::filesystem::path frame_log; // log of frames; empty: none
 };
 
 /// Opens the window and returns when it is closed.
