@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/setup/toml_file.h"
+#include "core/sim/tool_description.h"
 
 namespace app {
 namespace {
@@ -80,6 +81,18 @@ bool StatedSetup::has_offset(const std::string& name) const {
     return std::find(offsets.begin(), offsets.end(), name) != offsets.end();
 }
 
+std::optional<double> stated_tool_size(const std::string& text, core::ToolNumber number,
+                                       const core::ToolSize& size) {
+    std::optional<double> value;
+    const auto root = parsed_toml(text);
+    if (!root) return value;
+    visit_tables(*root, "tool", [&](const toml::table& table) {
+        if (table["number"].value<int>() == core::value_of(number))
+            value = table[size.key].value<double>();
+    });
+    return value;
+}
+
 StatedSetup stated_in(const std::string& text) {
     StatedSetup stated;
     const auto root = parsed_toml(text);
@@ -93,7 +106,14 @@ StatedSetup stated_in(const std::string& text) {
             stated.tools.push_back(core::ToolNumber{*number});
     });
     if (const toml::table* offsets = (*root)["offsets"].as_table())
-        for (const auto& [name, value] : *offsets) stated.offsets.emplace_back(name.str());
+        for (const auto& [name, value] : *offsets) {
+            const std::string known(name.str());
+            stated.offsets.push_back(known);
+            core::Vec3 origin(0.0);
+            for (int axis = 0; axis < 3; ++axis)
+                origin[axis] = (*offsets)[known][std::string(1, "XYZ"[axis])].value_or(0.0);
+            stated.origins[known] = origin;
+        }
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());
     stated.tool_library = (*root)["tool_library"].value_or(std::string());
     stated.has_no_fixtures = (*root)["fixtures"].value<std::string>() == "none";

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/ids.h"
 #include "core/base/vec.h"
+
+namespace core {
+struct ToolSize;
+} // namespace core
 
 namespace app {
 
@@ -34,7 +39,8 @@ struct StatedSetup {
     std::optional<StatedBody> stock, part;
     std::vector<StatedBody> fixtures;
     std::vector<core::ToolNumber> tools;
-    std::vector<std::string> offsets; // names as written
+    std::vector<std::string> offsets;          // names as written
+    std::map<std::string, core::Vec3> origins; // of the offsets; 0 for an axis that is not stated
     std::string machine_file, tool_library;
     bool has_no_fixtures = false; // fixtures = "none"
 
@@ -43,6 +49,10 @@ struct StatedSetup {
     bool has_tool(core::ToolNumber number) const;
     bool has_offset(const std::string& name) const;
 };
+
+/// A size that the text of a set-up states of a tool, mm or degrees; empty if it does not.
+std::optional<double> stated_tool_size(const std::string& text, core::ToolNumber number,
+                                       const core::ToolSize& size);
 
 /// Reads a text that may be in the middle of an edit: wrong values are left out. Text that is not
 /// TOML gives an empty set-up.

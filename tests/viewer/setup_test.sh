@@ -95,6 +95,29 @@ expect 'after a click on its tab the program has the keys' 'block 1 of'
 press Home e
 expect 'Home' 'block 0 of'
 
+# What is typed is read as a whole, and is saved although its field was not left.
+click 60 182 # G54
+click 160 443 # its X
+xdotool type -- '-300,5'
+press Tab
+xdotool type -- '-3 1/2'
+press ctrl+s
+has_zero() { grep -q '^G54 = { X = -300.5, Y = -3.5, Z = -500 }$' "$work/job.toml"; }
+wait_for has_zero || die 'a field is taken over before the set-up is saved'
+press ctrl+z
+press ctrl+z ctrl+s
+wait_for is_as_before || die 'undo is about the set-up while nothing is typed'
+click 160 443
+xdotool type -- '1,234'
+press Tab
+shows 02-refused 'what can be meant in two ways is refused' has_color 02-refused '#FF5A36' 40
+is_as_before || die 'and changes nothing'
+xdotool type 5
+press Tab
+expect 'the next field goes on' '^\* job.nc'
+press ctrl+z
+expect 'and can be undone' '^job.nc'
+
 close_vise
 press ctrl+s
 wait_for is_closed || die 'the vise is closed, exactly, and comments stay'

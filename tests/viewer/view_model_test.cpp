@@ -148,6 +148,7 @@ TEST(Unit, IsThatOfTheProgramUntilTheUserChooses) {
 
 TEST(CoverageWords, SayWhatWasNotCheckedOfTheToolsThatFeed) {
     using app::Coverage, app::Known;
+    using render::ClearanceState;
     Coverage coverage{.stock = Known::described,
                       .fixtures = Known::missing,
                       .offsets = Known::described,
@@ -157,30 +158,42 @@ TEST(CoverageWords, SayWhatWasNotCheckedOfTheToolsThatFeed) {
     opened.coverage = std::make_shared<const Coverage>(coverage);
     ViewModel model;
     model.program = std::make_shared<const OpenedProgram>(opened);
-    model.is_recorded = true;
-    EXPECT_EQ(coverage_words(model), "NOTHING CHECKED, the program moves nothing\n"
-                                     "Not checked: fixtures: not described");
+    EXPECT_EQ(coverage_words(model), "Not checked: fixtures: not described");
+    EXPECT_EQ(verdict_words(model).text, "") << "no block is known";
     model.rows.resize(2);
+    EXPECT_EQ(verdict_words(model).text, "CHECKING");
+    model.is_recorded = true;
+    EXPECT_EQ(verdict_words(model).text, "NOTHING CHECKED, the program moves nothing");
     model.rows[0].motion = core::BlockMotion::rapid;
     model.rows[0].tool = core::ToolNumber{3};
     model.rows[1].motion = core::BlockMotion::feed;
     model.rows[1].tool = core::ToolNumber{1};
-    EXPECT_EQ(coverage_words(model),
-              "NO ERROR IN THE PROGRAM ITSELF\nNot checked: fixtures: not described");
+    EXPECT_EQ(coverage_words(model), "Not checked: fixtures: not described");
+    EXPECT_EQ(verdict_words(model).text, "NO ERROR IN THE PROGRAM ITSELF");
+    EXPECT_EQ(verdict_words(model).state, ClearanceState::near);
     model.rows[1].tool = core::ToolNumber{2};
-    EXPECT_EQ(coverage_words(model), "NO ERROR IN THE PROGRAM ITSELF\n"
-                                     "Not checked: holder of T2, fixtures: not described");
-    model.offending = {1};
     EXPECT_EQ(coverage_words(model), "Not checked: holder of T2, fixtures: not described");
+    model.rows[1].verdict = core::Verdict::collision;
+    model.offending = {1};
+    core::Finding error;
+    error.severity = core::Severity::error;
+    error.rule = "collision";
+    model.findings = {error, error};
+    EXPECT_EQ(verdict_words(model).text, "COLLISION, 2 errors");
+    EXPECT_EQ(verdict_words(model).state, ClearanceState::violation);
+    model.is_recorded = false;
+    EXPECT_EQ(verdict_words(model).text, "COLLISION, 2 errors so far");
+    model.is_recorded = true;
+    model.rows[1].verdict = core::Verdict::clear;
+    model.offending.clear();
+    model.findings.clear();
     coverage.fixtures = Known::described;
     opened.coverage = std::make_shared<const Coverage>(coverage);
     opened.tools_with_holder.insert(core::ToolNumber{2});
     model.program = std::make_shared<const OpenedProgram>(opened);
     EXPECT_EQ(coverage_words(model), "");
-    model.offending.clear();
-    EXPECT_EQ(coverage_words(model), "") << "clear";
-    model.rows.clear();
-    EXPECT_EQ(coverage_words(model), "NOTHING CHECKED, the program moves nothing");
+    EXPECT_EQ(verdict_words(model).text, "CLEAR");
+    EXPECT_EQ(verdict_words(model).state, ClearanceState::clear);
 }
 
 } // namespace

@@ -51,6 +51,7 @@ FileFilter filter_for(FileWish wish) {
     case FileWish::open:
         return FileFilter::openable;
     case FileWish::mesh:
+    case FileWish::stock:
     case FileWish::part:
         return FileFilter::meshes;
     case FileWish::tools:
@@ -145,6 +146,9 @@ void choose_file(ViewModel& model, const std::string& path) {
     case FileWish::mesh:
         add_mesh(model, path);
         break;
+    case FileWish::stock:
+        use_stock_mesh(model, path);
+        break;
     case FileWish::part:
         add_part(model, path);
         break;
@@ -209,6 +213,7 @@ bool saves(FileWish wish) { return wish == FileWish::save_setup || wish == FileW
 FileEndings endings_for(FileWish wish) {
     switch (wish) {
     case FileWish::mesh:
+    case FileWish::stock:
     case FileWish::part:
         return {"Meshes", {"stl", "obj", "ply", "off"}};
     case FileWish::tools:
@@ -231,6 +236,8 @@ const char* title_of(FileWish wish) {
         return "Open a program or a set-up";
     case FileWish::mesh:
         return "Add a mesh as a fixture";
+    case FileWish::stock:
+        return "Choose a mesh as the stock";
     case FileWish::part:
         return "Choose the finished part";
     case FileWish::tools:

@@ -22,7 +22,7 @@ struct RecentProgram {
 };
 
 /// What a file is wanted for.
-enum class FileWish : uint8_t { open, mesh, part, tools, machine, save_setup, save_sheet };
+enum class FileWish : uint8_t { open, mesh, stock, part, tools, machine, save_setup, save_sheet };
 
 /// Whether a file is to be written.
 bool saves(FileWish wish);

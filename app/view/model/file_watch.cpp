@@ -82,6 +82,15 @@ void FileWatch::set(std::vector<std::string> paths) {
     missing_.clear();
 }
 
+void FileWatch::add(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) {
+        const auto is_same = [&](const Seen& seen) { return seen.path == path; };
+        if (path.empty() || std::any_of(known_.begin(), known_.end(), is_same)) continue;
+        known_.push_back(observe(path));
+        last_.push_back(known_.back());
+    }
+}
+
 void FileWatch::check_for_missing(const std::vector<Seen>& now) {
     missing_.clear();
     for (size_t i = now.size(); i-- > 0;)

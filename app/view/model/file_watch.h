@@ -23,6 +23,8 @@ std::vector<std::string> files_of_setup(const std::string& setup);
 class FileWatch {
 public:
     void set(std::vector<std::string> paths);
+    /// Polls these files as well.
+    void add(const std::vector<std::string>& paths);
 
     /// Whether a file has changed and was then the same in two calls in a row, so that it is not
     /// read while it is being written.

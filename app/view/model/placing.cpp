@@ -134,6 +134,13 @@ bool refuse(ViewModel& model, const std::string& why) {
     return false;
 }
 
+/// What is measured in the scene is only right for the set-up that it shows.
+bool refuse_outdated(ViewModel& model) {
+    return refuse(model, model.workspace.error
+                             ? "The view shows the last good state: correct the set-up first"
+                             : "The view does not show the last edit yet: try again");
+}
+
 core::Solid shifted(core::Solid stock, const core::Vec3& by) {
     if (auto* box = std::get_if<core::SolidBox>(&stock.shape))
         box->box = {box->box.min + by, box->box.max + by};
@@ -141,24 +148,39 @@ core::Solid shifted(core::Solid stock, const core::Vec3& by) {
     return stock;
 }
 
-/// Whether the stock is stated by a file, with a position of its own.
-bool is_from_file(const StatedSetup& stated) {
-    return stated.stock && (!stated.stock->mesh.empty() || !stated.stock->model.empty());
-}
-
+/// Moves the stock as the text states it, or else as it is assumed: a box without a position by its
+/// corners, anything else by its position.
 core::Result<std::string> with_moved_stock(const std::string& text, const StatedSetup& stated,
                                            const SetupSheet& sheet, const core::Transform& by) {
-    if (is_from_file(stated)) {
-        const core::Transform pose = by * pose_of(*stated.stock);
-        return with_pose(text, stock_name, pose.translation, core::angles_xyz_deg(pose.rotation));
+    const bool is_stated = stated.stock && stated.stock->has_shape();
+    const bool is_plain_box = is_stated && stated.stock->box
+                              && pose_of(*stated.stock) == core::Transform() && !is_turned(by);
+    if (is_plain_box) {
+        const core::Aabb& box = *stated.stock->box;
+        FEELER_TRY(
+            const std::string moved,
+            with_box(text, stock_name, {box.min + by.translation, box.max + by.translation}));
+        return with_known(moved, stock_name);
     }
-    if (is_turned(by))
+    const bool is_round = is_stated
+                              ? stated.stock->cylinder.has_value()
+                              : std::holds_alternative<core::SolidCylinder>(sheet.stock.shape);
+    if (is_round && is_turned(by))
         return core::fail(core::ErrorCode::unsupported,
-                          "a stock that is a box or cylinder can be moved, but not turned");
-    if (std::holds_alternative<core::SolidMesh>(sheet.stock.shape))
-        return core::fail(core::ErrorCode::unsupported,
-                          "a turned stock can only be moved by its fields in the file");
-    return with_stock(text, shifted(sheet.stock, by.translation), sheet.frame);
+                          "a stock that is a cylinder is not turned: choose its axis");
+    core::Result<std::string> placed = text;
+    core::Transform pose = by;
+    if (is_stated)
+        pose = by * pose_of(*stated.stock);
+    else if (std::holds_alternative<core::SolidMesh>(sheet.stock.shape))
+        return core::fail(core::ErrorCode::unsupported, "this stock can only be moved in its file");
+    else if (!is_turned(by))
+        return with_stock(text, shifted(sheet.stock, by.translation), sheet.frame);
+    if (!is_stated) placed = with_stock(text, sheet.stock, sheet.frame);
+    if (placed)
+        placed =
+            with_pose(*placed, stock_name, pose.translation, core::angles_xyz_deg(pose.rotation));
+    return placed ? with_known(*placed, stock_name) : placed;
 }
 
 core::Result<std::string> with_moved_fixture(const std::string& text, const StatedBody& body,
@@ -270,6 +292,7 @@ bool move_body(ViewModel& model, const std::string& body, const core::Transform&
                const std::string& title) {
     const SetupSheet* sheet = sheet_of(model);
     if (!sheet || !can_move(model, body)) return refuse(model, body + " cannot be moved here");
+    if (!is_current(model)) return refuse_outdated(model);
     const auto stated = model.workspace.stated;
     return edit_setup(model, title, [&](const std::string& text) {
         return body == stock_name ? with_moved_stock(text, *stated, *sheet, by)
@@ -285,6 +308,7 @@ bool change_frame(ViewModel& model, const std::string& name, const std::string& 
     if (name == stock_name && stated->stock) body = &*stated->stock;
     if (name == part_name && stated->part) body = &*stated->part;
     if (!body) return false;
+    if (!is_current(model)) return refuse_outdated(model);
     const auto from = sheet->frames.find(body->frame), to = sheet->frames.find(frame);
     if (from == sheet->frames.end() || to == sheet->frames.end())
         return refuse(model, "The place of " + (to == sheet->frames.end() ? frame : body->frame)
@@ -355,6 +379,7 @@ ZeroAxes zero_axes(const core::FeaturePick& feature) {
 bool set_zero(ViewModel& model, const std::string& offset, const core::FeaturePick& feature) {
     const SetupSheet* sheet = sheet_of(model);
     if (!sheet || !model.workspace.stated) return false;
+    if (!is_current(model)) return refuse_outdated(model);
     const auto frame = sheet->frames.find(offset);
     if (frame == sheet->frames.end())
         return refuse(model, fmt::format("the place of {} is not known", offset));

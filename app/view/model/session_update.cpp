@@ -33,6 +33,7 @@ OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
         if (!tool.description.holder.empty()) opened.tools_with_holder.insert(number);
     opened.scene = make_scene_setup(check.run.setup);
     opened.proposed_path = setup_path(job);
+    opened.setup_text = job.setup_text.value_or("");
     opened.sheet = std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup));
     return opened;
 }
@@ -81,6 +82,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.breakpoints, later.breakpoints);
     if (later.changes) news.stopped.reset(); // the program takes another course now
     take(news.changes, later.changes);
+    if (!later.files.empty()) news.files = std::move(later.files);
     take(news.failure, later.failure);
     take(news.refusal, later.refusal);
     take(news.setup_error, later.setup_error);

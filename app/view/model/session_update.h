@@ -92,6 +92,7 @@ struct OpenedProgram {
     std::shared_ptr<const SceneSetup> scene;
     std::shared_ptr<const SetupSheet> sheet; // the set-up with the sources of its values
     std::string proposed_path;               // default file for saving the set-up
+    std::string setup_text;                  // with which it was opened; empty without a set-up
 };
 
 /// A program as it was read and its set-up completed.
@@ -135,7 +136,8 @@ struct SessionUpdate {
     std::optional<RunEnd> walk;
     std::optional<std::vector<Breakpoint>> breakpoints;
     std::optional<std::vector<std::string>> changes; // what-ifs that are in effect
-    std::optional<core::Error> failure;              // the program could not be opened
+    std::vector<std::string> files;     // that were read to open the program, or looked for
+    std::optional<core::Error> failure; // the program could not be opened
     // It could not be opened again with another set-up: the session before it goes on.
     std::optional<core::Error> setup_error;
     bool is_again = false;              // the program is the one opened before, with another set-up

@@ -7,6 +7,7 @@
 #include <deque>
 #include <filesystem>
 #include <mutex>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "app/view/model/program_track.h"
 #include "app/view/model/program_zero.h"
 #include "app/view/model/scene_of.h"
+#include "core/base/file_reads.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -84,8 +86,13 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     }
     CheckJob job = wanted;
     job.is_stopped = is_superseded;
+    std::set<std::string> read;
+    const core::FileAccessObserver listening([&read](const core::FileAccess& access) {
+        if (access.question == core::FileAccessKind::content) read.insert(access.path);
+    });
     auto check = read_check(job);
     if (is_superseded()) return;
+    news_.files.assign(read.begin(), read.end());
     if (!check) return fail(check.error(), is_again);
     if (auto why = is_again ? why_nothing_runs(*check) : std::nullopt) {
         if (why->file.empty()) why->file = job.program;
@@ -96,6 +103,7 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     OpenedProgram opened = opened_program(job, *check);
     scenes_.emplace_back(0, opened.scene);
     show_early(track_of(*check, opened.scene->setup, is_superseded));
+    news_.files.assign(read.begin(), read.end()); // also subprograms
     news_.opened = std::make_shared<const OpenedProgram>(opened);
     news_.has_news = news_.is_busy = true;
     is_shown_ = true;

@@ -11,7 +11,7 @@ namespace app::viewer {
 namespace {
 
 constexpr std::string_view heading = "# A set-up with edits that were not saved.";
-constexpr std::array<std::string_view, 2> labels = {"# program: ", "# set-up: "};
+constexpr std::array<std::string_view, 3> labels = {"# program: ", "# set-up: ", "# of: "};
 
 /// Takes a line off the beginning of a text; without its end.
 std::string_view take_line(std::string_view& text) {
@@ -25,7 +25,8 @@ std::string_view take_line(std::string_view& text) {
 
 std::string text_of(const UnsavedSetup& unsaved) {
     std::string text = std::string(heading) + "\n";
-    const std::array<const std::string*, 2> values = {&unsaved.program, &unsaved.setup};
+    const std::array<const std::string*, 3> values = {&unsaved.program, &unsaved.setup,
+                                                      &unsaved.base};
     for (size_t i = 0; i < labels.size(); ++i) text += std::string(labels[i]) + *values[i] + "\n";
     return text + unsaved.text;
 }
@@ -34,7 +35,7 @@ std::optional<UnsavedSetup> unsaved_in(const std::string& text) {
     std::string_view rest = text;
     if (take_line(rest) != heading) return std::nullopt;
     UnsavedSetup unsaved;
-    const std::array<std::string*, 2> values = {&unsaved.program, &unsaved.setup};
+    const std::array<std::string*, 3> values = {&unsaved.program, &unsaved.setup, &unsaved.base};
     for (size_t i = 0; i < labels.size(); ++i) {
         const std::string_view line = take_line(rest);
         if (!line.starts_with(labels[i])) return std::nullopt;
@@ -52,12 +53,13 @@ std::filesystem::path UnsavedSetups::file_of(const std::string& program,
 }
 
 void UnsavedSetups::keep(const std::string& program, const std::string& setup,
-                         const std::string& text) const {
+                         const std::string& text, const std::string& saved) const {
     if (folder_.empty() || !write_) return;
     std::error_code ignored; // writing the file fails then
     std::filesystem::create_directories(folder_, ignored);
-    static_cast<void>(write_(file_of(program, setup).generic_string(),
-                             text_of({absolute_path(program), absolute_path(setup), text})));
+    static_cast<void>(
+        write_(file_of(program, setup).generic_string(),
+               text_of({absolute_path(program), absolute_path(setup), text, sha256_of(saved)})));
 }
 
 void UnsavedSetups::forget(const std::string& program, const std::string& setup) const {

@@ -5,14 +5,9 @@
 #include <string>
 
 #include "app/setup/setup_document.h"
+#include "app/view/model/workspace.h"
 
 namespace app::viewer {
-
-/// The text of a set-up with edits that were not saved, as found after a crash or a loss of power.
-struct UnsavedSetup {
-    std::string program, setup; // absolute paths; `setup` is empty for one without a file
-    std::string text;
-};
 
 /// The text of a file that keeps an unsaved set-up: comments, then the set-up.
 std::string text_of(const UnsavedSetup& unsaved);
@@ -27,8 +22,10 @@ public:
     UnsavedSetups(std::filesystem::path folder, FileWriter write)
         : folder_(std::move(folder)), write_(std::move(write)) {}
 
-    /// Keeps a text. Errors are ignored: the user can still save.
-    void keep(const std::string& program, const std::string& setup, const std::string& text) const;
+    /// Keeps a text, with what was in the file when it was edited. Errors are ignored: the user can
+    /// still save.
+    void keep(const std::string& program, const std::string& setup, const std::string& text,
+              const std::string& saved) const;
     void forget(const std::string& program, const std::string& setup) const;
     /// What is kept of this program and set-up, unless it is the text in the file.
     std::optional<UnsavedSetup> find(const std::string& program, const std::string& setup,

@@ -9,6 +9,7 @@
 
 #include "app/base/clearance_text.h"
 #include "app/base/findings.h"
+#include "app/base/text.h"
 #include "app/check/check_job.h"
 #include "app/setup/coverage.h"
 #include "app/view/model/device_worker.h"
@@ -53,6 +54,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     model.selected.reset();
     model.offending.clear();
     model.coverage.clear();
+    model.verdict = {};
     model.filtered.clear();
     model.path = nullptr;
     model.block_state = nullptr;
@@ -204,8 +206,10 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
     if (news.refusal) say(model, *news.refusal, now);
-    if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped)
+    if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped) {
         model.coverage = coverage_words(model);
+        model.verdict = verdict_words(model);
+    }
     if (is_first) resume(model);
     if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.fraction);
     if (news.walk) end_walk(model, *news.walk, now);
@@ -258,8 +262,10 @@ const SetupSheet* sheet_of(const ViewModel& model) {
     return model.program ? model.program->sheet.get() : nullptr;
 }
 
-std::string coverage_words(const ViewModel& model) {
-    if (!model.program || !model.program->coverage) return {};
+namespace {
+
+/// What the check covers so far.
+Coverage coverage_so_far(const ViewModel& model) {
     Coverage coverage = *model.program->coverage;
     std::set<core::ToolNumber> bare;
     std::optional<core::ToolNumber> last; // most rows have the tool of the row before
@@ -272,15 +278,50 @@ std::string coverage_words(const ViewModel& model) {
     coverage.tools_without_holder.assign(bare.begin(), bare.end());
     coverage.holders = bare.empty() ? Known::described : Known::missing;
     reduce_by(model.findings, coverage);
-    const std::string uncovered = uncovered_text(coverage);
-    const std::string words = uncovered.empty() ? "" : "Not checked: " + uncovered;
+    return coverage;
+}
+
+size_t count_of(const std::vector<core::Finding>& findings, core::Severity severity) {
+    return static_cast<size_t>(
+        std::count_if(findings.begin(), findings.end(),
+                      [&](const core::Finding& each) { return each.severity == severity; }));
+}
+
+} // namespace
+
+std::string coverage_words(const ViewModel& model) {
+    if (!model.program || !model.program->coverage) return {};
+    const std::string uncovered = uncovered_text(coverage_so_far(model));
+    return uncovered.empty() ? "" : "Not checked: " + uncovered;
+}
+
+VerdictWords verdict_words(const ViewModel& model) {
+    using render::ClearanceState;
+    if (!model.program || !model.program->coverage || !model.has_rows()) return {};
+    Judged judged{.is_stopped = model.stopped.has_value()};
+    for (const size_t block : model.offending)
+        judged.verdict = std::max(judged.verdict, model.rows[block].verdict);
+    judged.has_errors =
+        std::any_of(model.findings.begin(), model.findings.end(), is_error_of_program);
+    judged.lacks_required =
+        std::any_of(model.findings.begin(), model.findings.end(), lacks_coverage);
+    const Coverage coverage = coverage_so_far(model);
+    const bool is_bad =
+        judged.verdict != core::Verdict::clear || judged.has_errors || judged.is_stopped;
+    if (!is_bad && !model.is_recorded) return {"CHECKING", ClearanceState::none};
     const bool is_clear =
-        model.is_recorded && !model.stopped && model.offending.empty()
-        && (!coverage.moves
-            || std::none_of(model.findings.begin(), model.findings.end(), is_error_of_program));
-    if (!is_clear || (words.empty() && coverage.moves)) return words;
-    const bool lacks = std::any_of(model.findings.begin(), model.findings.end(), lacks_coverage);
-    return headline_of({.lacks_required = lacks}, coverage) + (words.empty() ? "" : "\n" + words);
+        !is_bad && !judged.lacks_required && coverage.moves && coverage.is_complete();
+    std::string text = headline_of(judged, coverage);
+    if (const size_t errors = count_of(model.findings, core::Severity::error); errors > 0)
+        text += ", " + counted(errors, "error");
+    if (!model.is_recorded) text += " so far";
+    return {text, is_bad     ? ClearanceState::violation
+                  : is_clear ? ClearanceState::clear
+                             : ClearanceState::near};
+}
+
+bool is_current(const ViewModel& model) {
+    return model.program && model.program->setup_text == model.workspace.document.text();
 }
 
 std::string length_text(const ViewModel& model, double mm, int decimals) {

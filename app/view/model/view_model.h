@@ -132,6 +132,12 @@ struct Section {
     bool is_flipped() const { return glm::dot(normal, plane.normal) < 0.0; }
 };
 
+/// A verdict in words, and how good it is: clear only with complete coverage.
+struct VerdictWords {
+    std::string text;
+    render::ClearanceState state{};
+};
+
 /// The tab of an open program.
 struct TabTitle {
     std::string name, path;
@@ -154,6 +160,7 @@ struct ViewModel {
     std::vector<FindingGroup> groups; // of `findings`
     std::vector<size_t> offending;    // blocks, in program order
     std::string coverage;             // coverage_words of the program so far
+    VerdictWords verdict;             // likewise
     std::shared_ptr<const render::ToolPath> path;
     std::shared_ptr<const BlockState> block_state;
     std::vector<std::string> changes;
@@ -235,9 +242,17 @@ struct ViewModel {
 /// The set-up with the sources of its values, as it was read last; null if none was.
 const SetupSheet* sheet_of(const ViewModel& model);
 
-/// What the check of the program does not cover, with the headline if it found nothing; empty if
-/// the set-up describes everything and the program moves.
+/// What the check of the program does not cover; empty if the set-up describes everything.
 std::string coverage_words(const ViewModel& model);
+
+/// The verdict on the program, as reports say it, with the number of errors; a bad one as soon as
+/// it is known.
+VerdictWords verdict_words(const ViewModel& model);
+
+/// Whether the program is shown with the set-up as it is now. False after an edit until it has been
+/// read, and while it cannot be read: then what is shown must not be taken for its result, nor
+/// measured for another edit.
+bool is_current(const ViewModel& model);
 
 /// Cancels the current walk and the search for a violation.
 void stay(ViewModel& model);

@@ -61,12 +61,13 @@ void add_machine_rows(const Workspace& workspace, const SetupSheet& sheet,
 
 void add_offset_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<SetupRow>& rows) {
     rows.push_back(heading_row("Work offsets"));
-    for (const SheetOffset& offset : sheet.offsets)
-        rows.push_back(
-            {item(Kind::offset, offset.name), offset.name,
-             fmt::format("{}, {}, {}", length_text(model, offset.origin.x),
-                         length_text(model, offset.origin.y), length_text(model, offset.origin.z)),
-             offset.source});
+    for (const SheetOffset& offset : sheet.offsets) {
+        const core::Vec3 origin = origin_of(*model.workspace.stated, offset);
+        rows.push_back({item(Kind::offset, offset.name), offset.name,
+                        fmt::format("{}, {}, {}", length_text(model, origin.x),
+                                    length_text(model, origin.y), length_text(model, origin.z)),
+                        offset.source});
+    }
 }
 
 void add_fixture_rows(const ViewModel& model, const SetupSheet& sheet,
@@ -117,6 +118,7 @@ void step_back_or_forth(ViewModel& model, bool back, double now) {
         document.undo();
     else
         document.redo();
+    ++model.workspace.replacements;
     take_in_text(model.workspace);
     keep_selection(model.workspace);
     say(model, (back ? "Undone: " : "Redone: ") + title, now);
@@ -138,6 +140,11 @@ void add_fixture(ViewModel& model, const std::string& wanted_name, const std::st
 
 } // namespace
 
+core::Vec3 origin_of(const StatedSetup& stated, const SheetOffset& offset) {
+    const auto found = stated.origins.find(offset.name);
+    return found == stated.origins.end() ? offset.origin : found->second;
+}
+
 void open_document(ViewModel& model, SetupDocument document) {
     model.workspace = {};
     model.workspace.document = std::move(document);
@@ -158,6 +165,7 @@ bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument:
 
 void take_file(ViewModel& model, std::string text) {
     model.workspace.document.file_changed(std::move(text));
+    ++model.workspace.replacements;
     take_in_text(model.workspace);
     keep_selection(model.workspace);
 }
@@ -173,8 +181,11 @@ std::vector<SetupRow> rows_of_setup(const ViewModel& model) {
     std::vector<SetupRow> rows;
     add_machine_rows(workspace, *sheet, rows);
     add_offset_rows(model, *sheet, rows);
+    const auto& stock = workspace.stated->stock;
     rows.push_back(
-        {item(Kind::stock), "Stock", solid_text(model, sheet->stock), sheet->stock_source});
+        {item(Kind::stock), "Stock",
+         stock && stock->has_shape() ? shape_text(model, *stock) : solid_text(model, sheet->stock),
+         sheet->stock_source});
     add_fixture_rows(model, *sheet, rows);
     if (workspace.stated->part)
         rows.push_back({item(Kind::part), "Part", shape_text(model, *workspace.stated->part)});
@@ -270,6 +281,23 @@ void add_mesh(ViewModel& model, const std::string& file) {
     add_fixture(model, name.empty() ? "mesh" : name,
                 fmt::format("mesh = {}\nat = [0, 0, 0]\nframe = {}\n", toml_text(path),
                             toml_text(sheet ? sheet->frame : "G54")));
+}
+
+void use_stock_mesh(ViewModel& model, const std::string& file) {
+    const SetupSheet* sheet = sheet_of(model);
+    const std::string path = path_in_setup(model, file);
+    const bool is_new = !model.workspace.stated->stock;
+    if (!edit_setup(
+            model, "Change the stock", [&](const std::string& text) -> core::Result<std::string> {
+                FEELER_TRY(std::string with, with_mesh(text, "stock", path));
+                if (is_new && sheet) {
+                    FEELER_TRY(with,
+                               toml_with_value(with, {"stock", "frame"}, toml_text(sheet->frame)));
+                }
+                return with_known(with, "stock");
+            }))
+        return;
+    model.workspace.selected = item(Kind::stock);
 }
 
 void add_part(ViewModel& model, const std::string& file) {

@@ -12,6 +12,7 @@
 
 namespace app {
 enum class SetupSource : uint8_t;
+struct SheetOffset;
 struct StatedSetup;
 } // namespace app
 
@@ -22,6 +23,13 @@ struct ToolDescription;
 namespace app::viewer {
 
 struct ViewModel;
+
+/// The text of a set-up with edits that were not saved, as found after a crash or a loss of power.
+struct UnsavedSetup {
+    std::string program, setup; // absolute paths; `setup` is empty for one without a file
+    std::string text;
+    std::string base = {}; // SHA-256 of the text that was edited
+};
 
 /// A thing in the tree of a set-up.
 struct SetupItem {
@@ -57,18 +65,21 @@ struct Workspace {
     std::optional<core::Error> error;   // in the text that was read last
     std::string refusal;                // why the last edit was not made; empty: it was
     std::optional<std::string> on_disk; // text in the file, changed elsewhere while there are edits
-    std::optional<std::string> found;   // text with edits of an earlier session
+    std::optional<UnsavedSetup> found;  // edits of an earlier session
     bool forgets_found = false;         // the user does not want them
     Leaving leaving = Leaving::no;
     bool drops_edits = false;             // the user wants to leave without saving
     std::vector<std::string> leaving_for; // files to open then, with `to_open`
 
     // of the panel
-    bool has_keys = false;    // the panel has the keyboard
-    bool wants_focus = false; // it should get it in the next frame
-    bool is_naming = false;   // the file name is asked for
-    bool may_replace = false; // the user confirmed that the named file may be replaced
-    std::string file_name;    // as typed
+    bool has_keys = false;      // the panel has the keyboard
+    bool is_typing = false;     // a field has text that is not in the document yet
+    bool commits_typed = false; // it is to be taken over in the next frame
+    uint64_t replacements = 0;  // of the text by another one: undo, or a changed file
+    bool wants_focus = false;   // it should get it in the next frame
+    bool is_naming = false;     // the file name is asked for
+    bool may_replace = false;   // the user confirmed that the named file may be replaced
+    std::string file_name;      // as typed
 };
 
 /// What the next click in the view defines.
@@ -110,6 +121,9 @@ void redo(ViewModel& model, double now);
 /// The tree: machine, work offsets, stock, fixtures, part, tools, minimum clearance.
 std::vector<SetupRow> rows_of_setup(const ViewModel& model);
 
+/// The origin of a work offset: as the text states it, or else as it is assumed.
+core::Vec3 origin_of(const StatedSetup& stated, const SheetOffset& offset);
+
 /// The thing that a line of the set-up describes; none if it describes none.
 SetupItem item_at_line(const Workspace& workspace, uint32_t line);
 
@@ -123,6 +137,8 @@ bool can_state(const ViewModel& model, const SetupItem& item);
 /// Adds a block beside the stock as a fixture, or the mesh in a file at the origin, and selects it.
 void add_box(ViewModel& model);
 void add_mesh(ViewModel& model, const std::string& file);
+/// Takes the mesh in a file as the stock.
+void use_stock_mesh(ViewModel& model, const std::string& file);
 /// Compares the result with the mesh in a file.
 void add_part(ViewModel& model, const std::string& file);
 /// Takes tools from a library, or the machine from a file; without a file: no longer.

@@ -125,7 +125,7 @@ namespace key {
 constexpr int space = 32, comma = 44, minus = 45, period = 46, slash = 47, equal = 61;
 constexpr int left_bracket = 91, right_bracket = 93;
 constexpr int escape = 256, enter = 257, tab = 258, backspace = 259;
-constexpr int remove = 261, right = 262, left = 263, down = 264, up = 265;
+constexpr int insert = 260, remove = 261, right = 262, left = 263, down = 264, up = 265;
 constexpr int page_up = 266, page_down = 267, home = 268, end = 269;
 constexpr int f1 = 290;
 constexpr int keypad_0 = 320, keypad_subtract = 333, keypad_add = 334;

@@ -244,9 +244,33 @@ void draw_assumptions(Frame& frame) {
     }
 }
 
-void draw_coverage(Frame& frame) {
-    const std::string& words = frame.model.coverage;
-    if (!words.empty()) wrapped_text(frame.fonts.small, frame.palette.color(Role::near), words);
+/// The colour of a verdict on the whole program.
+Role role_of(render::ClearanceState state) {
+    switch (state) {
+    case render::ClearanceState::violation:
+        return Role::violation;
+    case render::ClearanceState::near:
+        return Role::near;
+    case render::ClearanceState::clear:
+        return Role::clear;
+    case render::ClearanceState::none:
+        break;
+    }
+    return Role::dim;
+}
+
+void draw_verdict(Frame& frame) {
+    const ViewModel& model = frame.model;
+    if (!model.program) return;
+    if (!is_current(model))
+        wrapped_text(frame.fonts.strong, frame.palette.color(Role::dim),
+                     model.workspace.error ? "The last good state is shown"
+                                           : "Reading the changed set-up \xE2\x80\xA6");
+    else if (!model.verdict.text.empty())
+        wrapped_text(frame.fonts.strong, frame.palette.ink(role_of(model.verdict.state)),
+                     model.verdict.text);
+    if (!model.coverage.empty())
+        wrapped_text(frame.fonts.small, frame.palette.ink(Role::near), model.coverage);
 }
 
 void draw_whole(Frame& frame) {
@@ -266,7 +290,7 @@ void draw_whole(Frame& frame) {
 } // namespace
 
 void InspectorPanel::draw(Frame& frame, const Area&) {
-    draw_coverage(frame);
+    draw_verdict(frame);
     if (!frame.model.has_rows()) return draw_assumptions(frame);
     draw_number(frame);
     draw_scale(frame);

@@ -125,6 +125,7 @@ void Layout::draw_body(Frame& frame, const Area& area) {
 void Layout::draw(ViewModel& model, const Fonts& fonts, double now) {
     Frame frame{model, fonts, Theme{model.settings.theme}, now};
     model.workspace.has_keys = false; // unless its panel is drawn, with the focus
+    if (!model.shows_setup) model.workspace.is_typing = model.workspace.commits_typed = false;
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float top = std::min(TabStrip::height_of(frame), size.y);
     const Area area{0, top, size.x, size.y - top};

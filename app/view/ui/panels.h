@@ -71,6 +71,8 @@ private:
 
 /// Draws the tabs of the lists and the set-up on the left.
 void draw_list_tabs(Frame& frame);
+/// Draws the numbers of errors, of warnings and of all blocks next to them.
+void draw_counts(Frame& frame, const Area& area);
 
 /// The current block: clearance, pair, state, findings. Below it, the program as a whole.
 class InspectorPanel : public Panel {

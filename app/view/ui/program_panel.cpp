@@ -129,7 +129,8 @@ void draw_words(Frame& frame, ImDrawList& list, const Area& area, const BlockRow
                  frame.fonts.icon(Icon::warning));
 }
 
-/// Draws the numbers of errors, of warnings and of all blocks, next to the tabs.
+} // namespace
+
 void draw_counts(Frame& frame, const Area& area) {
     const ViewModel& model = frame.model;
     const size_t problems = std::max(count_of(model.findings, core::Severity::error),
@@ -161,8 +162,6 @@ void draw_counts(Frame& frame, const Area& area) {
     ImGui::SameLine(0, gap);
     text(frame.fonts.text, frame.palette.color(Role::dim), blocks);
 }
-
-} // namespace
 
 void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;

@@ -41,7 +41,7 @@ void ProgramTab::open(const CheckJob& check) {
     const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
     open_document(model, SetupDocument(check.setup, text));
     if (auto unsaved = unsaved_.find(check.program, check.setup, text))
-        model.workspace.found = std::move(unsaved->text);
+        model.workspace.found = std::move(*unsaved);
     keep_at_.reset();
     reload();
     if (model.workspace.found) show_setup(model, true);
@@ -52,8 +52,9 @@ void ProgramTab::reload() {
     const SetupDocument& document = model.workspace.document;
     checked_version_ = document.version();
     check_->setup = document.path();
+    // The text that is shown, even if the file changes just now.
     check_->setup_text.reset();
-    if (document.is_modified()) check_->setup_text = document.text();
+    if (!document.path().empty() || !document.text().empty()) check_->setup_text = document.text();
     worker_.set_breakpoints(model.breakpoints);
     worker_.open(*check_);
     watch_files();
@@ -70,6 +71,7 @@ bool ProgramTab::take_updates(double now) {
     SessionUpdate news = worker_.take();
     DeviceUpdate answers = device_.take();
     ToleranceUpdate found = tolerances_.take();
+    files_.add(news.files);
     const bool has_sheet = take_sheet(now);
     const bool has_news = news.has_news || answers.has_news || found.has_news || has_sheet;
     take_in(model, std::move(news), now);
@@ -111,8 +113,12 @@ bool ProgramTab::take_changed_files(double now) {
 
 bool ProgramTab::save_if_wanted(double now) {
     Workspace& workspace = model.workspace;
-    const bool saves = std::exchange(model.wants_saving, false) || !model.save_path.empty();
-    if (!saves || !check_) return false;
+    const bool is_wanted = std::exchange(model.wants_saving, false) || !model.save_path.empty();
+    if (!is_wanted || !check_) return false;
+    if (workspace.is_typing) { // what is typed is to be saved, too
+        workspace.commits_typed = model.wants_saving = true;
+        return false;
+    }
     const std::string before = workspace.document.path();
     if (!save_document(model, std::exchange(model.save_path, {}), job_.write, now)) {
         // The browser says why a name was refused; the dialog of the system cannot.
@@ -182,10 +188,11 @@ void ProgramTab::take_edits(double now) {
 }
 
 void ProgramTab::keep_edits() {
+    if (model.workspace.found) return; // the user has not said what is to become of those edits
     if (!check_ || !std::exchange(keep_at_, std::nullopt)) return;
     const SetupDocument& document = model.workspace.document;
     if (document.is_modified())
-        unsaved_.keep(check_->program, document.path(), document.text());
+        unsaved_.keep(check_->program, document.path(), document.text(), document.saved_text());
     else
         unsaved_.forget(check_->program, document.path());
 }

@@ -57,20 +57,41 @@ private:
     double begin_ = 0.0;
 };
 
-/// A queue of key events for ImGui 1.86, which only sees whether a key is down during a frame.
+/// A queue of key events and characters for ImGui 1.86, which only sees whether a key is down
+/// during a frame.
 ///
 /// A key that is pressed and released between two frames gets one frame for each event. A modifier
-/// released after a key press still counts as down in the frame of that press.
+/// released after a key press still counts as down in the frame of that press. Tab and Enter need
+/// two more frames to move to another field: characters wait until then, or the sign of a number
+/// that is typed fast would be lost.
 class KeyQueue {
 public:
     /// Adds an event of a key with this GLFW code.
     void add(int code, bool is_down);
+    /// Adds a character that was typed.
+    void add_character(unsigned character);
+    /// Whether characters wait for a frame. A command must then wait, too: see add_command().
+    bool has_characters() const;
+    /// Adds the command of a key with modifiers, to be taken after the frames of all characters.
+    void add_command(int code, int modifiers);
+    /// The command that is due before the next frame, as code and modifiers.
+    std::optional<std::pair<int, int>> take_command();
 
     /// Passes ImGui the events for the next frame. True if some are left for later frames.
     bool feed(ImGuiIO& io);
 
 private:
-    std::deque<std::pair<int, bool>> keys_;
+    struct Event {
+        int code = 0;
+        bool is_down = false;
+        unsigned character = 0;  // if it is not 0, this is no event of a key
+        bool is_command = false; // of `code` and `modifiers`
+        int modifiers = 0;
+    };
+    bool may_feed(const std::set<int>& changed, bool has_press, bool has_character) const;
+
+    std::deque<Event> events_;
+    int frames_to_wait_ = 0;
 };
 
 /// The contents of the window's framebuffer. The context of the window must be current.
@@ -141,6 +162,7 @@ public:
     core::Result<void> run();
     void press(int code, int modifiers);
     void type(int code, bool is_down) { keys_.add(code, is_down); }
+    void type_character(unsigned character) { keys_.add_character(character); }
     void drop(const std::vector<std::string>& paths);
     void damage() { frames_ = 3; }
     /// Closes, or asks first if there are unsaved edits.
@@ -156,6 +178,7 @@ private:
     void draw();
     void rebuild_fonts();
     void save_picture();
+    void perform_key(int code, int modifiers);
     void open(const CheckJob& check);
     core::Result<void> add_tab(size_t index);
     void show_tab(size_t index);
@@ -234,6 +257,11 @@ core::Result<void> Window::add_tab(size_t index) {
 void Window::show_tab(size_t index) {
     damage();
     if (index >= tabs_.size() || index == shown_) return;
+    if (shown_model().workspace.is_typing) { // what is typed belongs to the shown program
+        shown_model().workspace.commits_typed = true;
+        shown_model().wanted_tab = index;
+        return;
+    }
     tab().keep_edits();
     show_in_place(tabs_[index]->model, shown_model());
     shown_before_ = &tab();
@@ -383,6 +411,10 @@ void Window::drop(const std::vector<std::string>& paths) {
 }
 
 void Window::ask_to_close() {
+    if (shown_model().workspace.is_typing) {
+        shown_model().workspace.commits_typed = shown_model().wants_quit = true;
+        return damage();
+    }
     for (const auto& each : tabs_) each->may_drop = false;
     close();
 }
@@ -431,6 +463,13 @@ void Window::update_setup(double now) {
 void Window::press(int code, int modifiers) {
     log_.key(code);
     damage();
+    if (keys_.has_characters())
+        keys_.add_command(code, modifiers);
+    else
+        perform_key(code, modifiers);
+}
+
+void Window::perform_key(int code, int modifiers) {
     const auto command = command_of(code, modifiers);
     if (!command) return;
     // WantTextInput stays set for two frames after its field is gone.
@@ -439,6 +478,13 @@ void Window::press(int code, int modifiers) {
     const bool moves_text = code >= key::enter && code <= key::end;
     if (is_typing && (is_plain || moves_text)) return;
     ViewModel& model = shown_model();
+    // Esc leaves a field or a list first, and in a field undo is about what is typed there.
+    const bool is_list_open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
+    if (*command == Command::close_popup && model.popup == Popup::none
+        && (is_typing || is_list_open))
+        return;
+    const bool undoes = *command == Command::undo || *command == Command::redo;
+    if (undoes && model.workspace.is_typing) return;
     const bool keeps_keys = (model.popup != Popup::none && model.popup != Popup::shortcuts)
                             || (model.popup == Popup::none && model.workspace.has_keys);
     const bool closes = *command == Command::close_popup || *command == Command::what_if
@@ -500,6 +546,7 @@ void Window::update() {
     if (std::exchange(shown_model().notes_changed, false))
         keep_notes(shown_model(), job_.notes_file, job_.write, now);
     if (std::exchange(shown_model().wants_quit, false)) ask_to_close();
+    if (shown_model().workspace.commits_typed) damage();
 }
 
 void Window::draw() {
@@ -507,6 +554,7 @@ void Window::draw() {
     rebuild_fonts();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    while (const auto command = keys_.take_command()) perform_key(command->first, command->second);
     if (keys_.feed(ImGui::GetIO())) damage();
     ImGui::NewFrame();
     ViewModel& model = shown_model();
@@ -590,14 +638,18 @@ void listen(GLFWwindow* window) {
     glfwSetCursorPosCallback(window, damage<double, double>);
     glfwSetMouseButtonCallback(window, damage<int, int, int>);
     glfwSetScrollCallback(window, damage<double, double>);
-    glfwSetCharCallback(window, damage<unsigned>);
     glfwSetFramebufferSizeCallback(window, damage<int, int>);
     glfwSetWindowRefreshCallback(window, damage<>);
     glfwSetWindowFocusCallback(window, damage<int>);
 }
 
-/// Replaces the key callback of ImGui's backend.
+/// Replaces the callbacks of ImGui's backend for keys and characters.
 void listen_to_keys(GLFWwindow* window) {
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned character) {
+        if (!glfwGetWindowUserPointer(w)) return;
+        window_of(w).damage();
+        window_of(w).type_character(character);
+    });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int, int action, int modifiers) {
         if (!glfwGetWindowUserPointer(w)) return;
         window_of(w).damage();
@@ -676,22 +728,61 @@ void FrameLog::end_frame(const ViewModel& model) {
 }
 
 void KeyQueue::add(int code, bool is_down) {
-    if (code >= 0 && code < IM_ARRAYSIZE(ImGuiIO::KeysDown)) keys_.emplace_back(code, is_down);
+    if (code >= 0 && code < IM_ARRAYSIZE(ImGuiIO::KeysDown)) events_.push_back({code, is_down});
+}
+
+void KeyQueue::add_character(unsigned character) { events_.push_back({.character = character}); }
+
+bool KeyQueue::has_characters() const {
+    return std::any_of(events_.begin(), events_.end(),
+                       [](const Event& event) { return event.character != 0 || event.is_command; });
+}
+
+void KeyQueue::add_command(int code, int modifiers) {
+    events_.push_back({.code = code, .is_command = true, .modifiers = modifiers});
+}
+
+std::optional<std::pair<int, int>> KeyQueue::take_command() {
+    if (events_.empty() || !events_.front().is_command || frames_to_wait_ > 0) return {};
+    const Event event = events_.front();
+    events_.pop_front();
+    return std::pair{event.code, event.modifiers};
+}
+
+/// Whether the next event fits into a frame in which these keys have changed. ImGui drops
+/// characters of a frame in which Ctrl is down.
+bool KeyQueue::may_feed(const std::set<int>& changed, bool has_press, bool has_character) const {
+    if (events_.empty() || frames_to_wait_ > 0) return false;
+    const Event& next = events_.front();
+    if (next.is_command) return false;
+    if (next.character != 0) return true;
+    const bool fits = next.is_down ? !has_character : !has_press;
+    return fits && !changed.contains(next.code);
 }
 
 bool KeyQueue::feed(ImGuiIO& io) {
+    constexpr int frames_of_a_move = 2;
     std::set<int> changed;
-    bool has_press = false;
-    while (!keys_.empty() && (keys_.front().second || !has_press)
-           && changed.insert(keys_.front().first).second) {
-        has_press = has_press || keys_.front().second;
-        io.KeysDown[keys_.front().first] = keys_.front().second;
-        keys_.pop_front();
+    bool has_press = false, has_character = false;
+    if (frames_to_wait_ > 0) --frames_to_wait_;
+    while (may_feed(changed, has_press, has_character)) {
+        const Event event = events_.front();
+        events_.pop_front();
+        if (event.character != 0) {
+            io.AddInputCharacter(event.character);
+            has_character = true;
+            continue;
+        }
+        has_press = has_press || event.is_down;
+        changed.insert(event.code);
+        io.KeysDown[event.code] = event.is_down;
+        if (event.is_down && (event.code == key::tab || event.code == key::enter))
+            frames_to_wait_ = frames_of_a_move;
     }
     io.KeyCtrl = io.KeysDown[key::left_control] || io.KeysDown[key::right_control];
     io.KeyShift = io.KeysDown[key::left_shift] || io.KeysDown[key::right_shift];
     io.KeyAlt = io.KeysDown[key::left_alt] || io.KeysDown[key::right_alt];
-    return !keys_.empty();
+    return !events_.empty();
 }
 
 render::Image screen_picture(int width, int height) {

@@ -1,0 +1,591 @@
+#include "app/view/ui/setup_forms.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/check/setup_sheet.h"
+#include "app/setup/holder_library.h"
+#include "app/setup/setup_changes.h"
+#include "app/setup/setup_text.h"
+#include "app/view/model/placing.h"
+#include "app/view/model/view_model.h"
+#include "core/dbm/solid.h"
+
+namespace app::viewer {
+namespace {
+
+using render::Role;
+using Kind = SetupItem::Kind;
+
+/// A box with another size. What the zero is at stays: a side, or the middle; else the lower side.
+core::Aabb resized(const core::Aabb& box, const core::Vec3& size) {
+    constexpr double same = 1e-9; // mm
+    core::Aabb other;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box.min[axis], high = box.max[axis];
+        const bool is_middle = std::abs(low + high) < same;
+        const double from = std::abs(high) < same ? -size[axis]
+                            : is_middle           ? -0.5 * size[axis]
+                                                  : low;
+        other.min[axis] = from;
+        other.max[axis] = from + size[axis];
+    }
+    return other;
+}
+
+/// A box or cylinder (kind 0 or 1) of the same size as a stock.
+core::Solid reshaped_stock(const core::Solid& stock, int kind) {
+    const core::Aabb box = core::bounds(stock);
+    const core::Vec3 size = box.size(), middle = box.center();
+    if (kind == 0) return {core::SolidBox{box}, stock.tolerance};
+    return {core::SolidCylinder{
+                {middle.x, middle.y, box.min.z}, 0.5 * std::max(size.x, size.y), size.z, 2},
+            stock.tolerance};
+}
+
+/// A size of a tool: as the text states it, or else as it was checked last.
+std::optional<double> size_now(const ViewModel& model, const SheetTool& shown,
+                               const core::ToolSize& size) {
+    const auto of_tool = [&] { return size.of(shown.tool); };
+    if (is_current(model)) return of_tool();
+    const auto stated = stated_tool_size(model.workspace.document.text(), shown.tool.number, size);
+    return stated ? stated : of_tool();
+}
+
+} // namespace
+
+void SetupForms::draw_item_head(Frame& frame, const std::string& title, bool can_copy,
+                                bool can_delete) {
+    ViewModel& model = frame.model;
+    ImGui::AlignTextToFramePadding();
+    text(frame.fonts.strong, frame.palette.color(Role::text), title);
+    const bool states = can_state(model, model.workspace.selected);
+    float right = ImGui::GetContentRegionMax().x;
+    const auto button = [&](const char* word, const std::string& words) {
+        right -= ImGui::CalcTextSize(word).x + 2 * ImGui::GetStyle().FramePadding.x;
+        ImGui::SameLine(right);
+        right -= frame.px(5);
+        const bool pressed = ImGui::SmallButton(word);
+        tip(frame, words);
+        return pressed;
+    };
+    if (can_delete && button("Delete", "Remove it from the set-up (Delete)"))
+        delete_selected(model);
+    if (can_copy && button("Copy", tip_of(Command::copy_item))) copy_selected(model);
+    if (states && button("State", "The assumed values are right: write them into the set-up"))
+        state_item(model, model.workspace.selected);
+}
+
+void SetupForms::draw_machine(Frame& frame) {
+    ViewModel& model = frame.model;
+    const StatedSetup& stated = *model.workspace.stated;
+    draw_item_head(frame, "Machine", false, false);
+    field_name(frame, "File");
+    const auto file =
+        fields_.words(frame, "##file", stated.machine_file, "MACHINE.toml, .machine or .mch", 200);
+    if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, FileWish::machine);
+    if (file) use_machine(model, *file);
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                 model.program->sheet->has_machine
+                     ? "Its axes, limits and bodies are in that file."
+                     : "Without a machine, axis limits are not checked, and X, Y and Z move the "
+                       "tool.");
+}
+
+void SetupForms::draw_offset(Frame& frame, const SheetOffset& offset) {
+    ViewModel& model = frame.model;
+    draw_item_head(frame, "Work offset " + offset.name, false,
+                   model.workspace.stated->has_offset(offset.name));
+    field_name(frame, "X Y Z");
+    // What is stated comes from the text: the last check may not know it yet.
+    const auto origin = fields_.point(frame, "origin", origin_of(*model.workspace.stated, offset));
+    source_mark(frame, offset.source);
+    if (origin)
+        edit_setup(model, "Change " + offset.name,
+                   [&](const std::string& t) { return with_offset(t, offset.name, *origin); });
+    draw_zero(frame, offset.name);
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                 offset.is_used ? "Machine coordinates of program zero, as on the control's page."
+                                : "The program does not use it.");
+}
+
+void SetupForms::draw_stock(Frame& frame) {
+    ViewModel& model = frame.model;
+    const SetupSheet& sheet = *model.program->sheet;
+    const auto kept = model.workspace.stated; // edits replace it
+    draw_item_head(frame, "Stock", false, kept->stock.has_value());
+    if (kept->stock && kept->stock->has_shape()) {
+        draw_shape(frame, *kept->stock, stock_name);
+        draw_pose(frame, *kept->stock, stock_name);
+    } else {
+        draw_assumed_stock(frame, sheet);
+    }
+    draw_placing(frame, stock_name);
+    std::string why;
+    if (sheet.stock_source == SetupSource::assumed && !sheet.stock_why.empty())
+        why = "In " + sheet.frame + ". Assumed: " + sheet.stock_why + ".";
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), why);
+}
+
+/// The fields of a stock that is not stated; a change states it.
+void SetupForms::draw_assumed_stock(Frame& frame, const SetupSheet& sheet) {
+    ViewModel& model = frame.model;
+    const auto restate = [&](const core::Solid& stock) {
+        edit_setup(model, "Change the stock",
+                   [&](const std::string& t) { return with_stock(t, stock, sheet.frame); });
+    };
+    const bool is_box = std::holds_alternative<core::SolidBox>(sheet.stock.shape);
+    draw_kinds(frame, is_box ? 0 : 1, "from a file \xE2\x80\xA6", [&](int kind) {
+        kind == 2 ? browse(model, FileWish::stock) : restate(reshaped_stock(sheet.stock, kind));
+    });
+    source_mark(frame, sheet.stock_source);
+    core::Solid stock = sheet.stock;
+    if (auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
+        field_name(frame, "Size X Y Z");
+        if (const auto size = fields_.sizes(frame, "size", box->box.size())) {
+            box->box = resized(box->box, *size);
+            restate(stock);
+        }
+        field_name(frame, "Lower corner");
+        if (const auto corner = fields_.point(frame, "corner", box->box.min)) {
+            box->box = {*corner, *corner + box->box.size()};
+            restate(stock);
+        }
+    } else if (auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
+        StatedBody::Cylinder shape{round->radius, round->height, round->axis};
+        if (draw_cylinder(frame, shape)) {
+            round->radius = shape.radius;
+            round->height = shape.height;
+            round->axis = shape.axis;
+            restate(stock);
+        }
+        field_name(frame, "Base centre");
+        if (const auto base = fields_.point(frame, "base", round->base)) {
+            round->base = *base;
+            restate(stock);
+        }
+    }
+}
+
+/// A list of the kinds of shapes: a box, a cylinder, a file. Calls `choose` for another one.
+void SetupForms::draw_kinds(Frame& frame, int kind, const char* file,
+                            const std::function<void(int)>& choose) {
+    const char* const kinds[] = {"box", "cylinder", file};
+    field_name(frame, "Shape");
+    ImGui::SetNextItemWidth(frame.px(140));
+    if (!ImGui::BeginCombo("##kind", kinds[kind])) return;
+    for (int i = 0; i < 3; ++i)
+        if (ImGui::Selectable(kinds[i], i == kind) && (i != kind || i == 2)) choose(i);
+    ImGui::EndCombo();
+}
+
+/// The fields of a cylinder. True if one was changed.
+bool SetupForms::draw_cylinder(Frame& frame, StatedBody::Cylinder& round) {
+    bool is_changed = false;
+    field_name(frame, "Diameter");
+    if (const auto diameter = fields_.size(frame, "##diameter", 2.0 * round.radius)) {
+        round.radius = 0.5 * *diameter;
+        is_changed = true;
+    }
+    field_name(frame, "Length");
+    if (const auto height = fields_.size(frame, "##height", round.height)) {
+        round.height = *height;
+        is_changed = true;
+    }
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(frame.px(84));
+    return ImGui::Combo("##axis", &round.axis, "along X\0along Y\0along Z\0") || is_changed;
+}
+
+void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath& path) {
+    ViewModel& model = frame.model;
+    const bool is_stock = path.key() == stock_name, is_part = path.key() == part_name;
+    const std::string name = body.name.empty() ? "the " + path.key() : body.name;
+    const auto change = [&](const SetupDocument::Edit& edit) {
+        edit_setup(model, "Change " + name, edit);
+    };
+    const auto set_box = [&](const core::Aabb& box) {
+        change([&](const std::string& t) { return with_box(t, path, box); });
+    };
+    const auto set_cylinder = [&](const StatedBody::Cylinder& round) {
+        change([&](const std::string& t) {
+            return with_cylinder(t, path, round.radius, round.height, round.axis);
+        });
+    };
+    const FileWish wish = is_stock ? FileWish::stock : is_part ? FileWish::part : FileWish::mesh;
+    const int kind = body.box ? 0 : body.cylinder ? 1 : 2;
+    if (!is_part)
+        draw_kinds(frame, kind, is_stock ? "from a file \xE2\x80\xA6" : "mesh", [&](int chosen) {
+            if (chosen == 0) set_box({core::Vec3(0.0), core::Vec3(50.0, 25.0, 25.0)});
+            if (chosen == 1) set_cylinder({12.5, 25.0, 2});
+            if (chosen == 2 && is_stock) browse(model, wish);
+        });
+    if (is_stock) source_mark(frame, model.program->sheet->stock_source);
+    if (body.box) {
+        const core::Aabb box = *body.box;
+        field_name(frame, "Size X Y Z");
+        if (const auto size = fields_.sizes(frame, "size", box.size()))
+            set_box(is_stock ? resized(box, *size) : core::Aabb{box.min, box.min + *size});
+        if (box.min == core::Vec3(0.0) && !is_stock) return;
+        field_name(frame, "Lower corner");
+        if (const auto corner = fields_.point(frame, "corner", box.min))
+            set_box({*corner, *corner + box.size()});
+    } else if (body.cylinder) {
+        StatedBody::Cylinder round = *body.cylinder;
+        if (draw_cylinder(frame, round)) set_cylinder(round);
+    } else {
+        field_name(frame, "File");
+        const char* const key = body.model.empty() ? "mesh" : "model";
+        if (const auto file =
+                fields_.words(frame, "##file", body.mesh + body.model, "FILE.stl", 150))
+            change([&](const std::string& t) {
+                return toml_with_value(t, path / key, toml_text(path_in_setup(model, *file)));
+            });
+        if (!is_stock && !is_part) return;
+        ImGui::SameLine(0, frame.px(5));
+        if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, wish);
+    }
+}
+
+void SetupForms::draw_pose(Frame& frame, const StatedBody& body, const BodyPath& path) {
+    ViewModel& model = frame.model;
+    const std::string name = body.name.empty() ? path.key() : body.name;
+    field_name(frame, "At X Y Z");
+    if (const auto at = fields_.point(frame, "at", body.at))
+        edit_setup(model, "Move " + name,
+                   [&](const std::string& t) { return with_pose(t, path, *at, body.rotate_deg); });
+    field_name(frame, "Rotation \xC2\xB0");
+    if (const auto turn = fields_.angles(frame, "turn", body.rotate_deg))
+        edit_setup(model, "Turn " + name,
+                   [&](const std::string& t) { return with_pose(t, path, body.at, *turn); });
+    field_name(frame, "In");
+    ImGui::SetNextItemWidth(frame.px(140));
+    if (!ImGui::BeginCombo("##frame", body.frame.c_str())) return;
+    for (const auto& [frame_name, pose] : model.program->sheet->frames) {
+        if (frame_name == body.name || (path.key() == "stock" && frame_name == "stock")) continue;
+        if (ImGui::Selectable(frame_name.c_str(), frame_name == body.frame)
+            && frame_name != body.frame)
+            change_frame(model, name, frame_name);
+    }
+    ImGui::EndCombo();
+}
+
+/// Draws the list of the faces of a body; true if another one was chosen.
+bool face_list(Frame& frame, const char* id, const std::vector<SceneFace>& faces, size_t& chosen) {
+    chosen = faces.empty() ? 0 : std::min(chosen, faces.size() - 1);
+    bool is_changed = false;
+    ImGui::SetNextItemWidth(frame.px(208));
+    if (!ImGui::BeginCombo(id, faces.empty() ? "" : faces[chosen].name.c_str())) return false;
+    for (size_t i = 0; i < faces.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        if (ImGui::Selectable(faces[i].name.c_str(), i == chosen)) {
+            chosen = i;
+            is_changed = true;
+        }
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+    return is_changed;
+}
+
+void SetupForms::draw_face_lists(Frame& frame, const std::string& body) {
+    ViewModel& model = frame.model;
+    if (listed_body_ != body) {
+        listed_body_ = body;
+        own_face_ = other_face_ = 0;
+        other_body_ = body == stock_name ? "" : stock_name;
+    }
+    const std::vector<SceneFace> own = faces_of(model, body);
+    field_name(frame, "Its face");
+    face_list(frame, "##own", own, own_face_);
+    field_name(frame, "To body");
+    ImGui::SetNextItemWidth(frame.px(208));
+    if (ImGui::BeginCombo("##other body", other_body_.c_str())) {
+        for (const std::string& name : bodies_to_meet(model))
+            if (name != body && ImGui::Selectable(name.c_str(), name == other_body_)) {
+                other_body_ = name;
+                other_face_ = 0;
+            }
+        ImGui::EndCombo();
+    }
+    const std::vector<SceneFace> other = faces_of(model, other_body_);
+    field_name(frame, "To face");
+    face_list(frame, "##other", other, other_face_);
+    field_name(frame, "");
+    ImGui::BeginDisabled(own.empty() || other.empty());
+    if (ImGui::Button("Place"))
+        put_face_to_face(model, body, own[own_face_].plane, other[other_face_].plane);
+    ImGui::EndDisabled();
+}
+
+void SetupForms::draw_placing(Frame& frame, const std::string& body) {
+    ViewModel& model = frame.model;
+    Placing& placing = model.placing;
+    if (!can_move(model, body)) return;
+    ImGui::BeginDisabled(!is_current(model)); // the view must show what is measured
+    const auto begin = [&](PickGoal goal) {
+        placing.body = body;
+        begin_picking(model, goal);
+    };
+    field_name(frame, "Place");
+    if (ImGui::Button("Face to face")) begin(PickGoal::own_face);
+    tip(frame, "Click one of its faces, then the face to put it to");
+    ImGui::SameLine();
+    if (ImGui::Button("Centre")) begin(PickGoal::between_first);
+    tip(frame, "Click two parallel faces of other bodies: it comes into the middle between them");
+    field_name(frame, "");
+    ImGui::Checkbox("centred", &placing.centred);
+    tip(frame, "Face to face: also bring the middles of both faces together");
+    ImGui::SameLine();
+    ImGui::Checkbox("flush", &placing.flush);
+    tip(frame, "Face to face: the faces look the same way, in one plane");
+    field_name(frame, "Slide to touch");
+    constexpr std::pair<const char*, core::Vec3> ways[] = {
+        {"\xE2\x88\x92X", {-1, 0, 0}}, {"+X", {1, 0, 0}},
+        {"\xE2\x88\x92Y", {0, -1, 0}}, {"+Y", {0, 1, 0}},
+        {"\xE2\x88\x92Z", {0, 0, -1}}, {"+Z", {0, 0, 1}}};
+    for (const auto& [name, direction] : ways) {
+        if (direction != ways[0].second) ImGui::SameLine(0, frame.px(3));
+        if (ImGui::SmallButton(name)) slide_to_contact(model, body, direction);
+        tip(frame, "Slide it until it touches another body: close a jaw, put it down");
+    }
+    if (ImGui::TreeNodeEx("Choose faces from lists", ImGuiTreeNodeFlags_NoTreePushOnOpen))
+        draw_face_lists(frame, body);
+    ImGui::EndDisabled();
+}
+
+void SetupForms::draw_zero(Frame& frame, const std::string& offset) {
+    ViewModel& model = frame.model;
+    field_name(frame, "Set the zero");
+    if (ImGui::Button("By clicking \xE2\x80\xA6")) {
+        model.placing.offset = offset;
+        model.placing.body.clear();
+        begin_picking(model, PickGoal::zero);
+    }
+    tip(frame,
+        "Click a corner, edge, face, bore or boss of the stock or a fixture, as a probe would");
+    field_name(frame, "or at the stock");
+    constexpr const char* sides[] = {"left\0middle\0right\0", "front\0middle\0back\0",
+                                     "bottom\0middle\0top\0"};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (axis > 0) ImGui::SameLine(0, frame.px(4));
+        ImGui::PushID(axis);
+        ImGui::SetNextItemWidth(frame.px(76));
+        ImGui::Combo("##side", &zero_[axis], sides[axis]);
+        ImGui::PopID();
+    }
+    field_name(frame, "");
+    if (!ImGui::Button("Set the zero there")) return;
+    const core::Aabb box = bounds_of_body(model, stock_name);
+    if (box.empty()) return;
+    core::FeaturePick corner{.kind = core::FeatureKind::corner};
+    for (int axis = 0; axis < 3; ++axis)
+        corner.point[axis] = zero_[axis] == 0   ? box.min[axis]
+                             : zero_[axis] == 1 ? box.center()[axis]
+                                                : box.max[axis];
+    set_zero(model, offset, corner);
+}
+
+void SetupForms::draw_fixture(Frame& frame, const StatedBody& body) {
+    ViewModel& model = frame.model;
+    const auto path = path_of_fixture(model.workspace.document.text(), body.name);
+    if (!path) return;
+    draw_item_head(frame, "Fixture", true, true);
+    field_name(frame, "Name");
+    if (std::exchange(wants_name, false)) ImGui::SetKeyboardFocusHere();
+    if (const auto name = fields_.words(frame, "##name", body.name, "name", 200))
+        rename_selected(model, *name);
+    draw_shape(frame, body, *path);
+    draw_pose(frame, body, *path);
+    draw_placing(frame, body.name);
+    bool expendable = body.expendable;
+    field_name(frame, "");
+    const bool is_switched = ImGui::Checkbox("may be cut while feeding", &expendable);
+    tip(frame, "Sacrificial: feeds into it are then no errors, rapids still are");
+    if (is_switched)
+        edit_setup(model, "Change " + body.name, [&](const std::string& t) {
+            return expendable ? toml_with_value(t, *path / "expendable", "true")
+                              : toml_without(t, *path / "expendable");
+        });
+}
+
+void SetupForms::draw_part(Frame& frame, const StatedBody& body) {
+    draw_item_head(frame, "Part", false, true);
+    draw_shape(frame, body, "part");
+    draw_pose(frame, body, "part");
+    field_name(frame, "Tolerance");
+    if (const auto tolerance = fields_.length(frame, "##tolerance", body.tolerance.value_or(0.1)))
+        edit_setup(frame.model, "Change the tolerance", [&](const std::string& t) {
+            return toml_with_value(t, {"part", "tolerance"}, setup_number(*tolerance));
+        });
+}
+
+void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
+    ViewModel& model = frame.model;
+    const core::ToolNumber number = shown.tool.number;
+    const std::string known = holder_name(shown.tool);
+    const std::string now = !known.empty()              ? known
+                            : shown.tool.holder.empty() ? "none"
+                                                        : "as described";
+    const auto set = [&](const std::optional<std::string>& value) {
+        edit_setup(
+            model, fmt::format("Change the holder of T{}", core::value_of(number)),
+            [&](const std::string& t) { return with_tool_value(t, number, "holder", value); });
+    };
+    field_name(frame, "Holder");
+    ImGui::SetNextItemWidth(frame.px(190));
+    if (ImGui::BeginCombo("##holder", now.c_str())) {
+        if (ImGui::Selectable("none", shown.tool.holder.empty())) set(std::nullopt);
+        for (const auto& [name, cones] : shipped_holder_library())
+            if (ImGui::Selectable(name.c_str(), name == now)) set(toml_text(name));
+        ImGui::EndCombo();
+    }
+    source_mark(frame, shown.source_of("holder"));
+}
+
+/// The tools of the library, to exchange a tool for one of them.
+void SetupForms::draw_library(Frame& frame, core::ToolNumber number) {
+    ViewModel& model = frame.model;
+    const SetupSheet& sheet = *model.program->sheet;
+    if (sheet.library.empty()) return;
+    field_name(frame, "Exchange for");
+    ImGui::SetNextItemWidth(frame.px(190));
+    if (!ImGui::BeginCombo("##library", "a tool of the library")) return;
+    for (const core::ToolDescription& tool : sheet.library) {
+        ImGui::PushID(core::value_of(tool.number));
+        const std::string label =
+            fmt::format("{}  {} {}  {}", core::value_of(tool.number), core::name_of(tool.shape),
+                        length_text(model, tool.diameter), tool.name);
+        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, tool);
+        ImGui::PopID();
+    }
+    ImGui::EndCombo();
+}
+
+void SetupForms::draw_tool_sizes(Frame& frame, const SheetTool& shown) {
+    ViewModel& model = frame.model;
+    const core::ToolNumber number = shown.tool.number;
+    const bool has_cones = !shown.tool.shank.empty();
+    for (const core::ToolSize& field : fields_of(shown.tool.shape)) {
+        const std::string key = field.key;
+        if (has_cones && (key == "stick_out" || key == "shank_diameter")) continue;
+        const bool is_angle = std::string_view(field.unit) == "deg";
+        const std::optional<double> value = size_now(model, shown, field);
+        ImGui::PushID(field.key);
+        field_name(frame, field.name);
+        const auto typed = is_angle ? fields_.number(frame, "##size", value)
+                                    : fields_.length(frame, "##size", value);
+        unit_label(frame, is_angle ? "\xC2\xB0" : length_unit(model));
+        source_mark(frame, shown.source_of(key));
+        if (typed)
+            edit_setup(model, fmt::format("Change T{}", core::value_of(number)),
+                       [&](const std::string& t) {
+                           return with_tool_value(
+                               t, number, key,
+                               *typed == 0.0 ? std::nullopt : std::optional(setup_number(*typed)));
+                       });
+        ImGui::PopID();
+    }
+    if (has_cones)
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     "Its shank is described by cones, which determine the stick-out.");
+}
+
+void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
+    ViewModel& model = frame.model;
+    const core::ToolNumber number = shown.tool.number;
+    const bool is_stated = model.workspace.stated->has_tool(number);
+    ImGui::PushID(core::value_of(number));
+    draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), false, is_stated);
+    if (shown.tool.shape == core::ToolShape::profile) {
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
+                     "Edit its outline in the set-up file.");
+    } else {
+        field_name(frame, "Kind");
+        ImGui::SetNextItemWidth(frame.px(140));
+        if (ImGui::BeginCombo("##shape", core::name_of(shown.tool.shape))) {
+            for (const core::ToolShape shape : stateable_shapes())
+                if (ImGui::Selectable(core::name_of(shape), shape == shown.tool.shape)
+                    && shape != shown.tool.shape)
+                    edit_setup(model, fmt::format("Change T{}", core::value_of(number)),
+                               [&](const std::string& t) {
+                                   return with_tool(t, reshaped(shown.tool, shape));
+                               });
+            ImGui::EndCombo();
+        }
+        source_mark(frame, shown.source_of("shape"));
+        draw_tool_sizes(frame, shown);
+        draw_holder(frame, shown);
+        draw_library(frame, number);
+    }
+    if (!shown.why.empty())
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), "Assumed: " + shown.why);
+    ImGui::PopID();
+}
+
+void SetupForms::draw_allowance(Frame& frame) {
+    ViewModel& model = frame.model;
+    const SetupSheet& sheet = *model.program->sheet;
+    draw_item_head(frame, "Minimum clearance", false, sheet.allowance.has_value());
+    field_name(frame, "All pairs");
+    if (const auto distance = fields_.length(frame, "##allowance", sheet.allowance,
+                                             SetupFields::field_width, "default"))
+        edit_setup(model, "Change the minimum clearance",
+                   [&](const std::string& t) { return with_allowance(t, *distance); });
+    unit_label(frame, length_unit(model));
+    source_mark(frame, sheet.allowance ? SetupSource::stated : SetupSource::usual);
+    if (!sheet.allowance)
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     fmt::format("Default: {0} {2} between holder and stock, {1} {2} to fixtures "
+                                 "and machine.",
+                                 length_text(model, 1.0), length_text(model, 2.0),
+                                 length_unit(model)));
+}
+
+void SetupForms::draw_item(Frame& frame) {
+    ViewModel& model = frame.model;
+    const SetupItem selected = model.workspace.selected;
+    const SetupSheet& sheet = *model.program->sheet;
+    const auto kept = model.workspace.stated; // edits replace it
+    const StatedSetup& stated = *kept;
+    switch (selected.kind) {
+    case Kind::machine:
+        return draw_machine(frame);
+    case Kind::offset:
+        if (const SheetOffset* offset = sheet.offset(selected.name)) draw_offset(frame, *offset);
+        return;
+    case Kind::stock:
+        return draw_stock(frame);
+    case Kind::fixture:
+        if (const StatedBody* body = stated.fixture(selected.name)) draw_fixture(frame, *body);
+        return;
+    case Kind::part:
+        if (stated.part) draw_part(frame, *stated.part);
+        return;
+    case Kind::tool:
+        if (const SheetTool* tool = sheet.tool(selected.tool)) draw_tool(frame, *tool);
+        return;
+    case Kind::allowance:
+        return draw_allowance(frame);
+    case Kind::none:
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     "Select something in the list or click it in the view.");
+    }
+}
+
+void SetupForms::draw(Frame& frame) {
+    ImGui::BeginChild("item", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(frame.px(7), frame.px(2.5)));
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(frame.px(6), frame.px(4)));
+    fields_.begin(frame);
+    draw_item(frame);
+    fields_.end(frame);
+    ImGui::PopStyleVar(2);
+    ImGui::EndChild();
+}
+
+} // namespace app::viewer
