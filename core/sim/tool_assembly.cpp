@@ -81,13 +81,13 @@ Result<ToolHead> rounded(const ToolDescription& tool, double corner) {
 Result<ToolHead> ball(const ToolDescription& tool) {
     const double r = 0.5 * tool.diameter;
     if (tool.corner_radius && std::abs(*tool.corner_radius - r) > 0.001)
-        return tool_error(tool, fmt::format("corner_radius of a ball is half its diameter, {:g} "
-                                            "mm, not {:g}; omit it, or use shape \"bull\"",
-                                            r, *tool.corner_radius));
+        return tool_error(tool, fmt::format("corner_radius of a ball is half its diameter, {} {}, "
+                                            "not {}; omit it, or use shape \"bull\"",
+                                            shown(tool, r), unit_of(tool),
+                                            shown(tool, *tool.corner_radius)));
     if (tool.flute_length < r)
-        return tool_error(tool, fmt::format("flute_length {:g} is shorter than the ball's radius "
-                                            "{:g}",
-                                            tool.flute_length, r));
+        return tool_error(tool, fmt::format("flute_length {} is shorter than the ball's radius {}",
+                                            shown(tool, tool.flute_length), shown(tool, r)));
     return rounded(tool, r);
 }
 
@@ -97,8 +97,8 @@ Result<ToolHead> bull(const ToolDescription& tool) {
     if (!(corner >= 0.0 && corner <= 0.5 * tool.diameter))
         return tool_error(tool, "corner_radius must lie between 0 and half the diameter");
     if (tool.flute_length <= corner)
-        return tool_error(tool, fmt::format("flute_length {:g} is shorter than corner_radius {:g}",
-                                            tool.flute_length, corner));
+        return tool_error(tool, fmt::format("flute_length {} is shorter than corner_radius {}",
+                                            shown(tool, tool.flute_length), shown(tool, corner)));
     return rounded(tool, corner);
 }
 
@@ -112,9 +112,9 @@ Result<ToolHead> coned(const ToolDescription& tool, double tip, double from_axis
     const double z0 = corner > 0.0 ? round.at(angle).z0 : 0.0;
     const double r0 = corner > 0.0 ? round.at(angle).r0 : tip;
     if (tool.flute_length <= z0)
-        return tool_error(tool, fmt::format("flute_length {:g} ends within the rounding of the "
-                                            "tip, which is {:g} high",
-                                            tool.flute_length, z0));
+        return tool_error(tool, fmt::format("flute_length {} ends within the rounding of the "
+                                            "tip, which is {} high",
+                                            shown(tool, tool.flute_length), shown(tool, z0)));
     RevolvedProfile flutes;
     if (corner > 0.0) add_tip(flutes, round, angle, tool.flute_length);
     const double height = z0 + (r - r0) / steep;
@@ -148,9 +148,8 @@ Result<ToolHead> tapered(const ToolDescription& tool) {
     if (!(tip >= 0.0 && 2.0 * tip < tool.diameter))
         return tool_error(tool, "tip_diameter must be below diameter");
     if (!(corner >= 0.0 && corner <= tip))
-        return tool_error(tool, fmt::format("corner_radius {:g} is more than half of tip_diameter "
-                                            "{:g}",
-                                            corner, tool.tip_diameter));
+        return tool_error(tool, fmt::format("corner_radius {} is more than half of tip_diameter {}",
+                                            shown(tool, corner), shown(tool, tool.tip_diameter)));
     return coned(tool, tip, radians_of(*tool.angle_deg));
 }
 
@@ -159,9 +158,10 @@ Result<ToolHead> tslot(const ToolDescription& tool) {
     const double corner = tool.corner_radius.value_or(0.0);
     if (corner == 0.0) return flat(tool);
     if (!(corner > 0.0 && corner < r && 2.0 * corner <= height))
-        return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
-                                            "flute_length {:g} and below half the diameter, {:g}",
-                                            corner, height, r));
+        return tool_error(tool,
+                          fmt::format("corner_radius {} must be at most half of "
+                                      "flute_length {} and below half the diameter, {}",
+                                      shown(tool, corner), shown(tool, height), shown(tool, r)));
     const double inner = r - corner;
     RevolvedProfile flutes{{{corner, inner, corner, inner, corner}}};
     if (2.0 * corner < height) {
@@ -179,17 +179,17 @@ Result<ToolHead> dovetail(const ToolDescription& tool) {
     const double corner = tool.corner_radius.value_or(0.0),
                  steep = core::tan(radians_of(*tool.angle_deg));
     if (!(corner >= 0.0 && corner < r && 2.0 * corner <= height))
-        return tool_error(tool, fmt::format("corner_radius {:g} must be at most half of "
-                                            "flute_length {:g} and below half the diameter",
-                                            corner, height));
+        return tool_error(tool, fmt::format("corner_radius {} must be at most half of "
+                                            "flute_length {} and below half the diameter",
+                                            shown(tool, corner), shown(tool, height)));
     const Rounding round{r - corner, corner};
     const ProfileElement flank = round.at(right_angle + radians_of(*tool.angle_deg));
     const double z0 = corner > 0.0 ? flank.z0 : 0.0, r0 = corner > 0.0 ? flank.r0 : r;
     const double top = r0 - (height - z0) * steep;
     if (!(top > 0.0 && z0 < height))
         return tool_error(tool, fmt::format("at {:g} degrees the flank meets the axis below "
-                                            "flute_length {:g}",
-                                            *tool.angle_deg, height));
+                                            "flute_length {}",
+                                            *tool.angle_deg, shown(tool, height)));
     RevolvedProfile flutes;
     if (corner > 0.0) flutes.elements.push_back(round.whole());
     flutes.elements.push_back({z0, r0, height, top, 0.0});
@@ -201,15 +201,14 @@ Result<ToolHead> lollipop(const ToolDescription& tool) {
     if (!tool.neck_diameter) return tool_error(tool, "lollipop needs neck_diameter");
     const double neck = 0.5 * *tool.neck_diameter;
     if (!(neck > 0.0 && neck < r))
-        return tool_error(tool, fmt::format("neck_diameter {:g} must be above 0 and below "
-                                            "diameter {:g}",
-                                            2.0 * neck, tool.diameter));
+        return tool_error(tool,
+                          fmt::format("neck_diameter {} must be above 0 and below diameter {}",
+                                      shown(tool, 2.0 * neck), shown(tool, tool.diameter)));
     const double ball_end = r + std::sqrt(r * r - neck * neck);
     const double flutes = tool.flute_length > 0.0 ? tool.flute_length : ball_end;
     if (flutes < r)
-        return tool_error(tool, fmt::format("flute_length {:g} is shorter than the ball's radius "
-                                            "{:g}",
-                                            flutes, r));
+        return tool_error(tool, fmt::format("flute_length {} is shorter than the ball's radius {}",
+                                            shown(tool, flutes), shown(tool, r)));
     ToolHead head{.length = std::max(flutes, ball_end), .top_diameter = 2.0 * neck};
     const Rounding round{0.0, r};
     if (flutes >= ball_end) {
@@ -242,9 +241,8 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
     if (!tool.pitch) return flat(tool);
     const double pitch = *tool.pitch, angle = tool.thread_deg.value_or(60.0);
     if (!(pitch > 0.0 && pitch <= tool.flute_length))
-        return tool_error(tool, fmt::format("pitch {:g} must be above 0 and at most flute_length "
-                                            "{:g}",
-                                            pitch, tool.flute_length));
+        return tool_error(tool, fmt::format("pitch {} must be above 0 and at most flute_length {}",
+                                            shown(tool, pitch), shown(tool, tool.flute_length)));
     if (!(angle > 0.0 && angle < 180.0))
         return tool_error(tool, "thread_deg must lie between 0 and 180");
     constexpr double whole = 1.0 + 1e-9; // so that 1.0 / 0.1 gives ten rows despite rounding
@@ -252,13 +250,14 @@ Result<ToolHead> threadmill(const ToolDescription& tool) {
     const int rows = tool.teeth.value_or(most);
     constexpr int too_many = 200;
     if (rows < 1 || rows > most || rows > too_many)
-        return tool_error(tool, fmt::format("teeth = {}: flute_length {:g} has room for 1 to {}",
-                                            rows, tool.flute_length, std::min(most, too_many)));
+        return tool_error(tool,
+                          fmt::format("teeth = {}: flute_length {} has room for 1 to {}", rows,
+                                      shown(tool, tool.flute_length), std::min(most, too_many)));
     const double crest = 0.5 * tool.diameter;
     const double root = crest - 0.3125 * pitch / core::tan(radians_of(0.5 * angle));
     if (!(root > 0.0))
-        return tool_error(
-            tool, fmt::format("pitch {:g} is too large for diameter {:g}", pitch, tool.diameter));
+        return tool_error(tool, fmt::format("pitch {} is too large for diameter {}",
+                                            shown(tool, pitch), shown(tool, tool.diameter)));
     RevolvedProfile flutes;
     for (int i = 0; i < rows; ++i) add_row(flutes, i * pitch, pitch, crest, root);
     if (rows * pitch < tool.flute_length)
@@ -282,9 +281,9 @@ Result<ToolHead> outlined(const ToolDescription& tool) {
     if (tool.outline[0][1] != 0.0) return tool_error(tool, "profile must begin at the tip, z = 0");
     const double top = tool.outline.back()[1];
     if (tool.flute_length > top + 0.001)
-        return tool_error(tool, fmt::format("flute_length {:g} goes beyond the profile, which ends "
-                                            "at {:g}",
-                                            tool.flute_length, top));
+        return tool_error(tool,
+                          fmt::format("flute_length {} goes beyond the profile, which ends at {}",
+                                      shown(tool, tool.flute_length), shown(tool, top)));
     const double flutes_end = tool.flute_length > 0.0 ? tool.flute_length : top;
     ToolHead head{.length = top, .top_diameter = 2.0 * tool.outline.back()[0]};
     for (size_t i = 0; i < tool.outline.size(); ++i) {
@@ -335,14 +334,14 @@ Result<void> add_neck(const ToolDescription& tool, ToolHead& head) {
         return {};
     }
     if (!(*tool.neck_diameter > 0.0 && *tool.neck_diameter <= tool.diameter))
-        return tool_error(tool, fmt::format("neck_diameter {:g} must be above 0 and at most "
-                                            "diameter {:g}",
-                                            *tool.neck_diameter, tool.diameter));
+        return tool_error(
+            tool, fmt::format("neck_diameter {} must be above 0 and at most diameter {}",
+                              shown(tool, *tool.neck_diameter), shown(tool, tool.diameter)));
     const bool undercuts = tool.shape == ToolShape::tslot || tool.shape == ToolShape::dovetail;
     if (undercuts && *tool.neck_diameter > head.top_diameter + 1e-6)
-        return tool_error(tool, fmt::format("neck_diameter {:g} is wider than the top of the head, "
-                                            "{:g}",
-                                            *tool.neck_diameter, head.top_diameter));
+        return tool_error(
+            tool, fmt::format("neck_diameter {} is wider than the top of the head, {}",
+                              shown(tool, *tool.neck_diameter), shown(tool, head.top_diameter)));
     if (!tool.neck_length) return {};
     head.above_flutes.elements.push_back(
         upright(head.length, head.length + *tool.neck_length, 0.5 * *tool.neck_diameter));
@@ -399,10 +398,11 @@ Result<std::vector<ConeStep>> filling_shank(const ToolDescription& tool, const T
     if (!stick_out || !differ(*stick_out, head.length)) return std::vector<ConeStep>{};
     if (*stick_out < head.length)
         return tool_error(tool,
-                          fmt::format("flutes and neck are {:g} mm long, but {} leaves {:g} "
-                                      "mm below the holder",
-                                      head.length, tool.stick_out ? "stick_out" : "gauge_length",
-                                      *stick_out));
+                          fmt::format("flutes and neck are {0} {3} long, but {1} leaves {2} {3} "
+                                      "below the holder",
+                                      shown(tool, head.length),
+                                      tool.stick_out ? "stick_out" : "gauge_length",
+                                      shown(tool, *stick_out), unit_of(tool)));
     double diameter = tool.diameter > 0.0 ? tool.diameter : head.top_diameter;
     if (tool.neck_diameter && !tool.neck_length) diameter = *tool.neck_diameter;
     if (tool.shank_diameter) diameter = *tool.shank_diameter;
@@ -412,18 +412,21 @@ Result<std::vector<ConeStep>> filling_shank(const ToolDescription& tool, const T
 /// Checks lengths that are given in two ways.
 Result<void> check_lengths(const ToolDescription& tool, double to_holder, double to_gauge_line) {
     if (tool.stick_out && differ(*tool.stick_out, to_holder))
-        return tool_error(tool, fmt::format("stick_out is {:g} mm, but flutes, neck and shank are "
-                                            "{:g} mm long",
-                                            *tool.stick_out, to_holder));
+        return tool_error(tool, fmt::format("stick_out is {0} {2}, but flutes, neck and shank are "
+                                            "{1} {2} long",
+                                            shown(tool, *tool.stick_out), shown(tool, to_holder),
+                                            unit_of(tool)));
     if (!tool.gauge_length) return {};
     if (!tool.holder.empty() && differ(*tool.gauge_length, to_gauge_line))
-        return tool_error(tool, fmt::format("gauge_length is {:g} mm, but flutes, shank and holder "
-                                            "are {:g} mm long",
-                                            *tool.gauge_length, to_gauge_line));
+        return tool_error(tool, fmt::format("gauge_length is {0} {2}, but flutes, shank and holder "
+                                            "are {1} {2} long",
+                                            shown(tool, *tool.gauge_length),
+                                            shown(tool, to_gauge_line), unit_of(tool)));
     if (*tool.gauge_length < to_gauge_line - same_length)
-        return tool_error(tool, fmt::format("gauge_length is {:g} mm, but flutes and shank alone "
-                                            "are {:g} mm long",
-                                            *tool.gauge_length, to_gauge_line));
+        return tool_error(tool, fmt::format("gauge_length is {0} {2}, but flutes and shank alone "
+                                            "are {1} {2} long",
+                                            shown(tool, *tool.gauge_length),
+                                            shown(tool, to_gauge_line), unit_of(tool)));
     return {};
 }
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
+
 namespace core {
 namespace {
 
@@ -103,6 +105,12 @@ void ToolSize::put(ToolDescription& tool, std::optional<double> value) const {
         tool.*std::get<1>(member) = value;
 }
 
+std::string shown(const ToolDescription& tool, double mm) {
+    return fmt::format("{:g}", tool.is_in_inches ? mm / mm_per_inch : mm);
+}
+
+const char* unit_of(const ToolDescription& tool) { return tool.is_in_inches ? "in" : "mm"; }
+
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why) {
     return fail(ErrorCode::invalid_value, fmt::format("tool {}: {}", value_of(tool.number), why));
 }
@@ -131,8 +139,9 @@ Result<void> check_length(const ToolDescription& tool, const ToolSize& size, dou
     if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && !size.zero.contains(tool.shape)))
         return tool_error(tool, fmt::format("{} must be above 0", size.key));
     if (value > longest_length)
-        return tool_error(tool, fmt::format("{} = {:g} mm is implausible: the maximum is {:g} mm",
-                                            size.key, value, longest_length));
+        return tool_error(tool, fmt::format("{0} = {1} {3} is implausible: the maximum is {2} {3}",
+                                            size.key, shown(tool, value),
+                                            shown(tool, longest_length), unit_of(tool)));
     return {};
 }
 
@@ -147,7 +156,7 @@ double total_length(const std::vector<ConeStep>& steps) {
 Result<void> check_keys(const ToolDescription& tool) {
     if (auto wrong = check_shape_keys(tool); !wrong) return wrong;
     for (const ToolSize& size : tool_sizes()) {
-        if (size.unit != std::string_view("mm")) continue;
+        if (size.is_angle()) continue;
         const bool is_required = std::holds_alternative<double ToolDescription::*>(size.member);
         const auto value = size.of(tool);
         if (!value && !is_required) continue;
@@ -156,9 +165,9 @@ Result<void> check_keys(const ToolDescription& tool) {
     const bool outlined = tool.shape == ToolShape::profile;
     if (tool.centre_radius != 0.0
         && !(tool.centre_radius > 0.0 && (outlined || 2.0 * tool.centre_radius < tool.diameter)))
-        return tool_error(tool, fmt::format("centre_diameter {:g} must be above 0 and below "
-                                            "diameter {:g}",
-                                            2.0 * tool.centre_radius, tool.diameter));
+        return tool_error(
+            tool, fmt::format("centre_diameter {} must be above 0 and below diameter {}",
+                              shown(tool, 2.0 * tool.centre_radius), shown(tool, tool.diameter)));
     return {};
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -93,6 +94,7 @@ struct ToolDescription {
     bool cuts_at_centre = true;
     double centre_radius = 0.0; // it does not cut within this radius when it plunges
     bool single_point = false;  // a boring bar: it cuts on one side of its axis
+    bool is_in_inches = false;  // the unit in which messages show its lengths
 };
 
 /// A set of shapes.
@@ -122,6 +124,7 @@ struct ToolSize {
     ShapeSet shown;     // for which a dialog shows it
     ShapeSet zero = {}; // for which 0 is allowed and means "none"
 
+    bool is_angle() const { return std::string_view(unit) == "deg"; }
     /// The value; empty if it is not given.
     std::optional<double> of(const ToolDescription& tool) const;
     void put(ToolDescription& tool, std::optional<double> value) const;
@@ -132,6 +135,10 @@ std::span<const ToolSize> tool_sizes();
 
 /// Whether tools of a shape have a dimension, such as &ToolDescription::pitch.
 bool has_size(ToolShape shape, ToolSize::Member member);
+
+/// A length of a tool in the unit of its messages, and the name of that unit.
+std::string shown(const ToolDescription& tool, double mm);
+const char* unit_of(const ToolDescription& tool);
 
 /// An error whose message names the tool.
 tl::unexpected<Error> tool_error(const ToolDescription& tool, const std::string& why);
