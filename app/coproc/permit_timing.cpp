@@ -116,7 +116,7 @@ void read_count(TableReader& table, const char* key, uint32_t& value) {
 }
 
 void read_within(TableReader& table, const char* key, double least, double most, double& value) {
-    const auto stated = table.number(key);
+    const auto stated = table.number(key, Measure::plain);
     if (!stated) return;
     if (*stated < least || *stated > most)
         table.refuse(key, fmt::format("must be from {:g} to {:g}", least, most));

@@ -40,8 +40,9 @@ struct Placement {
 };
 
 core::Transform read_pose(TableReader& table) {
-    return {core::rotation_xyz_deg(table.vector("rotate_deg").value_or(core::Vec3(0.0))),
-            table.vector("at").value_or(core::Vec3(0.0))};
+    return {core::rotation_xyz_deg(
+                table.vector("rotate_deg", Measure::angle).value_or(core::Vec3(0.0))),
+            table.vector("at", Measure::length).value_or(core::Vec3(0.0))};
 }
 
 core::Transform read_frame(TableReader& table, const BodyContext& context) {
@@ -74,7 +75,7 @@ std::optional<std::string> only_shape(TableReader& table) {
 }
 
 core::Aabb read_box(TableReader& table) {
-    const auto corners = table.rows("box", 3);
+    const auto corners = table.rows("box", Measure::length, 3);
     core::Aabb box;
     for (const std::vector<double>& c : corners) box.extend(core::Vec3(c[0], c[1], c[2]));
     const core::Vec3 size = box.size();
@@ -86,8 +87,8 @@ core::Aabb read_box(TableReader& table) {
 CylinderKey read_cylinder(TableReader& table) {
     CylinderKey cylinder;
     if (auto inner = table.table("cylinder", table.name() + " cylinder")) {
-        cylinder.radius = inner->number_or("radius", 0.0);
-        cylinder.height = inner->number_or("height", 0.0);
+        cylinder.radius = inner->number_or("radius", Measure::length, 0.0);
+        cylinder.height = inner->number_or("height", Measure::length, 0.0);
         const std::string axis = inner->word("axis", {"X", "Y", "Z"}).value_or("Z");
         cylinder.axis = axis[0] - 'X';
         inner->finish();
@@ -170,16 +171,17 @@ bool has_no_shape(const TableReader& table) {
 
 /// Reads a stock without a shape, which is inferred from the cutting moves.
 void read_envelope(TableReader& table, BodyContext& context, const Placement& placement) {
+    constexpr double largest_margin = 1000.0; // mm
     SetupFile& file = context.file;
     if (!has_no_shape(table))
         table.refuse("margin", "applies only to an inferred stock, that is, one without a shape");
     for (const char* key : {"at", "rotate_deg"})
         if (table.has(key)) table.refuse(key, "does not apply to a stock without a shape");
-    if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= 1000.0))
-        table.refuse("margin", "must lie between 0 and 1000 mm");
+    if (file.stock_margin && !(*file.stock_margin >= 0.0 && *file.stock_margin <= largest_margin))
+        table.refuse("margin", "must lie between 0 and " + table.shown(largest_margin));
     file.needs_stock = true;
     file.setup.stock_mount = {file.setup.machine.table, placement.machine_from_frame};
-    file.setup.stock.tolerance = table.number_or("tolerance", 0.0);
+    file.setup.stock.tolerance = table.number_or("tolerance", Measure::length, 0.0);
     if (file.setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
     context.frames.machine_from["stock"] = placement.machine_from_frame;
     table.finish();
@@ -282,7 +284,7 @@ void infer_stock(BodyContext& context) {
 void read_stock(TableReader& table, BodyContext& context) {
     const Placement placement = read_placement(table, context);
     context.file.stock_frame = table.string("frame").value_or("G54");
-    context.file.stock_margin = table.number("margin");
+    context.file.stock_margin = table.number("margin", Measure::length);
     if (context.file.stock_margin || has_no_shape(table))
         return read_envelope(table, context, placement);
     const auto shape = only_shape(table);
@@ -291,7 +293,7 @@ void read_stock(TableReader& table, BodyContext& context) {
     core::Setup& setup = context.file.setup;
     setup.stock_mount = {setup.machine.table, placement.machine_from_frame};
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
-    setup.stock.tolerance = table.number_or("tolerance", 0.0);
+    setup.stock.tolerance = table.number_or("tolerance", Measure::length, 0.0);
     if (setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
     context.frames.machine_from["stock"] = placement.machine_from_body();
     table.finish();
@@ -307,7 +309,7 @@ void read_part(TableReader& table, BodyContext& context) {
     core::Mesh mesh =
         read_polyhedron(table, context.meshes(), box ? "box" : "mesh", stock_from_body);
     core::Part part;
-    if (const auto tolerance = table.number("tolerance")) {
+    if (const auto tolerance = table.number("tolerance", Measure::length)) {
         if (!(*tolerance > 0.0)) table.refuse("tolerance", "must be above 0");
         part.tolerance = *tolerance;
     } else {

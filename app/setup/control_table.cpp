@@ -83,9 +83,32 @@ std::optional<double> number_of_word(const ControlParameter& parameter, std::str
     return std::nullopt;
 }
 
+/// A position with the coordinates of its linear axes in mm.
+gcode::Position in_mm(gcode::Position position, gcode::LengthUnit unit) {
+    for (size_t axis = 0; axis < gcode::axis_count; ++axis)
+        if (position[axis] && !core::is_rotary(axis))
+            position[axis] = gcode::to_mm(*position[axis], unit);
+    return position;
+}
+
+/// What a parameter measures. LinuxCNC's lengths are in a unit that the file does not decide.
+Measure measure_of(std::span<const gcode::DialectId> dialects, bool is_length) {
+    const bool is_of_file =
+        is_length
+        && std::find(dialects.begin(), dialects.end(), gcode::DialectId::linuxcnc)
+               == dialects.end();
+    return is_of_file ? Measure::length : Measure::plain;
+}
+
 void read_parameter(TableReader& table, const char* key, const ControlParameter& parameter,
                     StatedControl& control) {
+    const gcode::ParameterRange& range = parameter.range;
+    const Measure measure = measure_of(parameter.dialects, range.unit == "mm");
     const auto refuse = [&] {
+        if (measure == Measure::length && table.unit() == gcode::LengthUnit::inch)
+            return table.refuse(key,
+                                fmt::format("must lie between {} and {}", table.shown(range.lowest),
+                                            table.shown(range.highest)));
         std::string values;
         for (const gcode::ParameterValue& value : parameter.values)
             values += fmt::format("; {}: {}",
@@ -100,7 +123,7 @@ void read_parameter(TableReader& table, const char* key, const ControlParameter&
         if (word) number = number_of_word(parameter, *word);
         if (word && !number) return refuse();
     } else {
-        number = table.number(key);
+        number = table.number(key, measure);
     }
     if (!number) return;
     if (!parameter.answer_of(*number)) return refuse();
@@ -108,22 +131,27 @@ void read_parameter(TableReader& table, const char* key, const ControlParameter&
 }
 
 /// A list of coordinates in the order of the axes, or a table such as { X = 0, Y = 0, Z = 0 }.
-std::optional<gcode::Position> read_position(TableReader& table, const char* key) {
+///
+/// `measure`: of the linear axes.
+std::optional<gcode::Position> read_position(TableReader& table, const char* key, Measure measure) {
     gcode::Position position;
     if (table.is_list(key)) {
-        const auto numbers = table.numbers(key, 0);
-        if (!numbers) return std::nullopt;
+        const auto lengths = table.numbers(key, measure, 0);
+        const auto numbers = table.numbers(key, Measure::plain, 0);
+        if (!lengths || !numbers) return std::nullopt;
         if (numbers->empty() || numbers->size() % 3 != 0 || numbers->size() > gcode::axis_count) {
             table.refuse(key, "must have 3, 6 or 9 coordinates, in the order X Y Z A B C U V W");
             return std::nullopt;
         }
-        for (size_t axis = 0; axis < numbers->size(); ++axis) position[axis] = (*numbers)[axis];
+        for (size_t axis = 0; axis < numbers->size(); ++axis)
+            position[axis] = core::is_rotary(axis) ? (*numbers)[axis] : (*lengths)[axis];
         return position;
     }
     auto axes = table.table(key, fmt::format("[control] {}", key));
     if (!axes) return std::nullopt;
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
-        position[axis] = axes->number(std::string(1, gcode::axis_letters[axis]).c_str());
+        position[axis] = axes->number(std::string(1, gcode::axis_letters[axis]).c_str(),
+                                      core::is_rotary(axis) ? Measure::angle : measure);
     axes->finish();
     if (!position[0] || !position[1] || !position[2]) {
         table.refuse(key, "must state X, Y and Z");
@@ -141,9 +169,11 @@ void read_setting(TableReader& table, const char* key, const ControlSetting& set
     case gcode::SettingKind::flag:
         return keep(table.boolean(key));
     case gcode::SettingKind::number:
-        return keep(table.number(key));
+        return keep(table.number(key, Measure::plain));
+    case gcode::SettingKind::length:
+        return keep(table.number(key, measure_of(setting.dialects, true)));
     case gcode::SettingKind::position:
-        return keep(read_position(table, key));
+        return keep(read_position(table, key, measure_of(setting.dialects, true)));
     case gcode::SettingKind::text:
         return keep(table.string(key));
     }
@@ -179,12 +209,9 @@ void answer(const ControlParameter& parameter, double number, gcode::Environment
 
 /// Coordinates of the linear axes are in the unit of LinuxCNC's machine; elsewhere in mm.
 gcode::SettingValue in_mm(gcode::SettingValue value, const gcode::Environment& environment) {
-    auto* position = std::get_if<gcode::Position>(&value);
+    const auto* position = std::get_if<gcode::Position>(&value);
     if (!position || environment.dialect != gcode::DialectId::linuxcnc) return value;
-    for (size_t axis = 0; axis < gcode::axis_count; ++axis)
-        if ((*position)[axis] && !core::is_rotary(axis))
-            (*position)[axis] = gcode::to_mm(*(*position)[axis], environment.machine_unit);
-    return value;
+    return in_mm(*position, environment.machine_unit);
 }
 
 } // namespace

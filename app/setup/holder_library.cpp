@@ -9,6 +9,7 @@
 
 #include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 
@@ -16,7 +17,7 @@ namespace {
 
 std::vector<core::ConeStep> read_cones(TableReader& table) {
     std::vector<core::ConeStep> cones;
-    for (const std::vector<double>& row : table.rows("cones", 3)) {
+    for (const std::vector<double>& row : table.rows("cones", Measure::length, 3)) {
         const double wide = std::max(row[0], row[1]), narrow = std::min(row[0], row[1]);
         if (!(row[2] > 0.0 && wide > 0.0 && narrow >= 0.0))
             table.refuse("cones", "needs [lower diameter, upper diameter, length], all above 0");
@@ -26,7 +27,7 @@ std::vector<core::ConeStep> read_cones(TableReader& table) {
 }
 
 std::vector<core::ConeStep> read_profile(TableReader& table) {
-    auto cones = cones_of_outline(table.rows("profile", 2));
+    auto cones = cones_of_outline(table.rows("profile", Measure::length, 2), table.unit());
     if (cones) return *std::move(cones);
     table.refuse("profile", cones.error().message);
     return {};
@@ -50,6 +51,7 @@ core::Result<HolderLibrary> read_library(const toml::table& parsed) {
     HolderLibrary library;
     std::optional<core::Error> error;
     TableReader root(parsed, "holder library", error);
+    root.read_unit();
     for (TableReader& table : root.tables("holder", "[[holder]]")) read_holder(table, library);
     root.finish();
     if (error) return tl::unexpected(*error);
@@ -91,7 +93,7 @@ std::string names_like(const HolderLibrary& library, const std::string& name) {
 }
 
 core::Result<std::vector<core::ConeStep>>
-cones_of_outline(const std::vector<std::vector<double>>& points) {
+cones_of_outline(const std::vector<std::vector<double>>& points, gcode::LengthUnit unit) {
     using core::ErrorCode;
     if (points.size() < 2)
         return core::fail(ErrorCode::invalid_value, "needs at least two [r, z] points");
@@ -105,13 +107,14 @@ cones_of_outline(const std::vector<std::vector<double>>& points) {
         if (i == 0) continue;
         const double r_below = points[i - 1][0], z_below = points[i - 1][1];
         if (z < z_below)
-            return core::fail(
-                ErrorCode::invalid_value,
-                fmt::format("must not go down: z falls from {:g} to {:g}", z_below, z));
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("must not go down: z falls from {:g} to {:g}",
+                                          gcode::from_mm(z_below, unit), gcode::from_mm(z, unit)));
         if (z == z_below) continue;
         if (r == 0.0 && r_below == 0.0)
             return core::fail(ErrorCode::invalid_value,
-                              fmt::format("has radius 0 from z = {:g} to {:g}", z_below, z));
+                              fmt::format("has radius 0 from z = {:g} to {:g}",
+                                          gcode::from_mm(z_below, unit), gcode::from_mm(z, unit)));
         cones.push_back({2.0 * r_below, 2.0 * r, z - z_below});
     }
     if (cones.empty()) return core::fail(ErrorCode::invalid_value, "has no height");

@@ -194,12 +194,14 @@ std::string path_of(TableReader& table, const char* key, const std::filesystem::
 
 void read_start(TableReader& table, gcode::Position& start) {
     for (size_t axis = 0; axis < gcode::axis_count; ++axis)
-        start[axis] = table.number(std::string(1, gcode::axis_letters[axis]).c_str());
+        start[axis] = table.number(std::string(1, gcode::axis_letters[axis]).c_str(),
+                                   gcode::is_rotary(axis) ? Measure::angle : Measure::length);
     table.finish();
 }
 
 void read_machine_codes(TableReader& table, std::set<int>& codes) {
-    for (const double code : table.numbers("machine_codes", 0).value_or(std::vector<double>{})) {
+    for (const double code :
+         table.numbers("machine_codes", Measure::plain, 0).value_or(std::vector<double>{})) {
         if (code >= 0.0 && code <= highest_machine_code && code == static_cast<int>(code))
             codes.insert(static_cast<int>(code));
         else
@@ -232,7 +234,7 @@ void read_values(TableReader& table, ProgramSettings& settings) {
             if (table.word(name.c_str(), {"unset"})) settings.named_values[global];
             continue;
         }
-        const auto value = table.number(name.c_str());
+        const auto value = table.number(name.c_str(), Measure::plain); // in the program's unit
         const auto number = variable_number(name);
         if (!number && global.empty())
             table.refuse(

@@ -44,11 +44,16 @@ struct AxisList {
 
 /// Reads a direction, which must be a unit vector.
 void read_direction(TableReader& table, core::MachineAxis& axis) {
-    const auto direction = table.vector("direction");
+    const auto direction = table.vector("direction", Measure::plain);
     if (!direction) return;
     if (std::abs(glm::length(*direction) - 1.0) > 1e-9)
         table.refuse("direction", "must have length 1, as in [1, 0, 0]");
     axis.direction = *direction;
+}
+
+/// What coordinates of an axis are.
+Measure measure_along(size_t axis) {
+    return core::is_rotary(axis) ? Measure::angle : Measure::length;
 }
 
 /// Default of an axis: along or about X, Y or Z, by its letter.
@@ -59,12 +64,12 @@ core::MachineAxis plain_axis(size_t index) {
     return axis;
 }
 
-void read_range(TableReader& table, core::MachineAxis& axis) {
-    axis.min = table.number("min");
-    axis.max = table.number("max");
-    axis.home = table.number("home");
-    axis.rapid = table.number("rapid");
-    axis.acceleration = table.number("acceleration");
+void read_range(TableReader& table, core::MachineAxis& axis, Measure measure) {
+    axis.min = table.number("min", measure);
+    axis.max = table.number("max", measure);
+    axis.home = table.number("home", measure);
+    axis.rapid = table.number("rapid", measure);
+    axis.acceleration = table.number("acceleration", measure);
     if (axis.min && axis.max && *axis.min >= *axis.max) table.refuse("min", "must be below max");
     if (axis.rapid && *axis.rapid <= 0.0) table.refuse("rapid", "must be above 0");
     if (axis.acceleration && *axis.acceleration <= 0.0)
@@ -89,10 +94,10 @@ void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
     list.parents[index] = table.string("parent").value_or("");
     read_direction(table, axis);
     if (rotary) {
-        axis.point = table.vector("point").value_or(core::Vec3(0.0));
+        axis.point = table.vector("point", Measure::length).value_or(core::Vec3(0.0));
         axis.shortest_way = table.boolean("shortest_way").value_or(false);
     }
-    read_range(table, axis);
+    read_range(table, axis, measure_along(index));
     machine.axes[index] = axis;
     list.order.push_back(index);
     table.finish();
@@ -208,7 +213,7 @@ bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& 
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
         machine.rapid = *rapid == "dogleg" ? core::RapidStyle::dogleg : core::RapidStyle::straight;
     const auto tolerance = [&](const char* key) {
-        const auto value = table.number(key);
+        const auto value = table.number(key, Measure::length);
         if (value && *value < 0.0) table.refuse(key, "must be 0 or above");
         return value;
     };
@@ -258,7 +263,7 @@ void read_offsets(TableReader& table, SetupFile& file) {
         gcode::AxisValues& origin = file.environment.writable_work_offset(*index);
         const gcode::AxisValues of_variables = std::exchange(origin, {});
         for (size_t axis = 0; axis < core::axis_count; ++axis)
-            origin[axis] = offset->number_or(axis_keys[axis], 0.0);
+            origin[axis] = offset->number_or(axis_keys[axis], measure_along(axis), 0.0);
         if (of_variables != gcode::AxisValues{} && of_variables != origin)
             file.assumptions.push_back(fmt::format(
                 "{} is taken from [offsets]; the variables file has another value", name));
@@ -277,12 +282,12 @@ void read_offsets(TableReader& table, SetupFile& file) {
 /// does not allow a number and a list of the same name.
 void read_allowance(TableReader& table, core::Setup& setup) {
     core::AllowanceRule rule;
-    const auto distance = table.number("distance");
+    const auto distance = table.number("distance", Measure::length);
     if (!distance) return table.need("distance");
     rule.distance = *distance;
-    rule.contact = table.number_or("contact", 0.0);
+    rule.contact = table.number_or("contact", Measure::length, 0.0);
     if (!(rule.distance >= 0.0 && rule.distance <= core::largest_allowance))
-        table.refuse("distance", "must lie between 0 and 1000 mm");
+        table.refuse("distance", "must lie between 0 and " + table.shown(core::largest_allowance));
     if (rule.contact < 0.0) table.refuse("contact", "must not be negative");
     if (const auto names = table.strings("between", 2)) {
         rule.between = {(*names)[0], (*names)[1]};
@@ -299,10 +304,10 @@ void read_allowances(TableReader& root, core::Setup& setup) {
             read_allowance(table, setup);
         return;
     }
-    setup.allowance = root.number("allowance");
+    setup.allowance = root.number("allowance", Measure::length);
     if (setup.allowance
         && !(*setup.allowance >= 0.0 && *setup.allowance <= core::largest_allowance))
-        root.refuse("allowance", "must lie between 0 and 1000 mm");
+        root.refuse("allowance", "must lie between 0 and " + root.shown(core::largest_allowance));
 }
 
 /// Refuses a rule with an unknown body name, which would never apply.
@@ -351,6 +356,7 @@ void read_machine_file(const std::string& path, SetupFile& file,
         error = parsed.error();
     } else {
         TableReader table(*parsed, "machine", error);
+        table.read_unit();
         read_control(table, file.control);
         file.has_axes = read_machine(table, file.setup.machine,
                                      {std::filesystem::path(path).parent_path(), file.assumptions});
@@ -619,11 +625,15 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
                const ProgramSettings& over, std::optional<core::Error>& error) {
     SetupFile& file = context.file;
     core::Setup& setup = file.setup;
+    file.length_unit = root.read_unit();
+    if (root.has("unit"))
+        root.refuse("unit", "is a key of [program]; the unit of the lengths in this file is "
+                            "length_unit");
     file.mesh_is_stated = root.has("mesh_size");
     read_assumed(root, file);
-    setup.mesh_size = root.number_or("mesh_size", 0.5);
+    setup.mesh_size = root.number_or("mesh_size", Measure::length, 0.5);
     if (!(setup.mesh_size > 0.0)) root.refuse("mesh_size", "must be above 0");
-    if (const auto megabytes = root.number("memory_limit")) {
+    if (const auto megabytes = root.number("memory_limit", Measure::plain)) {
         if (!(*megabytes > 0.0)) root.refuse("memory_limit", "must be above 0, in MB");
         setup.memory_limit = *megabytes * 1e6;
     }

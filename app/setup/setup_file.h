@@ -48,6 +48,8 @@ struct PartialTool {
 /// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it
+    // In which the file states lengths, or would if it was inferred: that of the program.
+    gcode::LengthUnit length_unit = gcode::LengthUnit::mm;
     core::Setup setup;
     gcode::Environment environment;
     std::optional<gcode::DialectId> dialect; // empty: to be recognised

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "core/base/text.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 namespace {
@@ -22,13 +23,39 @@ std::string nearest(const std::string& word, const std::set<std::string>& known)
     return best;
 }
 
-std::optional<double> finite(const toml::node& node) {
-    const auto value = node.value<double>();
-    if (!node.is_number() || !value || !std::isfinite(*value)) return std::nullopt;
-    return value;
+} // namespace
+
+TableReader::TableReader(const toml::table& table, std::string name,
+                         std::optional<core::Error>& error)
+    : table_(table), name_(std::move(name)), error_(error), unit_(gcode::LengthUnit::mm) {}
+
+gcode::LengthUnit TableReader::read_unit() {
+    if (const auto unit = word(length_unit_key, {"mm", "inch"}))
+        unit_ = *unit == "inch" ? gcode::LengthUnit::inch : gcode::LengthUnit::mm;
+    return unit_;
 }
 
-} // namespace
+std::string TableReader::shown(double mm) const {
+    const bool is_inch = unit_ == gcode::LengthUnit::inch;
+    return core::number_text(gcode::from_mm(mm, unit_), 3) + (is_inch ? " in" : " mm");
+}
+
+/// The value of a number, in mm if it is a length; empty for all that is not a finite number.
+std::optional<double> TableReader::finite(const toml::node& node, Measure measure) const {
+    const auto written = node.value<double>();
+    if (!node.is_number() || !written) return std::nullopt;
+    const double value = measure == Measure::length ? gcode::to_mm(*written, unit_) : *written;
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// The numbers of a list; fewer than it has items if it holds other things.
+std::vector<double> TableReader::finite_items(const toml::node& list, Measure measure) const {
+    std::vector<double> values;
+    if (const toml::array* array = list.as_array())
+        for (const toml::node& item : *array)
+            if (const auto value = finite(item, measure)) values.push_back(*value);
+    return values;
+}
 
 const toml::node* TableReader::node(const char* key) {
     known_.insert(key);
@@ -61,10 +88,10 @@ void TableReader::need(const char* key) {
     refuse_at(table_.source(), fmt::format("{} is missing", key));
 }
 
-std::optional<double> TableReader::number(const char* key) {
+std::optional<double> TableReader::number(const char* key, Measure measure) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;
-    const auto value = finite(*at);
+    const auto value = finite(*at, measure);
     if (!value) refuse(key, "must be a number");
     return value;
 }
@@ -126,13 +153,11 @@ std::optional<std::vector<std::string>> TableReader::strings(const char* key, si
     return values;
 }
 
-std::optional<std::vector<double>> TableReader::numbers(const char* key, size_t length) {
+std::optional<std::vector<double>> TableReader::numbers(const char* key, Measure measure,
+                                                        size_t length) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;
-    std::vector<double> values;
-    if (const toml::array* array = at->as_array())
-        for (const toml::node& item : *array)
-            if (const auto value = finite(item)) values.push_back(*value);
+    std::vector<double> values = finite_items(*at, measure);
     const bool all = at->is_array() && values.size() == at->as_array()->size();
     if (!all || (length != 0 && values.size() != length)) {
         refuse(key, length == 0 ? std::string("must be a list of numbers")
@@ -142,13 +167,14 @@ std::optional<std::vector<double>> TableReader::numbers(const char* key, size_t 
     return values;
 }
 
-std::optional<core::Vec3> TableReader::vector(const char* key) {
-    const auto values = numbers(key, 3);
+std::optional<core::Vec3> TableReader::vector(const char* key, Measure measure) {
+    const auto values = numbers(key, measure, 3);
     if (!values) return std::nullopt;
     return core::Vec3((*values)[0], (*values)[1], (*values)[2]);
 }
 
-std::vector<std::vector<double>> TableReader::rows(const char* key, size_t length) {
+std::vector<std::vector<double>> TableReader::rows(const char* key, Measure measure,
+                                                   size_t length) {
     std::vector<std::vector<double>> result;
     const toml::node* at = node(key);
     if (!at) return result;
@@ -160,10 +186,7 @@ std::vector<std::vector<double>> TableReader::rows(const char* key, size_t lengt
         return result;
     }
     for (const toml::node& row : *array) {
-        std::vector<double> values;
-        if (const toml::array* items = row.as_array())
-            for (const toml::node& item : *items)
-                if (const auto value = finite(item)) values.push_back(*value);
+        std::vector<double> values = finite_items(row, measure);
         if (!row.is_array() || row.as_array()->size() != length || values.size() != length) {
             refuse(key, shape);
             return {};
@@ -176,7 +199,11 @@ std::vector<std::vector<double>> TableReader::rows(const char* key, size_t lengt
 std::optional<TableReader> TableReader::table(const char* key, const std::string& name) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;
-    if (const toml::table* inner = at->as_table()) return TableReader(*inner, name, error_);
+    if (const toml::table* inner = at->as_table()) {
+        TableReader reader(*inner, name, error_);
+        reader.use_unit(unit_);
+        return reader;
+    }
     refuse(key, "must be a table");
     return std::nullopt;
 }
@@ -188,7 +215,8 @@ std::vector<TableReader> TableReader::tables(const char* key, const std::string&
     if (const toml::array* array = at->as_array()) {
         for (const toml::node& item : *array)
             if (const toml::table* inner = item.as_table())
-                result.emplace_back(*inner, fmt::format("{} {}", name, result.size() + 1), error_);
+                result.emplace_back(*inner, fmt::format("{} {}", name, result.size() + 1), error_)
+                    .use_unit(unit_);
         if (result.size() == array->size()) return result;
     }
     refuse(key, fmt::format("must be a list of tables, written as {}", name));
@@ -205,6 +233,9 @@ void TableReader::finish() {
     for (const auto& [key, value] : table_) {
         const std::string name(key.str());
         if (known_.contains(name)) continue;
+        if (name == length_unit_key)
+            return refuse_at(key.source(),
+                             name + " holds for a whole file: write it before the first table");
         const std::string meant = nearest(name, known_);
         refuse_at(
             key.source(),

@@ -14,7 +14,18 @@
 #include "core/base/result.h"
 #include "core/base/vec.h"
 
+namespace gcode {
+enum class LengthUnit : uint8_t;
+}
+
 namespace app {
+
+/// The key for the unit of all lengths in a file. It stands before the first table.
+inline constexpr const char* length_unit_key = "length_unit";
+
+/// What the numbers of a key measure. It decides their unit: lengths, and speeds and accelerations
+/// along lines, are in the unit of the file and are read as mm.
+enum class Measure : uint8_t { length, angle, plain };
 
 /// Reads a TOML table key by key, and refuses keys that the caller never reads.
 ///
@@ -23,8 +34,17 @@ namespace app {
 class TableReader {
 public:
     /// `name`: the table in messages, such as `[stock]`. `error` must outlive the reader.
-    TableReader(const toml::table& table, std::string name, std::optional<core::Error>& error)
-        : table_(table), name_(std::move(name)), error_(error) {}
+    TableReader(const toml::table& table, std::string name, std::optional<core::Error>& error);
+
+    /// Reads lengths in a unit, also in the tables below that are read from now on.
+    void use_unit(gcode::LengthUnit unit) { unit_ = unit; }
+    gcode::LengthUnit unit() const { return unit_; }
+
+    /// Reads `length_unit`, the unit of the file, and uses it.
+    gcode::LengthUnit read_unit();
+
+    /// A length in the unit of the file, for messages: "1000 mm", "39.37 in".
+    std::string shown(double mm) const;
 
     bool has(const char* key) const { return table_.contains(key); }
     bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }
@@ -34,8 +54,11 @@ public:
     /// The length of the first row of a list of rows; 0 if there is none.
     size_t row_length(const char* key) const;
 
-    std::optional<double> number(const char* key);
-    double number_or(const char* key, double otherwise) { return number(key).value_or(otherwise); }
+    /// A number; a length is converted to mm.
+    std::optional<double> number(const char* key, Measure measure);
+    double number_or(const char* key, Measure measure, double otherwise) {
+        return number(key, measure).value_or(otherwise);
+    }
     std::optional<int> integer(const char* key);
     std::optional<std::string> string(const char* key);
     std::optional<bool> boolean(const char* key);
@@ -51,11 +74,11 @@ public:
     std::optional<std::vector<std::string>> strings(const char* key, size_t length);
 
     /// A list of numbers, of a fixed length unless `length` is 0.
-    std::optional<std::vector<double>> numbers(const char* key, size_t length);
-    std::optional<core::Vec3> vector(const char* key);
+    std::optional<std::vector<double>> numbers(const char* key, Measure measure, size_t length);
+    std::optional<core::Vec3> vector(const char* key, Measure measure);
 
     /// A list of rows of numbers, each of the given length.
-    std::vector<std::vector<double>> rows(const char* key, size_t length);
+    std::vector<std::vector<double>> rows(const char* key, Measure measure, size_t length);
 
     /// A nested table; empty if absent.
     std::optional<TableReader> table(const char* key, const std::string& name);
@@ -92,11 +115,14 @@ public:
 private:
     const toml::node* node(const char* key);
     void refuse_at(const toml::source_region& where, const std::string& why);
+    std::optional<double> finite(const toml::node& node, Measure measure) const;
+    std::vector<double> finite_items(const toml::node& list, Measure measure) const;
 
     const toml::table& table_;
     std::string name_;
     std::optional<core::Error>& error_;
     std::set<std::string> known_;
+    gcode::LengthUnit unit_;
 };
 
 } // namespace app

@@ -18,9 +18,10 @@ void read_shape(TableReader& table, core::ToolDescription& tool) {
     for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.emplace_back(entry.name);
     const auto shape = table.word("shape", names);
     if (shape) tool.shape = *core::tool_shape_named(*shape);
-    for (const core::ToolSize& size : core::tool_sizes()) size.put(tool, table.number(size.key));
+    for (const core::ToolSize& size : core::tool_sizes())
+        size.put(tool, table.number(size.key, size.is_angle() ? Measure::angle : Measure::length));
     tool.teeth = table.integer("teeth");
-    for (const std::vector<double>& row : table.rows("profile", 2))
+    for (const std::vector<double>& row : table.rows("profile", Measure::length, 2))
         tool.outline.push_back({row[0], row[1]});
 }
 
@@ -30,7 +31,7 @@ constexpr double usual_centre = 0.5;
 
 void read_centre(TableReader& table, core::ToolDescription& tool) {
     tool.cuts_at_centre = table.boolean("cuts_at_centre").value_or(true);
-    const auto diameter = table.number("centre_diameter");
+    const auto diameter = table.number("centre_diameter", Measure::length);
     if (diameter && tool.cuts_at_centre)
         table.refuse("centre_diameter", "is for tools with cuts_at_centre = false");
     if (!tool.cuts_at_centre)
@@ -41,7 +42,7 @@ void read_centre(TableReader& table, core::ToolDescription& tool) {
 void read_touched_off(TableReader& table, core::ToolDescription& tool) {
     constexpr const char* key = "touched_off";
     if (!table.is_text(key)) {
-        tool.touched_off = table.number(key);
+        tool.touched_off = table.number(key, Measure::length);
     } else if (table.word(key, {"unknown"})) {
         tool.touched_off = 0.0;
         tool.length_is_guess = true;
@@ -92,6 +93,7 @@ void read_tool(TableReader& table, BodyContext& context) {
     const auto number = table.integer("number");
     if (!number) return table.need("number");
     tool.number = core::ToolNumber{*number};
+    tool.is_in_inches = table.unit() == gcode::LengthUnit::inch;
     tool.name = table.string("name").value_or("");
     read_shape(table, tool);
     tool.shank = read_steps(table, "shank");
@@ -121,11 +123,11 @@ void read_length_offset(TableReader& table, SetupFile& file) {
     const auto number = table.integer("number");
     if (!number) return table.need("number");
     gcode::LengthOffset offset;
-    const auto length = table.number("length");
+    const auto length = table.number("length", Measure::length);
     if (!length) return table.need("length");
     offset.length = *length;
-    offset.wear = table.number_or("wear", 0.0);
-    offset.diameter = table.number_or("diameter", 0.0);
+    offset.wear = table.number_or("wear", Measure::length, 0.0);
+    offset.diameter = table.number_or("diameter", Measure::length, 0.0);
     table.finish();
     const core::OffsetNumber key{*number};
     if (!file.lengths_set.insert(key).second)
@@ -182,11 +184,11 @@ void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescri
 std::vector<core::ConeStep> read_steps(TableReader& table, const char* key) {
     std::vector<core::ConeStep> steps;
     if (table.row_length(key) == 2) {
-        auto cones = cones_of_outline(table.rows(key, 2));
+        auto cones = cones_of_outline(table.rows(key, Measure::length, 2), table.unit());
         if (!cones) table.refuse(key, cones.error().message);
         return cones ? *std::move(cones) : steps;
     }
-    for (const std::vector<double>& row : table.rows(key, 3))
+    for (const std::vector<double>& row : table.rows(key, Measure::length, 3))
         steps.push_back({row[0], row[1], row[2]});
     return steps;
 }

@@ -655,7 +655,7 @@ constexpr ControlSetting settings[] = {
      [](Environment& to, const SettingValue& value) { to.second_home = whole(value); },
      "Haas mill operator's manual, NGC, settings 268 to 270"},
     {haas, "setting 35", "G60 offset: the distance past the target before G60 turns back",
-     SettingKind::number,
+     SettingKind::length,
      [](Environment& to, const SettingValue& value) {
          to.one_way_approach.emplace().fill(-std::get<double>(value));
      },

@@ -70,9 +70,9 @@ const ControlParameter* find_parameter(ControlQuestion question, DialectId diale
 /// The parameter with a key; null if this dialect has none.
 const ControlParameter* find_parameter(std::string_view key, DialectId dialect);
 
-enum class SettingKind : uint8_t { flag, number, position, text };
+enum class SettingKind : uint8_t { flag, number, length, position, text };
 
-/// Coordinates are in the unit of the machine, and degrees.
+/// Lengths and coordinates are mm and degrees; those of LinuxCNC are in the unit of its machine.
 using SettingValue = std::variant<bool, double, Position, std::string>;
 
 /// A setting of a control that is not a way of reading programs but a part of what they run on.

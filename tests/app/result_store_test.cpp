@@ -95,6 +95,9 @@ TEST_F(StoredResultTest, IsNotFoundAfterAChangeOfAnyInput) {
         folder.write(name, before);
         EXPECT_EQ(found(job), result);
     }
+    folder.write("job.toml", "length_unit = \"inch\"\nmesh_size = 1\n");
+    EXPECT_EQ(found(job), std::nullopt) << "the same numbers in inches";
+    folder.write("job.toml", "mesh_size = 1\n");
     for (const char* name : {"control.var", "O9000.nc", "Pocket.spf"}) {
         SCOPED_TRACE(name);
         folder.write(name, "%");

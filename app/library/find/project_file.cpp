@@ -26,11 +26,11 @@ ProgramTerms read_terms(TableReader& table, const std::filesystem::path& folder)
         terms.setup = plain_path(folder / *setup);
     }
     terms.dialect = read_dialect(table);
-    terms.allowance = table.number("allowance");
+    terms.allowance = table.number("allowance", Measure::length);
     if (terms.allowance
         && !(*terms.allowance >= 0.0 && *terms.allowance <= core::largest_allowance))
         table.refuse("allowance", "must be between 0 and 1000 mm");
-    terms.mesh_size = table.number("mesh_size");
+    terms.mesh_size = table.number("mesh_size", Measure::length);
     if (terms.mesh_size && !(*terms.mesh_size > 0.0)) table.refuse("mesh_size", "must be above 0");
     if (auto rules = table.table("rules", table.name() + " rules"))
         terms.rules = read_severities(*rules);

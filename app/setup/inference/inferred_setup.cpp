@@ -159,6 +159,7 @@ FoundTool overlaid(FoundTool found, const PartialTool& partial) {
     for (const core::ToolSize& size : core::tool_sizes())
         if (states(size.key)) size.put(tool, size.of(stated));
     found.has_diameter = found.has_diameter || states("diameter");
+    tool.is_in_inches = stated.is_in_inches;
     if (states("name")) tool.name = stated.name;
     if (states("teeth")) tool.teeth = stated.teeth;
     if (states("shank")) {

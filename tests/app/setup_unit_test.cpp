@@ -1,0 +1,506 @@
+#include <regex>
+#include <set>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/report/text/text_report.h"
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
+#include "app/setup/setup_text.h"
+#include "core/base/file_reads.h"
+#include "gcode/language/modal_state.h"
+#include "tests/support/scoped_folder.h"
+
+/// The unit of the lengths in a set-up.
+
+namespace app_test {
+namespace {
+
+using gcode::LengthUnit;
+using testing::HasSubstr;
+
+constexpr double mm_per_inch = 25.4;
+const std::string inch = "length_unit = \"inch\"\n";
+
+/// Texts in which each length in inches is written as <0.5>. Keys exclude each other, so there are
+/// several. The files that they name are `machine.toml` and `holders.toml`.
+const std::vector<std::string> templates = {
+    // clang-format off
+    R"(mesh_size = <0.02>
+allowance = <0.08>
+[program]
+dialect = "fanuc"
+start = { X = <-1.5>, Y = <-2.25>, Z = <-0.125>, A = 30, U = <0.75> }
+values = { "#500" = 2.5 }
+[control]
+"1240" = { X = <0.1>, Y = <0.2>, Z = <12>, A = 5 }
+"1241" = { X = <0.2>, Y = <0.3>, Z = <11> }
+"1242" = { X = <0.3>, Y = <0.4>, Z = <10> }
+"1243" = { X = <0.4>, Y = <0.5>, Z = <9> }
+"5440" = { X = <0.02>, Y = <0.03>, Z = <0> }
+"5114" = <0.05>
+"5115" = <0.06>
+"3410" = <0.0005>
+"5410" = 45
+"5411" = 2.5
+[machine]
+corner_tolerance = <0.003>
+rapid_corner_tolerance = <0.007>
+[[machine.axis]]
+name = "X"
+min = <-20>
+max = <3>
+home = <0.5>
+rapid = <400>
+acceleration = <60>
+[[machine.axis]]
+name = "Y"
+min = <-16>
+max = <0.25>
+[[machine.axis]]
+name = "Z"
+min = <-30>
+max = <0.125>
+[[machine.axis]]
+name = "U"
+side = "table"
+min = <-2>
+max = <2>
+[[machine.axis]]
+name = "A"
+direction = [1, 0, 0]
+point = [<1>, <2>, <-3>]
+min = -120
+max = 120
+home = 10
+rapid = 3600
+acceleration = 900
+[[machine.body]]
+name = "nose"
+axis = "Z"
+cylinder = { radius = <2.5>, height = <6> }
+at = [<0.01>, <0.02>, <0.03>]
+rotate_deg = [10, 20, 30]
+[offsets]
+G54 = { X = <-13.7>, Y = <-7.9>, Z = <-16.5>, A = 15 }
+"G54.1 P1" = { X = <-12>, W = <0.5> }
+[[length_offset]]
+number = 3
+length = <5.125>
+wear = <-0.004>
+diameter = <0.25>
+[stock]
+box = [[<0>, <0>, <-1.25>], [<4>, <3>, <0>]]
+at = [<0.5>, <0.25>, <0.125>]
+tolerance = <0.03>
+[[fixture]]
+name = "clamp"
+box = [[<0>, <0>, <0>], [<1>, <2>, <3>]]
+at = [<4>, <5>, <6>]
+rotate_deg = [0, 0, 90]
+[[fixture.move]]
+line = 2
+at = [<7>, <8>, <9>]
+rotate_deg = [0, 0, 45]
+[[fixture]]
+name = "stud"
+cylinder = { radius = <0.25>, height = <2>, axis = "X" }
+[part]
+box = [[<0>, <0>, <-1>], [<3>, <2>, <0>]]
+at = [<0.25>, <0.5>, <0.75>]
+tolerance = <0.004>
+)",
+    R"([[allowance]]
+distance = <0.08>
+[[allowance]]
+between = ["holder", "stock"]
+distance = <0.25>
+contact = <0.002>
+[program]
+dialect = "haas"
+[control]
+"second home" = [<1>, <2>, <3>]
+"setting 22" = <0.04>
+"setting 52" = <0.05>
+"setting 35" = <0.02>
+"setting 85" = <0.001>
+"setting 72" = 30
+[stock]
+cylinder = { radius = <2>, height = <5> }
+at = [<1>, <2>, <-5>]
+[machine]
+file = "machine.toml"
+)",
+    R"([program]
+dialect = "siemens"
+[control]
+MD30600 = { X = <1>, Y = <2>, Z = <3>, B = 4 }
+[stock]
+margin = <0.25>
+tolerance = <0.01>
+)",
+    R"([[tool]]
+number = 1
+shape = "bull"
+diameter = <0.5>
+corner_radius = <0.06>
+flute_length = <1.25>
+neck_diameter = <0.4>
+neck_length = <0.5>
+shank_diameter = <0.5>
+stick_out = <2.75>
+gauge_length = <6>
+touched_off = <4.5>
+cuts_at_centre = false
+centre_diameter = <0.1>
+[[tool]]
+number = 2
+shape = "taper"
+diameter = <0.5>
+tip_diameter = <0.25>
+corner_radius = <0.03>
+angle_deg = 10
+flute_length = <1.5>
+shank = [[<0.5>, <0.75>, <1>], [<0.75>, <0.75>, <0.5>]]
+holder = [[<1.5>, <2>, <1.25>]]
+[[tool]]
+number = 3
+shape = "threadmill"
+diameter = <0.375>
+pitch = <0.05>
+teeth = 4
+thread_deg = 60
+flute_length = <0.5>
+stick_out = <2>
+holder = [[<1>, <0>], [<1.25>, <2>], [<2.5>, <2.5>]]
+[[tool]]
+number = 4
+shape = "profile"
+profile = [[<0>, <0>], [<0.25>, <0.125>], [<0.5>, <1>]]
+shank = [[<0.5>, <0>], [<0.5>, <2>]]
+stick_out = <3>
+holder = "A"
+holder_file = "holders.toml"
+[[tool]]
+number = 5
+shape = "drill"
+diameter = <0.25>
+point_deg = 135
+flute_length = <2>
+stick_out = <2.5>
+[[tool]]
+number = 6
+stick_out = <1.5>
+touched_off = "unknown"
+)"};
+// clang-format on
+
+/// A template with its lengths in a unit. `changed`: the number of a length that is larger.
+std::string written(const std::string& form, LengthUnit unit,
+                    std::optional<size_t> changed = std::nullopt) {
+    std::string text = unit == LengthUnit::inch ? inch : "";
+    size_t count = 0;
+    for (size_t at = 0; at < form.size(); ++at) {
+        if (form[at] != '<') {
+            text += form[at];
+            continue;
+        }
+        const size_t end = form.find('>', at);
+        double value = std::stod(form.substr(at + 1, end - at - 1));
+        if (changed == count++) value += 0.0078125; // a power of two
+        text += app::toml_number(unit == LengthUnit::inch ? value : value * mm_per_inch);
+        at = end;
+    }
+    return text;
+}
+
+size_t lengths_in(const std::string& form) {
+    return static_cast<size_t>(std::count(form.begin(), form.end(), '<'));
+}
+
+/// The values of a set-up as text, exact to the last bit.
+class SetupValues {
+public:
+    explicit SetupValues(const app::SetupFile& file) {
+        const core::Setup& setup = file.setup;
+        const gcode::Environment& environment = file.environment;
+        add("mesh", setup.mesh_size, setup.allowance);
+        for (const core::AllowanceRule& rule : setup.allowances)
+            add(rule.between[0], rule.distance, rule.contact);
+        for (const auto& start : environment.start) add("start", start);
+        add_axes("home", environment.home);
+        add("machine", setup.machine.corner_tolerance, setup.machine.rapid_corner_tolerance);
+        for (const core::MachineAxis& axis : setup.machine.axes) {
+            add("axis", axis.min, axis.max, axis.home, axis.rapid, axis.acceleration);
+            add_point("direction", axis.direction);
+            add_point("point", axis.point);
+        }
+        for (const core::MachineBody& body : setup.machine.bodies)
+            add_box(body.name, core::bounds(body.body));
+        for (size_t i = 0; i < gcode::plain_offset_count; ++i)
+            add_axes("offset", environment.work_offsets[i]);
+        for (const auto& [index, origin] : environment.extended_offsets) add_axes("offset", origin);
+        for (const auto& [number, row] : environment.length_offsets)
+            add("row", row.length, row.wear, row.diameter);
+        for (const auto& [number, value] : environment.control.values) add("variable", value);
+        for (const auto& [key, value] : file.control.parameters) add(key, value);
+        for (const auto& [key, value] : file.control.settings) {
+            if (const auto* number = std::get_if<double>(&value)) add(key, *number);
+            if (const auto* position = std::get_if<gcode::Position>(&value))
+                for (const auto& coordinate : *position) add(key, coordinate);
+        }
+        add_box("stock", core::bounds(setup.stock));
+        add("stock", setup.stock.tolerance, file.stock_margin);
+        add_point("mount", setup.stock_mount.link_from_body.translation);
+        for (const core::Fixture& fixture : setup.fixtures)
+            add_box(fixture.name, core::bounds(fixture.body));
+        if (setup.part) {
+            add_box("part", core::bounds(setup.part->solid));
+            add("part", setup.part->tolerance);
+        }
+        for (const auto& [number, tool] : setup.tools) add_tool(tool.description);
+        for (const auto& [number, tool] : file.partial_tools) add_tool(tool.tool);
+    }
+
+    const std::string& text() const { return text_; }
+
+private:
+    void put(const std::string& words) { text_ += " " + words; }
+    void put(double value) { text_ += fmt::format(" {}", value); }
+    void put(const std::optional<double>& value) { value ? put(*value) : put("-"); }
+    template <typename... Values>
+    void add(const std::string& name, const Values&... values) {
+        put(name);
+        (put(values), ...);
+        text_ += '\n';
+    }
+    void add_point(const std::string& name, const core::Vec3& p) { add(name, p.x, p.y, p.z); }
+    void add_axes(const std::string& name, const std::optional<gcode::AxisValues>& values) {
+        for (const double value : values.value_or(gcode::AxisValues{})) add(name, value);
+    }
+    void add_box(const std::string& name, const core::Aabb& box) {
+        add_point(name, box.min);
+        add_point(name, box.max);
+    }
+    void add_cones(const std::string& name, const std::vector<core::ConeStep>& cones) {
+        for (const core::ConeStep& cone : cones)
+            add(name, cone.lower_diameter, cone.upper_diameter, cone.length);
+    }
+    void add_tool(const core::ToolDescription& tool) {
+        for (const core::ToolSize& size : core::tool_sizes()) add(size.key, size.of(tool));
+        add("tool", tool.touched_off, tool.centre_radius);
+        for (const auto& [r, z] : tool.outline) add("outline", r, z);
+        add_cones("shank", tool.shank);
+        add_cones("holder", tool.holder);
+    }
+
+    std::string text_;
+};
+
+/// A folder with the files that the templates name, which are in mm whatever the set-up is in.
+struct SetupFolder {
+    test_support::ScopedFolder folder;
+
+    SetupFolder() {
+        folder.write("machine.toml", "[[axis]]\nname = \"X\"\nhome = -400\nrapid = 9000\n");
+        folder.write("holders.toml",
+                     "[[holder]]\nname = \"A\"\ncones = [[20, 30, 40], [30, 40, 25]]\n");
+    }
+    core::Result<app::SetupFile> read(const std::string& text) const {
+        return app::read_setup_text(text, folder / "s.toml", {});
+    }
+    std::string values(const std::string& text) const {
+        const auto file = read(text);
+        EXPECT_TRUE(file) << (file ? "" : app::error_text(file.error())) << "\n" << text;
+        return file ? SetupValues(*file).text() : "";
+    }
+    std::string error(const std::string& text) const {
+        const auto file = read(text);
+        EXPECT_FALSE(file) << text;
+        return file ? "" : app::error_text(file.error());
+    }
+};
+
+TEST(SetupUnit, OfEveryLengthIsThatOfTheFile) {
+    const SetupFolder folder;
+    for (const std::string& form : templates) {
+        const std::string plain = folder.values(written(form, LengthUnit::inch));
+        EXPECT_EQ(plain, folder.values(written(form, LengthUnit::mm)));
+        for (size_t i = 0; i < lengths_in(form); ++i) {
+            const auto in_inch = folder.read(written(form, LengthUnit::inch, i));
+            const auto in_mm = folder.read(written(form, LengthUnit::mm, i));
+            // Some lengths contradict others when they change.
+            ASSERT_EQ(in_inch.has_value(), in_mm.has_value()) << i;
+            if (!in_inch) continue;
+            const std::string changed = SetupValues(*in_inch).text();
+            EXPECT_EQ(changed, SetupValues(*in_mm).text()) << i;
+            EXPECT_NE(changed, plain) << written(form, LengthUnit::inch, i);
+        }
+    }
+}
+
+/// The keys in the first column of the tables of a page of the manual.
+std::set<std::string> keys_of_page(const std::string& page) {
+    const auto text = core::file_bytes(FEELER_SOURCE_DIR "/docs/manual/" + page);
+    EXPECT_TRUE(text) << page;
+    const std::regex row(R"(\n\|([^|]*)\|)"), key(R"re(`"?(\w+( \w+)*)"?`)re");
+    std::set<std::string> keys;
+    const std::string all = text.value_or("");
+    for (std::sregex_iterator at(all.begin(), all.end(), row), end; at != end; ++at) {
+        const std::string cell = (*at)[1];
+        for (std::sregex_iterator word(cell.begin(), cell.end(), key); word != end; ++word)
+            keys.insert((*word)[1]);
+    }
+    return keys;
+}
+
+/// Keys that hold no length, and words in the first column that are no keys.
+const std::set<std::string> other_keys = {
+    "length_unit",
+    "fixtures",
+    "assumed",
+    "memory_limit",
+    "tool_library",
+    "dialect",
+    "block_delete",
+    "unit",
+    "units_at_start",
+    "no_decimal_point",
+    "parameters",
+    "tool_table",
+    "search_path",
+    "max_blocks",
+    "machine_codes",
+    "tool_at_start",
+    "spindle_at_start",
+    "measured_offsets",
+    "speed_by_hand",
+    "values",
+    "number",
+    "between",
+    "allow_comments",
+    "name",
+    "shape",
+    "angle_deg",
+    "point_deg",
+    "teeth",
+    "thread_deg",
+    "holder_file",
+    "holder_mesh",
+    "spindle",
+    "single_point",
+    "cuts_at_centre",
+    "mesh",
+    "model",
+    "rotate_deg",
+    "frame",
+    "expendable",
+    "line",
+    "code",
+    "remove",
+    "file",
+    "other_axes",
+    "kind",
+    "side",
+    "parent",
+    "direction",
+    "shortest_way",
+    "axis",
+    // a rapid of [machine] is a word
+};
+
+/// The keys of `[control]` whose row says mm, but for those of LinuxCNC.
+std::set<std::string> lengths_of_controls() {
+    const auto text = core::file_bytes(FEELER_SOURCE_DIR "/docs/manual/controls-and-dialects.md");
+    EXPECT_TRUE(text);
+    const std::regex row(R"re(\n\| (Fanuc|Haas|Siemens) \| `"?([^`"]+)"?`[^|]*\|([^|]*)\|)re"),
+        in_mm(R"(\bmm( and degrees)?( *$|;))");
+    std::set<std::string> keys;
+    const std::string all = text.value_or("");
+    for (std::sregex_iterator at(all.begin(), all.end(), row), end; at != end; ++at)
+        if (std::regex_search((*at)[3].str(), in_mm)) keys.insert((*at)[2]);
+    return keys;
+}
+
+TEST(SetupUnit, IsDecidedForEveryKeyOfTheManual) {
+    std::set<std::string> keys;
+    for (const char* page :
+         {"set-up-file.md", "tools-and-holders.md", "stock-and-fixtures.md", "machines.md"})
+        keys.merge(keys_of_page(page));
+    EXPECT_TRUE(keys.contains("stick_out"));
+    const std::set<std::string> of_controls = lengths_of_controls();
+    EXPECT_GE(of_controls.size(), 9u);
+    keys.insert(of_controls.begin(), of_controls.end());
+    std::string all;
+    for (const std::string& form : templates) all += form;
+    for (const std::string& key : keys) {
+        const bool is_length =
+            std::regex_search(all, std::regex("(^|[\n {\"])" + key + "\"? = [^\n]*<"));
+        EXPECT_TRUE(is_length || other_keys.contains(key))
+            << key << " is neither in a template of this test, as a length, nor among other_keys";
+    }
+}
+
+TEST(SetupUnit, DoesNotReachOtherFiles) {
+    const SetupFolder folder;
+    const auto file = folder.read(written(templates[1], LengthUnit::inch));
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->setup.machine.axes[0].home, -400.0);
+    folder.folder.write("machine.toml", inch + "[[axis]]\nname = \"X\"\nhome = -16\nrapid = 400\n");
+    const auto other = folder.read(written(templates[1], LengthUnit::mm));
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->setup.machine.axes[0].home, -16 * mm_per_inch);
+    EXPECT_EQ(other->setup.machine.axes[0].rapid, 400 * mm_per_inch);
+    EXPECT_EQ(other->length_unit, LengthUnit::mm);
+    folder.folder.write("holders.toml",
+                        inch + "[[holder]]\nname = \"A\"\nprofile = [[0.5, 0], [1, 2.5]]\n");
+    const auto tools = folder.read(written(templates[3], LengthUnit::mm));
+    ASSERT_TRUE(tools);
+    const auto& holder = tools->setup.tools.at(core::ToolNumber{4}).description.holder;
+    ASSERT_EQ(holder.size(), 1u);
+    EXPECT_EQ(holder[0].lower_diameter, 25.4);
+    EXPECT_EQ(holder[0].length, 63.5);
+}
+
+TEST(SetupUnit, OfMessagesIsThatOfTheFile) {
+    const SetupFolder folder;
+    const auto expect = [&](const std::string& text, const std::string& words) {
+        EXPECT_THAT(folder.error(inch + text), HasSubstr(words)) << text;
+    };
+    expect("allowance = 40\n", ":2:13: set-up: allowance must lie between 0 and 39.37 in");
+    expect("[stock]\nmargin = 40\n", "margin must lie between 0 and 39.37 in");
+    expect("[[allowance]]\ndistance = -1\n", "between 0 and 39.37 in");
+    expect("[control]\n\"5114\" = 50\n", "must lie between 0 in and 39.37 in");
+    const std::string tool = "[[tool]]\nnumber = 1\ndiameter = 0.5\nflute_length = 1\n";
+    expect(tool + "shape = \"flat\"\nstick_out = 0.75\n",
+           "flutes and neck are 1 in long, but stick_out leaves 0.75 in below the holder");
+    expect(tool + "shape = \"flat\"\nstick_out = 100\n",
+           "stick_out = 100 in is implausible: the maximum is 78.7402 in");
+    expect(tool + "shape = \"ball\"\ncorner_radius = 0.125\n", "0.25 in, not 0.125");
+    expect(tool + "shape = \"flat\"\nholder = [[1, 0], [1, 2], [1, 1.5]]\n",
+           "z falls from 2 to 1.5");
+    expect("mesh_size = 1e308\n", "mesh_size must be a number");
+    expect("[control]\n\"second home\" = [0, 0, 1e308]\n", "must be a list of numbers");
+    expect("[program]\nstart = { X = -1e308 }\n", "X must be a number");
+    EXPECT_THAT(folder.error("allowance = 1001\n"), HasSubstr("between 0 and 1000 mm"));
+}
+
+TEST(SetupUnit, IsRefusedWhereItIsNotMeant) {
+    const SetupFolder folder;
+    EXPECT_THAT(folder.error("length_unit = \"cm\"\n"),
+                HasSubstr("is \"cm\", but must be one of: mm inch"));
+    EXPECT_THAT(folder.error("length_unit = 1\n"), HasSubstr("must be a text in quotes"));
+    EXPECT_THAT(folder.error("unit = \"inch\"\n"),
+                HasSubstr("s.toml:1:8: set-up: unit is a key of [program]; the unit of the "
+                          "lengths in this file is length_unit"));
+    EXPECT_THAT(folder.error("[stock]\nbox = [[0, 0, -1], [1, 1, 0]]\nlength_unit = \"inch\"\n"),
+                HasSubstr("write it before the first table"));
+    EXPECT_THAT(folder.error("[program]\nlength_unit = \"inch\"\n"),
+                HasSubstr("write it before the first table"));
+    EXPECT_TRUE(folder.read("length_unit = \"mm\"\nmesh_size = 1\n"));
+}
+
+} // namespace
+} // namespace app_test
