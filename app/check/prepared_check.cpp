@@ -11,7 +11,7 @@
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/inference/inferred_stock.h"
 #include "app/setup/setup_file.h"
-#include "app/setup/toml_file.h"
+#include "app/setup/setup_length.h"
 #include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
 #include "core/motion/path.h"
@@ -112,12 +112,6 @@ core::Result<gcode::Program> read_once(const std::string& path, std::string& sha
             sha256 = sha256_of(*access.answer);
     });
     return gcode::read_program(path);
-}
-
-/// Whether a text states nothing: it has no key.
-bool states_nothing(const std::string& text) {
-    const auto root = parsed_toml(text);
-    return root && root->empty();
 }
 
 core::Result<SetupFile> read_setup_of(const CheckJob& job) {

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
-#include "core/base/math.h"
 #include "core/dbm/solid.h"
 #include "core/sim/tool_description.h"
 
@@ -68,8 +68,10 @@ void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape) 
 
 bool is_zero(const core::Vec3& v) { return v == core::Vec3(0.0); }
 
-void set_vector(Changes& changes, const TomlPath& path, const core::Vec3& value) {
-    if (!is_zero(value) || changes.has(path)) changes.set(path, setup_vector(value));
+/// Sets a vector with this text, unless it is 0 and not there.
+void set_vector(Changes& changes, const TomlPath& path, const core::Vec3& value,
+                const std::string& written) {
+    if (!is_zero(value) || changes.has(path)) changes.set(path, written);
 }
 
 /// Whether bodies other than the stock stand in the frame of a body.
@@ -123,16 +125,6 @@ std::string body_of(const std::string& table) {
 
 } // namespace
 
-std::string setup_number(double value) {
-    constexpr double steps = 1e6;
-    const double rounded = core::round(value * steps) / steps;
-    return toml_number(std::abs(value) < 1e9 ? rounded + 0.0 : value);
-}
-
-std::string setup_vector(const core::Vec3& v) {
-    return fmt::format("[{}, {}, {}]", setup_number(v.x), setup_number(v.y), setup_number(v.z));
-}
-
 std::optional<BodyPath> path_of_fixture(const std::string& text, std::string_view name) {
     return path_of("fixture", index_of(root_of(text), "fixture", "name", std::string(name)));
 }
@@ -166,19 +158,21 @@ Result<std::string> with_stock(const std::string& text, const core::Solid& stock
 }
 
 Result<std::string> with_box(const std::string& text, const BodyPath& body, const core::Aabb& box) {
+    const gcode::LengthUnit unit = unit_of_setup(text);
     Changes changes(text);
     changes.set(body / "box",
-                fmt::format("[{}, {}]", setup_vector(box.min), setup_vector(box.max)));
+                fmt::format("[{}, {}]", setup_point(box.min, unit), setup_point(box.max, unit)));
     keep_shape(changes, body, "box");
     return std::move(changes).text();
 }
 
 Result<std::string> with_cylinder(const std::string& text, const BodyPath& body, double radius,
                                   double height, int axis) {
+    const gcode::LengthUnit unit = unit_of_setup(text);
     Changes changes(text);
     changes.set(body / "cylinder",
-                fmt::format("{{ radius = {}, height = {}, axis = \"{}\" }}", setup_number(radius),
-                            setup_number(height), "XYZ"[axis]));
+                fmt::format("{{ radius = {}, height = {}, axis = \"{}\" }}",
+                            setup_length(radius, unit), setup_length(height, unit), "XYZ"[axis]));
     keep_shape(changes, body, "cylinder");
     return std::move(changes).text();
 }
@@ -194,8 +188,8 @@ Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
 Result<std::string> with_pose(const std::string& text, const BodyPath& body, const core::Vec3& at,
                               const core::Vec3& rotate_deg) {
     Changes changes(text);
-    set_vector(changes, body / "at", at);
-    set_vector(changes, body / "rotate_deg", rotate_deg);
+    set_vector(changes, body / "at", at, setup_point(at, unit_of_setup(text)));
+    set_vector(changes, body / "rotate_deg", rotate_deg, setup_vector(rotate_deg));
     return std::move(changes).text();
 }
 
@@ -288,8 +282,16 @@ Result<std::string> with_tool_value(const std::string& text, core::ToolNumber nu
         text, "tool", fmt::format("number = {}\n{} = {}\n", core::value_of(number), key, *value));
 }
 
+Result<std::string> with_tool_size(const std::string& text, core::ToolNumber number,
+                                   const core::ToolSize& size, double value) {
+    if (value == 0.0) return with_tool_value(text, number, size.key, std::nullopt);
+    return with_tool_value(text, number, size.key,
+                           size.is_angle() ? setup_number(value)
+                                           : setup_length(value, unit_of_setup(text)));
+}
+
 Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
-    const std::string body = body_of(tool_table(tool));
+    const std::string body = body_of(tool_table(tool, unit_of_setup(text)));
     const auto path = path_of_tool(text, tool.number);
     if (!path) return toml_with_table(text, "tool", body);
     // Value by value, so that the comments of the values that stay are kept.
@@ -317,12 +319,13 @@ Result<std::string> with_offset(const std::string& text, const std::string& name
                                 const core::Vec3& origin) {
     const TomlPath path{"offsets", name};
     const bool is_new = !toml_has(text, path);
+    const gcode::LengthUnit unit = unit_of_setup(text);
     Changes changes(text);
     if (is_new)
-        changes.set(path, fmt::format("{{ X = {}, Y = {}, Z = {} }}", setup_number(origin.x),
-                                      setup_number(origin.y), setup_number(origin.z)));
+        changes.set(path, fmt::format("{{ X = {}, Y = {}, Z = {} }}", setup_length(origin.x, unit),
+                                      setup_length(origin.y, unit), setup_length(origin.z, unit)));
     for (int axis = 0; axis < 3 && !is_new; ++axis)
-        changes.set(path / std::string(1, "XYZ"[axis]), setup_number(origin[axis]));
+        changes.set(path / std::string(1, "XYZ"[axis]), setup_length(origin[axis], unit));
     changes.apply([](const std::string& t) { return with_known(t, "offsets"); });
     return std::move(changes).text();
 }
@@ -335,20 +338,25 @@ Result<std::string> without_offset(const std::string& text, const std::string& n
     return left;
 }
 
+Result<std::string> with_part_tolerance(const std::string& text, double tolerance) {
+    return toml_with_value(text, {"part", "tolerance"},
+                           setup_length(tolerance, unit_of_setup(text)));
+}
+
 Result<std::string> with_allowance(const std::string& text, std::optional<double> distance) {
     const toml::table root = root_of(text);
     const toml::array* rules = root["allowance"].as_array();
+    const std::string value = setup_length(distance.value_or(0.0), unit_of_setup(root));
     if (!rules)
-        return distance ? toml_with_value(text, "allowance", setup_number(*distance))
+        return distance ? toml_with_value(text, "allowance", value)
                         : toml_without(text, "allowance");
     for (size_t i = 0; i < rules->size(); ++i) {
         if (root["allowance"][i]["between"]) continue;
-        return distance
-                   ? toml_with_value(text, {"allowance", i, "distance"}, setup_number(*distance))
-                   : toml_without(text, {"allowance", i});
+        return distance ? toml_with_value(text, {"allowance", i, "distance"}, value)
+                        : toml_without(text, {"allowance", i});
     }
     if (!distance) return text;
-    return toml_with_table(text, "allowance", "distance = " + setup_number(*distance) + "\n");
+    return toml_with_table(text, "allowance", "distance = " + value + "\n");
 }
 
 Result<std::string> with_known(const std::string& text, std::string_view word) {

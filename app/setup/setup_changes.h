@@ -12,13 +12,14 @@
 namespace core {
 struct Solid;
 struct ToolDescription;
+struct ToolSize;
 } // namespace core
 
 namespace app {
 
 /// Functions that change the text of a set-up file, one statement at a time. They keep everything
 /// else in it, as the functions of toml_edit.h do, whose errors they return. Lengths are mm, and
-/// are rounded to 1e-6 mm; angles are degrees.
+/// are written in the unit of the text, rounded as by setup_length(); angles are degrees.
 
 /// The place of a body in a set-up: `[stock]`, `[part]` or an element of `[[fixture]]`.
 using BodyPath = TomlPath;
@@ -46,7 +47,8 @@ core::Result<std::string> with_mesh(const std::string& text, const BodyPath& bod
 core::Result<std::string> with_pose(const std::string& text, const BodyPath& body,
                                     const core::Vec3& at, const core::Vec3& rotate_deg);
 
-/// Adds a fixture with these lines after its name, such as "box = [[0, 0, 0], [10, 10, 10]]".
+/// Adds a fixture with these lines after its name, such as "box = [[0, 0, 0], [10, 10, 10]]" with
+/// lengths in the unit of the text.
 /// Removes `fixtures = "none"`.
 core::Result<std::string> with_fixture(const std::string& text, const std::string& name,
                                        const std::string& lines);
@@ -69,6 +71,9 @@ std::string free_name(const std::string& text, const std::string& name);
 core::Result<std::string> with_tool_value(const std::string& text, core::ToolNumber number,
                                           const std::string& key,
                                           const std::optional<std::string>& value);
+/// Sets a size of a tool in mm or degrees; 0 removes it.
+core::Result<std::string> with_tool_size(const std::string& text, core::ToolNumber number,
+                                         const core::ToolSize& size, double value);
 /// States a tool completely, in place of the old description.
 core::Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool);
 core::Result<std::string> without_tool(const std::string& text, core::ToolNumber number);
@@ -79,15 +84,13 @@ core::Result<std::string> with_offset(const std::string& text, const std::string
                                       const core::Vec3& origin);
 core::Result<std::string> without_offset(const std::string& text, const std::string& name);
 
+/// Sets how far the result may deviate from the part.
+core::Result<std::string> with_part_tolerance(const std::string& text, double tolerance);
+
 /// Sets the general minimum clearance, or leaves it to the defaults.
 core::Result<std::string> with_allowance(const std::string& text, std::optional<double> distance);
 
 /// Removes a word from `assumed`: the value is known.
 core::Result<std::string> with_known(const std::string& text, std::string_view word);
-
-/// A number as a person would write it in a set-up: rounded to 1e-6.
-std::string setup_number(double value);
-/// Three numbers as a list: "[0, 0, 12.5]".
-std::string setup_vector(const core::Vec3& v);
 
 } // namespace app

@@ -69,7 +69,8 @@ struct SetupFile {
     std::map<core::ToolNumber, FoundTool> found_tools;      // likewise, what their sources state
     std::vector<std::string> import_notes;                  // about the file of --from
     std::string inferred_stock;                             // reason; empty: stated
-    bool speed_by_hand = false;                             // M3 starts the spindle without S
+    std::string stock_comment;    // the same with lengths in the unit of the file
+    bool speed_by_hand = false;   // M3 starts the spindle without S
     bool allow_comments = false;  // (feeler: allow RULE) in the program has effect
     bool is_inferred = false;     // no file was read
     bool has_axes = false;        // it states all of the machine's axes

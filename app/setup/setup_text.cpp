@@ -13,45 +13,56 @@
 #include "app/setup/coverage.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_length.h"
+#include "app/setup/table_reader.h"
+#include "core/sim/tool_assembly.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/dialect.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 namespace {
 
-std::string key(const char* name, double value) {
-    return fmt::format("{} = {}\n", name, toml_number(value));
+using gcode::LengthUnit;
+
+std::string length_key(const char* name, double mm, LengthUnit unit) {
+    return fmt::format("{} = {}\n", name, exact_length(mm, unit));
 }
 
-std::string cones(const char* name, const std::vector<core::ConeStep>& steps) {
+std::string cones(const char* name, const std::vector<core::ConeStep>& steps, LengthUnit unit) {
     std::vector<std::string> rows;
     for (const core::ConeStep& s : steps)
-        rows.push_back(fmt::format("[{}, {}, {}]", toml_number(s.lower_diameter),
-                                   toml_number(s.upper_diameter), toml_number(s.length)));
+        rows.push_back(fmt::format("[{}, {}, {}]", exact_length(s.lower_diameter, unit),
+                                   exact_length(s.upper_diameter, unit),
+                                   exact_length(s.length, unit)));
     return rows.empty() ? "" : fmt::format("{} = [{}]\n", name, fmt::join(rows, ", "));
 }
 
-std::string outline(const core::ToolDescription& tool) {
+std::string outline(const core::ToolDescription& tool, LengthUnit unit) {
     std::vector<std::string> rows;
     for (const auto& [r, z] : tool.outline)
-        rows.push_back(fmt::format("[{}, {}]", toml_number(r), toml_number(z)));
+        rows.push_back(fmt::format("[{}, {}]", exact_length(r, unit), exact_length(z, unit)));
     return rows.empty() ? "" : fmt::format("profile = [{}]\n", fmt::join(rows, ", "));
 }
 
 /// The keys that precede a size in the file.
-std::string before(std::string_view key, const core::ToolDescription& tool) {
-    if (key == "neck_diameter") return outline(tool);
+std::string before(std::string_view key, const core::ToolDescription& tool, LengthUnit unit) {
+    if (key == "neck_diameter") return outline(tool, unit);
     if (key == "shank_diameter")
         return (tool.teeth ? fmt::format("teeth = {}\n", *tool.teeth) : std::string())
-               + cones("shank", tool.shank);
-    return key == "gauge_length" ? cones("holder", tool.holder) : std::string();
+               + cones("shank", tool.shank, unit);
+    return key == "gauge_length" ? cones("holder", tool.holder, unit) : std::string();
 }
 
-std::string sizes(const core::ToolDescription& tool) {
+std::string sizes(const core::ToolDescription& tool, LengthUnit unit) {
     std::string text;
     for (const core::ToolSize& size : core::tool_sizes()) {
-        text += before(size.key, tool);
-        if (const auto value = size.of(tool)) text += key(size.key, *value);
+        text += before(size.key, tool, unit);
+        const auto value = size.of(tool);
+        if (value && size.is_angle())
+            text += fmt::format("{} = {}\n", size.key, toml_number(*value));
+        else if (value)
+            text += length_key(size.key, *value, unit);
     }
     if (tool.length_is_guess)
         text += "touched_off = \"unknown\"     # length that the control uses: 0 where it matters; "
@@ -59,13 +70,33 @@ std::string sizes(const core::ToolDescription& tool) {
     else if (tool.touched_off)
         text += fmt::format("touched_off = {}     # length that the control uses, matching the "
                             "work offset; remove it to use the true length\n",
-                            toml_number(*tool.touched_off));
+                            exact_length(*tool.touched_off, unit));
     return text;
 }
 
-} // namespace
+void round_cones(std::vector<core::ConeStep>& steps, LengthUnit unit) {
+    for (core::ConeStep& step : steps)
+        step = {rounded_length(step.lower_diameter, unit),
+                rounded_length(step.upper_diameter, unit), rounded_length(step.length, unit)};
+}
 
-std::string toml_number(double value) { return fmt::format("{}", value); }
+/// A tool with rounded lengths.
+core::ToolDescription rounded_tool(core::ToolDescription tool, LengthUnit unit) {
+    for (const core::ToolSize& size : core::tool_sizes())
+        if (const auto value = size.of(tool); value && !size.is_angle())
+            size.put(tool, rounded_length(*value, unit));
+    for (auto& [r, z] : tool.outline) {
+        r = rounded_length(r, unit);
+        z = rounded_length(z, unit);
+    }
+    round_cones(tool.shank, unit);
+    round_cones(tool.holder, unit);
+    if (tool.touched_off) tool.touched_off = rounded_length(*tool.touched_off, unit);
+    tool.centre_radius = 0.5 * rounded_length(2.0 * tool.centre_radius, unit);
+    return tool;
+}
+
+} // namespace
 
 std::string toml_text(std::string_view text) {
     std::string safe;
@@ -80,17 +111,21 @@ std::string toml_text(std::string_view text) {
     return "\"" + safe + "\"";
 }
 
-std::string tool_table(const core::ToolDescription& tool) {
+std::string tool_table(const core::ToolDescription& exact, LengthUnit unit) {
+    core::ToolDescription tool = exact;
+    if (unit == LengthUnit::inch) tool = rounded_tool(exact, unit);
+    if (!core::assemble(tool)) tool = exact;
     std::string text = "\n[[tool]]\n";
     text += fmt::format("number = {}\n", core::value_of(tool.number));
     if (!tool.name.empty()) text += fmt::format("name = {}\n", toml_text(tool.name));
     text += fmt::format("shape = \"{}\"\n", core::name_of(tool.shape));
-    if (tool.diameter == 0.0) text += key("diameter", 0.0);
-    text += sizes(tool);
+    if (tool.diameter == 0.0) text += length_key("diameter", 0.0, unit);
+    text += sizes(tool, unit);
     if (tool.cuts == core::SpindleDirection::counterclockwise)
         text += "spindle = \"counterclockwise\"\n";
     if (!tool.cuts_at_centre)
-        text += "cuts_at_centre = false\n" + key("centre_diameter", 2.0 * tool.centre_radius);
+        text += "cuts_at_centre = false\n"
+                + length_key("centre_diameter", 2.0 * tool.centre_radius, unit);
     if (tool.single_point) text += "single_point = true\n";
     return text;
 }
@@ -126,19 +161,25 @@ std::string stated(std::string_view key, const std::string& value) {
     return fmt::format("{} = {}", key, value);
 }
 
-std::string position_text(const gcode::Position& position) {
+/// Writes a length of which the set-up is to state a value, or to assume it.
+using WrittenLength = std::string (*)(double mm, LengthUnit unit);
+
+WrittenLength written_length(bool is_known) { return is_known ? setup_length : assumed_length; }
+
+std::string position_text(const gcode::Position& position, WrittenLength length, LengthUnit unit) {
     std::vector<std::string> axes;
     for (size_t i = 0; i < position.size(); ++i)
         if (position[i] && (i < 3 || *position[i] != 0.0))
-            axes.push_back(
-                fmt::format("{} = {}", core::axis_letters[i], setup_number(*position[i])));
+            axes.push_back(fmt::format("{} = {}", core::axis_letters[i],
+                                       core::is_rotary(i) ? setup_number(*position[i])
+                                                          : length(*position[i], unit)));
     return fmt::format("{{ {} }}", fmt::join(axes, ", "));
 }
 
-std::string origin_text(const gcode::AxisValues& origin) {
+std::string origin_text(const gcode::AxisValues& origin, LengthUnit unit) {
     gcode::Position position;
     for (size_t i = 0; i < position.size(); ++i) position[i] = origin[i];
-    return position_text(position);
+    return position_text(position, assumed_length, unit);
 }
 
 /// A path as it is stated in a file of this folder.
@@ -179,8 +220,11 @@ std::string program_text(const SetupFile& setup, const SetupOrigin& origin) {
     if (setup.dialect)
         text += line(true, stated("dialect", toml_text(gcode::dialect(*setup.dialect).name)));
     text += options_text(setup, origin);
-    text += line(!setup.infers_start, stated("start", position_text(setup.environment.start)),
-                 "machine coordinates");
+    text +=
+        line(!setup.infers_start,
+             stated("start", position_text(setup.environment.start,
+                                           written_length(!setup.infers_start), setup.length_unit)),
+             "machine coordinates");
     if (tool)
         text += line(false, stated("tool_at_start", fmt::format("{}", core::value_of(*tool))),
                      "it cuts before the first tool call");
@@ -202,8 +246,10 @@ std::string machine_text(const SetupFile& setup) {
     std::vector<std::string> axes;
     for (size_t axis = 0; axis < 3; ++axis)
         axes.push_back(fmt::format("{{ name = \"{}\", home = {} }}", core::axis_letters[axis],
-                                   setup_number(home[axis])));
-    return text + comment("  add min, max and rapid (mm/min) of each axis")
+                                   assumed_length(home[axis], setup.length_unit)));
+    return text
+           + comment(fmt::format("  add min, max and rapid ({}/min) of each axis",
+                                 setup.length_unit == LengthUnit::inch ? "inches" : "mm"))
            + line(false, stated("axis", fmt::format("[{}]", fmt::join(axes, ", "))));
 }
 
@@ -219,8 +265,8 @@ std::string offsets_header() {
 }
 
 std::string offset_line(const SetupFile& setup, size_t index) {
-    return line(false,
-                stated(offset_key(index), origin_text(setup.environment.work_offset(index))));
+    return line(false, stated(offset_key(index), origin_text(setup.environment.work_offset(index),
+                                                             setup.length_unit)));
 }
 
 namespace {
@@ -246,24 +292,29 @@ std::string stock_frame(const SetupFile& setup) {
     return "G54";
 }
 
-/// A `[stock]` that gives this box or cylinder; empty for a mesh, which needs a file.
-std::string stock_table(const core::Solid& stock, std::string_view frame) {
+/// A `[stock]` that gives the box or cylinder of a set-up; empty for a mesh, which needs a file.
+std::string stock_table(const SetupFile& setup) {
+    const core::Solid& stock = setup.setup.stock;
+    const WrittenLength written = written_length(setup.stock_known == Known::described);
+    const auto length = [&](double mm) { return written(mm, setup.length_unit); };
+    const auto point = [&](const core::Vec3& p) {
+        return fmt::format("[{}, {}, {}]", length(p.x), length(p.y), length(p.z));
+    };
     std::string text = "[stock]";
     if (const auto* box = std::get_if<core::SolidBox>(&stock.shape)) {
         text += fmt::format("                       # two corners\nbox = [{}, {}]\n",
-                            setup_vector(box->box.min), setup_vector(box->box.max));
+                            point(box->box.min), point(box->box.max));
     } else if (const auto* round = std::get_if<core::SolidCylinder>(&stock.shape)) {
         text += fmt::format("                       # base centre at `at`\ncylinder = {{ radius = "
                             "{}, height = {}, axis = "
                             "\"{}\" }}\nat = {}\n",
-                            setup_number(round->radius), setup_number(round->height),
-                            "XYZ"[round->axis], setup_vector(round->base));
+                            length(round->radius), length(round->height), "XYZ"[round->axis],
+                            point(round->base));
     } else {
         return {};
     }
-    text += fmt::format("frame = {}\n", toml_text(frame));
-    if (stock.tolerance > 0.0)
-        text += line(true, stated("tolerance", setup_number(stock.tolerance)));
+    text += fmt::format("frame = {}\n", toml_text(stock_frame(setup)));
+    if (stock.tolerance > 0.0) text += line(true, stated("tolerance", length(stock.tolerance)));
     return text;
 }
 
@@ -288,19 +339,30 @@ bool has_stock(const SetupFile& setup) {
 
 std::string stock_text(const SetupFile& setup) {
     if (!has_stock(setup)) return {};
-    const std::string table = stock_table(setup.setup.stock, stock_frame(setup));
-    const std::string why = setup.inferred_stock.empty() ? "" : comment(setup.inferred_stock);
+    const std::string table = stock_table(setup);
+    const std::string& words =
+        setup.stock_comment.empty() ? setup.inferred_stock : setup.stock_comment;
+    const std::string why = words.empty() ? "" : comment(words);
     if (table.empty()) return {};
     return "\n" + why + (setup.stock_known == Known::described ? table : commented_out(table));
 }
 
 namespace {
 
+core::Vec3 in_unit(const core::Vec3& mm, LengthUnit unit) {
+    return {gcode::from_mm(mm.x, unit), gcode::from_mm(mm.y, unit), gcode::from_mm(mm.z, unit)};
+}
+
 /// An example: a plate below the stock, where it is not in the way.
 std::string fixture_text(const SetupFile& setup) {
-    constexpr double gap = 10.0, thickness = 20.0; // mm
-    core::Aabb box{core::Vec3(0.0, 0.0, -100.0), core::Vec3(100.0, 100.0, 0.0)};
-    if (has_stock(setup)) box = core::bounds(setup.setup.stock);
+    const bool is_inch = setup.length_unit == LengthUnit::inch;
+    const double gap = is_inch ? 0.5 : 10.0, thickness = is_inch ? 1.0 : 20.0;
+    const double size = is_inch ? 4.0 : 100.0;
+    core::Aabb box{core::Vec3(0.0, 0.0, -size), core::Vec3(size, size, 0.0)};
+    if (has_stock(setup)) {
+        const core::Aabb stock = core::bounds(setup.setup.stock);
+        box = {in_unit(stock.min, setup.length_unit), in_unit(stock.max, setup.length_unit)};
+    }
     const double top = std::floor(box.min.z - gap);
     const core::Vec3 low(std::floor(box.min.x), std::floor(box.min.y), top - thickness);
     const core::Vec3 high(std::ceil(box.max.x), std::ceil(box.max.y), top);
@@ -312,7 +374,8 @@ std::string fixture_text(const SetupFile& setup) {
 }
 
 /// What a source says about a tool, and as comments what is assumed.
-std::string partial_tool_text(const FoundTool& found, const core::ToolDescription& whole) {
+std::string partial_tool_text(const FoundTool& found, const core::ToolDescription& whole,
+                              LengthUnit unit) {
     std::string text =
         "\n"
         + comment(fmt::format("{}, according to {}", core::description_of(found.tool.shape),
@@ -328,21 +391,23 @@ std::string partial_tool_text(const FoundTool& found, const core::ToolDescriptio
         const bool is_known =
             found.is_described && size.of(found.tool) && (!is_diameter || found.has_diameter);
         if (key == "shank_diameter" && !is_known) continue;
-        text += line(is_known, stated(key, setup_number(*value)),
+        const std::string written =
+            size.is_angle() ? setup_number(*value) : written_length(is_known)(*value, unit);
+        text += line(is_known, stated(key, written),
                      key == "stick_out" ? "from the tip to the holder" : "");
     }
     return text + line(false, stated("holder", "\"BT40-ER32\""), "or other cones, see the manual");
 }
 
 /// A tool of a library, which describes it completely.
-std::string library_tool_text(core::ToolDescription tool) {
+std::string library_tool_text(core::ToolDescription tool, LengthUnit unit) {
     const bool is_plain =
         tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
     if (is_plain && tool.stick_out) {
         tool.shank_diameter = tool.shank[0].lower_diameter;
         tool.shank.clear();
     }
-    return tool_table(tool);
+    return tool_table(tool, unit);
 }
 
 } // namespace
@@ -351,7 +416,8 @@ std::string tool_text(const SetupFile& setup, core::ToolNumber number) {
     const core::ToolDescription& tool = setup.setup.tools.at(number).description;
     const auto found = setup.found_tools.find(number);
     const bool is_partial = found != setup.found_tools.end() && !setup.library.contains(number);
-    return is_partial ? partial_tool_text(found->second, tool) : library_tool_text(tool);
+    return is_partial ? partial_tool_text(found->second, tool, setup.length_unit)
+                      : library_tool_text(tool, setup.length_unit);
 }
 
 std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {
@@ -361,7 +427,10 @@ std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {
             + comment("A line that begins with # and no blank is an assumption or an example. "
                       "Remove the # when you have compared it with the machine, and that of the "
                       "[table] above it.");
-    text += "\n" + line(false, stated("mesh_size", setup_number(setup.setup.mesh_size)))
+    text += "\n";
+    if (setup.length_unit == LengthUnit::inch)
+        text += line(true, stated(length_unit_key, "\"inch\""), "of all lengths in this file");
+    text += line(false, stated("mesh_size", setup_length(setup.setup.mesh_size, setup.length_unit)))
             + line(false, stated("fixtures", "\"none\""), "or describe them below");
     text += program_text(setup, origin) + machine_text(setup) + offsets_text(setup)
             + stock_text(setup) + fixture_text(setup);

@@ -21,17 +21,16 @@ struct SetupOrigin {
     std::string folder{}; // of the set-up file; empty: the current one
 };
 
-/// A number in TOML, exact to the last bit; whole numbers are written without a fraction.
-std::string toml_number(double value);
-
 /// A text as a TOML string that gives the text when read, or its utf8_text.
 std::string toml_text(std::string_view text);
 
-/// A `[[tool]]` that gives this tool when read, exact to the last bit.
-std::string tool_table(const core::ToolDescription& tool);
+/// A `[[tool]]` of a set-up in a unit that gives this tool when read: in mm exact to the last bit,
+/// in inches rounded as by setup_length(), or exact where rounded lengths would contradict each
+/// other.
+std::string tool_table(const core::ToolDescription& exact, gcode::LengthUnit unit);
 
-/// Parts of a set-up file, each after an empty line, with assumed lines commented out. A tool or a
-/// stock of which the file is to state nothing gives only comments.
+/// Parts of a set-up file in its unit, each after an empty line, with assumed lines commented out.
+/// A tool or a stock of which the file is to state nothing gives only comments.
 std::string tool_text(const SetupFile& setup, core::ToolNumber number);
 std::string stock_text(const SetupFile& setup);
 std::string offsets_header();
@@ -42,7 +41,8 @@ std::string offset_line(const SetupFile& setup, size_t index);
 /// state, and has assumptions and examples as lines that are commented out. So a check with it
 /// completes it as it completes no set-up.
 ///
-/// Result: lengths are rounded to 1e-6 mm.
+/// Result: lengths are in `length_unit` of the set-up, rounded as by setup_length(), and assumed
+/// ones as by assumed_length().
 std::string setup_text(const SetupFile& setup, const SetupOrigin& origin);
 
 } // namespace app

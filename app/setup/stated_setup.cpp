@@ -2,11 +2,26 @@
 
 #include <algorithm>
 
+#include "app/setup/setup_length.h"
 #include "app/setup/toml_file.h"
 #include "core/sim/tool_description.h"
 
 namespace app {
 namespace {
+
+/// Reads the numbers of a text. Lengths become mm.
+struct StatedNumbers {
+    gcode::LengthUnit unit;
+
+    std::optional<double> length(const toml::node* node) const {
+        const auto number = node ? node->value<double>() : std::nullopt;
+        return number ? std::optional(gcode::to_mm(*number, unit)) : std::nullopt;
+    }
+    std::optional<core::Vec3> point(const toml::node* node) const;
+    std::optional<core::Aabb> box(const toml::node* node) const;
+    std::optional<StatedBody::Cylinder> cylinder(const toml::node* node) const;
+    StatedBody body(const toml::table& table) const;
+};
 
 std::optional<core::Vec3> vector_in(const toml::node* node) {
     const toml::array* list = node ? node->as_array() : nullptr;
@@ -20,41 +35,47 @@ std::optional<core::Vec3> vector_in(const toml::node* node) {
     return v;
 }
 
-std::optional<core::Aabb> box_in(const toml::node* node) {
-    const toml::array* list = node ? node->as_array() : nullptr;
-    if (!list || list->size() != 2) return std::nullopt;
-    const auto a = vector_in(list->get(0)), b = vector_in(list->get(1));
-    if (!a || !b) return std::nullopt;
-    core::Aabb box;
-    box.extend(*a);
-    box.extend(*b);
-    return box;
+std::optional<core::Vec3> StatedNumbers::point(const toml::node* node) const {
+    auto v = vector_in(node);
+    for (int axis = 0; v && axis < 3; ++axis) (*v)[axis] = gcode::to_mm((*v)[axis], unit);
+    return v;
 }
 
-std::optional<StatedBody::Cylinder> cylinder_in(const toml::node* node) {
+std::optional<core::Aabb> StatedNumbers::box(const toml::node* node) const {
+    const toml::array* list = node ? node->as_array() : nullptr;
+    if (!list || list->size() != 2) return std::nullopt;
+    const auto a = point(list->get(0)), b = point(list->get(1));
+    if (!a || !b) return std::nullopt;
+    core::Aabb corners;
+    corners.extend(*a);
+    corners.extend(*b);
+    return corners;
+}
+
+std::optional<StatedBody::Cylinder> StatedNumbers::cylinder(const toml::node* node) const {
     const toml::table* table = node ? node->as_table() : nullptr;
     if (!table) return std::nullopt;
     const std::string axis = (*table)["axis"].value_or(std::string("Z"));
-    return StatedBody::Cylinder{(*table)["radius"].value_or(0.0), (*table)["height"].value_or(0.0),
-                                axis.size() == 1 && axis[0] >= 'X' && axis[0] <= 'Z' ? axis[0] - 'X'
-                                                                                     : 2};
+    return StatedBody::Cylinder{
+        length(table->get("radius")).value_or(0.0), length(table->get("height")).value_or(0.0),
+        axis.size() == 1 && axis[0] >= 'X' && axis[0] <= 'Z' ? axis[0] - 'X' : 2};
 }
 
-StatedBody body_in(const toml::table& table) {
-    StatedBody body;
-    body.name = table["name"].value_or(std::string());
-    body.box = box_in(table.get("box"));
-    body.cylinder = cylinder_in(table.get("cylinder"));
-    body.mesh = table["mesh"].value_or(std::string());
-    body.model = table["model"].value_or(std::string());
-    body.at = vector_in(table.get("at")).value_or(core::Vec3(0.0));
-    body.rotate_deg = vector_in(table.get("rotate_deg")).value_or(core::Vec3(0.0));
-    body.frame = table["frame"].value_or(std::string("G54"));
-    body.expendable = table["expendable"].value_or(false);
-    body.tolerance = table["tolerance"].value<double>();
-    body.margin = table["margin"].value<double>();
-    body.line = table.source().begin.line;
-    return body;
+StatedBody StatedNumbers::body(const toml::table& table) const {
+    StatedBody read;
+    read.name = table["name"].value_or(std::string());
+    read.box = box(table.get("box"));
+    read.cylinder = cylinder(table.get("cylinder"));
+    read.mesh = table["mesh"].value_or(std::string());
+    read.model = table["model"].value_or(std::string());
+    read.at = point(table.get("at")).value_or(core::Vec3(0.0));
+    read.rotate_deg = vector_in(table.get("rotate_deg")).value_or(core::Vec3(0.0));
+    read.frame = table["frame"].value_or(std::string("G54"));
+    read.expendable = table["expendable"].value_or(false);
+    read.tolerance = length(table.get("tolerance"));
+    read.margin = length(table.get("margin"));
+    read.line = table.source().begin.line;
+    return read;
 }
 
 /// Calls a function for each table of a list of tables.
@@ -86,9 +107,11 @@ std::optional<double> stated_tool_size(const std::string& text, core::ToolNumber
     std::optional<double> value;
     const auto root = parsed_toml(text);
     if (!root) return value;
+    const StatedNumbers numbers{unit_of_setup(*root)};
     visit_tables(*root, "tool", [&](const toml::table& table) {
-        if (table["number"].value<int>() == core::value_of(number))
-            value = table[size.key].value<double>();
+        if (table["number"].value<int>() != core::value_of(number)) return;
+        value =
+            size.is_angle() ? table[size.key].value<double>() : numbers.length(table.get(size.key));
     });
     return value;
 }
@@ -97,10 +120,12 @@ StatedSetup stated_in(const std::string& text) {
     StatedSetup stated;
     const auto root = parsed_toml(text);
     if (!root) return stated;
-    if (const toml::table* stock = (*root)["stock"].as_table()) stated.stock = body_in(*stock);
-    if (const toml::table* part = (*root)["part"].as_table()) stated.part = body_in(*part);
+    stated.length_unit = unit_of_setup(*root);
+    const StatedNumbers numbers{stated.length_unit};
+    if (const toml::table* stock = (*root)["stock"].as_table()) stated.stock = numbers.body(*stock);
+    if (const toml::table* part = (*root)["part"].as_table()) stated.part = numbers.body(*part);
     visit_tables(*root, "fixture",
-                 [&](const toml::table& table) { stated.fixtures.push_back(body_in(table)); });
+                 [&](const toml::table& table) { stated.fixtures.push_back(numbers.body(table)); });
     visit_tables(*root, "tool", [&](const toml::table& table) {
         if (const auto number = table["number"].value<int>())
             stated.tools.push_back(core::ToolNumber{*number});
@@ -111,7 +136,8 @@ StatedSetup stated_in(const std::string& text) {
             stated.offsets.push_back(known);
             core::Vec3 origin(0.0);
             for (int axis = 0; axis < 3; ++axis)
-                origin[axis] = (*offsets)[known][std::string(1, "XYZ"[axis])].value_or(0.0);
+                origin[axis] = numbers.length((*offsets)[known][std::string(1, "XYZ"[axis])].node())
+                                   .value_or(0.0);
             stated.origins[known] = origin;
         }
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());

@@ -7,6 +7,7 @@
 
 #include "core/base/ids.h"
 #include "core/base/vec.h"
+#include "gcode/language/modal_state.h"
 
 namespace core {
 struct ToolSize;
@@ -14,7 +15,7 @@ struct ToolSize;
 
 namespace app {
 
-/// A body as the text of a set-up states it. Frame: `frame`.
+/// A body as the text of a set-up states it, in mm whatever the unit of the text. Frame: `frame`.
 struct StatedBody {
     struct Cylinder {
         double radius = 0.0, height = 0.0;
@@ -42,7 +43,8 @@ struct StatedSetup {
     std::vector<std::string> offsets;          // names as written
     std::map<std::string, core::Vec3> origins; // of the offsets; 0 for an axis that is not stated
     std::string machine_file, tool_library;
-    bool has_no_fixtures = false; // fixtures = "none"
+    bool has_no_fixtures = false;                          // fixtures = "none"
+    gcode::LengthUnit length_unit = gcode::LengthUnit::mm; // of the text
 
     /// Null if it states none of this name.
     const StatedBody* fixture(const std::string& name) const;

@@ -13,6 +13,7 @@
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_document.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"

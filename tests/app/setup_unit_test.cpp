@@ -1,3 +1,7 @@
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
 #include <regex>
 #include <set>
 
@@ -7,8 +11,12 @@
 
 #include "app/report/text/text_report.h"
 #include "app/setup/program_settings.h"
+#include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
+#include "app/setup/stated_setup.h"
+#include "app/setup/toml_file.h"
 #include "core/base/file_reads.h"
 #include "gcode/language/modal_state.h"
 #include "tests/support/scoped_folder.h"
@@ -20,6 +28,7 @@ namespace {
 
 using gcode::LengthUnit;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr double mm_per_inch = 25.4;
 const std::string inch = "length_unit = \"inch\"\n";
@@ -500,6 +509,171 @@ TEST(SetupUnit, IsRefusedWhereItIsNotMeant) {
     EXPECT_THAT(folder.error("[program]\nlength_unit = \"inch\"\n"),
                 HasSubstr("write it before the first table"));
     EXPECT_TRUE(folder.read("length_unit = \"mm\"\nmesh_size = 1\n"));
+}
+
+TEST(SetupLength, ComesBackAsItWasEntered) {
+    std::mt19937 random(11);
+    for (int i = 0; i < 200000; ++i) {
+        const int decimals = static_cast<int>(random() % 7);
+        const double steps = std::pow(10.0, decimals);
+        const double entered =
+            (static_cast<double>(random() % 4000001) - 2000000.0) / 1000.0 / (1 + random() % 9);
+        const double value = std::round(entered * steps) / steps;
+        const std::string text = app::setup_length(value * mm_per_inch, LengthUnit::inch);
+        EXPECT_EQ(text, app::toml_number(value + 0.0));
+        EXPECT_EQ(text, app::exact_length(value * mm_per_inch, LengthUnit::inch));
+        EXPECT_EQ(std::stod(text) * mm_per_inch, value * mm_per_inch);
+    }
+}
+
+TEST(SetupLength, IsNearWhatWasComputed) {
+    std::mt19937 random(12);
+    for (int i = 0; i < 200000; ++i) {
+        const double mm =
+            (static_cast<double>(random()) / 4294967296.0 - 0.5) * (i % 2 == 0 ? 4000.0 : 20.0);
+        const double written = std::stod(app::setup_length(mm, LengthUnit::inch)) * mm_per_inch;
+        EXPECT_NEAR(written, mm, 1.28e-7);
+        EXPECT_NEAR(std::stod(app::assumed_length(mm, LengthUnit::inch)) * mm_per_inch, mm,
+                    1.28e-5);
+        EXPECT_NEAR(std::stod(app::setup_length(mm, LengthUnit::mm)), mm, 5.01e-7);
+        // The nearest of all numbers near the quotient, found the slow way.
+        const double exact = std::stod(app::exact_length(mm, LengthUnit::inch)) * mm_per_inch;
+        double least = std::numeric_limits<double>::infinity();
+        double candidate = mm / mm_per_inch;
+        for (int step = 0; step < 4; ++step) candidate = std::nextafter(candidate, -1e9);
+        for (int step = 0; step < 9; ++step, candidate = std::nextafter(candidate, 1e9))
+            least = std::min(least, std::abs(candidate * mm_per_inch - mm));
+        EXPECT_EQ(std::abs(exact - mm), least) << mm;
+    }
+    EXPECT_EQ(app::setup_length(-0.0, LengthUnit::inch), "0");
+    EXPECT_EQ(app::setup_length(1e300, LengthUnit::mm), "1e+300");
+    EXPECT_EQ(app::setup_length(12.7, LengthUnit::inch), "0.5");
+    EXPECT_EQ(app::setup_length(10.0, LengthUnit::inch), "0.39370079");
+    EXPECT_EQ(app::assumed_length(10.0, LengthUnit::inch), "0.393701");
+    EXPECT_EQ(app::setup_point({25.4, -31.75, 0}, LengthUnit::inch), "[1, -1.25, 0]");
+}
+
+TEST(SetupChanges, AreWrittenInTheUnitOfTheText) {
+    const std::string text = inch
+                             + "allowance = 0.1 # wide\n[offsets]\nG54 = { X = 1, Y = 2 }\n"
+                               "[[fixture]]\nname = \"jaw\"\nbox = [[0, 0, 0], [1, 2, 3]]\n";
+    const auto changed = [](const core::Result<std::string>& result) {
+        EXPECT_TRUE(result) << (result ? "" : result.error().message);
+        return result.value_or("");
+    };
+    const auto jaw = *app::path_of_fixture(text, "jaw");
+    EXPECT_THAT(changed(app::with_box(text, jaw, {{0, 0, 0}, {31.75, 12.7, 10}})),
+                HasSubstr("box = [[0, 0, 0], [1.25, 0.5, 0.39370079]]"));
+    EXPECT_THAT(changed(app::with_cylinder(text, jaw, 12.7, 25.4, 2)),
+                HasSubstr("cylinder = { radius = 0.5, height = 1, axis = \"Z\" }"));
+    EXPECT_THAT(changed(app::with_pose(text, jaw, {2.54, 0, 0}, {0, 0, 90})),
+                HasSubstr("at = [0.1, 0, 0]\nrotate_deg = [0, 0, 90]"));
+    EXPECT_THAT(changed(app::with_offset(text, "G54", {-25.4, 0, 63.5})),
+                HasSubstr("G54 = { X = -1, Y = 0, Z = 2.5 }"));
+    EXPECT_THAT(changed(app::with_offset(text, "G55", {-25.4, 0, 63.5})),
+                HasSubstr("G55 = { X = -1, Y = 0, Z = 2.5 }"));
+    EXPECT_THAT(changed(app::with_allowance(text, 5.08)), HasSubstr("allowance = 0.2 # wide"));
+    EXPECT_THAT(changed(app::with_part_tolerance(text, 0.254)), HasSubstr("tolerance = 0.01"));
+    const core::Solid stock{core::SolidBox{{{0, 0, -25.4}, {50.8, 25.4, 0}}}, 0.0};
+    EXPECT_THAT(changed(app::with_stock(text, stock, "G54")),
+                HasSubstr("box = [[0, 0, -1], [2, 1, 0]]"));
+    for (const core::ToolSize& size : core::tool_sizes())
+        EXPECT_THAT(changed(app::with_tool_size(text, core::ToolNumber{1}, size, 12.7)),
+                    HasSubstr(fmt::format("{} = {}\n", size.key, size.is_angle() ? 12.7 : 0.5)));
+}
+
+TEST(StatedSetup, IsInMmWhateverTheUnitOfTheText) {
+    const std::string body = "box = [[<0>, <0>, <-1.25>], [<4>, <3>, <0>]]\nat = [<0.5>, <1>, <2>]"
+                             "\nrotate_deg = [10, 20, 30]\ntolerance = <0.01>\nmargin = <0.5>\n";
+    const std::string form = "[stock]\n" + body + "[part]\n" + body + "[[fixture]]\nname = \"a\"\n"
+                             + body
+                             + "[[fixture]]\nname = \"b\"\ncylinder = { radius = <0.25>, "
+                               "height = <2> }\n";
+    const app::StatedSetup in_inch = app::stated_in(written(form, LengthUnit::inch)),
+                           in_mm = app::stated_in(written(form, LengthUnit::mm));
+    EXPECT_EQ(in_inch.length_unit, LengthUnit::inch);
+    EXPECT_EQ(in_mm.length_unit, LengthUnit::mm);
+    const auto expect_same = [](const app::StatedBody& a, const app::StatedBody& b) {
+        ASSERT_EQ(a.box.has_value(), b.box.has_value());
+        if (a.box) {
+            EXPECT_EQ(a.box->min, b.box->min);
+            EXPECT_EQ(a.box->max, b.box->max);
+        }
+        ASSERT_EQ(a.cylinder.has_value(), b.cylinder.has_value());
+        if (a.cylinder) {
+            EXPECT_EQ(a.cylinder->radius, 6.35);
+            EXPECT_EQ(a.cylinder->radius, b.cylinder->radius);
+            EXPECT_EQ(a.cylinder->height, b.cylinder->height);
+        }
+        EXPECT_EQ(a.at, b.at);
+        EXPECT_EQ(a.rotate_deg, b.rotate_deg);
+        EXPECT_EQ(a.tolerance, b.tolerance);
+        EXPECT_EQ(a.margin, b.margin);
+    };
+    expect_same(*in_inch.stock, *in_mm.stock);
+    expect_same(*in_inch.part, *in_mm.part);
+    for (size_t i = 0; i < 2; ++i) expect_same(in_inch.fixtures[i], in_mm.fixtures[i]);
+    EXPECT_EQ(in_inch.stock->at, core::Vec3(12.7, 25.4, 50.8));
+}
+
+/// The tools of a set-up, written into another one.
+std::string with_tools_of(const app::SetupFile& file) {
+    std::string text = inch;
+    for (const auto& [number, tool] : file.setup.tools) {
+        const auto more = app::with_tool(text, tool.description);
+        EXPECT_TRUE(more) << (more ? "" : more.error().message);
+        text = more.value_or(text);
+    }
+    return text;
+}
+
+/// Tools of round inches are written as they were entered, as often as one likes.
+TEST(StatedTool, InInchesIsTheSameTool) {
+    const SetupFolder folder;
+    folder.folder.write("holders.toml",
+                        inch + "[[holder]]\nname = \"A\"\ncones = [[0.75, 1.25, 1.5]]\n");
+    const auto read = folder.read(written(templates[3], LengthUnit::inch));
+    ASSERT_TRUE(read);
+    const std::string text = with_tools_of(*read);
+    for (const char* line :
+         {"diameter = 0.5\n", "corner_radius = 0.06\n", "pitch = 0.05\n", "touched_off = 4.5 ",
+          "centre_diameter = 0.1\n", "point_deg = 135\n", "gauge_length = 6\n",
+          "profile = [[0, 0], [0.25, 0.125], [0.5, 1]]\n", "holder = [[0.75, 1.25, 1.5]]\n",
+          "shank = [[0.5, 0.75, 1], [0.75, 0.75, 0.5]]\n", "holder = [[2, 2.5, 2], [2.5, 5, 0.5]]"})
+        EXPECT_THAT(text, HasSubstr(line));
+    EXPECT_FALSE(std::regex_search(text, std::regex("\\.[0-9]{5}"))) << text;
+    const auto again = folder.read(text);
+    ASSERT_TRUE(again) << app::error_text(again.error()) << text;
+    EXPECT_EQ(with_tools_of(*again), text);
+}
+
+/// Sizes of other tools are rounded, unless they then contradict each other.
+TEST(StatedTool, InInchesIsAsRoundAsItCanBe) {
+    const SetupFolder folder;
+    core::ToolDescription tool;
+    tool.number = core::ToolNumber{7};
+    tool.shape = core::ToolShape::bull;
+    std::mt19937 random(13);
+    int rounded = 0;
+    constexpr int count = 300;
+    for (int i = 0; i < count; ++i) {
+        tool.diameter = 2.0 + static_cast<double>(random() % 10000) / 777.0;
+        tool.corner_radius = 0.5 * tool.diameter; // cannot be larger
+        tool.flute_length = 3.0 * tool.diameter;
+        tool.stick_out = tool.flute_length;
+        const auto text = app::with_tool(inch, tool);
+        ASSERT_TRUE(text);
+        const auto again = folder.read(*text);
+        ASSERT_TRUE(again) << app::error_text(again.error()) << *text;
+        const core::ToolDescription& same = again->setup.tools.at(core::ToolNumber{7}).description;
+        EXPECT_NEAR(same.diameter, tool.diameter, 1.28e-7);
+        EXPECT_NEAR(*same.corner_radius, *tool.corner_radius, 1.28e-7);
+        const bool is_rounded = !std::regex_search(*text, std::regex("\\.[0-9]{9}"));
+        EXPECT_TRUE(is_rounded || std::abs(same.diameter - tool.diameter) < 1e-14 * tool.diameter);
+        rounded += is_rounded ? 1 : 0;
+    }
+    EXPECT_GT(rounded, count / 3);
+    EXPECT_LT(rounded, count);
 }
 
 } // namespace

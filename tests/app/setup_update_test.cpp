@@ -72,6 +72,22 @@ TEST(SetupUpdate, AddsWhatTheProgramSaysNow) {
     EXPECT_THAT(done.text, HasSubstr("stick_out = 33 # measured"));
 }
 
+/// The unit of a set-up is that of its text, not of the program.
+TEST(SetupUpdate, KeepsToTheUnitOfTheFile) {
+    const std::string program =
+        "G20 G90 G54\n(T1 D=0.5 - FLAT END MILL)\nT1 M6\nS8000 M3\nG43 H1 Z2\n"
+        "G0 X0 Y0\nG1 Z-.1 F20\nX2\nG0 Z2\nM30\n";
+    const std::string in_mm = updated("mesh_size = 1\n", program).text;
+    EXPECT_THAT(in_mm, HasSubstr("\ndiameter = 12.7\n"));
+    EXPECT_THAT(in_mm, HasSubstr("Z = -500 }"));
+    EXPECT_THAT(in_mm, Not(HasSubstr("inch")));
+    const std::string in_inch = updated("length_unit = \"inch\"\nmesh_size = 0.04\n", program).text;
+    EXPECT_THAT(in_inch, HasSubstr("\ndiameter = 0.5\n"));
+    EXPECT_THAT(in_inch, HasSubstr("Z = -19.685039 }"));
+    const std::string of_mm_program = updated("length_unit = \"inch\"\n", head + "M30\n").text;
+    EXPECT_THAT(of_mm_program, HasSubstr("\ndiameter = 0.31496063\n"));
+}
+
 TEST(SetupUpdate, NamesWhatIsNotUsedAnyMore) {
     const std::string setup = "[offsets]\nG54 = { X = 1 }\nG56 = { X = 2 }\n[[tool]]\nnumber = 1\n"
                               "stick_out = 40\n[[tool]]\nnumber = 9\nstick_out = 40\n";

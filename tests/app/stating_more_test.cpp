@@ -12,6 +12,7 @@
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "core/base/rule_table.h"
 #include "gcode/language/canonical.h"
@@ -69,7 +70,8 @@ void add_tools(const app::SetupFile& file, std::vector<Statement>& all) {
     for (const auto& [number, tool] : file.setup.tools) {
         const int n = core::value_of(number);
         const std::string subject = fmt::format("tool {}", n);
-        all.push_back({subject, subject, "", "", app::tool_table(tool.description)});
+        all.push_back(
+            {subject, subject, "", "", app::tool_table(tool.description, gcode::LengthUnit::mm)});
         for (const core::ToolSize& size : core::tool_sizes()) {
             const auto value = size.of(tool.description);
             if (value && size.shapes.contains(tool.description.shape))

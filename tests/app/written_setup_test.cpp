@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
 #include "core/base/rule_table.h"
+#include "gcode/language/modal_state.h"
 #include "gcode/text/source.h"
 #include "tests/app/bare_programs.h"
 #include "tests/support/scoped_folder.h"
@@ -129,6 +131,59 @@ TEST(WrittenSetup, ChangesNothing) {
     });
 }
 
+/// The programs in inches, those of the shared collection included, if it is there.
+std::vector<std::string> programs_in_inches() {
+    std::vector<std::string> paths = programs();
+    const std::filesystem::path shared = FEELER_SOURCE_DIR "/../shared/programs";
+    if (std::filesystem::exists(shared)) {
+        for (const auto& file : std::filesystem::recursive_directory_iterator(shared))
+            if (file.is_regular_file()) paths.push_back(file.path().generic_string());
+    } else {
+        EXPECT_FALSE(std::getenv("FEELER_REQUIRE_SHARED")) << shared << " is missing";
+    }
+    std::erase_if(paths, [](const std::string& path) {
+        const auto program = gcode::read_program(path);
+        const auto setup =
+            program ? app::infer_setup(*program, {}) : core::Result<app::SetupFile>();
+        return !program || !setup || setup->length_unit != gcode::LengthUnit::inch;
+    });
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+void expect_same_blocks(const app::CheckRun& a, const app::CheckRun& b, const std::string& where) {
+    ASSERT_EQ(a.blocks.size(), b.blocks.size()) << where;
+    for (size_t i = 0; i < a.blocks.size(); ++i) {
+        const core::BlockResult one = a.blocks[i].result, two = b.blocks[i].result;
+        ASSERT_EQ(one.verdict, two.verdict) << where << i;
+        ASSERT_EQ(one.removed, two.removed) << where << i;
+        ASSERT_EQ(one.pairs.size(), two.pairs.size()) << where << i;
+        for (size_t k = 0; k < one.pairs.size(); ++k) {
+            ASSERT_EQ(one.pairs[k].lower, two.pairs[k].lower) << where << i;
+            ASSERT_EQ(one.pairs[k].upper, two.pairs[k].upper) << where << i;
+        }
+    }
+}
+
+/// The set-up is in inches, too, and what it states is exact: every clearance has the same bits.
+TEST(WrittenSetup, ChangesNoBitOfProgramsInInches) {
+    size_t count = 0;
+    for (const std::string& path : programs_in_inches()) {
+        const std::string text = written_setup(path);
+        EXPECT_THAT(text, HasSubstr("\nlength_unit = \"inch\"")) << path;
+        EXPECT_THAT(text, Not(HasSubstr(" mm"))) << path;
+        const auto bare = app::run_check({.program = path, .setup = {}, .allowance = {}});
+        if (!bare) continue; // a program that cannot be read to its end
+        const app::CheckRun stated = run_of(path, text);
+        EXPECT_EQ(findings_of(*bare), findings_of(stated)) << path << "\n" << text;
+        EXPECT_EQ(bare->verdict, stated.verdict) << path;
+        EXPECT_EQ(*bare->coverage, *stated.coverage) << path;
+        expect_same_blocks(*bare, stated, path);
+        ++count;
+    }
+    EXPECT_GE(count, std::getenv("FEELER_REQUIRE_SHARED") ? 10u : 1u);
+}
+
 TEST(WrittenSetup, FitsOnAScreenAndHasRoundNumbers) {
     const std::string text = written_setup(FEELER_SOURCE_DIR "/assets/programs/TEST_G90.NC");
     EXPECT_LE(lines_of(text).size(), 60u) << text;
@@ -209,6 +264,21 @@ TEST(WrittenSetup, StatesWhatTheProgramStates) {
                                           "7 L Z-3 F100\n8 L X+40 F200\n9 L Z+50 FMAX\n"
                                           "10 END PGM A MM\n");
     EXPECT_THAT(block, HasSubstr("\nbox = [[0, 0, -20], [50, 40, 0]]\n"));
+}
+
+TEST(WrittenSetup, IsInInchesForAProgramInInches) {
+    const std::string program = "G20 G90 G54\n(T1 D=0.5 CR=0. - ZMIN=-.25 - FLAT END MILL)\nT1 M6\n"
+                                "S3000 M3\nG43 H1 Z2\nG0 X0 Y0\nZ.1\nG1 Z-.25 F10\nX3.125\nY1.5\n"
+                                "G0 Z2\nM30\n";
+    const std::string text = written_for(program);
+    EXPECT_THAT(text, HasSubstr("\nlength_unit = \"inch\" "));
+    EXPECT_THAT(text, HasSubstr("[[tool]]\nnumber = 1\ndiameter = 0.5\n"));
+    EXPECT_THAT(text, HasSubstr("\n#flute_length = 1.5\n"));
+    EXPECT_THAT(text, HasSubstr("\n#box = [[-0.25, -0.25, -0.32874], [3.375, 1.75, 0]]\n"));
+    EXPECT_THAT(text, HasSubstr("X -0.2500 to 3.3750, Y"));
+    EXPECT_THAT(text, HasSubstr("\n#box = [[-1, -1, -2], [4, 2, -1]]\n"));
+    EXPECT_THAT(text, HasSubstr("(inches/min)"));
+    EXPECT_THAT(written_for("G21" + program.substr(3)), Not(HasSubstr("length_unit")));
 }
 
 TEST(WrittenSetup, UsesTheWorkOffsetOfTheProgram) {

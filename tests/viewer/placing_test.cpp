@@ -76,6 +76,10 @@ const std::string vise =
       "[[fixture]]\nname = \"jaw\"\nbox = [[-70, -50, 0], [70, 0, 45]]\nat = [0, -170, 0]\nframe = "
       "\"vise\"\n";
 
+core::FeaturePick corner_at(const Vec3& point) {
+    return {.kind = core::FeatureKind::corner, .point = point};
+}
+
 TEST(Placing, ClosesTheJawsOfAVise) {
     Job job(vise);
     job.expect(slide_to_contact(job.model, "vise", {0, 0, 1})); // the bed under the stock
@@ -141,6 +145,51 @@ TEST(Placing, KeepsABodyWhereItIsWhenItsFrameChanges) {
     frame_is("base");
     job.expect(slide_to_contact(job.model, "base", {-1, 0, 0}));
     EXPECT_LT(job.box("clamp").min.x, before.min.x - 1.0) << "now it goes with the base";
+}
+
+/// Positions in inches are rounded to 1e-8: finer than those in mm, and far below 1e-6 mm.
+TEST(Placing, WritesInchesInASetupInInches) {
+    const std::string setup =
+        "length_unit = \"inch\"\n[offsets]\nG54 = { X = -14, Y = -8, Z = -16.5 }\n[stock]\n"
+        "box = [[-2, -1.25, -1], [2, 1.25, 0]]\n[[fixture]]\nname = \"vise\"\n"
+        "box = [[-3, -12, -2.5], [3, 3, 0]] # bed\nat = [0, 2.5, -1.75]\n"
+        "[[fixture]]\nname = \"jaw\"\nbox = [[-3, -2, 0], [3, 0, 1.5]]\nat = [0, -7, 0]\n"
+        "frame = \"vise\"\n";
+    Job job(setup);
+    const std::string& text = job.model.workspace.document.text();
+    constexpr double touching = 2e-7; // mm
+    job.expect(slide_to_contact(job.model, "vise", {0, 0, 1}));
+    EXPECT_NEAR(job.box("vise").max.z, -25.4, touching);
+    EXPECT_THAT(text, HasSubstr("at = [0, 2.5, -1]"));
+    job.expect(slide_to_contact(job.model, "jaw", {0, 1, 0}));
+    EXPECT_NEAR(job.box("jaw").max.y, -31.75, touching);
+    EXPECT_THAT(text, HasSubstr("at = [0, -3.75, 0]\nframe = \"vise\""));
+    job.expect(move_body(job.model, "jaw", core::translation({0, 0, 10}), "Move"));
+    EXPECT_THAT(text, HasSubstr("at = [0, -3.75, 0.39370079]"));
+    EXPECT_NEAR(job.box("jaw").min.z, -15.4, touching);
+    job.expect(set_zero(job.model, "G54", corner_at(job.box("stock").min)));
+    EXPECT_THAT(text, HasSubstr("G54 = { X = -16, Y = -9.25, Z = -17.5 }"));
+    EXPECT_THAT(text, HasSubstr("[stock]\nbox = [[0, 0, 0], [4, 2.5, 1]]"));
+    job.expect(move_body(job.model, "stock", core::translation({12.7, 0, 0}), "Move"));
+    EXPECT_THAT(text, HasSubstr("box = [[0.5, 0, 0], [4.5, 2.5, 1]]"));
+    for (int i = 0; i < 5; ++i) undo(job.model, 0.0);
+    EXPECT_EQ(text, setup);
+}
+
+/// A jaw of any size that was slid to a stock of any size touches it.
+TEST(Placing, TouchesWithin1e6MmInInches) {
+    std::mt19937 random(17);
+    const auto number = [&](double least, double most) {
+        return least + (most - least) * static_cast<double>(random() % 1000003) / 1000003.0;
+    };
+    for (int round = 0; round < 40; ++round) {
+        Job job(fmt::format("length_unit = \"inch\"\n[stock]\nbox = [[0, 0, -1], [{}, 3, 0]]\n"
+                            "[[fixture]]\nname = \"jaw\"\nbox = [[0, 0, -1], [{}, 2, 0.5]]\n"
+                            "at = [{}, 0, 0]\n",
+                            number(1, 9), number(1, 4), number(12, 40)));
+        job.expect(slide_to_contact(job.model, "jaw", {-1, 0, 0}));
+        EXPECT_NEAR(job.box("jaw").min.x, job.box("stock").max.x, 1e-6);
+    }
 }
 
 TEST(Placing, MovesBodiesInTurnedFrames) {
@@ -227,10 +276,6 @@ TEST(Placing, CentresBetweenFaces) {
     job.expect(centre_between(job.model, "bar", a, b));
     expect_near(job.box("bar").min, {before.min.x, -30, before.min.z});
     EXPECT_FALSE(centre_between(job.model, "bar", a, {{0, 0, 0}, {1, 0, 0}}));
-}
-
-core::FeaturePick corner_at(const Vec3& point) {
-    return {.kind = core::FeatureKind::corner, .point = point};
 }
 
 TEST(Placing, SetsAZeroWithoutMovingBodiesOnTheMachine) {

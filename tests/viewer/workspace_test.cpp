@@ -23,9 +23,11 @@ using testing::HasSubstr;
 using Kind = SetupItem::Kind;
 
 /// A window with a program and the assumed set-up of a worker.
-ViewModel opened_model(const std::string& text = {}, const std::string& path = {}) {
+ViewModel opened_model(const std::string& text = {}, const std::string& path = {},
+                       bool is_inch = false) {
     ViewModel model;
     OpenedProgram opened;
+    opened.is_inch = is_inch;
     opened.program = "/jobs/plate.nc";
     opened.proposed_path = "/jobs/plate.toml";
     auto sheet = std::make_shared<app::SetupSheet>();
@@ -149,6 +151,31 @@ TEST(Workspace, DeletesAFixtureWithWhatStandsOnIt) {
     EXPECT_EQ(model.workspace.document.undo_title(), "Delete vise and 2 that stand on it");
     undo(model, 0.0);
     EXPECT_EQ(text_of_setup(model), text);
+}
+
+TEST(Workspace, BeginsInTheUnitOfTheProgram) {
+    ViewModel model = opened_model({}, {}, true);
+    model.settings.inch = true;
+    delete_selected(model);
+    EXPECT_EQ(text_of_setup(model), "");
+    EXPECT_FALSE(edit_setup(model, "Delete the jaw", [](const std::string& text) {
+        return app::without_fixture(text, "jaw");
+    }));
+    EXPECT_EQ(text_of_setup(model), "") << "nothing was changed";
+    add_box(model);
+    EXPECT_THAT(text_of_setup(model), testing::StartsWith("length_unit = \"inch\"\n"));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("box = [[0, 0, 0], [2, 1, 1]]"));
+    EXPECT_EQ(rows_of_setup(model)[5].detail, "2.0000 x 1.0000 x 1.0000 in");
+    undo(model, 0.0);
+    EXPECT_EQ(text_of_setup(model), "");
+    state_item(model, {Kind::offset, "G54", {}});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("Z = -19.68503937 }"));
+    EXPECT_EQ(rows_of_setup(model)[2].detail, "0.0000, 0.0000, -19.6850");
+    // A set-up in mm stays in mm.
+    ViewModel other = opened_model("mesh_size = 1\n", "/jobs/plate.toml", true);
+    add_box(other);
+    EXPECT_THAT(text_of_setup(other), HasSubstr("box = [[0, 0, 0], [50, 25, 25]]"));
+    EXPECT_THAT(text_of_setup(other), testing::Not(HasSubstr("length_unit")));
 }
 
 TEST(Workspace, NamesMeshesRelativeToItsFolder) {

@@ -317,9 +317,14 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     InferredStock stock;
     if (stated) {
         const Vec3 shift = seen.zero - frame;
+        const core::Aabb box{stated->box.min + shift, stated->box.max + shift};
+        const auto sentence = [&](gcode::LengthUnit words) {
+            return fmt::format("the stock is the box given by {}: {}", stated->source,
+                               box_text(box, words));
+        };
         stock = {{stated->box.min + seen.zero, stated->box.max + seen.zero},
-                 fmt::format("the stock is the box given by {}: {}", stated->source,
-                             box_text({stated->box.min + shift, stated->box.max + shift}))};
+                 sentence(gcode::LengthUnit::mm),
+                 sentence(gcode::LengthUnit::inch)};
         file.stock_known = Known::described;
     } else {
         file.stock_known = Known::inferred;
@@ -330,6 +335,7 @@ core::Result<std::vector<std::string>> complete_stock(SetupFile& file,
     }
     const double tolerance = file.setup.stock.tolerance;
     file.setup.stock = {core::SolidBox{{stock.box.min - frame, stock.box.max - frame}}, tolerance};
+    file.stock_comment = file.length_unit == gcode::LengthUnit::inch ? stock.why_inch : stock.why;
     return std::vector<std::string>{stock.why};
 }
 
@@ -355,7 +361,8 @@ std::string stock_mismatch(const SetupFile& file, const gcode::Program& program,
     if (is_inside) return {};
     return fmt::format("The stock that the program was made for reaches beyond that of the set-up: "
                        "{} gives {}, and the set-up {} (program coordinates).",
-                       stated->source, box_text(stated->box), box_text(known));
+                       stated->source, box_text(stated->box, gcode::LengthUnit::mm),
+                       box_text(known, gcode::LengthUnit::mm));
 }
 
 /// Omits the stock for a program whose cuts cannot be known.
@@ -545,6 +552,8 @@ core::Result<SetupFile> infer_setup(const gcode::Program& program,
 }
 
 core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program) {
+    if (file.is_inferred)
+        file.length_unit = unit_of_program(program, unit_at_start(file.environment));
     withdraw_start(file, program);
     const bool has_other_offsets = assume_other_offsets(file);
     ProgramSurvey first = survey(program, file.environment, sizes(file, true));

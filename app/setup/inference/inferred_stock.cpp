@@ -29,6 +29,20 @@ using core::Vec3;
 constexpr double below_the_cuts = 2.0; // mm of stock under the deepest cut
 constexpr double smallest_height = 1.0;
 
+/// Lengths in a sentence: mm with three decimals, inches with four.
+struct StockWords {
+    gcode::LengthUnit unit;
+
+    bool is_inch() const { return unit == gcode::LengthUnit::inch; }
+    std::string at(double mm) const {
+        return fmt::format("{:.{}f}", gcode::from_mm(mm, unit), is_inch() ? 4 : 3);
+    }
+    std::string size(double mm) const {
+        return is_inch() ? core::number_text(gcode::from_mm(mm, unit), 4) + " in"
+                         : fmt::format("{:g} mm", mm);
+    }
+};
+
 /// The top of the material relative to a zero, and why.
 struct Top {
     double z = 0.0;
@@ -100,14 +114,14 @@ struct Sides {
         ends[*chosen] = &plunge;
     }
 
-    std::string why(const Vec3& frame) {
+    std::string why(const Vec3& frame, const StockWords& words) {
         constexpr const char* names[] = {"X", "X", "Y", "Y"};
         std::string text;
         for (size_t side = 0; side < 4; ++side)
             if (ends[side])
-                text += fmt::format("{} {} {:.3f}, because line {} plunges next to it by rapid",
+                text += fmt::format("{} {} {}, because line {} plunges next to it by rapid",
                                     text.empty() ? "; it ends at" : " and at", names[side],
-                                    coordinate(side) - frame[static_cast<int>(side / 2)],
+                                    words.at(coordinate(side) - frame[static_cast<int>(side / 2)]),
                                     ends[side]->line);
         return text;
     }
@@ -121,9 +135,15 @@ InferredStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double
 
 InferredStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double margin,
                             const std::vector<UncutPlunge>& plunges) {
-    if (!seen.feeds)
+    if (!seen.feeds) {
+        const auto sentence = [](const StockWords& words) {
+            return fmt::format("the program cuts nothing, so the stock is a cube of {} at its zero",
+                               words.size(10.0));
+        };
         return {{frame + Vec3(-5, -5, -5), frame + Vec3(5, 5, 0)},
-                "the program cuts nothing, so the stock is a cube of 10 mm at its zero"};
+                sentence({gcode::LengthUnit::mm}),
+                sentence({gcode::LengthUnit::inch})};
+    }
     Top top = top_of(seen, seen.zero.z);
     const double below = std::max(margin, below_the_cuts);
     Aabb box{seen.cutting.min - Vec3(margin, margin, 0.0),
@@ -135,17 +155,22 @@ InferredStock guessed_stock(const ProgramSurvey& seen, const Vec3& frame, double
     for (const UncutPlunge& plunge : plunges)
         if (plunge.tip.z < box.max.z && sides.holds(plunge)) sides.go_back(plunge);
     const Vec3 low = sides.box.min - frame, high = sides.box.max - frame;
-    return {sides.box,
-            fmt::format("the stock is the box that cutting moves reach{}: X {:.3f} to {:.3f}, "
-                        "Y {:.3f} to {:.3f}, Z {:.3f} ({:g} mm below the deepest cut) to {:.3f} "
-                        "({}){}",
-                        margin > 0.0 ? fmt::format(" plus {:g} mm per side", margin) : "", low.x,
-                        high.x, low.y, high.y, low.z, below, high.z, top.why, sides.why(frame))};
+    const auto sentence = [&](const StockWords& words) {
+        return fmt::format("the stock is the box that cutting moves reach{}: X {} to {}, "
+                           "Y {} to {}, Z {} ({} below the deepest cut) to {} ({}){}",
+                           margin > 0.0 ? fmt::format(" plus {} per side", words.size(margin)) : "",
+                           words.at(low.x), words.at(high.x), words.at(low.y), words.at(high.y),
+                           words.at(low.z), words.size(below), words.at(high.z), top.why,
+                           sides.why(frame, words));
+    };
+    return {sides.box, sentence({gcode::LengthUnit::mm}), sentence({gcode::LengthUnit::inch})};
 }
 
-std::string box_text(const Aabb& box) {
-    return fmt::format("X {:.3f} to {:.3f}, Y {:.3f} to {:.3f}, Z {:.3f} to {:.3f}", box.min.x,
-                       box.max.x, box.min.y, box.max.y, box.min.z, box.max.z);
+std::string box_text(const Aabb& box, gcode::LengthUnit unit) {
+    const StockWords words{unit};
+    return fmt::format("X {} to {}, Y {} to {}, Z {} to {}", words.at(box.min.x),
+                       words.at(box.max.x), words.at(box.min.y), words.at(box.max.y),
+                       words.at(box.min.z), words.at(box.max.z));
 }
 
 core::Aabb unreachable_box() { return {{-5, -5, -100'010}, {5, 5, -100'000}}; }

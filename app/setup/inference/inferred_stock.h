@@ -32,7 +32,8 @@ std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
 /// The raw stock that a program was probably written for, machine frame, and the reasons.
 struct InferredStock {
     core::Aabb box;
-    std::string why; // one sentence
+    std::string why;      // one sentence, with lengths in mm
+    std::string why_inch; // the same in inches
 };
 
 /// The box that the tools reach on cutting moves, plus a margin; a small cube if nothing is cut.
@@ -45,8 +46,8 @@ InferredStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, 
 InferredStock guessed_stock(const ProgramSurvey& seen, const core::Vec3& frame, double margin,
                             const std::vector<UncutPlunge>& plunges);
 
-/// "X 0.000 to 10.000, Y ...".
-std::string box_text(const core::Aabb& box);
+/// "X 0.000 to 10.000, Y ..." in a unit.
+std::string box_text(const core::Aabb& box, gcode::LengthUnit unit);
 
 /// A box away from all motions, for programs that are not known to cut.
 core::Aabb unreachable_box();

@@ -8,6 +8,7 @@
 
 #include "app/check/setup_sheet.h"
 #include "app/setup/setup_changes.h"
+#include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
 #include "app/view/model/file_watch.h"
@@ -15,6 +16,7 @@
 #include "app/view/model/samples.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
+#include "gcode/language/modal_state.h"
 
 namespace app::viewer {
 namespace {
@@ -130,11 +132,13 @@ core::Result<std::string> stated_offset(const std::string& text, const StatedSet
                                           : with_offset(text, offset.name, offset.origin);
 }
 
-/// Adds a fixture and selects it. `lines`: its shape and position.
-void add_fixture(ViewModel& model, const std::string& wanted_name, const std::string& lines) {
+/// Adds a fixture and selects it. `lines`: gives its shape and position in a unit.
+template <typename Lines>
+void add_fixture(ViewModel& model, const std::string& wanted_name, const Lines& lines) {
     const std::string name = free_name(model.workspace.document.text(), wanted_name);
-    if (edit_setup(model, "Add " + name,
-                   [&](const std::string& text) { return with_fixture(text, name, lines); }))
+    if (edit_setup(model, "Add " + name, [&](const std::string& text) {
+            return with_fixture(text, name, lines(unit_of_setup(text)));
+        }))
         model.workspace.selected = item(Kind::fixture, name);
 }
 
@@ -154,7 +158,17 @@ void open_document(ViewModel& model, SetupDocument document) {
 bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument::Edit& edit,
                 const std::string& mark) {
     Workspace& workspace = model.workspace;
-    const auto edited = workspace.document.edit(title, edit, mark);
+    // The first statement in a set-up for a program in inches is their unit.
+    const bool is_inch = model.program && model.program->is_inch;
+    const auto unit = is_inch ? gcode::LengthUnit::inch : gcode::LengthUnit::mm;
+    const auto edited = workspace.document.edit(
+        title,
+        [&](const std::string& text) -> core::Result<std::string> {
+            const std::string begun = begun_in(text, unit);
+            FEELER_TRY(std::string changed, edit(begun));
+            return changed == begun ? text : changed;
+        },
+        mark);
     if (!edited) {
         workspace.refusal = edited.error().message;
         return false;
@@ -262,25 +276,30 @@ void state_item(ViewModel& model, const SetupItem& item) {
     }
 }
 
+core::Vec3 usual_block(const ViewModel& model) {
+    return model.settings.inch ? core::Vec3(50.8, 25.4, 25.4) : core::Vec3(50.0, 25.0, 25.0);
+}
+
 void add_box(ViewModel& model) {
     const SetupSheet* sheet = sheet_of(model);
     if (!sheet) return;
-    const bool inch = model.settings.inch;
-    const core::Vec3 size = inch ? core::Vec3(50.8, 25.4, 25.4) : core::Vec3(50.0, 25.0, 25.0);
+    const core::Vec3 size = usual_block(model);
     const core::Aabb stock = core::bounds(sheet->stock);
     const core::Vec3 at(stock.min.x - size.x, stock.min.y, stock.min.z);
-    add_fixture(model, "block-1",
-                fmt::format("box = [[0, 0, 0], {}]\nat = {}\nframe = {}\n", setup_vector(size),
-                            setup_vector(at), toml_text(sheet->frame)));
+    add_fixture(model, "block-1", [&](gcode::LengthUnit unit) {
+        return fmt::format("box = [[0, 0, 0], {}]\nat = {}\nframe = {}\n", setup_point(size, unit),
+                           setup_point(at, unit), toml_text(sheet->frame));
+    });
 }
 
 void add_mesh(ViewModel& model, const std::string& file) {
     const std::string name = std::filesystem::path(file).stem().generic_string();
     const SetupSheet* sheet = sheet_of(model);
     const std::string path = path_in_setup(model, file);
-    add_fixture(model, name.empty() ? "mesh" : name,
-                fmt::format("mesh = {}\nat = [0, 0, 0]\nframe = {}\n", toml_text(path),
-                            toml_text(sheet ? sheet->frame : "G54")));
+    add_fixture(model, name.empty() ? "mesh" : name, [&](gcode::LengthUnit) {
+        return fmt::format("mesh = {}\nat = [0, 0, 0]\nframe = {}\n", toml_text(path),
+                           toml_text(sheet ? sheet->frame : "G54"));
+    });
 }
 
 void use_stock_mesh(ViewModel& model, const std::string& file) {

@@ -134,6 +134,8 @@ void state_item(ViewModel& model, const SetupItem& item);
 /// Whether state_item() has something to write.
 bool can_state(const ViewModel& model, const SetupItem& item);
 
+/// The size of a new block, round in the unit of the window, mm.
+core::Vec3 usual_block(const ViewModel& model);
 /// Adds a block beside the stock as a fixture, or the mesh in a file at the origin, and selects it.
 void add_box(ViewModel& model);
 void add_mesh(ViewModel& model, const std::string& file);

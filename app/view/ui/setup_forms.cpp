@@ -220,8 +220,8 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
     const int kind = body.box ? 0 : body.cylinder ? 1 : 2;
     if (!is_part)
         draw_kinds(frame, kind, is_stock ? "from a file \xE2\x80\xA6" : "mesh", [&](int chosen) {
-            if (chosen == 0) set_box({core::Vec3(0.0), core::Vec3(50.0, 25.0, 25.0)});
-            if (chosen == 1) set_cylinder({12.5, 25.0, 2});
+            if (chosen == 0) set_box({core::Vec3(0.0), usual_block(model)});
+            if (chosen == 1) set_cylinder({0.5 * usual_block(model).y, usual_block(model).y, 2});
             if (chosen == 2 && is_stock) browse(model, wish);
         });
     if (is_stock) source_mark(frame, model.program->sheet->stock_source);
@@ -419,9 +419,8 @@ void SetupForms::draw_part(Frame& frame, const StatedBody& body) {
     draw_pose(frame, body, "part");
     field_name(frame, "Tolerance");
     if (const auto tolerance = fields_.length(frame, "##tolerance", body.tolerance.value_or(0.1)))
-        edit_setup(frame.model, "Change the tolerance", [&](const std::string& t) {
-            return toml_with_value(t, {"part", "tolerance"}, setup_number(*tolerance));
-        });
+        edit_setup(frame.model, "Change the tolerance",
+                   [&](const std::string& t) { return with_part_tolerance(t, *tolerance); });
 }
 
 void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
@@ -473,7 +472,7 @@ void SetupForms::draw_tool_sizes(Frame& frame, const SheetTool& shown) {
     for (const core::ToolSize& field : fields_of(shown.tool.shape)) {
         const std::string key = field.key;
         if (has_cones && (key == "stick_out" || key == "shank_diameter")) continue;
-        const bool is_angle = std::string_view(field.unit) == "deg";
+        const bool is_angle = field.is_angle();
         const std::optional<double> value = size_now(model, shown, field);
         ImGui::PushID(field.key);
         field_name(frame, field.name);
@@ -482,12 +481,9 @@ void SetupForms::draw_tool_sizes(Frame& frame, const SheetTool& shown) {
         unit_label(frame, is_angle ? "\xC2\xB0" : length_unit(model));
         source_mark(frame, shown.source_of(key));
         if (typed)
-            edit_setup(model, fmt::format("Change T{}", core::value_of(number)),
-                       [&](const std::string& t) {
-                           return with_tool_value(
-                               t, number, key,
-                               *typed == 0.0 ? std::nullopt : std::optional(setup_number(*typed)));
-                       });
+            edit_setup(
+                model, fmt::format("Change T{}", core::value_of(number)),
+                [&](const std::string& t) { return with_tool_size(t, number, field, *typed); });
         ImGui::PopID();
     }
     if (has_cones)
