@@ -431,5 +431,21 @@ TEST(OffsetDifferences, AreShownAsTextAndJson) {
     EXPECT_NE(offset_text({}, {}).find("Nothing was compared."), std::string::npos);
 }
 
+TEST(OffsetDifferences, AreShownInTheUnitOfTheSetup) {
+    const SetupFile setup = setup_with("length_unit = \"inch\"\n[program]\ndialect = \"fanuc\"\n"
+                                       "[offsets]\nG54 = { X = -14, Y = -8, Z = -16.5, A = 30 }\n");
+    const auto compared =
+        differences(setup, offsets_in("G20 G10 L2 P1 X-14. Y-8.0005 Z-16.5 A31.\n"), {.work = {0}});
+    const std::string text = offset_text(compared, {"plate.toml", {"offsets.txt"}});
+    for (const char* row : {"inches, degrees       set-up     control  difference",
+                            "G54 X               -14.0000    -14.0000      0.0000\n",
+                            "G54 Y                -8.0000     -8.0005     -0.0005   differs (",
+                            "G54 A                 30.000      31.000      +1.000   differs ("})
+        EXPECT_NE(text.find(row), std::string::npos) << row << "\n" << text;
+    const auto json = nlohmann::json::parse(offset_json(compared, {"", {"offsets.txt"}}));
+    EXPECT_EQ(json.at("values").at(0).at("unit"), "mm");
+    EXPECT_EQ(json.at("values").at(0).at("setup"), -14 * 25.4);
+}
+
 } // namespace
 } // namespace app

@@ -1,5 +1,7 @@
 #include "app/report/text/offset_report.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -7,15 +9,35 @@
 #include "app/base/version.h"
 #include "app/setup/control/offset_differences.h"
 #include "core/base/math.h"
+#include "gcode/language/modal_state.h"
 
 namespace app {
 namespace {
 
 using OffsetJson = nlohmann::ordered_json;
 
-std::string cell_of(const std::optional<double>& value) {
-    return value ? fmt::format("{:.3f}", *value) : "-";
-}
+/// Writes the values of the table: mm and degrees with three decimals, inches with four.
+class OffsetCells {
+public:
+    explicit OffsetCells(gcode::LengthUnit unit) : unit_(unit) {}
+
+    std::string row(const ComparedOffset& value) const;
+
+private:
+    bool is_inch(const ComparedOffset& value) const {
+        return unit_ == gcode::LengthUnit::inch && !value.is_angle;
+    }
+    std::string cell(const ComparedOffset& value, double number) const {
+        return is_inch(value) ? fmt::format("{:.4f}", gcode::from_mm(number, unit_))
+                              : fmt::format("{:.3f}", number);
+    }
+    std::string cell(const ComparedOffset& value, const std::optional<double>& number) const {
+        return number ? cell(value, *number) : "-";
+    }
+    std::string difference(const ComparedOffset& value) const;
+
+    gcode::LengthUnit unit_;
+};
 
 /// What the control has more, without the rounding errors of the subtraction.
 std::optional<double> difference_of(const ComparedOffset& value) {
@@ -24,11 +46,12 @@ std::optional<double> difference_of(const ComparedOffset& value) {
     return core::round((*value.control - *value.setup) * finest) / finest;
 }
 
-std::string difference_cell(const ComparedOffset& value) {
-    const auto difference = difference_of(value);
-    if (!difference) return "-";
-    const std::string text = fmt::format("{:+.3f}", *difference);
-    return text == "+0.000" || text == "-0.000" ? "0.000" : text;
+std::string OffsetCells::difference(const ComparedOffset& value) const {
+    const auto more = difference_of(value);
+    if (!more) return "-";
+    const std::string text = cell(value, std::abs(*more));
+    const bool is_zero = text.find_first_not_of("0.") == std::string::npos;
+    return (is_zero ? "" : *more > 0.0 ? "+" : "-") + text;
 }
 
 std::string remark_on(const ComparedOffset& value) {
@@ -39,9 +62,9 @@ std::string remark_on(const ComparedOffset& value) {
     return fmt::format("   {}{}", name_of(value.state), place);
 }
 
-std::string offset_row(const ComparedOffset& value) {
-    return fmt::format("{:<16}{:>12}{:>12}{:>12}{}\n", value.name, cell_of(value.setup),
-                       cell_of(value.control), difference_cell(value), remark_on(value));
+std::string OffsetCells::row(const ComparedOffset& value) const {
+    return fmt::format("{:<16}{:>12}{:>12}{:>12}{}\n", value.name, cell(value, value.setup),
+                       cell(value, value.control), difference(value), remark_on(value));
 }
 
 std::string summary_of(const OffsetComparison& comparison) {
@@ -73,9 +96,12 @@ OffsetJson json_of(const ComparedOffset& value) {
 } // namespace
 
 std::string offset_text(const OffsetComparison& comparison, const ComparedFiles& files) {
+    const OffsetCells cells(comparison.unit);
+    const bool is_inch = comparison.unit == gcode::LengthUnit::inch;
     std::string text =
-        fmt::format("{:<16}{:>12}{:>12}{:>12}\n", "mm, degrees", "set-up", "control", "difference");
-    for (const ComparedOffset& value : comparison.values) text += offset_row(value);
+        fmt::format("{:<16}{:>12}{:>12}{:>12}\n", is_inch ? "inches, degrees" : "mm, degrees",
+                    "set-up", "control", "difference");
+    for (const ComparedOffset& value : comparison.values) text += cells.row(value);
     if (comparison.values.empty()) text.clear();
     text += fmt::format("{}{}", text.empty() ? "" : "\n", summary_of(comparison));
     const std::string setup =

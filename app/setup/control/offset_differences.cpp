@@ -201,6 +201,7 @@ void Comparison::compare_diameters() {
 }
 
 OffsetComparison Comparison::result() && {
+    found_.unit = setup_.length_unit;
     found_.notes = control_.notes;
     compare_work_offsets();
     compare_shift();

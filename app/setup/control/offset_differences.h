@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/language/modal_state.h"
+
 namespace app {
 
 struct ControlOffsets;
@@ -28,8 +30,9 @@ struct ComparedOffset {
 
 /// A set-up compared with the files of a control.
 struct OffsetComparison {
-    std::vector<ComparedOffset> values; // work offsets, then lengths, then diameters
-    std::vector<std::string> notes;     // for the user
+    gcode::LengthUnit unit = gcode::LengthUnit::mm; // of the set-up, for texts; all values are mm
+    std::vector<ComparedOffset> values;             // work offsets, then lengths, then diameters
+    std::vector<std::string> notes;                 // for the user
 
     /// How many of the values are not equal.
     size_t differences() const;
