@@ -512,6 +512,75 @@ bool same_values(const toml::table& a, const toml::table& b) {
     return holds(a, b) && holds(b, a);
 }
 
+/// Whether two values are equal, apart from their spelling: 1, 1.0 and 1.00 are.
+bool means_the_same(const toml::node& a, const toml::node& b) {
+    if (a.is_number() && b.is_number()) return a.value<double>() == b.value<double>();
+    return same_node(a, b);
+}
+
+/// A change of the text of one scalar.
+struct ScalarChange {
+    TextRange range; // in the old text
+    std::string text;
+};
+
+/// Collects the scalars that differ between two values. Whether the values have the same form: the
+/// same lists and tables with as many scalars at the same places.
+bool add_changes(const TomlText& before, const toml::node& old, const TomlText& after,
+                 const toml::node& wanted, std::vector<ScalarChange>& changes) {
+    const toml::array* lists[] = {old.as_array(), wanted.as_array()};
+    const toml::table* tables[] = {old.as_table(), wanted.as_table()};
+    if (lists[0] && lists[1])
+        return std::equal(lists[0]->begin(), lists[0]->end(), lists[1]->begin(), lists[1]->end(),
+                          [&](const toml::node& one, const toml::node& two) {
+                              return add_changes(before, one, after, two, changes);
+                          });
+    if (tables[0] && tables[1])
+        return tables[0]->size() == tables[1]->size()
+               && std::all_of(tables[0]->begin(), tables[0]->end(), [&](const auto& entry) {
+                      const toml::node* found = tables[1]->get(entry.first);
+                      return found && add_changes(before, entry.second, after, *found, changes);
+                  });
+    if (lists[0] || lists[1] || tables[0] || tables[1]) return false;
+    if (means_the_same(old, wanted)) return true;
+    const TextRange range = after.range_of(wanted);
+    changes.push_back(
+        {before.range_of(old), after.text().substr(range.begin, range.end - range.begin)});
+    return true;
+}
+
+std::string with_changes(const std::string& text, std::vector<ScalarChange> changes) {
+    std::sort(changes.begin(), changes.end(), [](const ScalarChange& a, const ScalarChange& b) {
+        return a.range.begin < b.range.begin;
+    });
+    std::string changed;
+    size_t at = 0;
+    for (const ScalarChange& change : changes) {
+        changed += text.substr(at, change.range.begin - at) + change.text;
+        at = change.range.end;
+    }
+    return changed + text.substr(at);
+}
+
+/// A new value in the form of the text of the old one: with its comments, line ends and alignment,
+/// and with its spelling of scalars that stay. The new value itself if the forms differ.
+std::string in_form_of(const std::string& old, const std::string& value) {
+    const auto before = read("value = " + old), after = read("value = " + value);
+    if (!before || !after) return value;
+    const auto* from = before->root().get("value");
+    const auto* to = after->root().get("value");
+    std::vector<ScalarChange> changes;
+    if (!from || !to || !add_changes(*before, *from, *after, *to, changes)) return value;
+    const std::string kept = with_changes(before->text(), std::move(changes));
+    const auto read_again = parsed_toml(kept);
+    std::vector<ScalarChange> left;
+    const auto again = read_again ? std::optional(TomlText(kept, *read_again)) : std::nullopt;
+    const bool is_right = again && again->root().size() == 1 && again->root().get("value")
+                          && add_changes(*again, *again->root().get("value"), *after, *to, left)
+                          && left.empty();
+    return is_right ? kept.substr(kept.find('=') + 2) : value;
+}
+
 /// The text of a table as `{ ... }` in one line.
 std::string inline_text(toml::table table) {
     const std::function<void(toml::node&)> make_inline = [&](toml::node& node) {
@@ -560,23 +629,26 @@ std::string text_of(const TomlPath& path) {
 core::Result<std::string> toml_with_value(const std::string& text, const TomlPath& path,
                                           const std::string& value) {
     assert(!path.empty());
-    const auto parsed = table_with(value);
+    auto parsed = table_with(value);
     if (!parsed)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{} is not a valid value for {}", value, text_of(path)));
     FEELER_TRY(const TomlText file, read(text));
     toml::table wanted = file.root();
-    if (!put(wanted, path.steps(), *parsed->get("value"))) return cannot_edit(file, path);
     std::optional<std::string> edited;
     if (const toml::node* old = node_in(file, path)) {
         const toml::table* table = old->as_table();
         if (file.is_block(*old) || (table && !table->is_inline())) return cannot_edit(file, path);
         const TextRange range = file.range_of(*old);
-        edited = text.substr(0, range.begin) + value + text.substr(range.end);
+        const std::string formed =
+            in_form_of(text.substr(range.begin, range.end - range.begin), value);
+        parsed = table_with(formed);
+        edited = text.substr(0, range.begin) + formed + text.substr(range.end);
     } else {
         edited = with_new_value(file, path, value);
     }
-    if (!edited) return cannot_edit(file, path);
+    if (!edited || !parsed || !put(wanted, path.steps(), *parsed->get("value")))
+        return cannot_edit(file, path);
     return verified(file, path, *std::move(edited), wanted);
 }
 

@@ -45,7 +45,9 @@ std::string text_of(const TomlPath& path);
 /// not TOML; unsupported, with the line, if the file has a form that cannot be edited in this way.
 
 /// Sets a value. Replaces the old one; otherwise adds a line at the end of its table, and the table
-/// at the end of the file if it is missing.
+/// at the end of the file if it is missing. Of an old value with the same lists and tables and as
+/// many scalars, only the scalars change that differ: comments, line breaks and the spelling of the
+/// others stay, such as 1.50 for 1.5.
 ///
 /// `value`: as TOML, such as "2.5", "\"G54\"" or "{ X = 1 }".
 core::Result<std::string> toml_with_value(const std::string& text, const TomlPath& path,

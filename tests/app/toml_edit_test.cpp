@@ -62,11 +62,31 @@ TEST(TomlEdit, ReplacesOnlyTheValue) {
     EXPECT_EQ(with(sample, "mesh_size", "0.25"), replaced(sample, "= 0.5", "= 0.25"));
     EXPECT_EQ(with(sample, {"offsets", "G54", "Y"}, "-201.5"), replaced(sample, "-200", "-201.5"));
     EXPECT_EQ(with(sample, {"fixture", size_t{0}, "at"}, "[1, 2, 3]"),
-              replaced(sample, "[10,\n      20, 0]", "[1, 2, 3]"));
+              replaced(sample, "[10,\n      20, 0]", "[1,\n      2, 3]"));
     EXPECT_EQ(with(sample, {"stock", "box", size_t{1}, size_t{2}}, "5"),
               replaced(sample, "100, 100, 0]", "100, 100, 5]"));
     EXPECT_EQ(with(sample, {"fixture", size_t{0}, "move", size_t{0}, "line"}, "7"),
               replaced(sample, "line = 12", "line = 7"));
+}
+
+TEST(TomlEdit, KeepsTheFormOfAListOfWhichNumbersChange) {
+    const std::string text = "[stock]\nbox = [[0, 0.50, 0], # front left\n       [100, 1_00,  "
+                             "8.0]] # sawn\n";
+    EXPECT_EQ(with(text, {"stock", "box"}, "[[0, 0.5, -2], [100, 100, 8]]"),
+              replaced(text, "0.50, 0]", "0.50, -2]"));
+    EXPECT_EQ(with(text, {"stock", "box"}, "[[0, 0.5, 0], [100, 100, 8]]"), text);
+    EXPECT_EQ(with(text, {"stock", "box", size_t{1}}, "[9, 100, 8]"),
+              replaced(text, "[100, 1", "[9, 1"));
+    EXPECT_EQ(with(text, {"stock", "box"}, "[[0, 0, 0], [1, 2, 3], [4, 5, 6]]"),
+              "[stock]\nbox = [[0, 0, 0], [1, 2, 3], [4, 5, 6]] # sawn\n");
+    EXPECT_EQ(with(text, {"stock", "box"}, "\"none\""), "[stock]\nbox = \"none\" # sawn\n");
+    EXPECT_EQ(with("a = { x = 1.0, 'y'=2 } # b\n", "a", "{ y = 3, x = 1 }"),
+              "a = { x = 1.0, 'y'=3 } # b\n");
+    EXPECT_EQ(with("a = { x = 1 }\n", "a", "{ y = 1 }"), "a = { y = 1 }\n");
+    EXPECT_EQ(with("a = 1.50\n", "a", "1.5"), "a = 1.50\n");
+    EXPECT_EQ(with("a = 'G54'\n", "a", "\"G54\""), "a = 'G54'\n");
+    EXPECT_EQ(with("a = true\n", "a", "1"), "a = 1\n");
+    EXPECT_EQ(with("a = 'é' # ö\n", "a", "'ü'"), "a = 'ü' # ö\n");
 }
 
 TEST(TomlEdit, AddsAValueAtTheEndOfItsTable) {
@@ -329,6 +349,102 @@ TEST(TomlEdit, EveryEditOfARandomFileChangesOnlyItsLines) {
     EXPECT_GT(replaced_count, 2000U);
     EXPECT_GT(added, 2000U);
     EXPECT_GT(removed, 1000U);
+}
+
+/// A random nested value in many spellings, with comments and line breaks, and another value of the
+/// same form: its plain text, and what the first text becomes with it.
+class RandomForm {
+public:
+    explicit RandomForm(uint32_t seed) : random_(seed) { list(0); }
+
+    std::string text, plain, expected;
+    size_t changed = 0, kept = 0;
+
+private:
+    size_t pick(size_t count) { return random_() % count; }
+    void both(const std::string& gap) {
+        text += gap;
+        expected += gap;
+    }
+    void gap() {
+        const std::string note = std::to_string(pick(100));
+        const std::string gaps[] = {
+            "", " ", "", "\n  ", "\r\n", "  \t ", "# [" + note + ", é\n", " # \"" + note + "\n\n"};
+        both(gaps[pick(std::size(gaps))]);
+    }
+    void scalar() {
+        constexpr const char* spellings[][2] = {{"1.50", "1.5"},
+                                                {"+2", "2"},
+                                                {"0x10", "16"},
+                                                {"1_000", "1000.0"},
+                                                {"1e3", "1000"},
+                                                {"'a # ]'", "\"a # ]\""},
+                                                {"-0.5", "-0.50"},
+                                                {"true", "true"},
+                                                {"\"\\u00e9\"", "'é'"},
+                                                {"\"\"\"x\n# y\"\"\"", "\"x\\n# y\""},
+                                                {"1979-05-27", "1979-05-27"}};
+        constexpr const char* others[] = {"7", "-12.25", "\"G54, # ]\"", "false", "1e-3"};
+        const auto& [old, same] = spellings[pick(std::size(spellings))];
+        text += old;
+        if (pick(2) == 0) {
+            plain += same;
+            expected += old;
+            ++kept;
+        } else {
+            const std::string now = others[pick(std::size(others))];
+            plain += now;
+            expected += now;
+            ++changed;
+        }
+    }
+    void table() {
+        both("{ a = ");
+        plain += "{ a = ";
+        scalar();
+        both(" ,b= ");
+        plain += ", b = ";
+        scalar();
+        both("}");
+        plain += "}";
+    }
+    void list(int depth) {
+        both("[");
+        plain += "[";
+        for (size_t i = 0, count = pick(4); i < count; ++i) {
+            if (i > 0) both(",");
+            if (i > 0) plain += ", ";
+            gap();
+            if (depth < 3 && pick(3) == 0)
+                list(depth + 1);
+            else if (pick(6) == 0)
+                table();
+            else
+                scalar();
+            gap();
+            if (i + 1 == count && pick(4) == 0) both(",");
+        }
+        gap();
+        both("]");
+        plain += "]";
+    }
+
+    std::mt19937 random_;
+};
+
+TEST(TomlEdit, AValueOfTheSameFormChangesOnlyTheScalarsThatDiffer) {
+    size_t changed = 0, kept = 0;
+    for (uint32_t seed = 1; seed <= 5000; ++seed) {
+        const RandomForm form(seed);
+        const std::string before = "# é\na = 1\n[t]\nv = ", after = " # why\nw = 2\n";
+        EXPECT_EQ(with(before + form.text + after, {"t", "v"}, form.plain),
+                  before + form.expected + after)
+            << seed << ": " << form.plain;
+        changed += form.changed;
+        kept += form.kept;
+    }
+    EXPECT_GT(changed, 5000U);
+    EXPECT_GT(kept, 5000U);
 }
 
 } // namespace
