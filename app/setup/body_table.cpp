@@ -45,9 +45,66 @@ core::Transform read_pose(TableReader& table) {
             table.vector("at", Measure::length).value_or(core::Vec3(0.0))};
 }
 
-core::Transform read_frame(TableReader& table, const BodyContext& context) {
+/// Whether the set-up or a variables file states where a work offset is.
+bool is_placed(const SetupFile& file, size_t offset) {
+    return file.offsets_set.contains(static_cast<int>(offset))
+           || (!file.infers_frame && file.environment.work_offset(offset) != gcode::AxisValues{});
+}
+
+/// Whether a place can be assumed for the bodies in a work offset that nothing states: if no body
+/// or work offset has another place, only their places relative to each other count. A variables
+/// file without a value says that the offset is 0.
+bool may_assume_place(const SetupFile& file, size_t offset) {
+    if (!file.environment.parameters.empty()) return true;
+    const bool is_only_one =
+        file.offsets_of_bodies.empty() || file.offsets_of_bodies.contains(offset);
+    return is_only_one && file.offsets_set.empty()
+           && (file.infers_frame || file.setup.machine.has_rotary());
+}
+
+/// Whether a stock in a work offset that nothing states gets a place when the set-up is completed:
+/// if it is the only body, and tools are left open.
+bool gets_place_later(const BodyContext& context) {
+    const SetupFile& file = context.file;
+    const bool has_tools =
+        !file.setup.tools.empty() || !file.library.empty() || !file.tool_table.empty();
+    return context.has_only_stock && !file.offsets_set.empty() && !has_tools
+           && !file.setup.machine.has_rotary();
+}
+
+/// A work offset that a body could stand in instead, for a message.
+std::string other_offset(const SetupFile& file) {
+    const auto after = [](const std::string& name) { return ", such as " + name; };
+    if (!file.offsets_set.empty())
+        return after(gcode::name_of_offset(static_cast<size_t>(*file.offsets_set.begin())));
+    if (file.offsets_of_bodies.empty()) return {};
+    return after(gcode::name_of_offset(*file.offsets_of_bodies.begin()))
+           + ", in which other bodies are";
+}
+
+/// Refuses a body in a work offset whose place nobody knows.
+void check_place(TableReader& table, BodyContext& context, size_t offset) {
+    SetupFile& file = context.file;
+    if (is_placed(file, offset)) return;
+    if (may_assume_place(file, offset) || gets_place_later(context)) {
+        file.offsets_of_bodies.insert(offset);
+        return;
+    }
+    const std::string name = gcode::name_of_offset(offset);
+    table.refuse("frame",
+                 fmt::format("{} \"{}\" is a work offset that the set-up does not state, so the "
+                             "place of this body is not known: add {} to [offsets], or choose "
+                             "another frame{}",
+                             table.has("frame") ? "=" : "is missing:", name, name,
+                             other_offset(file)));
+}
+
+core::Transform read_frame(TableReader& table, BodyContext& context) {
     std::string frame = table.string("frame").value_or("G54");
-    if (const auto offset = gcode::offset_of_name(frame)) frame = gcode::name_of_offset(*offset);
+    if (const auto offset = gcode::offset_of_name(frame)) {
+        frame = gcode::name_of_offset(*offset);
+        check_place(table, context, *offset);
+    }
     if (const auto found = context.frames.find(frame)) return *found;
     // Where no work offset is stated, those with numbers are where the others are.
     if (context.file.infers_frame && gcode::offset_of_name(frame))
@@ -59,7 +116,7 @@ core::Transform read_frame(TableReader& table, const BodyContext& context) {
     return {};
 }
 
-Placement read_placement(TableReader& table, const BodyContext& context) {
+Placement read_placement(TableReader& table, BodyContext& context) {
     return {read_frame(table, context), read_pose(table)};
 }
 
@@ -112,6 +169,14 @@ core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
     }
     for (const std::string& repair : read->repairs)
         source.assumptions.push_back(fmt::format("{}: {}", name, repair));
+    const core::Aabb box = read->mesh.bounds();
+    for (const core::Vec3& corner : {box.min, box.max})
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(corner[axis]) > largest_number)
+                table.refuse("mesh",
+                             fmt::format("= \"{}\": reaches to {} {:g}, beyond {:.0f} mm (1 "
+                                         "km)",
+                                         name, "XYZ"[axis], corner[axis], largest_number));
     return std::move(read->mesh);
 }
 
@@ -255,6 +320,17 @@ std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSou
     return exact_body(table, source, target_from_frame * read_pose(table));
 }
 
+std::string why_no_fixture_name(const std::string& name) {
+    const std::string plain = core::lower_case(trimmed(name));
+    std::string what;
+    if (gcode::offset_of_name(core::upper_case(plain)))
+        what = "the name of a work offset, in which bodies are positioned";
+    else if (plain == "machine" || plain == "stock" || plain == "part" || core::names_a_kind(name))
+        what = "a reserved word, for a frame or a kind of body";
+    if (what.empty()) return {};
+    return fmt::format("is {}: choose another name, such as \"{}-1\"", what, name);
+}
+
 void add_machine_bodies(TableReader& table, core::Setup& setup) {
     for (const core::MachineBody& body : setup.machine.bodies) {
         for (const core::Fixture& other : setup.fixtures)
@@ -282,6 +358,7 @@ void infer_stock(BodyContext& context) {
 }
 
 void read_stock(TableReader& table, BodyContext& context) {
+    table.limit_numbers();
     const Placement placement = read_placement(table, context);
     context.file.stock_frame = table.string("frame").value_or("G54");
     context.file.stock_margin = table.number("margin", Measure::length);
@@ -300,6 +377,7 @@ void read_stock(TableReader& table, BodyContext& context) {
 }
 
 void read_part(TableReader& table, BodyContext& context) {
+    table.limit_numbers();
     core::Setup& setup = context.file.setup;
     const Placement placement = read_placement(table, context);
     const bool box = table.has("box");
@@ -323,11 +401,13 @@ void read_part(TableReader& table, BodyContext& context) {
 }
 
 void read_fixture(TableReader& table, BodyContext& context) {
+    table.limit_numbers();
     core::Setup& setup = context.file.setup;
     core::Fixture fixture;
     fixture.name = table.string("name").value_or("");
     if (fixture.name.empty()) return table.need("name");
-    if (core::names_a_kind(fixture.name)) table.refuse("name", "is a reserved word");
+    if (const std::string why = why_no_fixture_name(fixture.name); !why.empty())
+        table.refuse("name", fmt::format("= \"{}\" {}", fixture.name, why));
     for (const core::Fixture& other : setup.fixtures)
         if (other.name == fixture.name)
             table.refuse("name", fmt::format("\"{}\" is defined twice", fixture.name));

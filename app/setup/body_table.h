@@ -40,6 +40,7 @@ struct BodyContext {
     std::filesystem::path folder; // for relative mesh paths
     NamedFrames frames;
     SetupFile& file;
+    bool has_only_stock = false; // neither fixtures nor a part stand in the same frame
 
     MeshSource meshes();
 };
@@ -56,6 +57,10 @@ void read_part(TableReader& table, BodyContext& context);
 
 /// Requests a stock inferred from the program, in the frame of G54.
 void infer_stock(BodyContext& context);
+
+/// Why a fixture cannot have this name, to follow the name in a sentence: it is that of a frame, in
+/// capitals or not, of the part, or of a kind of body. Empty if it can.
+std::string why_no_fixture_name(const std::string& name);
 
 /// Reads one `[[fixture]]`. The stock must have been read.
 void read_fixture(TableReader& table, BodyContext& context);

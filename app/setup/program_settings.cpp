@@ -258,6 +258,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
     ProgramSettings settings;
     settings.dialect = read_dialect(table);
     settings.block_delete = table.boolean("block_delete");
+    table.limit_numbers("start");
     if (auto start = table.table("start", "[program] start")) read_start(*start, settings.start);
     if (const auto unit = table.word("unit", {"mm", "inch"}))
         settings.machine_unit = *unit == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/setup/body_table.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
 #include "core/dbm/solid.h"
 #include "core/sim/tool_description.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 namespace {
@@ -95,8 +97,29 @@ void visit_between(const toml::table& root,
                 see(TomlPath{"allowance", i, "between", side}, *name);
 }
 
+/// The bodies that stand in a frame, in words: the stock, the part, fixtures by their names. A body
+/// without a frame stands in G54.
+std::vector<std::string> bodies_in_offset(const toml::table& root, size_t offset) {
+    std::vector<std::string> names;
+    const auto see = [&](const toml::node* node, const std::string& name) {
+        const toml::table* table = node ? node->as_table() : nullptr;
+        if (table
+            && gcode::offset_of_name((*table)["frame"].value_or(std::string("G54"))) == offset)
+            names.push_back(name);
+    };
+    see(root.get("stock"), "the stock");
+    see(root.get("part"), "the part");
+    const toml::array* fixtures = root["fixture"].as_array();
+    for (size_t i = 0; fixtures && i < fixtures->size(); ++i)
+        see(fixtures->get(i),
+            fmt::format("\"{}\"", root["fixture"][i]["name"].value_or(std::string())));
+    return names;
+}
+
 Result<void> check_new_name(const std::string& text, const std::string& name) {
     if (name.empty()) return core::fail(ErrorCode::invalid_value, "a fixture needs a name");
+    if (const std::string why = why_no_fixture_name(name); !why.empty())
+        return core::fail(ErrorCode::invalid_value, fmt::format("\"{}\" {}", name, why));
     if (path_of_fixture(text, name))
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("there is a fixture \"{}\" already", name));
@@ -262,6 +285,8 @@ Result<std::string> with_renamed_fixture(const std::string& text, const std::str
 }
 
 std::string free_name(const std::string& text, const std::string& name) {
+    const bool is_reserved = !why_no_fixture_name(name).empty();
+    if (is_reserved) return free_name(text, name + "-1");
     if (!path_of_fixture(text, name)) return name;
     std::string stem = name; // "clamp-1" becomes "clamp-2"
     while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
@@ -331,6 +356,14 @@ Result<std::string> with_offset(const std::string& text, const std::string& name
 }
 
 Result<std::string> without_offset(const std::string& text, const std::string& name) {
+    const auto offset = gcode::offset_of_name(name);
+    if (offset && toml_has(text, {"offsets", name}))
+        if (const auto bodies = bodies_in_offset(root_of(text), *offset); !bodies.empty())
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{} {} positioned in {}: give {} another frame first",
+                                          fmt::join(bodies, ", "),
+                                          bodies.size() == 1 ? "is" : "are", name,
+                                          bodies.size() == 1 ? "it" : "them"));
     FEELER_TRY(std::string left, toml_without(text, {"offsets", name}));
     const toml::table root = root_of(left);
     const toml::table* offsets = root["offsets"].as_table();

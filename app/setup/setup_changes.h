@@ -50,6 +50,9 @@ core::Result<std::string> with_pose(const std::string& text, const BodyPath& bod
 /// Adds a fixture with these lines after its name, such as "box = [[0, 0, 0], [10, 10, 10]]" with
 /// lengths in the unit of the text.
 /// Removes `fixtures = "none"`.
+///
+/// Errors: also invalid_value for a name that is taken or that no fixture can have, as in
+///         with_copied_fixture and with_renamed_fixture.
 core::Result<std::string> with_fixture(const std::string& text, const std::string& name,
                                        const std::string& lines);
 /// Adds a copy of a fixture under a new name, without its moves during the program.
@@ -63,7 +66,8 @@ core::Result<std::string> without_fixture(const std::string& text, const std::st
 /// Renames a fixture where it is described and wherever it is named.
 core::Result<std::string> with_renamed_fixture(const std::string& text, const std::string& name,
                                                const std::string& other);
-/// A name that no body of the set-up has: `name`, or else with a number after it.
+/// A name that no fixture of the set-up has and that a fixture can have: `name`, or else with a
+/// number after it.
 std::string free_name(const std::string& text, const std::string& name);
 
 /// Sets one value of a tool, given as TOML, or removes it. A tool that the set-up does not contain
@@ -82,6 +86,9 @@ core::Result<std::string> without_tool(const std::string& text, core::ToolNumber
 /// work offsets are then not assumed.
 core::Result<std::string> with_offset(const std::string& text, const std::string& name,
                                       const core::Vec3& origin);
+/// Removes a work offset.
+///
+/// Errors: also invalid_value if bodies are positioned in it.
 core::Result<std::string> without_offset(const std::string& text, const std::string& name);
 
 /// Sets how far the result may deviate from the part.

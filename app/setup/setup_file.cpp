@@ -88,6 +88,7 @@ void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
             table.refuse("kind", fmt::format("= \"{}\": axis {} is {}: A, B and C are the rotary "
                                              "axes, all others are linear",
                                              *kind, *name, rotary ? "rotary" : "linear"));
+    for (const char* key : {"point", "home"}) table.limit_numbers(key);
     core::MachineAxis axis = plain_axis(index);
     if (const auto side = table.word("side", {"tool", "table"}))
         axis.side = *side == "tool" ? core::Side::tool : core::Side::table;
@@ -172,6 +173,7 @@ void connect(TableReader& table, core::Machine& machine, AxisList list) {
 
 /// Reads a `[[body]]` of the machine. Frame: the machine's, all axes at 0.
 void read_machine_body(TableReader& table, core::Machine& machine, const MeshSource& source) {
+    table.limit_numbers();
     core::MachineBody body;
     body.name = table.string("name").value_or("");
     if (body.name.empty()) return table.need("name");
@@ -255,6 +257,7 @@ void apply_settings(const ProgramSettings& settings, SetupFile& file,
 }
 
 void read_offsets(TableReader& table, SetupFile& file) {
+    table.limit_numbers();
     for (const std::string& name : table.keys()) {
         const auto index = gcode::offset_of_name(name);
         if (!index) continue; // refused below
@@ -532,6 +535,7 @@ void settle_start(SetupFile& file) {
 }
 
 void read_bodies(TableReader& root, BodyContext& context) {
+    context.has_only_stock = !root.has("fixture") && !root.has("part");
     if (auto stock = root.table("stock", "[stock]"))
         read_stock(*stock, context);
     else
@@ -668,6 +672,11 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
         read_length_offset(table, file);
     place_machine_bodies(context);
     read_bodies(root, context);
+    if (file.offsets_set.empty() && !file.infers_frame)
+        for (const size_t offset : file.offsets_of_bodies)
+            file.assumptions.push_back(fmt::format(
+                "nothing states {}, in which bodies are positioned: it is at machine zero",
+                gcode::name_of_offset(offset)));
     read_allowances(root, setup);
     check_allowance_names(root, setup);
     const bool has_assumed_offsets = file.assumed.contains("offsets") && !file.infers_frame;

@@ -56,6 +56,7 @@ struct SetupFile {
     StatedControl control;
     std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
     std::set<size_t> offsets_used;            // work offsets in which the program moves
+    std::set<size_t> offsets_of_bodies;       // in which bodies stand, and whose place is assumed
     std::set<core::ToolNumber> tools_used;    // that the program calls or has in the spindle
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]

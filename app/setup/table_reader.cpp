@@ -196,6 +196,26 @@ std::vector<std::vector<double>> TableReader::rows(const char* key, Measure meas
     return result;
 }
 
+void TableReader::limit_numbers(const toml::node& value, std::string_view key) {
+    if (key == "number" || key == "line") return;
+    if (const toml::table* inner = value.as_table())
+        for (const auto& [name, below] : *inner) limit_numbers(below, name.str());
+    if (const toml::array* list = value.as_array())
+        for (const toml::node& below : *list) limit_numbers(below, key);
+    const auto number = finite(value, Measure::length);
+    if (number && std::abs(*number) > largest_number)
+        refuse_at(value.source(),
+                  fmt::format("{} {:g} is out of range: lengths and coordinates are at most 1 km "
+                              "either way, angles {:.0f} degrees",
+                              key, value.value_or(0.0), largest_number));
+}
+
+void TableReader::limit_numbers() { limit_numbers(table_, ""); }
+
+void TableReader::limit_numbers(const char* key) {
+    if (const toml::node* value = table_.get(key)) limit_numbers(*value, key);
+}
+
 std::optional<TableReader> TableReader::table(const char* key, const std::string& name) {
     const toml::node* at = node(key);
     if (!at) return std::nullopt;

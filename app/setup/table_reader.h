@@ -27,6 +27,10 @@ inline constexpr const char* length_unit_key = "length_unit";
 /// along lines, are in the unit of the file and are read as mm.
 enum class Measure : uint8_t { length, angle, plain };
 
+/// The largest coordinate or size in a set-up, 1 km in mm, and the largest angle in degrees. Larger
+/// ones are slips; a body that far away would be lost without a word.
+inline constexpr double largest_number = 1e6;
+
 /// Reads a TOML table key by key, and refuses keys that the caller never reads.
 ///
 /// Only the first error is kept, with its position; after it all reads return nothing. So a caller
@@ -80,6 +84,11 @@ public:
     /// A list of rows of numbers, each of the given length.
     std::vector<std::vector<double>> rows(const char* key, Measure measure, size_t length);
 
+    /// Refuses numbers beyond `largest_number` either way, in all values of this table and of those
+    /// in it, or in that of one key. The values `number` and `line` are not lengths and stay.
+    void limit_numbers();
+    void limit_numbers(const char* key);
+
     /// A nested table; empty if absent.
     std::optional<TableReader> table(const char* key, const std::string& name);
 
@@ -117,6 +126,7 @@ private:
     void refuse_at(const toml::source_region& where, const std::string& why);
     std::optional<double> finite(const toml::node& node, Measure measure) const;
     std::vector<double> finite_items(const toml::node& list, Measure measure) const;
+    void limit_numbers(const toml::node& value, std::string_view key);
 
     const toml::table& table_;
     std::string name_;

@@ -88,6 +88,7 @@ void add_partial(TableReader& table, const core::ToolDescription& tool, SetupFil
 } // namespace
 
 void read_tool(TableReader& table, BodyContext& context) {
+    table.limit_numbers();
     SetupFile& file = context.file;
     core::ToolDescription tool;
     const auto number = table.integer("number");
@@ -120,6 +121,7 @@ void read_tool(TableReader& table, BodyContext& context) {
 }
 
 void read_length_offset(TableReader& table, SetupFile& file) {
+    table.limit_numbers();
     const auto number = table.integer("number");
     if (!number) return table.need("number");
     gcode::LengthOffset offset;

@@ -412,6 +412,32 @@ TEST(SetupChanges, AddCopyRenameAndRemoveFixtures) {
     EXPECT_EQ(app::free_name(text, "stud"), "stud");
 }
 
+TEST(SetupChanges, GiveNoFixtureTheNameOfAFrame) {
+    const std::string text = "[[fixture]]\nname = \"vise\"\nbox = [[0, 0, 0], [1, 1, 1]]\n";
+    for (const char* name : {"G54", "g55", "machine", "stock", "part", "holder", ""}) {
+        EXPECT_FALSE(app::with_renamed_fixture(text, "vise", name)) << name;
+        EXPECT_FALSE(app::with_fixture(text, name, "box = [[0, 0, 0], [1, 1, 1]]\n")) << name;
+        EXPECT_FALSE(app::with_copied_fixture(text, "vise", name)) << name;
+    }
+    EXPECT_EQ(app::free_name(text, "G54"), "G54-1");
+    EXPECT_EQ(app::free_name(text, "holder"), "holder-1");
+    EXPECT_EQ(app::free_name("[[fixture]]\nname = \"holder-1\"\n", "holder"), "holder-2");
+}
+
+TEST(SetupChanges, KeepAWorkOffsetInWhichBodiesAre) {
+    const std::string offsets = "[offsets]\nG54 = { X = 1 }\n\"G54.1 P2\" = { X = 2 }\n";
+    const std::string text =
+        offsets + "[stock]\nmargin = 1\n[[fixture]]\nname = \"vise\"\n" + "frame = \"G154 P2\"\n";
+    const auto kept = app::without_offset(text, "G54");
+    ASSERT_FALSE(kept);
+    EXPECT_THAT(kept.error().message, HasSubstr("the stock is positioned in G54"));
+    const auto other = app::without_offset(text, "G54.1 P2");
+    ASSERT_FALSE(other);
+    EXPECT_THAT(other.error().message, HasSubstr("\"vise\" is positioned in G54.1 P2"));
+    EXPECT_EQ(app::without_offset(text, "G55").value_or(""), text);
+    EXPECT_THAT(changed(app::without_offset(offsets, "G54")), Not(HasSubstr("G54 =")));
+}
+
 TEST(SetupChanges, StateOffsets) {
     EXPECT_EQ(changed(app::with_offset("", "G54", {-350, 0.1 + 0.2, -420})),
               "[offsets]\nG54 = { X = -350, Y = 0.3, Z = -420 }\n");

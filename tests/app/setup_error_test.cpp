@@ -59,6 +59,82 @@ TEST(SetupFile, NamesTheLineOfAMistake) {
                       "mesh_size = 1");
 }
 
+TEST(SetupFile, RefusesAFixtureWithTheNameOfAFrame) {
+    for (const char* name : {"G54", "g55", " G59.3 ", "G54.1 P12", "G154 P3", "G505", "machine",
+                             "Stock", "part", "holder", "fixture"}) {
+        const std::string text =
+            SetupWriter().also("[[fixture]]\nname = \"" + std::string(name) + "\"\n" + box).text();
+        expect_at_line_of(text, "name = \"" + std::string(name) + "\"");
+        EXPECT_NE(error_of(text).find("choose another name"), std::string::npos) << name;
+    }
+    for (const char* name : {"G54-1", "G53", "G60", "vise", "Holder 2", "table"})
+        EXPECT_EQ(error_of(SetupWriter()
+                               .also("[[fixture]]\nname = \"" + std::string(name) + "\"\n" + box)
+                               .text()),
+                  "")
+            << name;
+}
+
+TEST(SetupFile, RefusesABodyInAWorkOffsetThatNothingStates) {
+    const std::string offsets = "[offsets]\nG54 = { X = 300, Z = -450 }\n";
+    const std::string stock = "[stock]\n" + box, in_g55 = fixture(box + "frame = \"G55\"\n");
+    EXPECT_EQ(error_of(offsets + stock), "");
+    expect_at_line_of(offsets + stock + in_g55, "frame = \"G55\"");
+    EXPECT_NE(error_of(offsets + stock + in_g55).find("add G55 to [offsets]"), std::string::npos);
+    EXPECT_EQ(error_of(offsets + "G55 = { Z = -1 }\n" + stock + in_g55), "");
+    EXPECT_EQ(error_of(offsets + "G55 = {}\n" + stock + in_g55), "");
+    // Without any, only the places of the bodies relative to each other count.
+    EXPECT_EQ(error_of(stock + fixture(box)), "");
+    EXPECT_EQ(error_of("[stock]\n" + box + "frame = \"G55\"\n" + in_g55), "");
+    expect_at_line_of(stock + in_g55, "frame = \"G55\"");
+    EXPECT_NE(error_of(stock + in_g55).find("such as G54, in which other bodies are"),
+              std::string::npos);
+    // A frame that is not given is G54.
+    const std::string other = "[offsets]\nG55 = { X = 300, Z = -450 }\n";
+    expect_at_line_of(other + stock + fixture(box), "[stock]");
+    expect_at_line_of(other + "[stock]\n" + box + "frame = \"G55\"\n" + fixture(box),
+                      "[[fixture]]");
+    // The only body of a set-up that is to be completed stands where the program has G54.
+    EXPECT_EQ(error_of(other + stock), "");
+}
+
+TEST(SetupFile, CountsTheAssumedPlaceOfBodiesAsAssumed) {
+    const auto bodies_of = [](const std::string& text) {
+        const auto read = read_setup_text(text, "setup.toml", {});
+        EXPECT_TRUE(read) << (read ? "" : error_text(read.error()));
+        return read ? read->offsets_of_bodies : std::set<size_t>{};
+    };
+    const std::string stock = "[stock]\n" + box;
+    EXPECT_EQ(bodies_of("[offsets]\nG54 = { Z = -450 }\n" + stock), std::set<size_t>{});
+    EXPECT_EQ(bodies_of(stock + fixture(box)), std::set<size_t>{0});
+    EXPECT_EQ(bodies_of("[offsets]\nG55 = { Z = -450 }\n" + stock), std::set<size_t>{0});
+}
+
+TEST(SetupFile, RefusesBodiesWithoutSize) {
+    expect_error(SetupWriter().stock("box = [[0, 0, 0], [10, 10, 0]]\n"), {"opposite corners"});
+    expect_error(SetupWriter().stock("cylinder = { radius = -5, height = 10 }\n"), {"above 0"});
+    expect_error(SetupWriter().tool("shape = \"flat\"\ndiameter = -10\nflute_length = 20\n"),
+                 {"setup.toml:"});
+}
+
+TEST(SetupFile, RefusesPlacesThatNoMachineReaches) {
+    for (const char* value : {"1e300", "-1e300", "1000001", "-1e7"}) {
+        const std::string v = value;
+        expect_error(SetupWriter().also(fixture(box + "at = [0, " + v + ", 0]\n")),
+                     {"at ", "out of range", "1 km"});
+        expect_error(SetupWriter().also(fixture(box + "rotate_deg = [0, 0, " + v + "]\n")),
+                     {"rotate_deg"});
+        expect_error(SetupWriter().stock("box = [[-2e9, -2e9, -2e9], [1, 1, " + v + "]]\n"),
+                     {"box", "out of range"});
+        expect_error(SetupWriter().offsets("G54 = { X = " + v + " }\n"), {"out of range"});
+        expect_error(SetupWriter().tool(flat_10 + "stick_out = " + v + "\n"), {"stick_out"});
+        EXPECT_NE(error_of("[program]\nstart = { X = " + v + " }\n").find("out of range"),
+                  std::string::npos);
+    }
+    EXPECT_EQ(error_of(SetupWriter().also(fixture(box + "at = [1e6, -1e6, 0]\n")).text()), "");
+    expect_at_line_of(SetupWriter().also(fixture(box + "at = [1,\n 2e8, 3]\n")).text(), " 2e8");
+}
+
 TEST(SetupFile, SuggestsTheKeyThatWasMeant) {
     expect_error(SetupWriter().root("mesh_sise = 1\n"),
                  {"mesh_sise", "did you mean \"mesh_size\""});

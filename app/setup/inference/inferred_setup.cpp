@@ -434,8 +434,9 @@ void assume_handwork(SetupFile& file, const ProgramSurvey& seen) {
 }
 
 /// Whether the set-up or the program states every work offset in whose coordinates the program
-/// moves.
+/// moves, and the set-up every one in whose frame bodies stand.
 Known known_offsets(const SetupFile& file, const ProgramSurvey& seen) {
+    if (!file.offsets_of_bodies.empty()) return Known::inferred;
     if (seen.offsets.empty() && file.offsets_set.empty()) return Known::inferred;
     const bool has_table = !file.infers_frame && !file.environment.parameters.empty();
     for (const auto& [offset, is_set] : seen.offsets) {
