@@ -1,6 +1,7 @@
 #include "app/view/model/workspace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -373,10 +374,22 @@ void copy_selected(ViewModel& model) {
     const SetupItem selected = model.workspace.selected;
     if (selected.kind != Kind::fixture) return;
     const std::string copy = free_name(model.workspace.document.text(), selected.name);
-    if (edit_setup(model, "Copy " + selected.name, [&](const std::string& text) {
-            return with_copied_fixture(text, selected.name, copy);
-        }))
-        model.workspace.selected = item(Kind::fixture, copy);
+    const StatedBody* const body = model.workspace.stated->fixture(selected.name);
+    if (!body) return;
+    // Beside the original, so that it can be seen and picked.
+    const core::Aabb box = bounds_of_body(model, selected.name);
+    const double step = usual_block(model).y;
+    const double shift = box.empty() ? step : step * std::ceil(box.size().x / step);
+    const core::Vec3 at = body->at + core::Vec3(shift, 0.0, 0.0), turn = body->rotate_deg;
+    if (!edit_setup(model, "Copy " + selected.name,
+                    [&](const std::string& text) -> core::Result<std::string> {
+                        FEELER_TRY(const std::string copied,
+                                   with_copied_fixture(text, selected.name, copy));
+                        return with_pose(copied, *path_of_fixture(copied, copy), at, turn);
+                    }))
+        return;
+    model.workspace.selected = item(Kind::fixture, copy);
+    model.workspace.wants_focus = true;
 }
 
 namespace {
@@ -500,7 +513,9 @@ bool save_document(ViewModel& model, const std::string& path, const FileWriter& 
     workspace.is_naming = false;
     workspace.on_disk.reset();
     workspace.refusal.clear();
-    say(model, "Saved " + target, now);
+    say(model,
+        "Saved " + target + (workspace.error ? "; it has an error and cannot be checked" : ""),
+        now);
     return true;
 }
 

@@ -1,5 +1,6 @@
 #include "app/view/ui/setup_fields.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <imgui.h>
@@ -141,12 +142,15 @@ std::optional<double> SetupFields::size(Frame& frame, const char* id, double mm)
 template <typename Field>
 std::optional<core::Vec3> SetupFields::three(const char* id, const core::Vec3& values,
                                              const Frame& frame, const Field& field) {
+    constexpr double widest = 66.0, gap = 5.0;
     std::optional<core::Vec3> changed;
     ImGui::PushID(id);
     constexpr const char* axes[] = {"##X", "##Y", "##Z"};
+    const double room = (ImGui::GetContentRegionAvail().x / frame.fonts.scale - 2.0 * gap) / 3.0;
+    const double width = std::clamp(room, 20.0, widest);
     for (int axis = 0; axis < 3; ++axis) {
-        if (axis > 0) ImGui::SameLine(0, frame.px(5));
-        const std::optional<double> value = field(axes[axis], values[axis]);
+        if (axis > 0) ImGui::SameLine(0, frame.px(gap));
+        const std::optional<double> value = field(axes[axis], values[axis], width);
         if (!value) continue;
         changed = changed.value_or(values);
         (*changed)[axis] = *value;
@@ -156,23 +160,25 @@ std::optional<core::Vec3> SetupFields::three(const char* id, const core::Vec3& v
 }
 
 std::optional<core::Vec3> SetupFields::point(Frame& frame, const char* id, const core::Vec3& mm) {
-    return three(id, mm, frame, [&](const char* axis, double value) {
-        return length(frame, axis, value, vector_width);
+    return three(id, mm, frame, [&](const char* axis, double value, double width) {
+        return length(frame, axis, value, width);
     });
 }
 
 std::optional<core::Vec3> SetupFields::sizes(Frame& frame, const char* id, const core::Vec3& mm) {
-    return three(id, mm, frame, [&](const char* axis, double value) -> std::optional<double> {
-        const auto typed = length(frame, axis, value, vector_width);
-        if (typed && *typed <= 0.0) return refuse(frame, "A size must be larger than 0");
-        return typed;
-    });
+    return three(id, mm, frame,
+                 [&](const char* axis, double value, double width) -> std::optional<double> {
+                     const auto typed = length(frame, axis, value, width);
+                     if (typed && *typed <= 0.0)
+                         return refuse(frame, "A size must be larger than 0");
+                     return typed;
+                 });
 }
 
 std::optional<core::Vec3> SetupFields::angles(Frame& frame, const char* id,
                                               const core::Vec3& degrees) {
-    return three(id, degrees, frame, [&](const char* axis, double value) {
-        return number(frame, axis, value, vector_width);
+    return three(id, degrees, frame, [&](const char* axis, double value, double width) {
+        return number(frame, axis, value, width);
     });
 }
 

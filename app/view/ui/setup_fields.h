@@ -15,7 +15,7 @@ namespace app::viewer {
 /// The fields of the set-up. A change takes effect when its field is left.
 class SetupFields {
 public:
-    static constexpr double field_width = 74.0, vector_width = 66.0;
+    static constexpr double field_width = 74.0;
 
     /// Before the fields of a frame: leaves the active one if the window needs what is typed, and
     /// forgets it if the text of the set-up was replaced, as by undo.

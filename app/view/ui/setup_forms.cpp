@@ -348,8 +348,12 @@ void SetupForms::draw_placing(Frame& frame, const std::string& body) {
         {"\xE2\x88\x92X", {-1, 0, 0}}, {"+X", {1, 0, 0}},
         {"\xE2\x88\x92Y", {0, -1, 0}}, {"+Y", {0, 1, 0}},
         {"\xE2\x88\x92Z", {0, 0, -1}}, {"+Z", {0, 0, 1}}};
+    const bool is_narrow = ImGui::GetContentRegionAvail().x < frame.px(212);
     for (const auto& [name, direction] : ways) {
-        if (direction != ways[0].second) ImGui::SameLine(0, frame.px(3));
+        if (is_narrow && direction.y < 0.0)
+            field_name(frame, "");
+        else if (direction != ways[0].second)
+            ImGui::SameLine(0, frame.px(3));
         if (ImGui::SmallButton(name)) slide_to_contact(model, body, direction);
         tip(frame, "Slide it until it touches another body: close a jaw, put it down");
     }

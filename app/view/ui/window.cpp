@@ -556,6 +556,9 @@ void Window::draw() {
     ImGui_ImplGlfw_NewFrame();
     while (const auto command = keys_.take_command()) perform_key(command->first, command->second);
     if (keys_.feed(ImGui::GetIO())) damage();
+    // Enter presses the button that has the focus, as Space does.
+    if (!ImGui::GetIO().WantTextInput && ImGui::GetIO().KeysDown[key::enter])
+        ImGui::GetIO().NavInputs[ImGuiNavInput_Activate] = 1.0F;
     ImGui::NewFrame();
     ViewModel& model = shown_model();
     tab().layout.draw(model, fonts_, glfwGetTime());
