@@ -58,9 +58,7 @@ ExitCode view(const ViewOptions& options) {
     job.write = [](const std::string& path, const std::string& text) {
         return write_output(path, text);
     };
-    job.make_sheet = [](const CheckJob& check, const std::function<bool()>& goes_on) {
-        return sheet_page(check, goes_on);
-    };
+    job.make_sheet = sheet_page;
     job.pictures = pictures_folder(first);
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);

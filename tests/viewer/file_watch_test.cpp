@@ -63,6 +63,23 @@ TEST_F(FileWatchTest, IsNotHeldUpByAFileThatWasNeverThere) {
     EXPECT_TRUE(watch.has_changed());
 }
 
+TEST_F(FileWatchTest, TakesFilesOnThatACheckHasRead) {
+    FileWatch watch;
+    watch.set({path_});
+    const std::string table = path_ + ".tbl";
+    std::ofstream(table) << "T1 P1 D10";
+    watch.add({table, path_, ""});
+    EXPECT_FALSE(watch.has_changed());
+    std::ofstream(table) << "T1 P1 D40.0";
+    EXPECT_FALSE(watch.has_changed()) << "it may still be written";
+    EXPECT_TRUE(watch.has_changed());
+    write("G1 X1\nG1 X2\n");
+    EXPECT_FALSE(watch.has_changed());
+    watch.add({path_});
+    EXPECT_TRUE(watch.has_changed()) << "a file that is known keeps its state";
+    std::filesystem::remove(table);
+}
+
 TEST(FilesOfSetup, AreAllThatItAndItsMachineName) {
     const test_support::ScopedFolder folder;
     const std::string setup = folder.write(

@@ -159,6 +159,60 @@ void end_walk(ViewModel& model, const RunEnd& end, double now) {
     if (!text.empty()) say(model, text, now);
 }
 
+/// What the check covers so far.
+Coverage coverage_so_far(const ViewModel& model) {
+    Coverage coverage = *model.program->coverage;
+    std::set<core::ToolNumber> bare;
+    std::optional<core::ToolNumber> last; // most rows have the tool of the row before
+    for (const BlockRow& row : model.rows) {
+        coverage.moves = coverage.moves || moves(row);
+        if (!feeds(row) || !row.tool || row.tool == last) continue;
+        last = row.tool;
+        if (!model.program->tools_with_holder.contains(*row.tool)) bare.insert(*row.tool);
+    }
+    coverage.tools_without_holder.assign(bare.begin(), bare.end());
+    coverage.holders = bare.empty() ? Known::described : Known::missing;
+    reduce_by(model.findings, coverage);
+    return coverage;
+}
+
+std::string words_of_gaps(const Coverage& coverage) {
+    const std::string uncovered = uncovered_text(coverage);
+    return uncovered.empty() ? "" : "Not checked: " + uncovered;
+}
+
+VerdictWords words_of_verdict(const ViewModel& model, const Coverage& coverage) {
+    using render::ClearanceState;
+    if (!model.has_rows()) return {};
+    Judged judged{.is_stopped = model.stopped.has_value()};
+    for (const size_t block : model.offending)
+        judged.verdict = std::max(judged.verdict, model.rows[block].verdict);
+    judged.has_errors =
+        std::any_of(model.findings.begin(), model.findings.end(), is_error_of_program);
+    judged.lacks_required =
+        std::any_of(model.findings.begin(), model.findings.end(), lacks_coverage);
+    const bool is_bad =
+        judged.verdict != core::Verdict::clear || judged.has_errors || judged.is_stopped;
+    if (!is_bad && !model.is_recorded) return {"CHECKING", ClearanceState::none};
+    const bool is_clear =
+        !is_bad && !judged.lacks_required && coverage.moves && coverage.is_complete();
+    std::string text = headline_of(judged, coverage);
+    if (const size_t errors = count_of(model.findings, core::Severity::error); errors > 0)
+        text += ", " + counted(errors, "error");
+    if (!model.is_recorded) text += " so far";
+    return {text, is_bad     ? ClearanceState::violation
+                  : is_clear ? ClearanceState::clear
+                             : ClearanceState::near};
+}
+
+/// Updates what is said about the whole program.
+void judge(ViewModel& model) {
+    if (!model.program || !model.program->coverage) return;
+    const Coverage coverage = coverage_so_far(model); // looks at all rows
+    model.coverage = words_of_gaps(coverage);
+    model.verdict = words_of_verdict(model, coverage);
+}
+
 } // namespace
 
 void stay(ViewModel& model) {
@@ -206,10 +260,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
     if (news.refusal) say(model, *news.refusal, now);
-    if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped) {
-        model.coverage = coverage_words(model);
-        model.verdict = verdict_words(model);
-    }
+    if (has_rows || news.findings || news.opened || news.is_recorded || news.stopped) judge(model);
     if (is_first) resume(model);
     if (is_first || news.changes) go_to(model, model.cursor.block, model.cursor.fraction);
     if (news.walk) end_walk(model, *news.walk, now);
@@ -262,62 +313,14 @@ const SetupSheet* sheet_of(const ViewModel& model) {
     return model.program ? model.program->sheet.get() : nullptr;
 }
 
-namespace {
-
-/// What the check covers so far.
-Coverage coverage_so_far(const ViewModel& model) {
-    Coverage coverage = *model.program->coverage;
-    std::set<core::ToolNumber> bare;
-    std::optional<core::ToolNumber> last; // most rows have the tool of the row before
-    for (const BlockRow& row : model.rows) {
-        coverage.moves = coverage.moves || moves(row);
-        if (!feeds(row) || !row.tool || row.tool == last) continue;
-        last = row.tool;
-        if (!model.program->tools_with_holder.contains(*row.tool)) bare.insert(*row.tool);
-    }
-    coverage.tools_without_holder.assign(bare.begin(), bare.end());
-    coverage.holders = bare.empty() ? Known::described : Known::missing;
-    reduce_by(model.findings, coverage);
-    return coverage;
-}
-
-size_t count_of(const std::vector<core::Finding>& findings, core::Severity severity) {
-    return static_cast<size_t>(
-        std::count_if(findings.begin(), findings.end(),
-                      [&](const core::Finding& each) { return each.severity == severity; }));
-}
-
-} // namespace
-
 std::string coverage_words(const ViewModel& model) {
     if (!model.program || !model.program->coverage) return {};
-    const std::string uncovered = uncovered_text(coverage_so_far(model));
-    return uncovered.empty() ? "" : "Not checked: " + uncovered;
+    return words_of_gaps(coverage_so_far(model));
 }
 
 VerdictWords verdict_words(const ViewModel& model) {
-    using render::ClearanceState;
-    if (!model.program || !model.program->coverage || !model.has_rows()) return {};
-    Judged judged{.is_stopped = model.stopped.has_value()};
-    for (const size_t block : model.offending)
-        judged.verdict = std::max(judged.verdict, model.rows[block].verdict);
-    judged.has_errors =
-        std::any_of(model.findings.begin(), model.findings.end(), is_error_of_program);
-    judged.lacks_required =
-        std::any_of(model.findings.begin(), model.findings.end(), lacks_coverage);
-    const Coverage coverage = coverage_so_far(model);
-    const bool is_bad =
-        judged.verdict != core::Verdict::clear || judged.has_errors || judged.is_stopped;
-    if (!is_bad && !model.is_recorded) return {"CHECKING", ClearanceState::none};
-    const bool is_clear =
-        !is_bad && !judged.lacks_required && coverage.moves && coverage.is_complete();
-    std::string text = headline_of(judged, coverage);
-    if (const size_t errors = count_of(model.findings, core::Severity::error); errors > 0)
-        text += ", " + counted(errors, "error");
-    if (!model.is_recorded) text += " so far";
-    return {text, is_bad     ? ClearanceState::violation
-                  : is_clear ? ClearanceState::clear
-                             : ClearanceState::near};
+    if (!model.program || !model.program->coverage) return {};
+    return words_of_verdict(model, coverage_so_far(model));
 }
 
 bool is_current(const ViewModel& model) {
