@@ -88,6 +88,7 @@ void check_place(TableReader& table, BodyContext& context, size_t offset) {
     if (is_placed(file, offset)) return;
     if (may_assume_place(file, offset) || gets_place_later(context)) {
         file.offsets_of_bodies.insert(offset);
+        file.names_offset_of_bodies = file.names_offset_of_bodies || table.has("frame");
         return;
     }
     const std::string name = gcode::name_of_offset(offset);

@@ -399,14 +399,8 @@ void place_offsets(BodyContext& context) {
     const gcode::Environment& environment = context.file.environment;
     context.frames.machine_from["machine"] = {};
     const auto place = [&](size_t index) {
-        const gcode::AxisValues set = environment.work_offset(index);
-        // The frame of a work offset is aligned with the machine axes when the rotary axes are at
-        // their offsets.
-        gcode::AxisValues rotary{};
-        for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = set[axis];
         context.frames.machine_from[gcode::name_of_offset(index)] =
-            core::machine_from_link(machine, machine.table, rotary).inverse()
-            * core::translation(machine.linear_position(set));
+            machine_from_offset(machine, environment.work_offset(index));
     };
     for (size_t i = 0; i < gcode::plain_offset_count; ++i) place(i);
     for (const auto& [index, origin] : environment.extended_offsets) place(index);
@@ -692,6 +686,15 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
 }
 
 } // namespace
+
+core::Transform machine_from_offset(const core::Machine& machine, const core::AxisValues& origin,
+                                    double rotation_deg) {
+    core::AxisValues rotary{};
+    for (size_t axis = 3; axis < 6; ++axis) rotary[axis] = origin[axis];
+    return core::machine_from_link(machine, machine.table, rotary).inverse()
+           * core::Transform{core::rotation_xyz_deg({0.0, 0.0, rotation_deg}),
+                             machine.linear_position(origin)};
+}
 
 std::string assume_machine_zero(SetupFile& file) {
     constexpr double above_program = 500.0; // mm

@@ -57,6 +57,7 @@ struct SetupFile {
     std::set<int> offsets_set;                // indices of the work offsets in the file, 0 is G54
     std::set<size_t> offsets_used;            // work offsets in which the program moves
     std::set<size_t> offsets_of_bodies;       // in which bodies stand, and whose place is assumed
+    bool names_offset_of_bodies = false;      // not only by default
     std::set<core::ToolNumber> tools_used;    // that the program calls or has in the spindle
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
@@ -110,6 +111,11 @@ core::Result<SetupFile> read_setup_text(const std::string& text, const std::stri
 /// position of the machine, where it starts and has its home unless stated otherwise. Axis limits
 /// are dropped, because they would be compared with a guess. Returns the assumption as a clause.
 std::string assume_machine_zero(SetupFile& file);
+
+/// Pose of a work offset in the machine. The frame is aligned with the machine axes, or turned by
+/// `rotation_deg` about Z, when the rotary axes are at their offsets.
+core::Transform machine_from_offset(const core::Machine& machine, const core::AxisValues& origin,
+                                    double rotation_deg = 0.0);
 
 /// What a set-up can state and call assumed at the same time: words of the key `assumed`.
 inline constexpr std::array<std::string_view, 3> assumed_words = {"stock", "offsets", "start"};

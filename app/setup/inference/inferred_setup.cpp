@@ -68,6 +68,48 @@ bool assume_other_offsets(SetupFile& file) {
     return true;
 }
 
+/// The work offset in which the program meets the bodies whose place is assumed: the one that they
+/// name, if it cuts there, else the one with most of the feed travel. Empty if there are none.
+std::optional<size_t> offset_of_bodies(const SetupFile& file, const ProgramSurvey& seen) {
+    const bool is_assumed = !file.offsets_of_bodies.empty() && file.offsets_set.empty()
+                            && file.environment.parameters.empty();
+    if (!is_assumed) return std::nullopt;
+    const size_t named = *file.offsets_of_bodies.begin();
+    return file.names_offset_of_bodies && seen.work_areas.contains(named) ? named
+                                                                          : main_offset(seen);
+}
+
+/// Puts the bodies whose place is assumed where the program itself sets their work offset (G10):
+/// where it is at the first feed.
+void move_bodies(SetupFile& file, const ProgramSurvey& seen) {
+    const auto offset = offset_of_bodies(file, seen);
+    if (!offset || *offset >= gcode::no_work_offset) return;
+    const WorkArea& area = seen.work_areas.at(*offset);
+    const std::string name = gcode::name_of_offset(*offset);
+    if (area.is_moved)
+        file.assumptions.push_back(
+            fmt::format("the program sets {} to more than one place: stock and fixtures are at the "
+                        "first, and there are none at the others",
+                        name));
+    // A numbered offset that nothing states has no frame of its own: it is where G54 is.
+    auto before = file.frames.find(gcode::name_of_offset(*file.offsets_of_bodies.begin()));
+    if (before == file.frames.end()) before = file.frames.find("G54");
+    const core::Transform after =
+        machine_from_offset(file.setup.machine, area.first.origin, area.first.rotation_deg);
+    if (after == before->second) return;
+    const core::Transform shift = after * before->second.inverse();
+    file.setup.stock_mount.link_from_body = shift * file.setup.stock_mount.link_from_body;
+    for (core::Fixture& fixture : file.setup.fixtures)
+        if (!fixture.is_machine)
+            fixture.mount.link_from_body = shift * fixture.mount.link_from_body;
+    for (auto& [frame, pose] : file.frames)
+        if (frame != "machine" && !gcode::offset_of_name(frame)) pose = shift * pose;
+    before->second = file.frames[name] = after;
+    if (!area.is_moved)
+        file.assumptions.push_back(
+            fmt::format("stock and fixtures are where the program sets {} itself", name));
+}
+
 /// Moves the work offsets that nobody has stated apart, as for workpieces clamped side by side,
 /// unless the program sets them itself.
 ///
@@ -80,8 +122,9 @@ std::vector<std::string> move_apart(SetupFile& file, const ProgramSurvey& seen) 
     };
     const bool has_stated = std::any_of(seen.work_areas.begin(), seen.work_areas.end(),
                                         [&](const auto& area) { return is_stated(area.first); });
+    const std::optional<size_t> with_bodies = offset_of_bodies(file, seen);
     const auto stays = [&](size_t offset) {
-        return has_stated ? is_stated(offset) : offset == *main;
+        return has_stated ? is_stated(offset) : offset == with_bodies.value_or(*main);
     };
     double edge = -core::infinity;
     std::vector<std::string> others;
@@ -107,14 +150,18 @@ std::vector<std::string> move_apart(SetupFile& file, const ProgramSurvey& seen) 
 }
 
 /// Moves a stated stock with the work offset in whose coordinates it is, if nobody has stated that.
-void move_stock(SetupFile& file) {
+void move_stock(SetupFile& file, const ProgramSurvey& seen) {
     const auto offset = gcode::offset_of_name(file.stock_frame);
     const bool moves = offset && !file.offsets_set.contains(static_cast<int>(*offset))
                        && !file.needs_stock && file.setup.fixtures.empty()
                        && !file.setup.machine.has_rotary();
     if (!moves) return;
-    const gcode::AxisValues origin = file.environment.work_offset(*offset);
-    file.setup.stock_mount.link_from_body.translation = {origin[0], origin[1], origin[2]};
+    const auto area = seen.work_areas.find(*offset);
+    const gcode::WorkOffset place = area != seen.work_areas.end() && area->second.is_set
+                                        ? area->second.first
+                                        : gcode::WorkOffset{file.environment.work_offset(*offset)};
+    file.setup.stock_mount.link_from_body =
+        machine_from_offset(file.setup.machine, place.origin, place.rotation_deg);
 }
 
 /// A number for the tool in the spindle before the first tool call: that of the only partly
@@ -575,10 +622,11 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
         if (offset < gcode::no_work_offset) file.offsets_used.insert(offset);
     if (file.is_partial) assume_handwork(file, first);
     if (touches_off && !file.touches_off) assume_touch_off(file);
+    move_bodies(file, first);
     std::vector<std::string> about_stock;
     if (file.infers_frame || has_other_offsets) about_stock = move_apart(file, first);
     const bool is_apart = file.infers_frame || !about_stock.empty();
-    if (has_other_offsets) move_stock(file);
+    if (has_other_offsets) move_stock(file, first);
     if (!file.needs_stock) {
         choose_mesh_size(file);
         file.stock_mismatch = stock_mismatch(file, program, first);

@@ -144,7 +144,11 @@ void add_work_area(const ProgramEvent& event, const TipTrack& path,
                    const gcode::Environment& environment, ProgramSurvey& result) {
     const size_t active = event.offsets.active;
     const auto [area, is_new] = result.work_areas.try_emplace(active);
-    if (is_new) area->second.zero = zero_of(event.offsets);
+    if (is_new) {
+        area->second.zero = zero_of(event.offsets);
+        area->second.first = event.offsets.work;
+    }
+    area->second.is_moved = area->second.is_moved || area->second.first != event.offsets.work;
     for (const Vec3& p : path.positions) area->second.reach.extend(p);
     area->second.way += path.length();
     if (active >= gcode::no_work_offset) return;

@@ -10,10 +10,10 @@
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "core/motion/event.h"
+#include "gcode/language/modal_state.h"
 
 namespace gcode {
 struct Environment;
-struct Offsets;
 struct Program;
 } // namespace gcode
 
@@ -25,6 +25,8 @@ struct WorkArea {
     core::Aabb reach;                  // of the tip
     double way = 0.0;                  // travel of the tip, mm
     bool is_set = false;               // the program sets the work offset itself
+    gcode::WorkOffset first;           // the work offset at the first feed
+    bool is_moved = false;             // it has another value at a later feed
 };
 
 /// Facts about a whole program from which its set-up is inferred.
