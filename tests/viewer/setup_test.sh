@@ -88,6 +88,18 @@ wait_for is_moved || die 'the arrow along X moves along X, in whole millimetres'
 press ctrl+z ctrl+s
 wait_for is_as_before || die 'the drag is one edit'
 
+# Insert opens the list of what can be added, and F2 the name of the fixture.
+vise_row
+press Insert Return
+expect 'a block is added by keys' '^\* job.nc'
+press F2
+xdotool type clamp
+press Return ctrl+s
+has_clamp() { grep -q '^name = "clamp"$' "$work/job.toml"; }
+wait_for has_clamp || die 'the new fixture is renamed by keys'
+press ctrl+z ctrl+z ctrl+s
+wait_for is_as_before || die 'both are undone'
+
 vise_row # the panel has the keys
 click 38 65 # the tab of the program
 press Right

@@ -38,6 +38,9 @@ void draw_banner(Frame& frame, Role role, const std::string& words) {
     ImGui::SetCursorScreenPos({from.x, end.y + frame.px(5)});
 }
 
+/// Whether the panel that is being drawn has the keyboard.
+bool has_keys() { return ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows); }
+
 } // namespace
 
 struct SetupPanel::State {
@@ -201,12 +204,15 @@ void SetupPanel::State::draw_tree(Frame& frame, const std::vector<SetupRow>& row
 
 void SetupPanel::State::draw_add_menu(Frame& frame) {
     ViewModel& model = frame.model;
-    const bool wants_menu = model.workspace.has_keys && ImGui::IsKeyPressed(key::insert, false);
+    const bool wants_menu = has_keys() && ImGui::IsKeyPressed(key::insert, false);
     if (ImGui::Button("Add \xE2\x80\xA6") || wants_menu) ImGui::OpenPopup("add");
     tip(frame, "Add a fixture, the part, a tool library, a work offset, or state that there are no "
                "fixtures (Insert)");
+    const ImVec2 below(ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y);
+    ImGui::SetNextWindowPos(below, ImGuiCond_Appearing);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(10), frame.px(8)));
     if (ImGui::BeginPopup("add")) {
+        if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere(); // Enter chooses the first
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
         if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
         if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
@@ -234,7 +240,7 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
     ViewModel& model = frame.model;
     draw_list_tabs(frame);
     draw_counts(frame, area);
-    if (model.workspace.has_keys && ImGui::IsKeyPressed(key::function(2), false))
+    if (has_keys() && ImGui::IsKeyPressed(key::function(2), false))
         forms_.wants_name = model.workspace.selected.kind == Kind::fixture;
     ImGui::Dummy(ImVec2(0, frame.px(3)));
     draw_head(frame);
@@ -255,7 +261,7 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
     tip(frame, tip_of(Command::print_sheet));
     ImGui::Separator();
     forms_.draw(frame);
-    model.workspace.has_keys = ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows);
+    model.workspace.has_keys = has_keys();
     if (std::exchange(model.workspace.wants_focus, false)) ImGui::SetWindowFocus();
 }
 

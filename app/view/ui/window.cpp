@@ -57,13 +57,19 @@ private:
     double begin_ = 0.0;
 };
 
+/// Whether a key moves the focus to where the characters that follow belong.
+bool moves_focus(int code) {
+    return code == key::tab || code == key::enter || code == key::insert
+           || code == key::function(2);
+}
+
 /// A queue of key events and characters for ImGui 1.86, which only sees whether a key is down
 /// during a frame.
 ///
 /// A key that is pressed and released between two frames gets one frame for each event. A modifier
-/// released after a key press still counts as down in the frame of that press. Tab and Enter need
-/// two more frames to move to another field: characters wait until then, or the sign of a number
-/// that is typed fast would be lost.
+/// released after a key press still counts as down in the frame of that press. A key
+/// such as Tab needs two more frames to move to another field: characters wait until then, or the
+/// sign of a number that is typed fast would be lost.
 class KeyQueue {
 public:
     /// Adds an event of a key with this GLFW code.
@@ -779,8 +785,7 @@ bool KeyQueue::feed(ImGuiIO& io) {
         has_press = has_press || event.is_down;
         changed.insert(event.code);
         io.KeysDown[event.code] = event.is_down;
-        if (event.is_down && (event.code == key::tab || event.code == key::enter))
-            frames_to_wait_ = frames_of_a_move;
+        if (event.is_down && moves_focus(event.code)) frames_to_wait_ = frames_of_a_move;
     }
     io.KeyCtrl = io.KeysDown[key::left_control] || io.KeysDown[key::right_control];
     io.KeyShift = io.KeysDown[key::left_shift] || io.KeysDown[key::right_shift];
