@@ -156,31 +156,6 @@ CylinderKey read_cylinder(TableReader& table) {
     return cylinder;
 }
 
-/// Reads the mesh of a body, in the body's frame. Relative paths are relative to the set-up.
-core::Mesh read_mesh_key(TableReader& table, const MeshSource& source) {
-    const std::string name = table.string("mesh").value_or("");
-    if (name.empty()) {
-        table.refuse("mesh", "must name a file");
-        return {};
-    }
-    auto read = core::read_mesh(source.folder / name);
-    if (!read) {
-        table.refuse("mesh", fmt::format("= \"{}\": {}", name, read.error().message));
-        return {};
-    }
-    for (const std::string& repair : read->repairs)
-        source.assumptions.push_back(fmt::format("{}: {}", name, repair));
-    const core::Aabb box = read->mesh.bounds();
-    for (const core::Vec3& corner : {box.min, box.max})
-        for (int axis = 0; axis < 3; ++axis)
-            if (std::abs(corner[axis]) > largest_number)
-                table.refuse("mesh",
-                             fmt::format("= \"{}\": reaches to {} {:g}, beyond {:.0f} mm (1 "
-                                         "km)",
-                                         name, "XYZ"[axis], corner[axis], largest_number));
-    return std::move(read->mesh);
-}
-
 core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
     for (core::Vec3& v : mesh.vertices) v = by * v;
     return mesh;
@@ -189,8 +164,8 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
 /// A box or mesh in the target frame, as a mesh.
 core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
                            const core::Transform& target_from_body) {
-    core::Mesh mesh =
-        shape == "box" ? core::mesh_of(read_box(table)) : read_mesh_key(table, source);
+    core::Mesh mesh = shape == "box" ? core::mesh_of(read_box(table))
+                                     : read_mesh_file(table, "mesh", source).value_or(core::Mesh{});
     return moved(std::move(mesh), target_from_body);
 }
 
@@ -226,7 +201,8 @@ std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& 
     if (!shape) return std::nullopt;
     if (*shape == "cylinder") return core::posed(standing(read_cylinder(table)), target_from_body);
     if (*shape == "box") return core::posed(core::convex(read_box(table)), target_from_body);
-    return core::solid_mesh(moved(read_mesh_key(table, source), target_from_body));
+    auto mesh = read_mesh_file(table, "mesh", source);
+    return core::solid_mesh(moved(std::move(mesh).value_or(core::Mesh{}), target_from_body));
 }
 
 bool has_no_shape(const TableReader& table) {
@@ -315,6 +291,31 @@ void read_model(TableReader& table, BodyContext& context, const Placement& place
 }
 
 } // namespace
+
+std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
+                                         const MeshSource& source) {
+    constexpr double mm_per_inch = 25.4;
+    const bool is_inch = table.word("mesh_unit", {"mm", "inch"}) == "inch";
+    const std::string name = table.string(key).value_or("");
+    const auto refuse = [&](const std::string& why) {
+        table.refuse(key, name.empty() ? why : fmt::format("= \"{}\": {}", name, why));
+        return std::nullopt;
+    };
+    if (name.empty()) return refuse("must name a file");
+    auto read = core::read_mesh(source.folder / name);
+    if (!read) return refuse(read.error().message);
+    for (const std::string& repair : read->repairs)
+        source.assumptions.push_back(fmt::format("{}: {}", name, repair));
+    if (is_inch)
+        for (core::Vec3& v : read->mesh.vertices) v *= mm_per_inch;
+    const core::Aabb box = read->mesh.bounds();
+    for (const core::Vec3& corner : {box.min, box.max})
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(corner[axis]) > largest_number)
+                return refuse(fmt::format("reaches to {} {:g} mm, beyond {:.0f} mm (1 km)",
+                                          "XYZ"[axis], corner[axis], largest_number));
+    return std::move(read->mesh);
+}
 
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
                                                const core::Transform& target_from_frame) {

@@ -45,6 +45,11 @@ struct BodyContext {
     MeshSource meshes();
 };
 
+/// Reads the mesh file that a key of a table names, in mm. A mesh file has no unit of its own:
+/// `mesh_unit` gives it. Relative paths are relative to the set-up. Empty after an error.
+std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
+                                         const MeshSource& source);
+
 /// Reads a body: its box, cylinder or mesh, with `at` and `rotate_deg`; empty after an error.
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
                                                const core::Transform& target_from_frame);

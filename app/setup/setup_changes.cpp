@@ -66,6 +66,7 @@ toml::table root_of(const std::string& text) {
 void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape) {
     for (const char* key : {"box", "cylinder", "mesh", "model", "margin"})
         if (key != shape) changes.erase(body / key);
+    if (shape != "mesh") changes.erase(body / "mesh_unit");
 }
 
 bool is_zero(const core::Vec3& v) { return v == core::Vec3(0.0); }
@@ -206,6 +207,12 @@ Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
     changes.set(body / "mesh", toml_text(file));
     keep_shape(changes, body, "mesh");
     return std::move(changes).text();
+}
+
+Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,
+                                   gcode::LengthUnit unit) {
+    if (unit == gcode::LengthUnit::mm) return toml_without(text, body / "mesh_unit");
+    return toml_with_value(text, body / "mesh_unit", "\"inch\"");
 }
 
 Result<std::string> with_pose(const std::string& text, const BodyPath& body, const core::Vec3& at,

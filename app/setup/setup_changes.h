@@ -43,6 +43,10 @@ core::Result<std::string> with_cylinder(const std::string& text, const BodyPath&
 core::Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
                                     const std::string& file);
 
+/// States the unit of the mesh file of a body; mm by being silent.
+core::Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,
+                                         gcode::LengthUnit unit);
+
 /// Sets `at` and `rotate_deg` of a body. Keys of the value 0 that are not there stay away.
 core::Result<std::string> with_pose(const std::string& text, const BodyPath& body,
                                     const core::Vec3& at, const core::Vec3& rotate_deg);

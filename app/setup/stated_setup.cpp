@@ -67,6 +67,7 @@ StatedBody StatedNumbers::body(const toml::table& table) const {
     read.box = box(table.get("box"));
     read.cylinder = cylinder(table.get("cylinder"));
     read.mesh = table["mesh"].value_or(std::string());
+    if (table["mesh_unit"].value<std::string>() == "inch") read.mesh_unit = gcode::LengthUnit::inch;
     read.model = table["model"].value_or(std::string());
     read.at = point(table.get("at")).value_or(core::Vec3(0.0));
     read.rotate_deg = vector_in(table.get("rotate_deg")).value_or(core::Vec3(0.0));

@@ -25,7 +25,8 @@ struct StatedBody {
     std::string name; // of a fixture
     std::optional<core::Aabb> box;
     std::optional<Cylinder> cylinder;
-    std::string mesh, model; // files
+    std::string mesh, model;                             // files
+    gcode::LengthUnit mesh_unit = gcode::LengthUnit::mm; // of the mesh file
     core::Vec3 at = core::Vec3(0.0), rotate_deg = core::Vec3(0.0);
     std::string frame = "G54";
     bool expendable = false;

@@ -162,20 +162,17 @@ void read_named(TableReader& table, BodyContext& context, core::ToolDescription&
 }
 
 void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
+    const auto mesh = read_mesh_file(table, "holder_mesh", context.meshes());
+    if (!mesh) return;
     const std::string name = table.string("holder_mesh").value_or("");
-    auto read = core::read_mesh(context.folder / name);
-    if (!read)
-        return table.refuse("holder_mesh", fmt::format("= \"{}\": {}", name, read.error().message));
-    for (const std::string& repair : read->repairs)
-        context.file.assumptions.push_back(fmt::format("{}: {}", name, repair));
-    const double lowest = read->mesh.bounds().min.z;
+    const double lowest = mesh->bounds().min.z;
     if (std::abs(lowest) > same_level)
         return table.refuse(
             "holder_mesh",
             fmt::format(
                 "= \"{}\": the origin must be in its lower face, but the mesh begins at Z {:g}",
                 name, lowest));
-    tool.holder = cones_of_profile(core::revolved_hull(read->mesh, mesh_tolerance));
+    tool.holder = cones_of_profile(core::revolved_hull(*mesh, mesh_tolerance));
     context.file.assumptions.push_back(
         fmt::format("tool {}: its holder is the smallest body of revolution that contains {}",
                     core::value_of(tool.number), name));

@@ -15,6 +15,7 @@
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
+#include "app/setup/stated_setup.h"
 #include "gcode/language/environment.h"
 #include "gcode/text/source.h"
 #include "tests/support/scoped_folder.h"
@@ -384,6 +385,18 @@ TEST(SetupChanges, StateAStockOfAnotherShape) {
     EXPECT_THAT(text, HasSubstr("box = [[0, 0, 0], [1, 1, 1]]"));
     EXPECT_THAT(text, Not(HasSubstr("at =")));
     EXPECT_THAT(text, HasSubstr("frame = \"G55\""));
+}
+
+TEST(SetupChanges, StateTheUnitOfAMesh) {
+    const std::string mm = "[[fixture]]\nname = \"a\"\nmesh = \"a.stl\" # from CAD\n";
+    const app::TomlPath a{"fixture", size_t{0}};
+    const std::string in = app::with_mesh_unit(mm, a, gcode::LengthUnit::inch).value();
+    EXPECT_EQ(in, mm + "mesh_unit = \"inch\"\n");
+    EXPECT_EQ(app::stated_in(in).fixtures[0].mesh_unit, gcode::LengthUnit::inch);
+    EXPECT_EQ(app::with_mesh_unit(in, a, gcode::LengthUnit::mm).value(), mm);
+    // Another shape has none.
+    const std::string box = app::with_box(in, a, {core::Vec3(0.0), core::Vec3(1.0)}).value();
+    EXPECT_EQ(box.find("mesh"), std::string::npos) << box;
 }
 
 TEST(SetupChanges, AddCopyRenameAndRemoveFixtures) {

@@ -20,6 +20,7 @@
 #include "core/base/file_reads.h"
 #include "gcode/language/modal_state.h"
 #include "tests/support/scoped_folder.h"
+#include "tests/support/stl_writer.h"
 
 /// The unit of the lengths in a set-up.
 
@@ -402,6 +403,7 @@ const std::set<std::string> other_keys = {
     "single_point",
     "cuts_at_centre",
     "mesh",
+    "mesh_unit",
     "model",
     "rotate_deg",
     "frame",
@@ -471,6 +473,45 @@ TEST(SetupUnit, DoesNotReachOtherFiles) {
     ASSERT_EQ(holder.size(), 1u);
     EXPECT_EQ(holder[0].lower_diameter, 25.4);
     EXPECT_EQ(holder[0].length, 63.5);
+}
+
+TEST(SetupUnit, OfAMeshIsItsOwn) {
+    const SetupFolder folder;
+    const core::Aabb inches{core::Vec3(-0.5, 0.25, 0.0), core::Vec3(2.0, 1.0, 1.5)};
+    folder.folder.write("block.stl", test_support::binary_stl(core::mesh_of(inches)));
+    const auto bounds_of = [&](const std::string& text) {
+        const auto file = folder.read(text);
+        EXPECT_TRUE(file) << text;
+        return file ? core::bounds(file->setup.fixtures.at(0).body) : core::Aabb{};
+    };
+    const std::string body = "[[fixture]]\nname = \"block\"\nmesh = \"block.stl\"\n";
+    for (const std::string& unit : {std::string(), inch}) {
+        EXPECT_EQ(bounds_of(unit + body).min, inches.min);
+        EXPECT_EQ(bounds_of(unit + body + "mesh_unit = \"mm\"\n").max, inches.max);
+        const core::Aabb mm = bounds_of(unit + body + "mesh_unit = \"inch\"\n");
+        EXPECT_EQ(mm.min, mm_per_inch * inches.min);
+        EXPECT_EQ(mm.max, mm_per_inch * inches.max);
+    }
+    // Everything that takes a mesh takes its unit.
+    const auto in_inches =
+        folder.read("[stock]\nmesh = \"block.stl\"\nmesh_unit = \"inch\"\n"
+                    "[part]\nmesh = \"block.stl\"\nmesh_unit = \"inch\"\n"
+                    "[[tool]]\nnumber = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 20\n"
+                    "holder_mesh = \"block.stl\"\nmesh_unit = \"inch\"\n");
+    ASSERT_TRUE(in_inches);
+    EXPECT_EQ(core::bounds(in_inches->setup.stock).max, mm_per_inch * inches.max);
+    EXPECT_EQ(in_inches->setup.part->solid.mesh->bounds().max, mm_per_inch * inches.max);
+    const auto& tool = in_inches->setup.tools.at(core::ToolNumber{1}).description;
+    EXPECT_NEAR(tool.holder.at(0).length, 1.5 * mm_per_inch, 1e-3);
+    // It applies to meshes only, and a size beyond 1 km is one in inches, too.
+    EXPECT_THAT(folder.error("[[fixture]]\nname = \"a\"\nbox = [[0, 0, 0], [1, 1, 1]]\n"
+                             "mesh_unit = \"inch\"\n"),
+                HasSubstr(":4:"));
+    EXPECT_THAT(folder.error(body + "mesh_unit = \"cm\"\n"), HasSubstr("mesh_unit"));
+    folder.folder.write("block.stl", test_support::binary_stl(
+                                         core::mesh_of({core::Vec3(0.0), core::Vec3(50'000.0)})));
+    EXPECT_EQ(bounds_of(body).max.x, 50'000.0);
+    EXPECT_THAT(folder.error(body + "mesh_unit = \"inch\"\n"), HasSubstr("beyond"));
 }
 
 TEST(SetupUnit, OfMessagesIsThatOfTheFile) {

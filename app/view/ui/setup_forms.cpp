@@ -245,9 +245,19 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
             change([&](const std::string& t) {
                 return toml_with_value(t, path / key, toml_text(path_in_setup(model, *file)));
             });
-        if (!is_stock && !is_part) return;
-        ImGui::SameLine(0, frame.px(5));
-        if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, wish);
+        if (is_stock || is_part) {
+            ImGui::SameLine(0, frame.px(5));
+            if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, wish);
+        }
+        if (body.mesh.empty()) return;
+        field_name(frame, "Its unit");
+        ImGui::SetNextItemWidth(frame.px(84));
+        using gcode::LengthUnit;
+        int unit = body.mesh_unit == LengthUnit::inch ? 1 : 0;
+        if (ImGui::Combo("##mesh_unit", &unit, "mm\0inch\0"))
+            change([&](const std::string& t) {
+                return with_mesh_unit(t, path, unit == 1 ? LengthUnit::inch : LengthUnit::mm);
+            });
     }
 }
 
