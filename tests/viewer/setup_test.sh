@@ -58,11 +58,11 @@ jaw_row() { click 60 286; }
 # close_vise: slides the vise to the stock, upwards and to the back, and the jaw to the front.
 close_vise() {
     vise_row
-    click 200 636 # -Y
+    click 200 660 # -Y
     expect 'an edit marks the program' '^\* job.nc'
-    click 300 636 # +Z
+    click 300 660 # +Z
     jaw_row
-    click 235 636 # +Y
+    click 235 660 # +Y
 }
 
 open_window "$work/job.nc" --setup "$work/job.toml"

@@ -14,6 +14,7 @@
 #include "app/view/model/placing.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
+#include "gcode/language/canonical.h"
 
 namespace app::viewer {
 namespace {
@@ -261,6 +262,25 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
     }
 }
 
+/// The frames in which a body can stand: bodies that the set-up states before it, the work offsets
+/// of the program and the set-up, the machine.
+std::vector<std::string> frames_for(const ViewModel& model, const StatedBody& body,
+                                    const std::string& key) {
+    const SetupSheet& sheet = *model.program->sheet;
+    std::vector<std::string> names;
+    if (key != stock_name)
+        for (const StatedBody& other : model.workspace.stated->fixtures) {
+            if (!body.name.empty() && other.name == body.name) break;
+            if (sheet.frames.contains(other.name)) names.push_back(other.name);
+        }
+    if (key != stock_name) names.emplace_back(stock_name);
+    for (const auto& [name, pose] : sheet.frames)
+        if (gcode::offset_of_name(name) && (sheet.offset(name) || name == body.frame))
+            names.push_back(name);
+    names.emplace_back("machine");
+    return names;
+}
+
 void SetupForms::draw_pose(Frame& frame, const StatedBody& body, const BodyPath& path) {
     ViewModel& model = frame.model;
     const std::string name = body.name.empty() ? path.key() : body.name;
@@ -275,12 +295,10 @@ void SetupForms::draw_pose(Frame& frame, const StatedBody& body, const BodyPath&
     field_name(frame, "In");
     ImGui::SetNextItemWidth(frame.px(140));
     if (!ImGui::BeginCombo("##frame", body.frame.c_str())) return;
-    for (const auto& [frame_name, pose] : model.program->sheet->frames) {
-        if (frame_name == body.name || (path.key() == "stock" && frame_name == "stock")) continue;
+    for (const std::string& frame_name : frames_for(model, body, path.key()))
         if (ImGui::Selectable(frame_name.c_str(), frame_name == body.frame)
             && frame_name != body.frame)
             change_frame(model, name, frame_name);
-    }
     ImGui::EndCombo();
 }
 
