@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,10 @@ struct Solid;
 struct ToolDescription;
 struct ToolSize;
 } // namespace core
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+}
 
 namespace app {
 

@@ -1,6 +1,5 @@
 #include <fstream>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/view/model/file_watch.h"
@@ -8,10 +7,7 @@
 
 namespace {
 
-using app::viewer::files_of_setup;
 using app::viewer::FileWatch;
-using testing::EndsWith;
-using testing::UnorderedElementsAre;
 
 class FileWatchTest : public testing::Test {
 protected:
@@ -68,29 +64,33 @@ TEST_F(FileWatchTest, TakesFilesOnThatACheckHasRead) {
     watch.set({path_});
     const std::string table = path_ + ".tbl";
     std::ofstream(table) << "T1 P1 D10";
-    watch.add({table, path_, ""});
+    watch.set({table, path_, "", table});
     EXPECT_FALSE(watch.has_changed());
     std::ofstream(table) << "T1 P1 D40.0";
     EXPECT_FALSE(watch.has_changed()) << "it may still be written";
     EXPECT_TRUE(watch.has_changed());
     write("G1 X1\nG1 X2\n");
     EXPECT_FALSE(watch.has_changed());
-    watch.add({path_});
+    watch.set({path_, table});
     EXPECT_TRUE(watch.has_changed()) << "a file that is known keeps its state";
+    watch.set({path_});
     std::filesystem::remove(table);
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_EQ(watch.missing(), "") << "it is not polled any more";
 }
 
-TEST(FilesOfSetup, AreAllThatItAndItsMachineName) {
-    const test_support::ScopedFolder folder;
-    const std::string setup = folder.write(
-        "feeler_watched.toml",
-        "frame = \"G54\"\n[machine]\nfile = 'feeler_machine.toml'\n"
-        "[[fixture]]\nmesh = \"a/clamp.stl\" # not \"b.nc\"\n[[[broken\nmesh = \"C.STL\"\n");
-    folder.write("feeler_machine.toml", "mesh = \"table.obj\"\n");
-    EXPECT_THAT(files_of_setup(setup),
-                UnorderedElementsAre(EndsWith("feeler_watched.toml"),
-                                     EndsWith("feeler_machine.toml"), EndsWith("a/clamp.stl"),
-                                     EndsWith("C.STL"), EndsWith("table.obj")));
+TEST_F(FileWatchTest, DoesNotReportWhatWasSaved) {
+    FileWatch watch;
+    watch.set({path_});
+    write("G1 X1\nG1 X2\n");
+    watch.take_as_known(path_);
+    watch.take_as_known(path_ + ".none");
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_FALSE(watch.has_changed());
+    write("G1 X1\n");
+    EXPECT_FALSE(watch.has_changed());
+    EXPECT_TRUE(watch.has_changed());
 }
 
 } // namespace

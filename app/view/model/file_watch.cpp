@@ -1,7 +1,6 @@
 #include "app/view/model/file_watch.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include "app/setup/toml_file.h"
 #include "core/base/text.h"
@@ -13,21 +12,6 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
     const std::string ending =
         core::lower_case(std::filesystem::path(path).extension().generic_string());
     return std::any_of(endings.begin(), endings.end(), [&](const char* e) { return ending == e; });
-}
-
-/// All texts between quotes, line by line.
-std::vector<std::string> quoted_in(const std::string& path) {
-    std::ifstream file{std::filesystem::path(path)};
-    std::vector<std::string> found;
-    for (std::string line; std::getline(file, line);)
-        for (const char quote : {'"', '\''})
-            for (size_t first = line.find(quote); first != std::string::npos;) {
-                const size_t last = line.find(quote, first + 1);
-                if (last == std::string::npos) break;
-                found.push_back(line.substr(first + 1, last - first - 1));
-                first = line.find(quote, last + 1);
-            }
-    return found;
 }
 
 } // namespace
@@ -49,21 +33,6 @@ bool is_machine_file(const std::string& path) {
     return root && root->contains("axis");
 }
 
-std::vector<std::string> files_of_setup(const std::string& setup) {
-    std::vector<std::string> files{setup};
-    // A machine file names meshes, too; a set-up never names another set-up.
-    for (size_t i = 0; i < files.size(); ++i) {
-        if (!is_setup_file(files[i])) continue;
-        const std::filesystem::path folder = std::filesystem::path(files[i]).parent_path();
-        for (const std::string& name : quoted_in(files[i])) {
-            if (!is_mesh_file(name) && !is_setup_file(name) && !is_tool_library(name)) continue;
-            const std::string path = (folder / name).generic_string();
-            if (std::find(files.begin(), files.end(), path) == files.end()) files.push_back(path);
-        }
-    }
-    return files;
-}
-
 FileWatch::Seen FileWatch::observe(const std::string& path) {
     Seen seen{path};
     std::error_code gone;
@@ -74,21 +43,24 @@ FileWatch::Seen FileWatch::observe(const std::string& path) {
     return seen;
 }
 
-void FileWatch::set(std::vector<std::string> paths) {
-    known_.clear();
-    for (const std::string& path : paths)
-        if (!path.empty()) known_.push_back(observe(path));
-    last_ = known_;
+void FileWatch::set(const std::vector<std::string>& paths) {
+    std::vector<Seen> known, last;
+    for (const std::string& path : paths) {
+        const auto is_same = [&](const Seen& seen) { return seen.path == path; };
+        if (path.empty() || std::any_of(known.begin(), known.end(), is_same)) continue;
+        const auto before = std::find_if(known_.begin(), known_.end(), is_same);
+        const auto index = static_cast<size_t>(before - known_.begin());
+        known.push_back(index == known_.size() ? observe(path) : known_[index]);
+        last.push_back(index == known_.size() ? known.back() : last_[index]);
+    }
+    known_ = std::move(known);
+    last_ = std::move(last);
     missing_.clear();
 }
 
-void FileWatch::add(const std::vector<std::string>& paths) {
-    for (const std::string& path : paths) {
-        const auto is_same = [&](const Seen& seen) { return seen.path == path; };
-        if (path.empty() || std::any_of(known_.begin(), known_.end(), is_same)) continue;
-        known_.push_back(observe(path));
-        last_.push_back(known_.back());
-    }
+void FileWatch::take_as_known(const std::string& path) {
+    for (size_t i = 0; i < known_.size(); ++i)
+        if (known_[i].path == path) known_[i] = last_[i] = observe(path);
 }
 
 void FileWatch::check_for_missing(const std::vector<Seen>& now) {

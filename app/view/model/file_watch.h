@@ -15,16 +15,14 @@ bool is_setup_file(const std::string& path);
 bool is_tool_library(const std::string& path);
 bool is_machine_file(const std::string& path);
 
-/// The set-up file and the files that it names: meshes, tools, the machine file with its meshes.
-/// Works even if the set-up has errors.
-std::vector<std::string> files_of_setup(const std::string& setup);
-
 /// Polls files for changes.
 class FileWatch {
 public:
-    void set(std::vector<std::string> paths);
-    /// Polls these files as well.
-    void add(const std::vector<std::string>& paths);
+    /// Polls these files from now on. Of those that were polled before, changes that have not been
+    /// reported yet still count.
+    void set(const std::vector<std::string>& paths);
+    /// The present state of a file is no change: it has just been saved.
+    void take_as_known(const std::string& path);
 
     /// Whether a file has changed and was then the same in two calls in a row, so that it is not
     /// read while it is being written.

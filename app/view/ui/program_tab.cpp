@@ -43,6 +43,7 @@ void ProgramTab::open(const CheckJob& check) {
     if (auto unsaved = unsaved_.find(check.program, check.setup, text))
         model.workspace.found = std::move(*unsaved);
     keep_at_.reset();
+    watch({});
     reload();
     if (model.workspace.found) show_setup(model, true);
 }
@@ -57,21 +58,19 @@ void ProgramTab::reload() {
     if (!document.path().empty() || !document.text().empty()) check_->setup_text = document.text();
     worker_.set_breakpoints(model.breakpoints);
     worker_.open(*check_);
-    watch_files();
 }
 
-void ProgramTab::watch_files() {
-    std::vector<std::string> files = files_of_setup(check_->setup);
-    files.push_back(check_->program);
-    if (!job_.device.file.empty()) files.push_back(job_.device.file);
-    files_.set(std::move(files));
+void ProgramTab::watch(std::vector<std::string> files) {
+    for (const std::string& own : {check_->program, check_->setup, job_.device.file})
+        files.push_back(own);
+    files_.set(files);
 }
 
 bool ProgramTab::take_updates(double now) {
     SessionUpdate news = worker_.take();
     DeviceUpdate answers = device_.take();
     ToleranceUpdate found = tolerances_.take();
-    files_.add(news.files);
+    if (!news.files.empty()) watch(news.files);
     const bool has_sheet = take_sheet(now);
     const bool has_news = news.has_news || answers.has_news || found.has_news || has_sheet;
     take_in(model, std::move(news), now);
@@ -130,7 +129,7 @@ bool ProgramTab::save_if_wanted(double now) {
     unsaved_.forget(check_->program, before);
     keep_at_.reset();
     check_->setup = workspace.document.path();
-    watch_files();
+    files_.take_as_known(check_->setup);
     if (workspace.document.path() != before) reload();
     return true;
 }

@@ -69,7 +69,7 @@ public:
     void forget_edits();
 
 private:
-    void watch_files();
+    void watch(std::vector<std::string> files);
     bool take_sheet(double now);
 
     const WindowJob& job_;
