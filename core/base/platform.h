@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 /// What standard C++ does not offer. All other code is the same for every system. Text is UTF-8,
@@ -152,6 +153,25 @@ private:
     explicit RandomAccessFile(intptr_t handle) : handle_(handle) {}
 
     intptr_t handle_;
+};
+
+/// A file that one owner holds at a time, until it lets go or its process ends, however it ends.
+class FileLock {
+public:
+    /// Makes the file and holds it. Empty if another owner, of this process or another one, holds
+    /// it, which `is_held` then says, or if the file cannot be made.
+    static std::optional<FileLock> take(const std::filesystem::path& path, bool& is_held);
+    FileLock(FileLock&& other) noexcept;
+    FileLock& operator=(FileLock&& other) noexcept;
+    /// Lets go, and deletes the file.
+    ~FileLock();
+
+private:
+    FileLock(intptr_t handle, std::filesystem::path path)
+        : handle_(handle), path_(std::move(path)) {}
+
+    intptr_t handle_;
+    std::filesystem::path path_;
 };
 
 } // namespace core::platform

@@ -14,6 +14,7 @@
 #include <link.h>
 #include <malloc.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -286,6 +287,32 @@ std::optional<size_t> RandomAccessFile::read(char* bytes, size_t count, uint64_t
         if (done >= 0) return static_cast<size_t>(done);
         if (errno != EINTR) return std::nullopt;
     }
+}
+
+std::optional<FileLock> FileLock::take(const std::filesystem::path& path, bool& is_held) {
+    constexpr mode_t own = S_IRUSR | S_IWUSR;
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, own);
+    is_held = false;
+    if (file < 0) return std::nullopt;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return FileLock(file, path);
+    is_held = errno == EWOULDBLOCK;
+    ::close(file);
+    return std::nullopt;
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : handle_(std::exchange(other.handle_, -1)), path_(std::move(other.path_)) {}
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    std::swap(path_, other.path_);
+    return *this;
+}
+
+FileLock::~FileLock() {
+    if (handle_ < 0) return;
+    ::unlink(path_.c_str());
+    ::close(static_cast<int>(handle_));
 }
 
 } // namespace core::platform

@@ -539,4 +539,27 @@ std::optional<size_t> RandomAccessFile::read(char* bytes, size_t count, uint64_t
     return std::nullopt;
 }
 
+std::optional<FileLock> FileLock::take(const std::filesystem::path& path, bool& is_held) {
+    constexpr DWORD share_nothing = 0;
+    const HANDLE file =
+        ::CreateFileW(path.c_str(), GENERIC_READ | GENERIC_WRITE, share_nothing, nullptr,
+                      OPEN_ALWAYS, FILE_ATTRIBUTE_NORMAL | FILE_FLAG_DELETE_ON_CLOSE, nullptr);
+    is_held = file == INVALID_HANDLE_VALUE && ::GetLastError() == ERROR_SHARING_VIOLATION;
+    if (file == INVALID_HANDLE_VALUE) return std::nullopt;
+    return FileLock(reinterpret_cast<intptr_t>(file), path);
+}
+
+FileLock::FileLock(FileLock&& other) noexcept
+    : handle_(std::exchange(other.handle_, -1)), path_(std::move(other.path_)) {}
+
+FileLock& FileLock::operator=(FileLock&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    std::swap(path_, other.path_);
+    return *this;
+}
+
+FileLock::~FileLock() {
+    if (handle_ != -1) ::CloseHandle(reinterpret_cast<HANDLE>(handle_));
+}
+
 } // namespace core::platform

@@ -133,5 +133,25 @@ TEST(Platform, CountsTime) {
     EXPECT_GT(end.second, begin.second);
 }
 
+TEST(FileLock, IsHeldByOneOwnerAtATime) {
+    const Folder folder;
+    const std::filesystem::path path = folder.path / "a.lock";
+    bool is_held = false;
+    {
+        auto lock = FileLock::take(path, is_held);
+        ASSERT_TRUE(lock);
+        EXPECT_FALSE(is_held);
+        EXPECT_FALSE(FileLock::take(path, is_held));
+        EXPECT_TRUE(is_held);
+        const FileLock moved = *std::move(lock);
+        lock.reset();
+        EXPECT_FALSE(FileLock::take(path, is_held));
+    }
+    EXPECT_FALSE(std::filesystem::exists(path));
+    EXPECT_TRUE(FileLock::take(path, is_held));
+    EXPECT_FALSE(FileLock::take(folder.path / "none" / "a.lock", is_held));
+    EXPECT_FALSE(is_held);
+}
+
 } // namespace
 } // namespace core::platform

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -297,16 +298,45 @@ TEST(UnsavedSetups, AreFoundAgainUntilForgotten) {
     const test_support::ScopedFolder folder;
     const UnsavedSetups kept(folder / "unsaved", app::write_output);
     const std::string text = "# set-up: no\nmesh_size = 2\r\n\n";
-    EXPECT_FALSE(kept.find("a.nc", "", ""));
-    kept.keep("a.nc", "", text, "old");
-    ASSERT_TRUE(kept.find("a.nc", "", ""));
-    EXPECT_EQ(kept.find("a.nc", "", "")->base, app::sha256_of("old"));
-    EXPECT_EQ(kept.find("./a.nc", "", "")->text, text);
-    EXPECT_FALSE(kept.find("a.nc", "a.toml", "")) << "another set-up";
-    EXPECT_FALSE(kept.find("a.nc", "", text)) << "it was saved";
-    kept.forget("a.nc", "");
-    EXPECT_FALSE(kept.find("a.nc", "", ""));
-    EXPECT_FALSE(UnsavedSetups().find("a.nc", "", ""));
+    EXPECT_TRUE(kept.find("a.nc", "", "").empty());
+    const std::filesystem::path file = kept.free_file("a.nc", "").path;
+    EXPECT_TRUE(kept.keep(file, "a.nc", "", text, "old"));
+    const std::vector<UnsavedSetup> found = kept.find("./a.nc", "", "");
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].base, app::sha256_of("old"));
+    EXPECT_EQ(found[0].text, text);
+    EXPECT_EQ(found[0].file, file);
+    EXPECT_TRUE(kept.find("a.nc", "a.toml", "").empty()) << "another set-up";
+    EXPECT_TRUE(kept.find("a.nc", "", text).empty()) << "it was saved";
+    kept.forget(file);
+    EXPECT_TRUE(kept.find("a.nc", "", "").empty());
+    EXPECT_TRUE(UnsavedSetups().find("a.nc", "", "").empty());
+    EXPECT_FALSE(UnsavedSetups().keep(file, "a.nc", "", text, "old"));
+}
+
+TEST(UnsavedSetups, OfTwoSessionsAreKeptApart) {
+    const test_support::ScopedFolder folder;
+    const UnsavedSetups kept(folder / "unsaved", app::write_output);
+    auto held = std::optional(kept.free_file("a.nc", ""));
+    const std::filesystem::path first = held->path, second = kept.free_file("a.nc", "").path;
+    EXPECT_NE(first, second);
+    EXPECT_TRUE(kept.keep(first, "a.nc", "", "x = 1\n", ""));
+    EXPECT_TRUE(kept.keep(second, "a.nc", "", "x = 2\n", ""));
+    ASSERT_EQ(kept.find("a.nc", "", "").size(), 1U) << "one of the sessions has not ended";
+    EXPECT_EQ(kept.find("a.nc", "", "")[0].text, "x = 2\n");
+    held.reset();
+    EXPECT_NE(kept.free_file("a.nc", "").path, first) << "it keeps edits";
+    std::filesystem::last_write_time(first,
+                                     std::filesystem::last_write_time(second)
+                                         + std::chrono::seconds(5)); // edited again
+    const std::vector<UnsavedSetup> found = kept.find("a.nc", "", "");
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0].text, "x = 2\n");
+    EXPECT_EQ(found[1].text, "x = 1\n");
+    kept.forget(first);
+    EXPECT_EQ(kept.free_file("a.nc", "").path, first);
+    ASSERT_EQ(kept.find("a.nc", "", "").size(), 1U);
+    EXPECT_EQ(kept.find("a.nc", "", "x = 2\n").size(), 0U);
 }
 
 TEST(UnsavedSetups, DamagedFilesAreIgnored) {

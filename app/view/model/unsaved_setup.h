@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/setup/setup_document.h"
 #include "app/view/model/workspace.h"
+#include "core/base/platform.h"
 
 namespace app::viewer {
 
@@ -14,7 +16,7 @@ std::string text_of(const UnsavedSetup& unsaved);
 /// Empty if the text is not from text_of().
 std::optional<UnsavedSetup> unsaved_in(const std::string& text);
 
-/// The files that keep unsaved set-ups, one for each program and set-up.
+/// The files that keep unsaved set-ups, one for each program, set-up and session.
 class UnsavedSetups {
 public:
     UnsavedSetups() = default;
@@ -22,17 +24,25 @@ public:
     UnsavedSetups(std::filesystem::path folder, FileWriter write)
         : folder_(std::move(folder)), write_(std::move(write)) {}
 
-    /// Keeps a text, with what was in the file when it was edited. Errors are ignored: the user can
-    /// still save.
-    void keep(const std::string& program, const std::string& setup, const std::string& text,
-              const std::string& saved) const;
-    void forget(const std::string& program, const std::string& setup) const;
-    /// What is kept of this program and set-up, unless it is the text in the file.
-    std::optional<UnsavedSetup> find(const std::string& program, const std::string& setup,
-                                     const std::string& saved) const;
+    /// A file for the edits of a session, which no other session takes.
+    struct File {
+        std::filesystem::path path;
+        std::optional<core::platform::FileLock> lock;
+    };
+    File free_file(const std::string& program, const std::string& setup) const;
+    /// Keeps a text in a file, with what was in the set-up when it was edited. False if that is not
+    /// possible: the user can still save.
+    bool keep(const std::filesystem::path& file, const std::string& program,
+              const std::string& setup, const std::string& text, const std::string& saved) const;
+    static void forget(const std::filesystem::path& file);
+    /// What sessions that have ended kept of this program and set-up, the latest last, without
+    /// texts equal to the one in the file.
+    std::vector<UnsavedSetup> find(const std::string& program, const std::string& setup,
+                                   const std::string& saved) const;
 
 private:
-    std::filesystem::path file_of(const std::string& program, const std::string& setup) const;
+    std::filesystem::path file_of(const std::string& program, const std::string& setup,
+                                  int number) const;
 
     std::filesystem::path folder_;
     FileWriter write_;

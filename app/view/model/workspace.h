@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +29,8 @@ struct ViewModel;
 struct UnsavedSetup {
     std::string program, setup; // absolute paths; `setup` is empty for one without a file
     std::string text;
-    std::string base = {}; // SHA-256 of the text that was edited
+    std::string base = {};           // SHA-256 of the text that was edited
+    std::filesystem::path file = {}; // that keeps it
 };
 
 /// A thing in the tree of a set-up.
@@ -65,8 +67,9 @@ struct Workspace {
     std::optional<core::Error> error;   // in the text that was read last
     std::string refusal;                // why the last edit was not made; empty: it was
     std::optional<std::string> on_disk; // text in the file, changed elsewhere while there are edits
-    std::optional<UnsavedSetup> found;  // edits of an earlier session
-    bool forgets_found = false;         // the user does not want them
+    std::vector<UnsavedSetup> found;    // edits of earlier sessions, the latest last
+    // Those of which the user has said whether they are wanted.
+    std::vector<UnsavedSetup> answered;
     Leaving leaving = Leaving::no;
     bool drops_edits = false;             // the user wants to leave without saving
     std::vector<std::string> leaving_for; // files to open then, with `to_open`

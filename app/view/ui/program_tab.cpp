@@ -40,12 +40,12 @@ void ProgramTab::open(const CheckJob& check) {
     model.opened_path = check.program;
     const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
     open_document(model, SetupDocument(check.setup, text));
-    if (auto unsaved = unsaved_.find(check.program, check.setup, text))
-        model.workspace.found = std::move(*unsaved);
+    model.workspace.found = unsaved_.find(check.program, check.setup, text);
     keep_at_.reset();
+    kept_ = {};
     watch({});
     reload();
-    if (model.workspace.found) show_setup(model, true);
+    if (!model.workspace.found.empty()) show_setup(model, true);
 }
 
 void ProgramTab::reload() {
@@ -126,8 +126,7 @@ bool ProgramTab::save_if_wanted(double now) {
         return false;
     }
     if (model.popup == Popup::open_file) model.popup = Popup::none;
-    unsaved_.forget(check_->program, before);
-    keep_at_.reset();
+    forget_edits();
     check_->setup = workspace.document.path();
     files_.take_as_known(check_->setup);
     if (workspace.document.path() != before) reload();
@@ -177,27 +176,28 @@ bool ProgramTab::take_sheet(double now) {
 void ProgramTab::take_edits(double now) {
     constexpr double keep_delay = 1.0; // seconds
     if (!check_) return;
-    if (std::exchange(model.workspace.forgets_found, false))
-        unsaved_.forget(check_->program, model.workspace.document.path());
     if (model.workspace.document.version() != checked_version_) {
         reload();
         keep_at_ = now + keep_delay;
     }
-    if (keep_at_ && now >= *keep_at_) keep_edits();
+    const auto answered = std::exchange(model.workspace.answered, {});
+    if ((keep_at_ && now >= *keep_at_) || !answered.empty()) keep_edits();
+    const bool is_safe = !model.workspace.document.is_modified() || core::is_there(kept_.path);
+    for (const UnsavedSetup& each : answered)
+        if (is_safe) UnsavedSetups::forget(each.file);
 }
 
 void ProgramTab::keep_edits() {
-    if (model.workspace.found) return; // the user has not said what is to become of those edits
     if (!check_ || !std::exchange(keep_at_, std::nullopt)) return;
     const SetupDocument& document = model.workspace.document;
-    if (document.is_modified())
-        unsaved_.keep(check_->program, document.path(), document.text(), document.saved_text());
-    else
-        unsaved_.forget(check_->program, document.path());
+    if (!document.is_modified()) return forget_edits();
+    if (kept_.path.empty()) kept_ = unsaved_.free_file(check_->program, document.path());
+    unsaved_.keep(kept_.path, check_->program, document.path(), document.text(),
+                  document.saved_text());
 }
 
 void ProgramTab::forget_edits() {
-    if (check_) unsaved_.forget(check_->program, model.workspace.document.path());
+    UnsavedSetups::forget(std::exchange(kept_, {}).path);
     keep_at_.reset();
 }
 

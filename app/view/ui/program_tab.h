@@ -78,6 +78,7 @@ private:
     UnsavedSetups unsaved_;
     uint64_t checked_version_ = 0;  // of the document
     std::optional<double> keep_at_; // seconds
+    UnsavedSetups::File kept_;      // keeps the edits of this session
     bool has_asked_ = false;
     std::string sheet_path_; // of the sheet that is being made
     std::atomic<bool> sheet_goes_on_ = true;

@@ -49,6 +49,7 @@ struct SetupPanel::State {
 private:
     void draw_head(Frame& frame);
     void draw_banners(Frame& frame);
+    void draw_found(Frame& frame);
     void draw_tree(Frame& frame, const std::vector<SetupRow>& rows);
     void draw_row(Frame& frame, const SetupRow& row, int index);
     void take_tree_keys(Frame& frame);
@@ -110,26 +111,32 @@ void SetupPanel::State::draw_banners(Frame& frame) {
         if (workspace.on_disk && ImGui::SmallButton("Keep my edits"))
             workspace.document.keep_over(*std::exchange(workspace.on_disk, std::nullopt));
     }
-    if (workspace.found) {
-        const bool has_changed =
-            !workspace.found->base.empty()
-            && workspace.found->base != sha256_of(workspace.document.saved_text());
-        draw_banner(frame, Role::near,
-                    std::string("There are edits from an earlier session that were not saved.")
-                        + (has_changed ? " The file has been changed since: restoring them "
-                                         "replaces that change, until you undo it."
-                                       : ""));
-        if (ImGui::SmallButton("Restore them")) {
-            const std::string found = std::exchange(workspace.found, std::nullopt)->text;
-            edit_setup(model, "Restore unsaved edits", [&](const std::string&) { return found; });
-            ++workspace.replacements;
-        }
-        ImGui::SameLine();
-        if (workspace.found && ImGui::SmallButton("Discard them")) {
-            workspace.found.reset();
-            workspace.forgets_found = true;
-        }
-    }
+    if (!workspace.found.empty()) draw_found(frame);
+}
+
+/// Offers the latest edits of an earlier session.
+void SetupPanel::State::draw_found(Frame& frame) {
+    Workspace& workspace = frame.model.workspace;
+    const UnsavedSetup found = workspace.found.back();
+    const bool has_changed =
+        !found.base.empty() && found.base != sha256_of(workspace.document.saved_text());
+    std::string words = "There are edits from an earlier session that were not saved.";
+    if (has_changed)
+        words += " The file has been changed since: restoring them replaces that change, until you "
+                 "undo it.";
+    else if (workspace.document.is_modified())
+        words += " Restoring them replaces the edits of now, until you undo it.";
+    draw_banner(frame, Role::near, words);
+    const bool restores = ImGui::SmallButton("Restore them");
+    ImGui::SameLine();
+    const bool discards = ImGui::SmallButton("Discard them");
+    if (!restores && !discards) return;
+    workspace.found.pop_back();
+    workspace.answered.push_back(found);
+    if (discards) return;
+    edit_setup(frame.model, "Restore unsaved edits",
+               [&](const std::string&) { return found.text; });
+    ++workspace.replacements;
 }
 
 void SetupPanel::State::draw_row(Frame& frame, const SetupRow& row, int index) {
