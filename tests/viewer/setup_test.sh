@@ -173,6 +173,24 @@ press ctrl+s
 wait_for is_closed || die 'the restored edits are saved'
 ! has_unsaved || die 'saved edits are not kept as unsaved'
 
+# What is being typed belongs to its program when the tab changes.
+"$tools/drop_files" "$window" 700 400 "$work/other.nc"
+expect 'the other program is opened again' '^other.nc'
+press ctrl+Tab
+expect 'Ctrl+Tab shows the first' '^job.nc'
+click 60 245 # the stock: everything is lower while there are tabs
+click 152 539 # its X
+xdotool type 7
+press ctrl+Tab
+expect 'Ctrl+Tab works while something is typed' '^other.nc'
+press ctrl+w
+expect 'what was typed is an edit' '^\* job.nc'
+press ctrl+s
+is_typed() { grep -q '^at = \[7, 0, 0\]$' "$work/job.toml"; }
+wait_for is_typed || die 'and it is saved'
+press ctrl+z ctrl+s
+wait_for is_closed || die 'and undone'
+
 printf '[[[\n' >"$work/job.toml"
 expect 'a damaged set-up keeps the last good state' 'last good state'
 picture 05-damaged

@@ -481,7 +481,10 @@ void Window::perform_key(int code, int modifiers) {
     // WantTextInput stays set for two frames after its field is gone.
     const bool is_typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
     const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
-    const bool moves_text = code >= key::enter && code <= key::end;
+    const bool changes_tab =
+        (modifiers & mod::control) != 0
+        && (code == key::tab || code == key::page_up || code == key::page_down);
+    const bool moves_text = code >= key::enter && code <= key::end && !changes_tab;
     if (is_typing && (is_plain || moves_text)) return;
     ViewModel& model = shown_model();
     // Esc leaves a field or a list first, and in a field undo is about what is typed there.
