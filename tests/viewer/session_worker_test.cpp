@@ -8,6 +8,7 @@
 #include "app/check/check_run.h"
 #include "app/check/setup_sheet.h"
 #include "app/view/model/navigation.h"
+#include "app/view/model/open_programs.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/session_worker.h"
 #include "app/view/model/view_model.h"
@@ -41,7 +42,7 @@ public:
         woken_.notify_all();
     }
 
-    void open(const app::CheckJob& job) { worker_.open(job); }
+    void open(const app::CheckJob& job) { model.reading = worker_.open(job); }
     SessionWorker& worker() { return worker_; }
 
     /// Takes in news until something is true; whether it came to be.
@@ -86,6 +87,39 @@ std::optional<render::Triad> zero_after(Watcher& watcher, const std::string& lin
         return state && state->block == *block && state->at_end;
     };
     return watcher.wait_for(is_there) ? program_triad(watcher.model) : std::nullopt;
+}
+
+TEST(SessionWorker, ShowsNothingOldAsCurrent) {
+    const test_support::ScopedFolder folder;
+    Watcher watcher;
+    const auto show = [&](const std::string& program, const std::string& setup) {
+        app::CheckJob job;
+        job.program = folder.write("p.nc", program);
+        job.setup_text = setup;
+        watcher.model.workspace.document = app::SetupDocument("", setup);
+        watcher.open(job);
+    };
+    const std::string program = "G21 G90\nT1 M6\nM3 S3000\nG0 X0 Y0 Z9.\nG1 Z-2. F300.\nG0 Z9.\n";
+    const std::string setup = "[stock]\nbox = [[-10, -10, -10], [10, 10, 0]]\n";
+    show(program, setup);
+    EXPECT_FALSE(is_current(watcher.model));
+    ASSERT_TRUE(watcher.record());
+    EXPECT_TRUE(is_current(watcher.model));
+    // The same text again, because another file has changed; only the last request counts.
+    show(program, setup);
+    show(program, setup);
+    EXPECT_FALSE(is_current(watcher.model));
+    EXPECT_TRUE(watcher.model.program) << "the old state is shown meanwhile";
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.reading == 0; }));
+    ASSERT_TRUE(watcher.record());
+    EXPECT_TRUE(is_current(watcher.model));
+    EXPECT_EQ(tab_titles({&watcher.model})[0].state, render::ClearanceState::clear);
+    // What cannot be read is not current either.
+    show(program, "[stock]\nmesh = \"none.stl\"\n");
+    ASSERT_TRUE(watcher.wait_for([&] { return watcher.model.reading == 0; }));
+    EXPECT_TRUE(watcher.model.workspace.error);
+    EXPECT_FALSE(is_current(watcher.model));
+    EXPECT_EQ(tab_titles({&watcher.model})[0].state, render::ClearanceState::none);
 }
 
 TEST(SessionWorker, KnowsWhereTheZeroOfTheProgramIs) {

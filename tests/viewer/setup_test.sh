@@ -191,6 +191,18 @@ wait_for is_typed || die 'and it is saved'
 press ctrl+z ctrl+s
 wait_for is_closed || die 'and undone'
 
+# A program that is not shown is checked again, too, when its set-up changes.
+"$tools/drop_files" "$window" 700 400 "$work/other.nc"
+expect 'a program without a set-up' '^other.nc'
+still 06-hidden
+has_no_color 06-hidden '#FF5A36' || die 'both are without problems'
+sed -i 's/at = \[0, -60, 0\]/at = [0, -20, 0]/' "$work/job.toml"
+shows 07-hidden 'the tab of the other says that there is a problem' has_color 07-hidden '#FF5A36' 20
+cp "$work/closed.toml" "$work/job.toml"
+shows 08-hidden 'and that it is gone' has_no_color 08-hidden '#FF5A36'
+press ctrl+w
+expect 'the first is left' '^job.nc'
+
 printf '[[[\n' >"$work/job.toml"
 expect 'a damaged set-up keeps the last good state' 'last good state'
 picture 05-damaged

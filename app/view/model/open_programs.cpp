@@ -16,7 +16,7 @@ render::ClearanceState state_of_program(const ViewModel& model) {
     const bool runs_nothing = model.is_recorded && !model.has_rows();
     if (model.failure || runs_nothing || model.stopped || !model.offending.empty())
         return ClearanceState::violation;
-    return model.is_recorded ? ClearanceState::clear : ClearanceState::none;
+    return model.is_recorded && is_current(model) ? ClearanceState::clear : ClearanceState::none;
 }
 
 TabTitle title_of(const ViewModel& model) {

@@ -73,6 +73,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
         news = std::move(later);
         return;
     }
+    if (later.answered != 0) news.answered = later.answered;
     take(news.opened, later.opened);
     news.rows.append(std::move(later.rows));
     take(news.findings, later.findings);

@@ -127,7 +127,8 @@ struct RunEnd {
 
 /// What is new since the last update.
 struct SessionUpdate {
-    uint64_t opening = 0; // number of the opened program
+    uint64_t opening = 0;  // number of the opened program
+    uint64_t answered = 0; // the last request to open a program that succeeded or failed; 0: none
     std::shared_ptr<const OpenedProgram> opened;
     RowsUpdate rows;
     std::optional<std::vector<core::Finding>> findings;

@@ -289,7 +289,7 @@ struct SessionWorker::State {
     void interrupt() { interrupted_ = walks_.load(); }
     void post(Task task);
     void run();
-    void open(const CheckJob& job);
+    uint64_t open(const CheckJob& job);
     void deliver(SessionUpdate news);
     /// The requested view, if it can be made now.
     std::optional<ShowRequest> wanted(const WorkerSession& session);
@@ -304,7 +304,8 @@ struct SessionWorker::State {
     std::atomic<uint64_t> opens_ = 0;       // requested
     std::atomic<uint64_t> walks_ = 0;       // requested
     std::atomic<uint64_t> interrupted_ = 0; // walks up to this number
-    uint64_t walking_ = 0;                  // last one begun; used by the worker's thread only
+    // The last ones begun; used by the worker's thread only.
+    uint64_t opening_ = 0, walking_ = 0;
     std::thread thread_ = std::thread([this] { run(); }); // last: it uses all of the above
 };
 
@@ -325,18 +326,21 @@ void SessionWorker::State::post(Task task) {
     changed_.notify_all();
 }
 
-void SessionWorker::State::open(const CheckJob& job) {
+uint64_t SessionWorker::State::open(const CheckJob& job) {
     const uint64_t number = ++opens_;
     post([this, job, number](WorkerSession& session) {
         const auto is_superseded = [&] { return stopping_ || opens_ != number; };
         if (is_superseded()) return;
+        opening_ = number;
         session.open(
             job, [&] { deliver(session.take_update()); }, is_superseded);
     });
+    return number;
 }
 
 void SessionWorker::State::deliver(SessionUpdate news) {
     if (!news.has_news) return;
+    if (news.opened || news.failure || news.setup_error) news.answered = opening_;
     {
         const std::lock_guard lock(mutex_);
         merge(news_, std::move(news));
@@ -387,9 +391,9 @@ SessionWorker::~SessionWorker() = default;
 
 void SessionWorker::interrupt() { state_->interrupt(); }
 
-void SessionWorker::open(const CheckJob& job) {
+uint64_t SessionWorker::open(const CheckJob& job) {
     interrupt();
-    state_->open(job);
+    return state_->open(job);
 }
 
 void SessionWorker::show(const ShowRequest& request) {

@@ -102,8 +102,8 @@ public:
     /// Aborts the check.
     ~SessionWorker();
 
-    /// Only the last of several waiting requests is answered.
-    void open(const CheckJob& job);
+    /// Only the last of several waiting requests is answered. Returns the number of the request.
+    uint64_t open(const CheckJob& job);
     /// Only the last of several waiting requests is answered.
     void show(const ShowRequest& request);
     /// Walks on from a block, starting with the block after it. Returns the number of the walk; the

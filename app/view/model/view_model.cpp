@@ -230,6 +230,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
         start_anew(model, news.opening);
         model.block_state = shown; // until the new state arrives
     }
+    if (news.answered == model.reading) model.reading = 0;
     if (news.opened) {
         model.program = news.opened;
         model.workspace.error.reset();
@@ -324,7 +325,8 @@ VerdictWords verdict_words(const ViewModel& model) {
 }
 
 bool is_current(const ViewModel& model) {
-    return model.program && model.program->setup_text == model.workspace.document.text();
+    return model.program && model.reading == 0 && !model.workspace.error
+           && model.program->setup_text == model.workspace.document.text();
 }
 
 std::string length_text(const ViewModel& model, double mm, int decimals) {

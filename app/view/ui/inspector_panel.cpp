@@ -265,7 +265,7 @@ void draw_verdict(Frame& frame) {
     if (!is_current(model))
         wrapped_text(frame.fonts.strong, frame.palette.color(Role::dim),
                      model.workspace.error ? "The last good state is shown"
-                                           : "Reading the changed set-up \xE2\x80\xA6");
+                                           : "Reading what has changed \xE2\x80\xA6");
     else if (!model.verdict.text.empty())
         wrapped_text(frame.fonts.strong, frame.palette.ink(role_of(model.verdict.state)),
                      model.verdict.text);

@@ -57,7 +57,7 @@ void ProgramTab::reload() {
     check_->setup_text.reset();
     if (!document.path().empty() || !document.text().empty()) check_->setup_text = document.text();
     worker_.set_breakpoints(model.breakpoints);
-    worker_.open(*check_);
+    model.reading = worker_.open(*check_);
 }
 
 void ProgramTab::watch(std::vector<std::string> files) {
@@ -176,6 +176,9 @@ bool ProgramTab::take_sheet(double now) {
 void ProgramTab::take_edits(double now) {
     constexpr double keep_delay = 1.0; // seconds
     if (!check_) return;
+    Workspace& workspace = model.workspace;
+    if (workspace.on_disk && !workspace.document.is_modified())
+        take_file(model, *std::exchange(workspace.on_disk, std::nullopt));
     if (model.workspace.document.version() != checked_version_) {
         reload();
         keep_at_ = now + keep_delay;

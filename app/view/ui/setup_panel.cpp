@@ -104,7 +104,7 @@ void SetupPanel::State::draw_banners(Frame& frame) {
     if (!workspace.refusal.empty()) draw_banner(frame, Role::violation, workspace.refusal);
     if (workspace.on_disk) {
         draw_banner(frame, Role::near,
-                    "The file has been changed by another program, and there are edits here.");
+                    "The file has been changed elsewhere, and there are edits here.");
         if (ImGui::SmallButton("Load the file"))
             take_file(model, *std::exchange(workspace.on_disk, std::nullopt));
         ImGui::SameLine();

@@ -545,7 +545,8 @@ void Window::update() {
     if (std::exchange(shown_model().wants_reload, false)) tab().reload();
     if (now - last_watch_ > watch_interval) {
         last_watch_ = now;
-        if (tab().take_changed_files(now)) damage();
+        for (const auto& each : tabs_)
+            if (each->take_changed_files(now)) damage();
         if (now < shown_model().message_until + watch_interval) damage();
     }
     update_setup(now);
