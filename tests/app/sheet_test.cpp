@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "app/base/sha256.h"
 #include "app/base/version.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
 #include "app/report/sheet/html_sheet.h"
+#include "app/report/sheet/sheet_run.h"
 #include "app/tolerance/tolerances.h"
 #include "tests/app/checked.h"
 
@@ -307,6 +309,34 @@ TEST(Sheet, ShowsTolerancesNextToTheValues) {
     run->tolerances = std::make_shared<const app::Tolerances>(tolerances);
     EXPECT_THAT(words_of_page(app::html_sheet(*run, content_of(small.job()))),
                 HasSubstr("none: the check has errors"));
+}
+
+TEST(Sheet, SaysWhichSetUpItIsOf) {
+    const ScopedFolder folder;
+    const std::string setup = "[stock]\nbox = [[0, 0, -10], [50, 50, 0]]\n";
+    CheckJob job;
+    job.program = folder.write("p.nc", "G21 G90\nT1 M6\nM3 S3000\nG0 X0 Y0 Z9.\nG1 Z-2. F300.\n"
+                                       "G0 Z20.\nM30\n");
+    job.setup = folder.write("p.toml", setup);
+    app::SheetWishes wishes;
+    wishes.pictures = false;
+    const auto words = [&] {
+        const auto sheet = app::make_sheet(job, wishes);
+        EXPECT_TRUE(sheet);
+        return sheet ? words_of_page(sheet->html) : std::string();
+    };
+    EXPECT_THAT(words(), HasSubstr("p.toml"));
+    EXPECT_THAT(words(), HasSubstr(app::sha256_of(setup)));
+    job.setup_text = setup;
+    EXPECT_THAT(words(), Not(HasSubstr("not saved")));
+    job.setup_text = "mesh_size = 1\n" + setup;
+    EXPECT_THAT(words(), HasSubstr("p.toml with edits that are not saved"));
+    EXPECT_THAT(words(), HasSubstr(app::sha256_of(*job.setup_text)));
+    std::filesystem::remove(job.setup);
+    job.setup.clear();
+    EXPECT_THAT(words(), HasSubstr("not saved yet"));
+    job.setup_text.reset();
+    EXPECT_THAT(words(), HasSubstr("inferred from the program"));
 }
 
 TEST(SheetCommand, WritesAFileAndReplacesNoInput) {

@@ -65,6 +65,13 @@ std::string tolerance_fact(const CheckRun& run, const SheetContent& content) {
                                               : "has no effect on the check");
 }
 
+std::string setup_text(const SheetContent& content) {
+    const std::string& path = content.sheet.path;
+    if (!content.has_unsaved_edits)
+        return path.empty() ? "inferred from the program" : last_part(path);
+    return path.empty() ? "not saved yet" : last_part(path) + " with edits that are not saved";
+}
+
 std::string facts_html(const CheckRun& run, const SheetContent& content) {
     std::string rows;
     if (run.stopped) rows += fact("Stopped", error_text(*run.stopped));
@@ -72,8 +79,8 @@ std::string facts_html(const CheckRun& run, const SheetContent& content) {
                                         content.program_date.empty() ? "" : ", written ",
                                         content.program_date));
     rows += fact("SHA-256", run.sha256);
-    rows += fact("Set-up", content.sheet.path.empty() ? "inferred from the program"
-                                                      : last_part(content.sheet.path));
+    rows += fact("Set-up", setup_text(content));
+    rows += fact("SHA-256", content.setup_sha256);
     rows += fact("Machine", machine_text(run, content));
     rows += fact("Check",
                  fmt::format("{}{}Feeler {}: {}", content.check_date,

@@ -23,6 +23,8 @@ struct SheetContent {
     StatedSetup stated; // by the text of the set-up; nothing if it was inferred
     std::set<core::OffsetNumber> stated_lengths; // H numbers with a length in the set-up
     std::string control;                         // "fanuc", "fanuc-0i-mf"
+    std::string setup_sha256;                    // of its text; empty if there is none
+    bool has_unsaved_edits = false;              // the text is not that of the file
     bool calls_zero_datum = false;               // Klartext: there is no G54
     bool tolerances_were_stopped = false;        // by the user: some are missing
     bool touches_off = false;                    // assumed: Z is touched off with each tool

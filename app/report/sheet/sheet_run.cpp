@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 
+#include "app/base/sha256.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/prepared_check.h"
@@ -21,7 +22,13 @@ std::string setup_text_of(const CheckJob& job) {
 /// The content of the sheet of this very program: it may have been saved again since the check.
 core::Result<SheetContent> content_of(const CheckJob& job, const CheckRun& run) {
     FEELER_TRY(const PreparedCheck check, read_check(job));
-    if (check.run.sha256 == run.sha256) return sheet_content(check, setup_text_of(job));
+    if (check.run.sha256 == run.sha256) {
+        const std::string text = setup_text_of(job);
+        SheetContent content = sheet_content(check, text);
+        if (!text.empty()) content.setup_sha256 = sha256_of(text);
+        content.has_unsaved_edits = job.setup_text && core::file_bytes(job.setup) != text;
+        return content;
+    }
     return tl::unexpected<core::Error>(
         {core::ErrorCode::io, {}, "was changed while it was checked: try again", job.program});
 }
