@@ -27,6 +27,7 @@ core::Result<SheetContent> content_of(const CheckJob& job, const CheckRun& run) 
         SheetContent content = sheet_content(check, text);
         if (!text.empty()) content.setup_sha256 = sha256_of(text);
         content.has_unsaved_edits = job.setup_text && core::file_bytes(job.setup) != text;
+        if (content.has_unsaved_edits && job.setup.empty()) content.sheet.path.clear();
         return content;
     }
     return tl::unexpected<core::Error>(
