@@ -480,10 +480,10 @@ void Window::perform_key(int code, int modifiers) {
     if (!command) return;
     // WantTextInput stays set for two frames after its field is gone.
     const bool is_typing = ImGui::GetIO().WantTextInput && ImGui::IsAnyItemActive();
-    const bool is_plain = code < key::escape && (modifiers & mod::control) == 0;
+    const bool has_control = (modifiers & mod::control) != 0;
+    const bool is_plain = code < key::escape && !has_control;
     const bool changes_tab =
-        (modifiers & mod::control) != 0
-        && (code == key::tab || code == key::page_up || code == key::page_down);
+        has_control && (code == key::tab || code == key::page_up || code == key::page_down);
     const bool moves_text = code >= key::enter && code <= key::end && !changes_tab;
     if (is_typing && (is_plain || moves_text)) return;
     ViewModel& model = shown_model();
@@ -494,11 +494,15 @@ void Window::perform_key(int code, int modifiers) {
         return;
     const bool undoes = *command == Command::undo || *command == Command::redo;
     if (undoes && model.workspace.is_typing) return;
-    const bool keeps_keys = (model.popup != Popup::none && model.popup != Popup::shortcuts)
-                            || (model.popup == Popup::none && model.workspace.has_keys);
     const bool closes = *command == Command::close_popup || *command == Command::what_if
                         || *command == Command::quit;
-    if (keeps_keys && !closes && (is_plain || moves_text)) return;
+    const bool popup_keeps =
+        model.popup != Popup::none && model.popup != Popup::shortcuts && (is_plain || moves_text);
+    // The set-up panel keeps the keys that move in it.
+    const bool moves = (moves_text && !has_control) || code == key::space || is_list_open;
+    const bool panel_keeps =
+        model.popup == Popup::none && model.workspace.has_keys && moves && (is_plain || moves_text);
+    if ((popup_keeps || panel_keeps) && !closes) return;
     perform(model, *command, glfwGetTime());
 }
 
