@@ -164,6 +164,14 @@ void move_stock(SetupFile& file, const ProgramSurvey& seen) {
         machine_from_offset(file.setup.machine, place.origin, place.rotation_deg);
 }
 
+/// Puts the frames of the work offsets that the program uses where those offsets are now.
+void place_frames(SetupFile& file, const ProgramSurvey& seen) {
+    for (const auto& [offset, is_set] : seen.offsets)
+        if (offset < gcode::no_work_offset && !is_set && !file.offsets_of_bodies.contains(offset))
+            file.frames[gcode::name_of_offset(offset)] =
+                machine_from_offset(file.setup.machine, file.environment.work_offset(offset));
+}
+
 /// A number for the tool in the spindle before the first tool call: that of the only partly
 /// described tool, else one that is not in use.
 ToolNumber free_number(const ProgramSurvey& seen, const SetupFile& file) {
@@ -627,6 +635,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     if (file.infers_frame || has_other_offsets) about_stock = move_apart(file, first);
     const bool is_apart = file.infers_frame || !about_stock.empty();
     if (has_other_offsets) move_stock(file, first);
+    place_frames(file, first);
     if (!file.needs_stock) {
         choose_mesh_size(file);
         file.stock_mismatch = stock_mismatch(file, program, first);

@@ -188,8 +188,22 @@ std::vector<core::Vec3> marked_points(const ViewModel& model) {
                                                                        : model.measuring.positions;
 }
 
+/// The arrows at the work offset that is selected in the set-up.
+std::optional<render::Triad> selected_triad(const ViewModel& model) {
+    const SetupItem& selected = model.workspace.selected;
+    const SetupSheet* const sheet = sheet_of(model);
+    if (!model.shows_setup || selected.kind != SetupItem::Kind::offset || !sheet) return {};
+    const auto frame = sheet->frames.find(selected.name);
+    if (frame == sheet->frames.end() || !core::is_finite(frame->second.translation)) return {};
+    return render::Triad{
+        .name = selected.name, .origin = frame->second.translation, .axes = frame->second.rotation};
+}
+
 void add_triads(const ViewModel& model, render::Scene& scene) {
-    if (const auto triad = program_triad(model)) scene.triads.push_back(*triad);
+    const auto program = program_triad(model), selected = selected_triad(model);
+    if (program) scene.triads.push_back(*program);
+    if (selected && !(program && program->name == selected->name))
+        scene.triads.push_back(*selected);
     const BlockState* view = view_of(model);
     if (!view || !view->scene || !model.program || model.program->is_inferred) return;
     const auto values = axes_now(model, *view).value_or(core::AxisValues{});
@@ -359,6 +373,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
     key.drag = model.placing.drag;
     key.measured = marked_points(model);
     key.inch = model.settings.inch;
+    if (const auto selected = selected_triad(model)) key.work_offset = selected->name;
     if (model.has_rows()) key.overlap = model.row().overlap;
     key.width = size.width;
     key.height = size.height;

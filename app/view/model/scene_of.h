@@ -47,6 +47,7 @@ struct SceneKey {
     std::optional<core::Overlap> overlap; // of the shown pair
     std::optional<core::Transform> drag;  // of a body that is placed
     std::vector<core::Vec3> measured;     // and the points of a section
+    std::string work_offset;              // that is selected in the set-up
     int width = 0, height = 0;
     bool has_program = false;
 
