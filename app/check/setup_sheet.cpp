@@ -75,7 +75,7 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     sheet.path = file.path;
     sheet.frame = file.stock_frame;
     sheet.stock = setup.stock;
-    sheet.stock_why = file.inferred_stock;
+    sheet.stock_why = file.stock_comment.empty() ? file.inferred_stock : file.stock_comment;
     const bool is_assumed = file.needs_stock || file.assumed.contains("stock");
     if (is_assumed) sheet.stock_source = SetupSource::assumed;
     for (const auto& [number, tool] : setup.tools) sheet.tools.push_back(sheet_tool(file, tool));

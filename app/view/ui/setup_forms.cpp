@@ -12,6 +12,7 @@
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
 #include "app/view/model/placing.h"
+#include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "core/dbm/solid.h"
 #include "gcode/language/canonical.h"
@@ -551,7 +552,8 @@ void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
         draw_library(frame, number);
     }
     if (!shown.why.empty())
-        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), "Assumed: " + shown.why);
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     "Assumed: " + words_in_unit(model, shown.why));
     ImGui::PopID();
 }
 

@@ -12,6 +12,8 @@
 #include "app/view/ui/panel.h"
 #include "app/view/ui/panels.h"
 #include "core/base/math.h"
+#include "core/base/text.h"
+#include "core/base/units.h"
 
 namespace app::viewer {
 
@@ -170,7 +172,9 @@ std::string name_of_tool(const ViewModel& model, const ToolBand& band) {
     const auto found = tools.find(*band.tool);
     if (found == tools.end()) return name;
     const core::ToolDescription& tool = found->second.description;
-    return fmt::format("{} D{:g} {}", name, tool.diameter,
+    const bool inch = model.settings.inch;
+    const double diameter = inch ? tool.diameter / core::mm_per_inch : tool.diameter;
+    return fmt::format("{} D{} {}", name, core::number_text(diameter, inch ? 4 : 3),
                        tool.name.empty() ? core::name_of(tool.shape) : tool.name);
 }
 
