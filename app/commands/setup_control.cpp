@@ -16,7 +16,6 @@
 #include "gcode/text/source.h"
 
 namespace app {
-namespace {
 
 core::Result<OffsetComparison> comparison_of(const CheckJob& job,
                                              const std::vector<std::string>& files) {
@@ -26,8 +25,6 @@ core::Result<OffsetComparison> comparison_of(const CheckJob& job,
                read_control_offsets(files, reading_of(check.file, unit)));
     return differences(check.file, control, used_offsets(*check.program, check.file.environment));
 }
-
-} // namespace
 
 void add_control_arguments(CLI::App& command, ControlArguments& arguments) {
     const OptionGroup group(command, "Comparing with the control");

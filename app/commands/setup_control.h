@@ -8,6 +8,8 @@
 
 namespace app {
 
+struct CheckJob;
+struct OffsetComparison;
 struct ProgramArguments;
 
 /// The options of `feeler setup` that compare a set-up with its control.
@@ -18,6 +20,10 @@ struct ControlArguments {
 
 /// Adds these options to a command. `arguments` must outlive it.
 void add_control_arguments(CLI::App& command, ControlArguments& arguments);
+
+/// Compares the offsets of a set-up with those in files from the control.
+core::Result<OffsetComparison> comparison_of(const CheckJob& job,
+                                             const std::vector<std::string>& files);
 
 /// Compares the set-up of a program with files from the control, and writes the result to a file,
 /// or to standard output if `output` is empty.

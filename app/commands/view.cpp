@@ -6,6 +6,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/commands/commands.h"
+#include "app/commands/job_file.h"
 #include "app/commands/output.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/sheet.h"
@@ -59,6 +60,7 @@ ExitCode view(const ViewOptions& options) {
         return write_output(path, text);
     };
     job.make_sheet = sheet_page;
+    job.read_job_file = read_job_file;
     job.pictures = pictures_folder(first);
     job.frame_log = options.frame_log;
     const auto shown = viewer::run_window(job);

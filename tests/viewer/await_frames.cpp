@@ -69,5 +69,6 @@ int main(int count, char** words) {
         std::fprintf(stderr, "await_frames: the window does not answer\n");
         return 1;
     }
+    XCloseDisplay(question.display);
     return 0;
 }

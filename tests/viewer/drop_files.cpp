@@ -87,5 +87,7 @@ int main(int count, char** words) {
          static_cast<long>(source.atom("XdndActionCopy")));
     if (!wait_for(source, "XdndStatus")) return 1;
     send(source, "XdndDrop", 0, CurrentTime, 0, 0);
-    return wait_for(source, "XdndFinished") ? 0 : 1;
+    const bool is_taken = wait_for(source, "XdndFinished");
+    XCloseDisplay(source.display);
+    return is_taken ? 0 : 1;
 }

@@ -58,6 +58,9 @@ FileFilter filter_for(FileWish wish) {
         return FileFilter::tools;
     case FileWish::machine:
         return FileFilter::machines;
+    case FileWish::job:
+    case FileWish::offsets:
+        return FileFilter::all;
     case FileWish::save_setup:
         return FileFilter::setups;
     case FileWish::save_sheet:
@@ -158,6 +161,10 @@ void choose_file(ViewModel& model, const std::string& path) {
     case FileWish::machine:
         use_machine(model, path);
         break;
+    case FileWish::job:
+    case FileWish::offsets:
+        model.job_file = path;
+        break;
     }
     model.popup = Popup::none;
 }
@@ -220,11 +227,14 @@ FileEndings endings_for(FileWish wish) {
         return {"Tool libraries", {"tools", "json", "hsmlib", "fctl", "fctb", "tbl"}};
     case FileWish::machine:
         return {"Machines", {"toml", "machine", "mch"}};
+    case FileWish::job:
+        return {"FreeCAD jobs", {"FCStd"}};
     case FileWish::save_setup:
         return {"Set-ups", {"toml"}};
     case FileWish::save_sheet:
         return {"Pages", {"html"}};
     case FileWish::open:
+    case FileWish::offsets:
         break;
     }
     return {};
@@ -244,6 +254,10 @@ const char* title_of(FileWish wish) {
         return "Open a tool library";
     case FileWish::machine:
         return "Choose the machine";
+    case FileWish::job:
+        return "Import a job of FreeCAD";
+    case FileWish::offsets:
+        return "Compare with offsets from the control";
     case FileWish::save_setup:
         return "Save the set-up";
     case FileWish::save_sheet:

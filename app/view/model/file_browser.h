@@ -22,7 +22,18 @@ struct RecentProgram {
 };
 
 /// What a file is wanted for.
-enum class FileWish : uint8_t { open, mesh, stock, part, tools, machine, save_setup, save_sheet };
+enum class FileWish : uint8_t {
+    open,
+    mesh,
+    stock,
+    part,
+    tools,
+    machine,
+    job,     // of a CAM system
+    offsets, // from the control
+    save_setup,
+    save_sheet
+};
 
 /// Whether a file is to be written.
 bool saves(FileWish wish);

@@ -33,6 +33,10 @@ bool is_machine_file(const std::string& path) {
     return root && root->contains("axis");
 }
 
+bool is_cam_job(const std::string& path) { return has_ending(path, {".fcstd"}); }
+bool is_ini_file(const std::string& path) { return has_ending(path, {".ini"}); }
+bool is_offset_file(const std::string& path) { return has_ending(path, {".var", ".ofs"}); }
+
 FileWatch::Seen FileWatch::observe(const std::string& path) {
     Seen seen{path};
     std::error_code gone;

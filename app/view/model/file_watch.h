@@ -15,6 +15,12 @@ bool is_setup_file(const std::string& path);
 bool is_tool_library(const std::string& path);
 bool is_machine_file(const std::string& path);
 
+/// Whether a file is a job of a CAM system, has offsets that a control has written, or configures
+/// LinuxCNC, by its extension.
+bool is_cam_job(const std::string& path);
+bool is_offset_file(const std::string& path);
+bool is_ini_file(const std::string& path);
+
 /// Polls files for changes.
 class FileWatch {
 public:

@@ -103,7 +103,8 @@ enum class Popup : uint8_t {
     breakpoint,
     settings,
     leaving,
-    tolerances
+    tolerances,
+    report
 };
 
 /// Measuring between two clicked points.
@@ -233,6 +234,8 @@ struct ViewModel {
     bool wants_picture = false, wants_reload = false, wants_quit = false;
     std::optional<size_t> wanted_tab, unwanted_tab; // to be shown; to be closed
     bool wants_saving = false;                      // of the set-up, under its name
+    std::string job_file;                           // of a CAM system or a control, to be read
+    std::string report_title, report_text;          // about it
     std::string sheet_path = {}; // the set-up sheet is to be saved under this name
     std::string save_path = {};  // the set-up is to be saved under this name
 

@@ -365,6 +365,8 @@ bool add_file(ViewModel& model, const std::string& file) {
         use_tool_library(model, file);
     else if (is_machine_file(file))
         use_machine(model, file);
+    else if (is_cam_job(file) || is_offset_file(file))
+        model.job_file = file;
     else
         return false;
     return true;

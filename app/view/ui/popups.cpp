@@ -142,6 +142,8 @@ const char* title_of(Popup popup) {
         return "The set-up has unsaved edits";
     case Popup::tolerances:
         return "How wrong may the set-up be?";
+    case Popup::report:
+        return "Report";
     case Popup::none:
         break;
     }
@@ -339,8 +341,9 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(frame.px(18), frame.px(16)));
     ImGui::PushStyleColor(ImGuiCol_WindowBg, frame.palette.color(Role::panel, 0.98));
     bool open = true;
-    const char* const title =
-        model.popup == Popup::open_file ? title_of(model.browser.wish) : title_of(model.popup);
+    const char* const title = model.popup == Popup::open_file ? title_of(model.browser.wish)
+                              : model.popup == Popup::report  ? model.report_title.c_str()
+                                                              : title_of(model.popup);
     ImGui::Begin(title, &open,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize
                      | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
@@ -370,6 +373,9 @@ void PopupPanel::draw(Frame& frame, const Area& area) {
         break;
     case Popup::tolerances:
         draw_tolerances(frame);
+        break;
+    case Popup::report:
+        text(frame.fonts.mono, frame.palette.color(Role::text), model.report_text);
         break;
     case Popup::none:
         break;

@@ -28,6 +28,7 @@ ProgramTab::ProgramTab(const WindowJob& job, render::Renderer renderer, std::fun
 ProgramTab::~ProgramTab() {
     sheet_goes_on_ = false; // and its thread ends before the other members
     if (sheet_.valid()) sheet_.wait();
+    if (job_file_.valid()) job_file_.wait();
 }
 
 bool ProgramTab::is_vacant() const {
@@ -170,6 +171,38 @@ bool ProgramTab::take_sheet(double now) {
         written ? "Saved " + sheet_path_ + ": open it in a browser to print it"
                 : sheet_path_ + " cannot be written: " + written.error().message,
         now);
+    return true;
+}
+
+bool ProgramTab::read_job_file_if_wanted(double now) {
+    const std::string path = std::exchange(model.job_file, {});
+    if (!path.empty() && check_ && !job_file_.valid()) {
+        CheckJob check = *check_;
+        read_text_ = model.workspace.document.text();
+        check.setup_text.reset();
+        if (!read_text_.empty()) check.setup_text = read_text_;
+        say(model, "Reading " + path, now);
+        job_file_ = std::async(std::launch::async, [this, check, path, read = job_.read_job_file] {
+            auto news = read(check, path);
+            wake_();
+            return news;
+        });
+    }
+    const bool is_read =
+        job_file_.valid()
+        && job_file_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (!is_read) return false;
+    auto news = job_file_.get();
+    const bool is_outdated = news.setup_text && read_text_ != model.workspace.document.text();
+    if (is_outdated) news.text = "The set-up was edited meanwhile: import the file again.\n";
+    if (news.setup_text && !is_outdated) {
+        edit_setup(model, news.title, [&](const std::string&) { return *news.setup_text; });
+        show_setup(model, true);
+    }
+    model.message_until = now;
+    model.report_title = news.title;
+    model.report_text = news.text;
+    model.popup = Popup::report;
     return true;
 }
 

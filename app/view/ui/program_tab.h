@@ -16,6 +16,7 @@
 #include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
+#include "app/view/ui/window.h"
 
 namespace app::viewer {
 
@@ -61,6 +62,9 @@ public:
     bool save_if_wanted(double now);
     /// Makes the set-up sheet in a thread of its own if the user wants it, and saves it.
     void make_sheet_if_wanted(double now);
+    /// Reads a file of a CAM system or a control in a thread of its own if the user wants it, and
+    /// shows what it says. True if there is something new.
+    bool read_job_file_if_wanted(double now);
     /// Checks the program again after an edit, and keeps the edit a moment later.
     void take_edits(double now);
     /// Keeps edits at once, before another program is shown or the window ends.
@@ -83,6 +87,8 @@ private:
     std::string sheet_path_; // of the sheet that is being made
     std::atomic<bool> sheet_goes_on_ = true;
     std::future<core::Result<std::string>> sheet_;
+    std::string read_text_; // the set-up when the file below was chosen
+    std::future<JobFileNews> job_file_;
     std::function<void()> wake_;
     SessionWorker worker_;
     DeviceWorker device_;

@@ -224,6 +224,10 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
         if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
         if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
         if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
+        if (ImGui::MenuItem("Tools and stock: FreeCAD job \xE2\x80\xA6"))
+            browse(model, FileWish::job);
+        if (ImGui::MenuItem("Compare with the control \xE2\x80\xA6"))
+            browse(model, FileWish::offsets);
         if (model.workspace.stated->fixtures.empty() && ImGui::MenuItem("There are no fixtures"))
             edit_setup(model, "State that there are no fixtures", [](const std::string& t) {
                 return toml_with_value(t, "fixtures", "\"none\"");

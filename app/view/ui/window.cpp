@@ -463,6 +463,7 @@ void Window::update_setup(double now) {
     }
     if (std::exchange(shown_model().workspace.drops_edits, false)) leave();
     tab().make_sheet_if_wanted(now);
+    if (tab().read_job_file_if_wanted(now)) damage();
     tab().take_edits(now);
 }
 

@@ -28,6 +28,13 @@ struct DeviceChoice {
 using SheetMaker = std::function<core::Result<std::string>(const CheckJob& check,
                                                            const std::function<bool()>& goes_on)>;
 
+/// What a file of a CAM system or of the control says about a job.
+struct JobFileNews {
+    std::string title, text;               // for the user
+    std::optional<std::string> setup_text; // the set-up with what the file adds; empty: unchanged
+};
+using JobFileReader = std::function<JobFileNews(const CheckJob& check, const std::string& path)>;
+
 /// The options of the window.
 struct WindowJob {
     std::vector<std::shared_ptr<const CheckJob>> checks; // empty: show the welcome screen
@@ -39,6 +46,7 @@ struct WindowJob {
     std::filesystem::path unsaved;       // folder for unsaved set-ups; empty: they are not kept
     FileWriter write;                    // for set-ups, sheets and notes
     SheetMaker make_sheet;
+    JobFileReader read_job_file;
     std::filesystem::path frame_log; // log of frames; empty: none
 };
 
@@ -47,7 +55,8 @@ struct WindowJob {
 /// Errors: unsupported, as a single line, without a display or OpenGL 3.3.
 core::Result<void> run_window(const WindowJob& job);
 
-/// Whether a file is added to the set-up when it is dropped: a mesh, a tool library, a machine.
+/// Whether a file is about the set-up when it is dropped: a mesh, a tool library, a machine, a job
+/// of a CAM system, offsets from the control.
 bool is_part_of_setup(const std::string& path);
 
 /// Whether all paths are those of files; otherwise says which one is not. A folder is shown in the
