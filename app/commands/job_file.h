@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/view/ui/window.h"
+#include "app/view/model/job_file.h"
 
 namespace app {
 

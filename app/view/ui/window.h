@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/view/model/job_file.h"
 #include "app/view/model/view_model.h"
 #include "render/image.h"
 
@@ -27,13 +28,6 @@ struct DeviceChoice {
 /// error.
 using SheetMaker = std::function<core::Result<std::string>(const CheckJob& check,
                                                            const std::function<bool()>& goes_on)>;
-
-/// What a file of a CAM system or of the control says about a job.
-struct JobFileNews {
-    std::string title, text;               // for the user
-    std::optional<std::string> setup_text; // the set-up with what the file adds; empty: unchanged
-};
-using JobFileReader = std::function<JobFileNews(const CheckJob& check, const std::string& path)>;
 
 /// The options of the window.
 struct WindowJob {
