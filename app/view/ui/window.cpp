@@ -76,9 +76,10 @@ public:
     void add(int code, bool is_down);
     /// Adds a character that was typed.
     void add_character(unsigned character);
-    /// Whether characters wait for a frame. A command must then wait, too: see add_command().
-    bool has_characters() const;
-    /// Adds the command of a key with modifiers, to be taken after the frames of all characters.
+    /// Whether characters wait for a frame, or for the focus to move. A command must then wait,
+    /// too, because it may be meant as a character: see add_command().
+    bool is_waiting() const;
+    /// Adds the command of a key with modifiers, to be taken after the frames of all that waits.
     void add_command(int code, int modifiers);
     /// The command that is due before the next frame, as code and modifiers.
     std::optional<std::pair<int, int>> take_command();
@@ -470,7 +471,7 @@ void Window::update_setup(double now) {
 void Window::press(int code, int modifiers) {
     log_.key(code);
     damage();
-    if (keys_.has_characters())
+    if (keys_.is_waiting())
         keys_.add_command(code, modifiers);
     else
         perform_key(code, modifiers);
@@ -751,9 +752,12 @@ void KeyQueue::add(int code, bool is_down) {
 
 void KeyQueue::add_character(unsigned character) { events_.push_back({.character = character}); }
 
-bool KeyQueue::has_characters() const {
-    return std::any_of(events_.begin(), events_.end(),
-                       [](const Event& event) { return event.character != 0 || event.is_command; });
+bool KeyQueue::is_waiting() const {
+    const auto waits = [](const Event& event) {
+        return event.character != 0 || event.is_command
+               || (event.is_down && moves_focus(event.code));
+    };
+    return frames_to_wait_ > 0 || std::any_of(events_.begin(), events_.end(), waits);
 }
 
 void KeyQueue::add_command(int code, int modifiers) {
