@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/setup/presets/preset.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
 #include "core/base/file_reads.h"
@@ -122,14 +123,22 @@ Placement read_placement(TableReader& table, BodyContext& context) {
 }
 
 /// The shape that is given; exactly one must be.
-std::optional<std::string> only_shape(TableReader& table) {
+std::optional<std::string> only_shape(TableReader& table, bool may_be_preset) {
     std::vector<std::string> given;
-    for (const char* key : {"box", "cylinder", "mesh", "model"})
+    for (const char* key : {"box", "cylinder", "mesh", "model", "preset"})
         if (table.has(key)) given.emplace_back(key);
     if (given.size() == 1) return given[0];
-    table.need(given.empty() ? "one of box, cylinder, mesh"
-                             : "a single shape: box, cylinder and mesh exclude each other;");
+    const std::string and_preset = may_be_preset ? ", preset" : "";
+    table.need((given.empty()
+                    ? "one of box, cylinder, mesh" + and_preset
+                    : "a single shape: box, cylinder, mesh" + and_preset + " exclude each other;")
+                   .c_str());
     return std::nullopt;
+}
+
+/// Refuses a preset where none can be.
+void refuse_preset(TableReader& table) {
+    if (table.has("preset")) table.refuse("preset", "applies only to fixtures and machine bodies");
 }
 
 core::Aabb read_box(TableReader& table) {
@@ -195,13 +204,68 @@ core::ConvexShape standing(const CylinderKey& cylinder) {
     return core::posed(upright, {core::rotation_xyz_deg(turn), core::Vec3(0.0)});
 }
 
+/// The range of a parameter, for a message.
+std::string range_text(const TableReader& table, const PresetParameter& parameter) {
+    if (parameter.measure == PresetMeasure::count)
+        return fmt::format("a whole number from {:g} to {:g}", parameter.least, parameter.greatest);
+    return fmt::format("between {} and {}", table.shown(parameter.least),
+                       table.shown(parameter.greatest));
+}
+
+/// The parameters of a preset that a table states.
+PresetValues read_preset_values(TableReader& table, const Preset& preset) {
+    PresetValues values;
+    for (const PresetParameter& parameter : preset.parameters) {
+        const std::string key(parameter.key);
+        const bool is_length = parameter.measure == PresetMeasure::length;
+        const auto value = table.number(key.c_str(), is_length ? Measure::length : Measure::plain);
+        if (!value) continue;
+        if (!fits(parameter, *value))
+            table.refuse(key.c_str(), fmt::format("of {} must be {}", preset.name,
+                                                  range_text(table, parameter)));
+        values.emplace(key, *value);
+    }
+    return values;
+}
+
+/// Says which sizes of a body are those of its preset; empty if it states all.
+std::string preset_assumption(const std::string& body, const Preset& preset,
+                              const PresetValues& stated) {
+    if (stated.size() == preset.parameters.size()) return {};
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : stated) keys.push_back(key);
+    return fmt::format("{}: {} are those of the preset {}, not measured", body,
+                       keys.empty() ? "all sizes"
+                                    : fmt::format("sizes other than {}", fmt::join(keys, ", ")),
+                       preset.name);
+}
+
+/// Reads the preset that a table names, with its parameters. Empty after an error.
+std::optional<core::Mesh> read_preset(TableReader& table, const MeshSource& source) {
+    const std::string name = table.string("preset").value_or("");
+    const auto refuse = [&](const std::string& why) {
+        table.refuse("preset", fmt::format("= \"{}\": {}", name, why));
+        return std::nullopt;
+    };
+    const Preset* preset = find_preset(name);
+    if (!preset) return refuse(unknown_preset_text(name));
+    const PresetValues values = read_preset_values(table, *preset);
+    auto mesh = preset_mesh(*preset, values);
+    if (!mesh) return refuse(mesh.error().message);
+    const std::string assumption =
+        preset_assumption(table.string("name").value_or(name), *preset, values);
+    if (!assumption.empty()) source.assumptions.push_back(assumption);
+    return *std::move(mesh);
+}
+
 std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& source,
                                           const core::Transform& target_from_body) {
-    const auto shape = only_shape(table);
+    const auto shape = only_shape(table, true);
     if (!shape) return std::nullopt;
     if (*shape == "cylinder") return core::posed(standing(read_cylinder(table)), target_from_body);
     if (*shape == "box") return core::posed(core::convex(read_box(table)), target_from_body);
-    auto mesh = read_mesh_file(table, "mesh", source);
+    auto mesh =
+        *shape == "preset" ? read_preset(table, source) : read_mesh_file(table, "mesh", source);
     return core::solid_mesh(moved(std::move(mesh).value_or(core::Mesh{}), target_from_body));
 }
 
@@ -361,12 +425,13 @@ void infer_stock(BodyContext& context) {
 
 void read_stock(TableReader& table, BodyContext& context) {
     table.limit_numbers();
+    refuse_preset(table);
     const Placement placement = read_placement(table, context);
     context.file.stock_frame = table.string("frame").value_or("G54");
     context.file.stock_margin = table.number("margin", Measure::length);
     if (context.file.stock_margin || has_no_shape(table))
         return read_envelope(table, context, placement);
-    const auto shape = only_shape(table);
+    const auto shape = only_shape(table, false);
     if (!shape) return;
     if (*shape == "model") return read_model(table, context, placement);
     core::Setup& setup = context.file.setup;
@@ -380,6 +445,7 @@ void read_stock(TableReader& table, BodyContext& context) {
 
 void read_part(TableReader& table, BodyContext& context) {
     table.limit_numbers();
+    refuse_preset(table);
     core::Setup& setup = context.file.setup;
     const Placement placement = read_placement(table, context);
     const bool box = table.has("box");

@@ -29,7 +29,7 @@ struct NamedFrames {
     }
 };
 
-/// The folder of a table's meshes, and the list that receives notes about repairs.
+/// The folder of a table's meshes, and the list that receives notes about repairs and presets.
 struct MeshSource {
     std::filesystem::path folder; // for relative paths
     std::vector<std::string>& assumptions;
@@ -50,7 +50,8 @@ struct BodyContext {
 std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
                                          const MeshSource& source);
 
-/// Reads a body: its box, cylinder or mesh, with `at` and `rotate_deg`; empty after an error.
+/// Reads a body: its box, cylinder, mesh or preset, with `at` and `rotate_deg`; empty after an
+/// error.
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
                                                const core::Transform& target_from_frame);
 

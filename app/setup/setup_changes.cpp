@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "app/setup/body_table.h"
+#include "app/setup/presets/preset.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
@@ -62,11 +63,38 @@ toml::table root_of(const std::string& text) {
     return parsed ? *std::move(parsed) : toml::table{};
 }
 
-/// Removes the keys of a body's shape, apart from one.
-void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape) {
-    for (const char* key : {"box", "cylinder", "mesh", "model", "margin"})
+/// The preset that a body in a set-up names; null if it names none that is known.
+const Preset* preset_of(const std::string& text, const BodyPath& body) {
+    const toml::table root = root_of(text);
+    const toml::node* node = &root;
+    const TomlPath path = body / "preset";
+    for (const TomlPath::Step& step : path.steps()) {
+        const auto* key = std::get_if<std::string>(&step);
+        if (key)
+            node = node->is_table() ? node->as_table()->get(*key) : nullptr;
+        else
+            node = node->is_array() ? node->as_array()->get(std::get<size_t>(step)) : nullptr;
+        if (!node) return nullptr;
+    }
+    return find_preset(node->value_or(std::string()));
+}
+
+/// Removes the keys of the parameters of a body's preset, apart from those that another one has.
+void drop_preset_values(Changes& changes, const BodyPath& body, const Preset* preset,
+                        const Preset* other) {
+    if (!preset) return;
+    for (const PresetParameter& parameter : preset->parameters)
+        if (!other || !other->parameter(parameter.key))
+            changes.erase(body / std::string(parameter.key));
+}
+
+/// Removes the keys of a body's shape, apart from one. `preset`: that of the body before.
+void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape,
+                const Preset* preset) {
+    for (const char* key : {"box", "cylinder", "mesh", "model", "preset", "margin"})
         if (key != shape) changes.erase(body / key);
     if (shape != "mesh") changes.erase(body / "mesh_unit");
+    if (shape != "preset") drop_preset_values(changes, body, preset, nullptr);
 }
 
 bool is_zero(const core::Vec3& v) { return v == core::Vec3(0.0); }
@@ -186,7 +214,7 @@ Result<std::string> with_box(const std::string& text, const BodyPath& body, cons
     Changes changes(text);
     changes.set(body / "box",
                 fmt::format("[{}, {}]", setup_point(box.min, unit), setup_point(box.max, unit)));
-    keep_shape(changes, body, "box");
+    keep_shape(changes, body, "box", preset_of(text, body));
     return std::move(changes).text();
 }
 
@@ -197,7 +225,7 @@ Result<std::string> with_cylinder(const std::string& text, const BodyPath& body,
     changes.set(body / "cylinder",
                 fmt::format("{{ radius = {}, height = {}, axis = \"{}\" }}",
                             setup_length(radius, unit), setup_length(height, unit), "XYZ"[axis]));
-    keep_shape(changes, body, "cylinder");
+    keep_shape(changes, body, "cylinder", preset_of(text, body));
     return std::move(changes).text();
 }
 
@@ -205,8 +233,33 @@ Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
                               const std::string& file) {
     Changes changes(text);
     changes.set(body / "mesh", toml_text(file));
-    keep_shape(changes, body, "mesh");
+    keep_shape(changes, body, "mesh", preset_of(text, body));
     return std::move(changes).text();
+}
+
+Result<std::string> with_preset(const std::string& text, const BodyPath& body,
+                                std::string_view name) {
+    const Preset* preset = find_preset(name);
+    if (!preset) return core::fail(ErrorCode::invalid_value, unknown_preset_text(name));
+    Changes changes(text);
+    changes.set(body / "preset", toml_text(name));
+    keep_shape(changes, body, "preset", nullptr);
+    drop_preset_values(changes, body, preset_of(text, body), preset);
+    return std::move(changes).text();
+}
+
+Result<std::string> with_preset_value(const std::string& text, const BodyPath& body,
+                                      std::string_view key, std::optional<double> value) {
+    const Preset* preset = preset_of(text, body);
+    if (!preset) return core::fail(ErrorCode::invalid_value, "this body has no preset");
+    const TomlPath path = body / std::string(key);
+    const bool is_known = preset->parameter(key) != nullptr;
+    if (!value && is_known) return toml_without(text, path);
+    if (const auto valid = check_preset_value(*preset, key, value.value_or(0.0)); !valid)
+        return tl::unexpected(valid.error());
+    const bool is_length = preset->parameter(key)->measure == PresetMeasure::length;
+    return toml_with_value(
+        text, path, is_length ? setup_length(*value, unit_of_setup(text)) : setup_number(*value));
 }
 
 Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,

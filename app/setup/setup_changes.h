@@ -50,6 +50,19 @@ core::Result<std::string> with_cylinder(const std::string& text, const BodyPath&
 core::Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
                                     const std::string& file);
 
+/// Sets the shape of a body to a preset. Values of parameters that the new preset has too stay,
+/// those of others are removed.
+///
+/// Errors: also invalid_value for a name that no preset has.
+core::Result<std::string> with_preset(const std::string& text, const BodyPath& body,
+                                      std::string_view name);
+/// States a parameter of the preset of a body, in mm or as a count, or leaves it to the preset.
+///
+/// Errors: also invalid_value if the body has no preset, or the preset no such parameter, or if
+///         the value does not fit it.
+core::Result<std::string> with_preset_value(const std::string& text, const BodyPath& body,
+                                            std::string_view key, std::optional<double> value);
+
 /// States the unit of the mesh file of a body; mm by being silent.
 core::Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,
                                          gcode::LengthUnit unit);

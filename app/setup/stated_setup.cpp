@@ -20,6 +20,7 @@ struct StatedNumbers {
     std::optional<core::Vec3> point(const toml::node* node) const;
     std::optional<core::Aabb> box(const toml::node* node) const;
     std::optional<StatedBody::Cylinder> cylinder(const toml::node* node) const;
+    PresetValues preset_values(const toml::table& table, const Preset& preset) const;
     StatedBody body(const toml::table& table) const;
 };
 
@@ -61,6 +62,18 @@ std::optional<StatedBody::Cylinder> StatedNumbers::cylinder(const toml::node* no
         axis.size() == 1 && axis[0] >= 'X' && axis[0] <= 'Z' ? axis[0] - 'X' : 2};
 }
 
+PresetValues StatedNumbers::preset_values(const toml::table& table, const Preset& preset) const {
+    PresetValues values;
+    for (const PresetParameter& parameter : preset.parameters) {
+        const toml::node* node = table.get(parameter.key);
+        const auto value = parameter.measure == PresetMeasure::length ? length(node)
+                           : node                                     ? node->value<double>()
+                                                                      : std::nullopt;
+        if (value) values.emplace(parameter.key, *value);
+    }
+    return values;
+}
+
 StatedBody StatedNumbers::body(const toml::table& table) const {
     StatedBody read;
     read.name = table["name"].value_or(std::string());
@@ -69,6 +82,9 @@ StatedBody StatedNumbers::body(const toml::table& table) const {
     read.mesh = table["mesh"].value_or(std::string());
     if (table["mesh_unit"].value<std::string>() == "inch") read.mesh_unit = gcode::LengthUnit::inch;
     read.model = table["model"].value_or(std::string());
+    read.preset = table["preset"].value_or(std::string());
+    if (const Preset* preset = find_preset(read.preset))
+        read.preset_values = preset_values(table, *preset);
     read.at = point(table.get("at")).value_or(core::Vec3(0.0));
     read.rotate_deg = vector_in(table.get("rotate_deg")).value_or(core::Vec3(0.0));
     read.frame = table["frame"].value_or(std::string("G54"));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/presets/preset.h"
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "gcode/language/modal_state.h"
@@ -26,6 +27,8 @@ struct StatedBody {
     std::optional<core::Aabb> box;
     std::optional<Cylinder> cylinder;
     std::string mesh, model;                             // files
+    std::string preset;                                  // its name, known or not
+    PresetValues preset_values;                          // those that are stated, mm or counts
     gcode::LengthUnit mesh_unit = gcode::LengthUnit::mm; // of the mesh file
     core::Vec3 at = core::Vec3(0.0), rotate_deg = core::Vec3(0.0);
     std::string frame = "G54";
@@ -33,7 +36,9 @@ struct StatedBody {
     std::optional<double> tolerance, margin; // mm
     uint32_t line = 0;                       // of its header
 
-    bool has_shape() const { return box || cylinder || !mesh.empty() || !model.empty(); }
+    bool has_shape() const {
+        return box || cylinder || !mesh.empty() || !model.empty() || !preset.empty();
+    }
 };
 
 /// What the text of a set-up states, for editing it.

@@ -455,6 +455,10 @@ TEST_P(EachPreset, RefusesValuesThatItCannotHave) {
     const auto mesh = app::preset_mesh(preset(), {{"jaw_colour", 5.0}});
     ASSERT_FALSE(mesh);
     EXPECT_THAT(mesh.error().message, HasSubstr("has no size jaw_colour; it has: "));
+    const std::string key(preset().parameters.back().key);
+    const auto misspelt = app::preset_mesh(preset(), {{key + "s", 5.0}});
+    ASSERT_FALSE(misspelt);
+    EXPECT_THAT(misspelt.error().message, HasSubstr("did you mean " + key + "?"));
 }
 
 std::vector<std::string> preset_names() {

@@ -404,6 +404,7 @@ const std::set<std::string> other_keys = {
     "cuts_at_centre",
     "mesh",
     "mesh_unit",
+    "preset",
     "model",
     "rotate_deg",
     "frame",

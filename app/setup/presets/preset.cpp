@@ -46,6 +46,16 @@ std::vector<Preset> sorted_presets() {
     return all;
 }
 
+std::string unknown_key_text(const Preset& preset, std::string_view key) {
+    std::vector<std::string> keys;
+    for (const PresetParameter& known : preset.parameters) keys.emplace_back(known.key);
+    const std::string nearest = core::nearest_name(key, keys);
+    const bool is_near = core::edit_distance(key, nearest) < 3;
+    return fmt::format("{} has no size {}; {}", preset.name, key,
+                       is_near ? "did you mean " + nearest + "?"
+                               : fmt::format("it has: {}", fmt::join(keys, " ")));
+}
+
 /// "a whole number from 1 to 20", "from 1 to 230 mm".
 std::string range_text(const PresetParameter& parameter) {
     const std::string range = fmt::format("from {} to {}", core::number_text(parameter.least, 3),
@@ -151,12 +161,7 @@ bool fits(const PresetParameter& parameter, double value) {
 
 core::Result<void> check_preset_value(const Preset& preset, std::string_view key, double value) {
     const PresetParameter* parameter = preset.parameter(key);
-    if (!parameter) {
-        std::vector<std::string_view> keys;
-        for (const PresetParameter& known : preset.parameters) keys.push_back(known.key);
-        return unfit_sizes(
-            fmt::format("{} has no size {}; it has: {}", preset.name, key, fmt::join(keys, " ")));
-    }
+    if (!parameter) return unfit_sizes(unknown_key_text(preset, key));
     if (fits(*parameter, value)) return {};
     return unfit_sizes(fmt::format("{} must be {}", key, range_text(*parameter)));
 }
