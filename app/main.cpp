@@ -55,6 +55,7 @@ int run(const std::vector<std::string>& words) {
     app::add_trace(cli, exit_code);
     app::add_debug(cli, exit_code);
     app::add_distance(cli, exit_code);
+    app::add_presets(cli, exit_code);
     app::add_view(cli, exit_code);
     app::add_shot(cli, exit_code);
     app::add_sheet(cli, exit_code);

@@ -20,6 +20,7 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code);
 void add_trace(CLI::App& cli, ExitCode& exit_code);
 void add_debug(CLI::App& cli, ExitCode& exit_code);
 void add_distance(CLI::App& cli, ExitCode& exit_code);
+void add_presets(CLI::App& cli, ExitCode& exit_code);
 void add_bench(CLI::App& cli, ExitCode& exit_code);
 void add_view(CLI::App& cli, ExitCode& exit_code);
 void add_shot(CLI::App& cli, ExitCode& exit_code);

@@ -9,6 +9,7 @@
 #include "app/bench/bench_scene.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
+#include "app/commands/preset_arguments.h"
 #include "app/commands/program_arguments.h"
 #include "app/commands/read_files.h"
 #include "app/commands/suggestion.h"
@@ -24,9 +25,10 @@ struct NamedBody {
     std::vector<std::string> repairs; // of its mesh, as texts
 };
 
-/// Reads `sphere:R`, `box:X,Y,Z`, `cylinder:R,H` (axis Z), centred on the origin, or a mesh file.
+/// Reads `sphere:R`, `box:X,Y,Z`, `cylinder:R,H` (axis Z), centred on the origin, a preset as in
+/// `preset:vise-6,opening=50`, or a mesh file.
 ///
-/// Errors: sizes that are not positive lengths; those of read_mesh.
+/// Errors: sizes that are not positive lengths; those of preset_argument, preset_mesh, read_mesh.
 core::Result<NamedBody> body_argument(const std::string& argument);
 
 namespace {
@@ -78,7 +80,8 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
 void add_distance(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
-    const char* body = "Mesh file, or sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin";
+    const char* body = "Mesh file; sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin; or "
+                       "preset:NAME,KEY=VALUE...";
     add_path(command, "a", options->a, body)->required();
     add_path(command, "b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
@@ -137,6 +140,21 @@ core::Result<core::Primitive> primitive(const std::string& argument, size_t colo
     return core::checked_primitive(core::Cylinder{s[0], s[1]});
 }
 
+core::Result<NamedBody> preset_body(const std::string& argument, size_t colon) {
+    FEELER_TRY(const ChosenPreset chosen, preset_argument(argument.substr(colon + 1)));
+    FEELER_TRY(core::Mesh mesh, preset_mesh(*chosen.preset, chosen.values));
+    return NamedBody{argument, core::solid_mesh(std::move(mesh)), {}};
+}
+
+/// The error of a mesh file that cannot be read, with a hint if it has the name of a preset.
+core::Error mesh_error(core::Error error, const std::string& argument) {
+    if (error.file.empty()) error.file = argument;
+    const std::string name = argument.substr(0, argument.find(','));
+    if (find_preset(name))
+        error.message += fmt::format("; for the preset of this name, write preset:{}", argument);
+    return error;
+}
+
 } // namespace
 
 core::Result<NamedBody> body_argument(const std::string& argument) {
@@ -146,12 +164,9 @@ core::Result<NamedBody> body_argument(const std::string& argument) {
         FEELER_TRY(const core::Primitive body, primitive(argument, colon));
         return NamedBody{argument, body, {}};
     }
+    if (colon != std::string::npos && kind == "preset") return preset_body(argument, colon);
     auto read = core::read_mesh(argument);
-    if (!read) {
-        core::Error error = read.error();
-        if (error.file.empty()) error.file = argument;
-        return tl::unexpected(error);
-    }
+    if (!read) return tl::unexpected(mesh_error(read.error(), argument));
     return NamedBody{argument, core::solid_mesh(std::move(read->mesh)), std::move(read->repairs)};
 }
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "app/setup/presets/preset.h"
+
+namespace app {
+
+/// The list of all presets, by kind.
+std::string presets_text();
+/// The same with their parameters, as JSON.
+std::string presets_json();
+
+/// A preset with these values: what it is, its parameters with their ranges, its box, and how a
+/// set-up names it.
+///
+/// Errors: those of preset_mesh.
+core::Result<std::string> preset_text(const Preset& preset, const PresetValues& values);
+core::Result<std::string> preset_json(const Preset& preset, const PresetValues& values);
+
+} // namespace app

@@ -1,0 +1,252 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/setup/presets/preset.h"
+#include "core/base/file_reads.h"
+#include "core/base/text.h"
+#include "core/geom/mesh_file.h"
+#include "core/geom/triangle_distance.h"
+#include "tests/app/checked.h"
+#include "tests/support/scoped_folder.h"
+
+/// Presets on the command line and in checks.
+
+namespace app_test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(PresetsCommand, ListsAllByKind) {
+    const test_support::Ran list = feeler({"presets"});
+    EXPECT_EQ(list.status, 0);
+    size_t last = 0;
+    for (const app::Preset& preset : app::presets()) {
+        const size_t at = list.out.find(fmt::format("\n  {} ", preset.name));
+        ASSERT_NE(at, std::string::npos) << preset.name;
+        EXPECT_GT(at, last);
+        last = at;
+    }
+    const json all = json::parse(feeler({"presets", "--format", "json"}).out);
+    EXPECT_EQ(all["presets"].size(), app::presets().size());
+}
+
+TEST(PresetsCommand, ShowsTheSizesOfOne) {
+    const test_support::Ran text =
+        feeler({"presets", "vise-6", "--set", "opening=40", "--set", "jaw_height=50"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_THAT(text.out, HasSubstr("opening                    40   0.5 to 230 "));
+    EXPECT_THAT(text.out, HasSubstr("Z -73 to 50\n"));
+    EXPECT_THAT(text.out, HasSubstr("    preset = \"vise-6\"\n    jaw_height = 50\n"));
+    const json one =
+        json::parse(feeler({"presets", "vise-6", "--format", "json", "--set", "opening=40"}).out);
+    EXPECT_EQ(one["name"], "vise-6");
+    EXPECT_EQ(one["parameters"][0]["value"], 40.0);
+    EXPECT_EQ(one["parameters"][0]["standard"], 100.0);
+    EXPECT_EQ(one["parameters"][0]["unit"], "mm");
+    EXPECT_EQ(one["box"][1][2], 45.0);
+}
+
+TEST(PresetsCommand, WritesMeshes) {
+    const test_support::ScopedFolder folder;
+    for (const char* ending : {".stl", ".PLY"}) {
+        const std::string path = folder / ("block" + std::string(ending));
+        EXPECT_EQ(feeler({"presets", "step-block", "--set", "steps=2", "-o", path}).status, 0);
+        const core::MeshFile read = core::read_mesh(path).value();
+        EXPECT_THAT(read.repairs, testing::IsEmpty());
+        EXPECT_EQ(read.mesh.bounds().max, core::Vec3(24, 15, 20));
+    }
+}
+
+TEST(PresetsCommand, RefusesMistakes) {
+    const auto expect_refused = [](const std::vector<std::string>& words, const std::string& why) {
+        std::vector<std::string> all{"presets"};
+        all.insert(all.end(), words.begin(), words.end());
+        const test_support::Ran run = feeler(all);
+        EXPECT_EQ(run.status, 2);
+        EXPECT_THAT(run.err, HasSubstr(why));
+        EXPECT_EQ(run.out, "");
+    };
+    expect_refused({"vice-6"}, "there is no preset \"vice-6\"; did you mean \"vise-6\"?");
+    expect_refused({"vise-6", "--set", "openin=5"}, "did you mean opening?");
+    expect_refused({"vise-6", "--set", "opening=0"}, "opening must be from 0.5 to 230 mm");
+    expect_refused({"vise-6", "--set", "opening=5", "--set", "opening=6"}, "given twice");
+    for (const char* value :
+         {"opening", "opening=", "opening=nan", "opening=5mm", "=5", "", "=", "opening=1e999"})
+        expect_refused({"vise-6", "--set", value}, "feeler: ");
+    expect_refused({"vise-6", "--set", "front_length=50"}, "less than front_length");
+    expect_refused({"--set", "opening=5"}, "--set needs the name of a preset");
+    expect_refused({"-o", "all.stl"}, "needs the name of a preset");
+    expect_refused({"vise-6", "-o", "/no/such/folder/a.stl"}, "/no/such/folder/a.stl");
+}
+
+/// The row of a size in the manual, for the presets with the same generator.
+std::string manual_row(const std::vector<const app::Preset*>& presets, size_t parameter) {
+    const app::PresetParameter& first = presets[0]->parameters[parameter];
+    std::string standards, greatest;
+    for (const app::Preset* preset : presets) {
+        const app::PresetParameter& p = preset->parameters[parameter];
+        standards += fmt::format(" {} |", core::number_text(p.standard, 3));
+        EXPECT_EQ(p.least, first.least);
+        const std::string text = core::number_text(p.greatest, 3);
+        if (p.greatest != first.greatest || preset == presets[0])
+            greatest += (greatest.empty() ? "" : ", ") + text;
+    }
+    return fmt::format("\n| `{}` |{} {} to {} | {} |\n", first.key, standards,
+                       core::number_text(first.least, 3), greatest, first.meaning);
+}
+
+TEST(PresetsManual, HasARowForEachSizeAndAPictureForEachForm) {
+    const std::string page = core::file_bytes(FEELER_SOURCE_DIR "/docs/manual/presets.md").value();
+    std::vector<std::vector<const app::Preset*>> forms;
+    for (const app::Preset& preset : app::presets()) {
+        const auto form = std::find_if(forms.begin(), forms.end(), [&](const auto& others) {
+            return others[0]->generate == preset.generate;
+        });
+        form == forms.end() ? forms.push_back({&preset}) : form->push_back(&preset);
+    }
+    for (const auto& form : forms) {
+        std::string names;
+        bool has_picture = false;
+        for (const app::Preset* preset : form) {
+            names += fmt::format(" `{}` |", preset->name);
+            has_picture = has_picture
+                          || page.find(fmt::format("images/presets/{}.png", preset->name))
+                                 != std::string::npos;
+        }
+        EXPECT_TRUE(has_picture) << names;
+        EXPECT_THAT(page, HasSubstr("| size |" + names + " range | meaning |\n"));
+        for (size_t i = 0; i < form[0]->parameters.size(); ++i)
+            EXPECT_THAT(page, HasSubstr(manual_row(form, i)));
+    }
+}
+
+TEST(PresetDistance, AgreesWithEveryTriangle) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> place(-250, 250);
+    for (const char* argument : {"vise-6,opening=40", "step-clamp-m12,height=40", "3-jaw-chuck-6",
+                                 "t-slot-table-14", "dividing-head", "stud-m8"}) {
+        const std::string name = std::string(argument).substr(0, std::string(argument).find(','));
+        app::PresetValues values;
+        if (name == "vise-6") values["opening"] = 40;
+        if (name == "step-clamp-m12") values["height"] = 40;
+        const core::Mesh mesh = app::preset_mesh(*app::find_preset(name), values).value();
+        const core::Vec3 at(place(random), place(random), 60 + std::abs(place(random)));
+        double nearest = core::infinity;
+        for (size_t i = 0; i < mesh.triangles.size(); ++i)
+            nearest =
+                std::fmin(nearest, glm::length(at - core::nearest_point(mesh.triangle(i), at)));
+        const json found =
+            json::parse(feeler({"distance", "preset:" + std::string(argument), "sphere:5", "--move",
+                                fmt::format("{},{},{}", at.x, at.y, at.z), "--mesh-size", "5",
+                                "--format", "json"})
+                            .out);
+        EXPECT_LE(found["lower"].get<double>(), nearest - 5 + 1e-9);
+        EXPECT_NEAR(found["upper"].get<double>(), nearest - 5, 1e-6) << argument;
+    }
+}
+
+TEST(PresetDistance, RefusesMistakes) {
+    const auto error = [](const std::string& argument) {
+        const test_support::Ran run = feeler({"distance", argument, "sphere:5"});
+        EXPECT_EQ(run.status, 2) << argument;
+        return run.err;
+    };
+    EXPECT_THAT(error("preset:vice-6"), HasSubstr("did you mean \"vise-6\"?"));
+    EXPECT_THAT(error("preset:"), HasSubstr("there is no preset \"\""));
+    EXPECT_THAT(error("preset:vise-6,"), HasSubstr("\"\" is not a size"));
+    EXPECT_THAT(error("preset:vise-6,opening"), HasSubstr("write KEY=VALUE"));
+    EXPECT_THAT(error("preset:vise-6,opening=900"), HasSubstr("opening must be from 0.5 to 230"));
+    EXPECT_THAT(error("vise-6"), HasSubstr("write preset:vise-6"));
+    EXPECT_THAT(error("vice-6"), Not(HasSubstr("preset:")));
+}
+
+/// A pocket in a block of 60 x 40 x 25 and a rapid that is this high above it, across to Y -200.
+const char* const program = R"(G21 G90 G54
+T1 M6
+S8000 M3
+G43 H1 Z30
+G0 X0 Y0
+Z2
+G1 Z-3 F300
+X10
+G0 Z{0}
+Y-200
+Z30
+M30
+)";
+
+std::string setup_with(const std::string& unit, const std::string& fixtures) {
+    const double k = unit == "inch" ? 25.4 : 1.0;
+    const auto length = [&](double mm) { return fmt::format("{:.17g}", mm / k); };
+    return "length_unit = \"" + unit + "\"\n[program]\ndialect = \"fanuc\"\n[stock]\nbox = [["
+           + length(-30) + ", " + length(-20) + ", " + length(-25) + "], [" + length(30) + ", "
+           + length(20) + ", " + length(0) + "]]\n[[tool]]\nnumber = 1\nshape = \"flat\"\n"
+           + "diameter = " + length(10) + "\nflute_length = " + length(20)
+           + "\nstick_out = " + length(60) + "\nholder = [[" + length(40) + ", " + length(40) + ", "
+           + length(50) + "]]\n" + fixtures;
+}
+
+/// The least clearance of all blocks to a fixture.
+double least_clearance(const Checked& checked, const std::string& fixture) {
+    double least = core::infinity;
+    for (const BlockLine& block : checked.blocks)
+        for (const PairLine& pair : block.pairs)
+            if (pair.upper && pair.name.ends_with(" " + fixture))
+                least = std::fmin(least, *pair.upper);
+    return least;
+}
+
+TEST(PresetCheck, HoldsThePartAndCountsItsClearance) {
+    const test_support::ScopedFolder folder;
+    // The block reaches 20 mm into jaws of 45 mm: the bed is at Z -50, the jaws end at Z -5.
+    for (const std::string unit : {"mm", "inch"}) {
+        const double k = unit == "inch" ? 25.4 : 1.0;
+        const std::string vise = fmt::format(
+            "[[fixture]]\nname = \"vise\"\npreset = \"vise-6\"\nopening = {:.17g}\nat = "
+            "[0, {:.17g}, {:.17g}]\n",
+            40 / k, 20 / k, -50 / k);
+        const std::string setup = folder.write("s.toml", setup_with(unit, vise));
+        const std::string nc = folder.write("p.nc", fmt::format(fmt::runtime(program), "5"));
+        const Checked checked = check_files(nc, setup);
+        EXPECT_NEAR(least_clearance(checked, "vise"), 10.0, 1e-6) << unit << checked.err;
+        EXPECT_THAT(checked.assumptions,
+                    testing::Contains("vise: sizes other than opening are those of the preset "
+                                      "vise-6, not measured"));
+        const std::string low = folder.write("low.nc", fmt::format(fmt::runtime(program), "-4.5"));
+        EXPECT_EQ(feeler({"check", low, "--setup", setup}).status, 1);
+    }
+}
+
+TEST(PresetCheck, TakesEveryPresetAsFixture) {
+    const test_support::ScopedFolder folder;
+    std::string fixtures;
+    double z = 0;
+    for (const app::Preset& preset : app::presets()) {
+        const core::Aabb box = app::preset_mesh(preset).value().bounds();
+        fixtures += fmt::format("[[fixture]]\nname = \"{}-x\"\npreset = \"{}\"\nat = [{}, {}, "
+                                "{}]\n",
+                                preset.name, preset.name, -45 - box.max.x, -200 - box.max.y,
+                                -box.max.z + z);
+        z -= 1.5;
+    }
+    const std::string setup = folder.write("s.toml", setup_with("mm", fixtures));
+    const std::string nc = folder.write("p.nc", fmt::format(fmt::runtime(program), "5"));
+    const Checked checked = check_files(nc, setup);
+    EXPECT_NE(checked.status, 2) << checked.err;
+    EXPECT_FALSE(checked.blocks.empty());
+    size_t told = 0;
+    for (const std::string& assumption : checked.assumptions)
+        if (assumption.find("-x: all sizes are those of the preset") != std::string::npos) ++told;
+    EXPECT_EQ(told, app::presets().size());
+}
+
+} // namespace
+} // namespace app_test
