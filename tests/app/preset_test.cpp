@@ -11,6 +11,7 @@
 #include "app/setup/presets/preset.h"
 #include "app/setup/presets/preset_solid.h"
 #include "app/setup/presets/vise_fit.h"
+#include "core/geom/mesh_features.h"
 #include "core/geom/mesh_file.h"
 #include "core/geom/triangle_distance.h"
 
@@ -199,10 +200,12 @@ TrueBody true_chuck(const PresetSizes& s, int jaws) {
     TrueBody body{{round(2, {}, s["body_diameter"] / 2, -s["body_height"], 0)}, {}, 1};
     if (s["bore_diameter"] > 0)
         body.holes.push_back(round(2, {}, s["bore_diameter"] / 2, -1e6, 1e6));
-    const double held = s["diameter"] / 2, half = s["jaw_width"] / 2;
+    const double held = s["diameter"] / 2, half = s["jaw_width"] / 2, length = s["jaw_length"];
+    const bool inside = s["inside"] == 1;
     for (int i = 0; i < jaws; ++i)
         body.parts.push_back(
-            turned(box_of(held, held + s["jaw_length"], -half, half, 0, s["jaw_height"]),
+            turned(box_of(inside ? std::fmax(0, held - length) : held,
+                          inside ? held : held + length, -half, half, 0, s["jaw_height"]),
                    360.0 * i / jaws));
     return body;
 }
@@ -510,6 +513,26 @@ TEST(PresetVolume, OfRoundBodiesIsThatOfTheCircleOrALittleMore) {
     EXPECT_LT(volume("collet-block-hex"), hex + rim(60) * 15 + rim(28) * 91);
 }
 
+TEST(PresetFeatures, AreThoseThatAUserPointsAt) {
+    const auto features = [](const char* name) {
+        return core::features_of(app::preset_mesh(*app::find_preset(name)).value());
+    };
+    int jaws = 0;
+    for (const core::PlanarFace& face : features("vise-6").faces)
+        if (std::abs(face.normal.y) == 1 && std::abs(face.area - 152.4 * 45) < 1e-6) ++jaws;
+    EXPECT_EQ(jaws, 4); // front and back of both
+    int holes = 0;
+    for (const core::RoundWall& wall : features("fixture-plate").walls)
+        if (wall.through() && std::abs(wall.radius_from - 6) < 1e-9) ++holes;
+    EXPECT_EQ(holes, 24);
+    int bodies = 0;
+    for (const core::RoundWall& wall : features("3-jaw-chuck-6").walls)
+        if (wall.full && wall.kind == core::RoundKind::boss && wall.radius_from > 80
+            && wall.radius_from < 80.06)
+            ++bodies;
+    EXPECT_EQ(bodies, 1);
+}
+
 // --- vises ---
 
 TEST(ViseFit, TouchesABoxWithBothJaws) {
@@ -604,6 +627,38 @@ TEST(PresetSolid, RefusesPartsThatOnlyTouch) {
         EXPECT_THAT(error(*solid), HasSubstr("several bodies"));
     EXPECT_THAT(error(empty), HasSubstr("nothing is left"));
     EXPECT_THAT(error(app::PresetSolid(0)), HasSubstr("nothing is left"));
+}
+
+TEST(PresetSolid, IsClosedOrRefusedWhereSidesNearlyAgree) {
+    std::mt19937 random(1);
+    const double slips[] = {0, 0, 0, 1e-14, 1e-12, -1e-8, 9e-8, -1e-7, 1.1e-7, 2e-7, 1e-6};
+    const auto near_whole = [&](int most) {
+        return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most
+               + slips[random() % std::size(slips)];
+    };
+    int solids = 0;
+    for (int i = 0; i < 3000; ++i) {
+        app::PresetSolid solid(2);
+        for (int k = 0; k < 5; ++k) {
+            const app::PlanPoint at{near_whole(4), near_whole(4)};
+            const double size = 1 + std::abs(near_whole(4)), low = near_whole(3);
+            const double turn = static_cast<double>(random() % 24) * M_PI / 12;
+            const app::Outline outlines[] = {
+                app::around_circle(at, size), app::within_circle(at, size), app::hexagon(at, size),
+                app::rectangle(at, {at[0] + size, at[1] + 2}),
+                app::turned(app::rectangle(at, {at[0] + size, at[1] + 2}), std::cos(turn),
+                            std::sin(turn))};
+            const app::Outline& outline = outlines[random() % std::size(outlines)];
+            const double high = low + 1 + std::abs(near_whole(2));
+            k < 3 || random() % 2 == 0 ? solid.add(outline, low, high)
+                                       : solid.cut(outline, low, high);
+        }
+        if (const auto mesh = solid.mesh()) {
+            ++solids;
+            expect_closed(*mesh);
+        }
+    }
+    EXPECT_GT(solids, 300);
 }
 
 TEST(PresetSolid, IsTheUnionOfRandomPrisms) {

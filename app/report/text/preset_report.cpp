@@ -30,17 +30,10 @@ double value_of(const PresetParameter& parameter, const PresetValues& values) {
     return found == values.end() ? parameter.standard : found->second;
 }
 
-/// "vise" for vise-6: a name for a fixture.
-std::string fixture_name(const Preset& preset) {
-    const size_t number = preset.name.find_first_of("0123456789");
-    if (number < 2 || number == std::string_view::npos) return std::string(preset.name) + "-1";
-    return std::string(preset.name.substr(0, preset.name.rfind('-', number)));
-}
-
 /// The lines of a set-up with this preset.
 std::string setup_lines(const Preset& preset, const PresetValues& values) {
-    std::string lines = fmt::format("    [[fixture]]\n    name = \"{}\"\n    preset = \"{}\"\n",
-                                    fixture_name(preset), preset.name);
+    std::string lines = fmt::format("    [[fixture]]\n    name = \"{}-1\"\n    preset = \"{}\"\n",
+                                    name_of(preset.kind), preset.name);
     for (const auto& [key, value] : values) lines += fmt::format("    {} = {}\n", key, value);
     return lines + "    at = [0, 0, 0]\n";
 }

@@ -13,20 +13,30 @@ std::vector<PlanPoint> jaw_directions(int jaws) {
     return {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
 }
 
+/// Where a jaw reaches from and to, measured from the axis: outwards from the part that it holds,
+/// or inwards, at most to the axis.
+PlanPoint reach_of_jaw(const PresetSizes& size) {
+    const double held = size["diameter"] / 2, length = size["jaw_length"];
+    if (size.count("inside") == 0) return {held, held + length};
+    return {std::fmax(held - length, 0.0), held};
+}
+
 core::Result<core::Mesh> chuck(const PresetSizes& size, int jaws) {
     const double radius = size["body_diameter"] / 2, bore = size["bore_diameter"] / 2;
-    const double held = size["diameter"] / 2, end = held + size["jaw_length"];
     const double half = size["jaw_width"] / 2;
+    const auto [from, to] = reach_of_jaw(size);
     if (!(bore < radius)) return unfit_sizes("bore_diameter must be less than body_diameter");
-    if (!(held < radius)) return unfit_sizes("diameter must be less than body_diameter");
-    if (!(end > bore))
-        return unfit_sizes("jaw_length is too small: the jaws do not reach from diameter to the "
-                           "body around bore_diameter");
+    if (!(from < radius))
+        return unfit_sizes("the jaws are outside of the body: diameter is too large for "
+                           "body_diameter");
+    if (!(to > bore))
+        return unfit_sizes("the jaws do not reach the body around bore_diameter: diameter or "
+                           "jaw_length is too small");
     PresetSolid solid(2);
     solid.add(around_circle({0.0, 0.0}, radius), -size["body_height"], 0.0);
     if (bore > 0.0) solid.cut(within_circle({0.0, 0.0}, bore), -size["body_height"], 0.0);
     for (const auto& [c, s] : jaw_directions(jaws))
-        solid.add(turned(rectangle({held, -half}, {end, half}), c, s), 0.0, size["jaw_height"]);
+        solid.add(turned(rectangle({from, -half}, {to, half}), c, s), 0.0, size["jaw_height"]);
     return solid.mesh();
 }
 
@@ -100,12 +110,14 @@ constexpr std::string_view typical_source =
 
 std::vector<PresetParameter> chuck_parameters(const ChuckSizes& s) {
     return {
-        {"diameter", s.held, 1, 2000, "diameter of the part that the jaws hold"},
+        {"diameter", s.held, 1, 2000, "diameter of the part where the jaws hold it"},
+        {"inside", 0, 0, 1, "0: the jaws hold from outside; 1: they hold the wall of a bore",
+         PresetMeasure::count},
         {"body_diameter", s.body_diameter, 20, 2000, "diameter of the body"},
         {"body_height", s.body_height, 2, 1000, "height of the body, from its back to its face"},
         {"bore_diameter", s.bore, 0, 1500, "diameter of the hole through the body; 0 for none"},
         {"jaw_height", s.jaw_height, 1, 500, "height of the jaws above the face"},
-        {"jaw_length", 45, 1, 500, "length of a jaw, outwards from the part"},
+        {"jaw_length", 45, 1, 500, "length of a jaw, away from the part"},
         {"jaw_width", 22, 1, 200, "width of a jaw"},
     };
 }

@@ -1,7 +1,6 @@
 #include "app/setup/presets/preset_solid.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -131,36 +130,66 @@ std::vector<uint32_t> corners_between(uint32_t low, uint32_t high) {
     return all;
 }
 
-Plan plan_of(std::vector<Outline> outlines) {
-    for (const size_t axis : {0, 1}) snap(outlines, axis);
-    const std::vector<Side> sides = sides_of(outlines);
-    const Marks cuts = cuts_of(sides);
-    std::vector<std::vector<const Side*>> strips;
-    std::vector<std::vector<double>> on_line(cuts.size());
-    for (size_t i = 0; i + 1 < cuts.size(); ++i) {
-        strips.push_back(between(sides, cuts[i], cuts[i + 1]));
-        for (const Side* side : strips.back())
-            for (const size_t k : {i, i + 1}) on_line[k].push_back(side->at(cuts[k]));
-    }
-    Plan plan;
+/// The plan between two neighbouring cuts: the sides that pass through it.
+struct Strip {
+    std::vector<const Side*> sides;
+    double low, high;
+};
+
+std::vector<Strip> strips_of(const std::vector<Side>& sides, const Marks& cuts) {
+    std::vector<Strip> strips;
+    for (size_t i = 0; i + 1 < cuts.size(); ++i)
+        strips.push_back({between(sides, cuts[i], cuts[i + 1]), cuts[i], cuts[i + 1]});
+    return strips;
+}
+
+/// The lines at all cuts, with the corners at which sides of the strips on either side meet them.
+std::vector<PlanLine> lines_of(const std::vector<Strip>& strips, const Marks& cuts, Plan& plan) {
     std::vector<PlanLine> lines;
     for (size_t i = 0; i < cuts.size(); ++i) {
-        lines.push_back({Marks(std::move(on_line[i])), static_cast<uint32_t>(plan.corners.size())});
+        std::vector<double> meets;
+        for (size_t k = i == 0 ? 0 : i - 1; k < std::min(i + 1, strips.size()); ++k)
+            for (const Side* side : strips[k].sides) meets.push_back(side->at(cuts[i]));
+        lines.push_back({Marks(std::move(meets)), static_cast<uint32_t>(plan.corners.size())});
         const Marks& marks = lines.back().marks;
         for (size_t k = 0; k < marks.size(); ++k) plan.corners.push_back({cuts[i], marks[k]});
     }
+    return lines;
+}
+
+/// The corners of the sides of a strip on its left and right, from below.
+///
+/// Two sides that cross nearer to a cut than `same_within` can be in another order on its other
+/// end: they then have the higher corner there. False if that moves one by more than `most_moved`.
+bool find_ends(const Strip& strip, const PlanLine& left, const PlanLine& right, const Plan& plan,
+               std::vector<std::array<uint32_t, 2>>& ends) {
+    constexpr double most_moved = 1e-5; // mm
+    for (const Side* side : strip.sides)
+        ends.push_back({left.corner(side->at(strip.low)), right.corner(side->at(strip.high))});
+    std::sort(ends.begin(), ends.end());
+    for (size_t k = 1; k < ends.size(); ++k) {
+        const uint32_t before = ends[k - 1][1], after = std::max(before, ends[k][1]);
+        if (plan.corners[after][1] - plan.corners[ends[k][1]][1] > most_moved) return false;
+        ends[k][1] = after;
+    }
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return true;
+}
+
+/// Empty if sides of the outlines nearly coincide, so that rounding does not tell which is above.
+std::optional<Plan> plan_of(std::vector<Outline> outlines) {
+    for (const size_t axis : {0, 1}) snap(outlines, axis);
+    const std::vector<Side> sides = sides_of(outlines);
+    const Marks cuts = cuts_of(sides);
+    const std::vector<Strip> strips = strips_of(sides, cuts);
+    Plan plan;
+    const std::vector<PlanLine> lines = lines_of(strips, cuts, plan);
     for (size_t i = 0; i < strips.size(); ++i) {
         std::vector<std::array<uint32_t, 2>> ends;
-        for (const Side* side : strips[i])
-            ends.push_back(
-                {lines[i].corner(side->at(cuts[i])), lines[i + 1].corner(side->at(cuts[i + 1]))});
-        std::sort(ends.begin(), ends.end());
-        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-        for (size_t k = 0; k + 1 < ends.size(); ++k) {
-            assert(ends[k][1] <= ends[k + 1][1]);
+        if (!find_ends(strips[i], lines[i], lines[i + 1], plan, ends)) return std::nullopt;
+        for (size_t k = 0; k + 1 < ends.size(); ++k)
             plan.pieces.push_back({corners_between(ends[k][0], ends[k + 1][0]),
                                    corners_between(ends[k][1], ends[k + 1][1])});
-        }
     }
     return plan;
 }
@@ -241,6 +270,24 @@ private:
     size_t layers_;
     std::vector<bool> filled_;
 };
+
+/// Which layers of which pieces are filled, after all prisms in turn.
+Filling filling_of(const std::vector<PresetPrism>& prisms, const Plan& plan, const Marks& heights) {
+    Filling filling(plan.pieces.size(), heights.size() - 1);
+    std::vector<PlanBox> boxes;
+    for (const PresetPrism& prism : prisms) boxes.push_back(box_of(prism.outline));
+    for (size_t piece = 0; piece < plan.pieces.size(); ++piece) {
+        const PlanPoint middle = middle_of(plan, plan.pieces[piece]);
+        for (size_t i = 0; i < prisms.size(); ++i) {
+            const PresetPrism& prism = prisms[i];
+            if (!contains(prism.outline, boxes[i], middle)) continue;
+            const size_t end = heights.nearest(prism.high);
+            for (size_t layer = heights.nearest(prism.low); layer < end; ++layer)
+                filling.set(piece, layer, prism.fills);
+        }
+    }
+    return filling;
+}
 
 /// Makes the mesh, with vertices for those corners at those heights that are used.
 class SurfaceBuilder {
@@ -412,37 +459,27 @@ void PresetSolid::cut(Outline outline, double low, double high) {
 }
 
 core::Result<core::Mesh> PresetSolid::mesh() const {
+    const auto fail = [](const char* why) {
+        return core::fail(core::ErrorCode::invalid_value, why);
+    };
     std::vector<Outline> outlines;
-    std::vector<PlanBox> boxes;
     std::vector<double> ends;
-    for (const Prism& prism : prisms_) {
+    for (const PresetPrism& prism : prisms_) {
         outlines.push_back(prism.outline);
-        boxes.push_back(box_of(prism.outline));
         ends.insert(ends.end(), {prism.low, prism.high});
     }
+    if (outlines.empty()) return fail("with these sizes nothing is left");
     const Marks heights(std::move(ends));
-    const Plan plan = plan_of(std::move(outlines));
-    Filling filling(plan.pieces.size(), heights.size() > 0 ? heights.size() - 1 : 0);
-    for (size_t piece = 0; piece < plan.pieces.size(); ++piece) {
-        const PlanPoint middle = middle_of(plan, plan.pieces[piece]);
-        for (size_t i = 0; i < prisms_.size(); ++i) {
-            const Prism& prism = prisms_[i];
-            if (!contains(prism.outline, boxes[i], middle)) continue;
-            const size_t end = heights.nearest(prism.high);
-            for (size_t layer = heights.nearest(prism.low); layer < end; ++layer)
-                filling.set(piece, layer, prism.fills);
-        }
-    }
-    SurfaceBuilder surface(plan, heights, axis_);
-    add_faces(surface, plan, filling);
-    add_walls(surface, plan, filling);
+    const auto plan = plan_of(std::move(outlines));
+    if (!plan) return fail("some of these sizes nearly agree: change one of them by 0.001 mm");
+    const Filling filling = filling_of(prisms_, *plan, heights);
+    SurfaceBuilder surface(*plan, heights, axis_);
+    add_faces(surface, *plan, filling);
+    add_walls(surface, *plan, filling);
     core::Mesh mesh = std::move(surface).mesh();
-    if (mesh.triangles.empty())
-        return core::fail(core::ErrorCode::invalid_value, "with these sizes nothing is left");
+    if (mesh.triangles.empty()) return fail("with these sizes nothing is left");
     if (!is_single_solid(mesh))
-        return core::fail(
-            core::ErrorCode::invalid_value,
-            "these sizes give several bodies, or parts that touch along an edge only");
+        return fail("these sizes give several bodies, or parts that touch along an edge only");
     return mesh;
 }
 

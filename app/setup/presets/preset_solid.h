@@ -36,6 +36,13 @@ Outline hexagon(const PlanPoint& centre, double across);
 /// The outline, turned about the origin by an angle with this cosine and sine.
 Outline turned(Outline outline, double cosine, double sine);
 
+/// A prism that fills space, or empties it.
+struct PresetPrism {
+    Outline outline;
+    double low, high; // its ends
+    bool fills;
+};
+
 /// A solid of prisms that all extend along one axis: what is added later joins with what is there,
 /// what is cut is taken away from what was added before.
 ///
@@ -53,20 +60,15 @@ public:
 
     /// The closed surface, facing outwards. Points and planes nearer than 1e-7 mm become one.
     ///
-    /// Errors:  invalid_value if nothing is filled, if it is in several pieces, or if parts of it
-    ///          touch along an edge or in a point only.
+    /// Errors:  invalid_value if nothing is filled, if it is in several pieces, if parts of it
+    /// touch
+    ///          along an edge or in a point only, or if sides nearly coincide.
     /// Cost:    some n^2 for n corners of outlines: 0.1 s for 1000.
     core::Result<core::Mesh> mesh() const;
 
 private:
-    struct Prism {
-        Outline outline;
-        double low, high;
-        bool fills;
-    };
-
     int axis_;
-    std::vector<Prism> prisms_;
+    std::vector<PresetPrism> prisms_;
 };
 
 } // namespace app
