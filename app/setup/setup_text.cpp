@@ -426,7 +426,9 @@ std::string fixture_text(const SetupFile& setup) {
     const double top = std::floor(box.min.z - gap);
     const core::Vec3 low(std::floor(box.min.x), std::floor(box.min.y), top - thickness);
     const core::Vec3 high(std::ceil(box.max.x), std::ceil(box.max.y), top);
-    return "\n" + comment("Examples of a fixture: a plate below the stock, or mesh = \"VISE.stl\".")
+    return "\n"
+           + comment("Examples of a fixture: a plate below the stock, mesh = \"VISE.stl\", or "
+                     "preset = \"vise-6\"; \"feeler presets\" lists all presets.")
            + line(false, "[[fixture]]") + line(false, stated("name", "\"plate\""))
            + line(false,
                   stated("box", fmt::format("[{}, {}]", setup_vector(low), setup_vector(high))))

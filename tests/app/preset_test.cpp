@@ -601,6 +601,10 @@ TEST(PresetList, IsSortedWithNumbersByTheirValues) {
         if (preset.name.starts_with("strap")) clamps.emplace_back(preset.name);
     EXPECT_THAT(clamps, testing::ElementsAre("strap-clamp-m8", "strap-clamp-m10", "strap-clamp-m12",
                                              "strap-clamp-m16"));
+    std::vector<std::string> chucks;
+    for (const Preset& preset : app::presets())
+        if (preset.name.starts_with("3-jaw")) chucks.emplace_back(preset.name);
+    EXPECT_THAT(chucks, testing::ElementsAre("3-jaw-chuck-6", "3-jaw-chuck-8", "3-jaw-chuck-12"));
 }
 
 TEST(PresetList, SuggestsTheNearestName) {

@@ -99,12 +99,10 @@ struct ChuckSizes {
     double body_diameter, body_height, bore, jaw_height, held;
 };
 
-constexpr std::string_view six_inch_source =
-    "Body diameter and height, hole and jaw height: Toolmex 3-866-0600P (D, H, E and H1 on the "
-    "page of its dealer tri-advantech). The jaws are plain blocks of typical sizes.";
-constexpr std::string_view eight_inch_source =
-    "Body diameter and height, hole and jaw height: Toolmex 3-866-0800P (D, H, E and H1 on the "
-    "page of its dealer tri-advantech). The jaws are plain blocks of typical sizes.";
+constexpr std::string_view toolmex_source =
+    "Body diameter and height, hole and jaw height: D, H, E and H1 of Toolmex 3-866-0600P, -0800P "
+    "and -1200P on the pages of their dealer tri-advantech. The jaws are plain blocks of typical "
+    "sizes.";
 constexpr std::string_view typical_source =
     "All sizes are typical: measure yours. The jaws are plain blocks.";
 
@@ -178,11 +176,14 @@ Preset dividing_preset() {
 
 std::vector<Preset> chuck_presets() {
     return {
-        chuck_preset({"3-jaw-chuck-6", "6 inch chuck with 3 jaws", six_inch_source, 160.0, 88.5,
-                      42.0, 44.0, 50},
-                     chuck_of_3),
-        chuck_preset({"3-jaw-chuck-8", "8 inch chuck with 3 jaws", eight_inch_source, 200.0, 99.0,
-                      55.0, 45.0, 70},
+        chuck_preset(
+            {"3-jaw-chuck-6", "6 inch chuck with 3 jaws", toolmex_source, 160, 88.5, 42, 44, 50},
+            chuck_of_3),
+        chuck_preset(
+            {"3-jaw-chuck-8", "8 inch chuck with 3 jaws", toolmex_source, 200, 99, 55, 45, 70},
+            chuck_of_3),
+        chuck_preset({"3-jaw-chuck-12", "12 inch chuck with 3 jaws", toolmex_source, 315, 118.5,
+                      103, 57, 120},
                      chuck_of_3),
         chuck_preset(
             {"4-jaw-chuck-6", "6 inch chuck with 4 jaws", typical_source, 160, 75, 40, 42, 50},
