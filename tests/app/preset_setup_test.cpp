@@ -152,6 +152,8 @@ TEST(PresetInSetup, RefusesMistakesWithTheirPlace) {
     EXPECT_THAT(error_of(vise + "opening = 220\nfront_length = 200\n"),
                 HasSubstr("s.toml:3:10: [[fixture]] 1: preset = \"vise-6\": opening must be less "
                           "than front_length"));
+    EXPECT_THAT(error_of(vise + "screw_size = 80\n"),
+                HasSubstr("screw_size must be less than bed_height"));
 }
 
 TEST(PresetInSetup, ExcludesOtherShapesAndOtherBodies) {

@@ -11,6 +11,7 @@ core::Result<core::Mesh> vise(const PresetSizes& size) {
     if (!(opening < -front))
         return unfit_sizes("opening must be less than front_length: the moving jaw leaves the bed");
     if (!(base_top < 0.0)) return unfit_sizes("base_height must be less than bed_height");
+    if (!(size["screw_size"] < -bed)) return unfit_sizes("screw_size must be less than bed_height");
     // The plan is YZ.
     PresetSolid solid(0);
     const auto add = [&](double y_low, double z_low, double y_high, double z_high, double width) {
