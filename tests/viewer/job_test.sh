@@ -201,6 +201,15 @@ open_window "$work/bracket.nc"
 expect 'opens again' '^bracket.nc, line'
 press e
 still 06-reopened
+# A vise from the presets is put around the stock and closed on it at once.
+press Insert Down Down Right Down Down Return
+settle
+press ctrl+s
+has_vise() {
+    grep -q '^preset = "vise-6"$' "$work/bracket.toml" && grep -q '^opening = 80$' "$work/bracket.toml"
+}
+wait_for has_vise || die 'a preset is added'
+still 07-preset
 press n
 expect 'the check finds the collision' 'collision'
 press ctrl+q

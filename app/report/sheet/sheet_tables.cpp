@@ -261,7 +261,9 @@ std::string kind_of(const core::Fixture& fixture, const StatedSetup& stated) {
                        : render::is_vise(fixture.name) ? "vise, "
                                                        : "";
     const StatedBody* body = stated.fixture(fixture.name);
-    if (body && !body->mesh.empty())
+    if (body && !body->preset.empty())
+        kind += body->preset;
+    else if (body && !body->mesh.empty())
         kind += "mesh " + body->mesh.substr(body->mesh.find_last_of('/') + 1);
     else if (body && !body->model.empty())
         kind += "model " + body->model.substr(body->model.find_last_of('/') + 1);

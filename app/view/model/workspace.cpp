@@ -38,6 +38,7 @@ std::string shape_text(const ViewModel& model, const StatedBody& body) {
     if (body.cylinder)
         return fmt::format("D{} x {} {}", length_text(model, 2.0 * body.cylinder->radius),
                            length_text(model, body.cylinder->height), length_unit(model));
+    if (!body.preset.empty()) return body.preset;
     const std::string& file = body.mesh.empty() ? body.model : body.mesh;
     return std::filesystem::path(file).filename().generic_string();
 }
@@ -131,16 +132,6 @@ core::Result<std::string> stated_offset(const std::string& text, const StatedSet
                                         const SheetOffset& offset) {
     return stated.has_offset(offset.name) ? with_known(text, "offsets")
                                           : with_offset(text, offset.name, offset.origin);
-}
-
-/// Adds a fixture and selects it. `lines`: gives its shape and position in a unit.
-template <typename Lines>
-void add_fixture(ViewModel& model, const std::string& wanted_name, const Lines& lines) {
-    const std::string name = free_name(model.workspace.document.text(), wanted_name);
-    if (edit_setup(model, "Add " + name, [&](const std::string& text) {
-            return with_fixture(text, name, lines(unit_of_setup(text)));
-        }))
-        model.workspace.selected = item(Kind::fixture, name);
 }
 
 } // namespace
@@ -279,6 +270,15 @@ void state_item(ViewModel& model, const SetupItem& item) {
 
 core::Vec3 usual_block(const ViewModel& model) {
     return model.settings.inch ? core::Vec3(50.8, 25.4, 25.4) : core::Vec3(50.0, 25.0, 25.0);
+}
+
+void add_fixture(ViewModel& model, const std::string& wanted_name,
+                 const std::function<std::string(gcode::LengthUnit)>& lines) {
+    const std::string name = free_name(model.workspace.document.text(), wanted_name);
+    if (edit_setup(model, "Add " + name, [&](const std::string& text) {
+            return with_fixture(text, name, lines(unit_of_setup(text)));
+        }))
+        model.workspace.selected = item(Kind::fixture, name);
 }
 
 void add_box(ViewModel& model) {

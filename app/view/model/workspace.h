@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,10 @@ struct FoundTool;
 struct SheetOffset;
 struct StatedSetup;
 } // namespace app
+
+namespace gcode {
+enum class LengthUnit : uint8_t;
+}
 
 namespace core {
 struct ToolDescription;
@@ -140,6 +145,10 @@ bool can_state(const ViewModel& model, const SetupItem& item);
 
 /// The size of a new block, round in the unit of the window, mm.
 core::Vec3 usual_block(const ViewModel& model);
+/// Adds a fixture of this name, or one like it, and selects it. `lines`: gives its shape and
+/// position in a unit.
+void add_fixture(ViewModel& model, const std::string& wanted_name,
+                 const std::function<std::string(gcode::LengthUnit)>& lines);
 /// Adds a block beside the stock as a fixture, or the mesh in a file at the origin, and selects it.
 void add_box(ViewModel& model);
 void add_mesh(ViewModel& model, const std::string& file);

@@ -9,11 +9,14 @@
 
 #include "app/check/setup_sheet.h"
 #include "app/setup/holder_library.h"
+#include "app/setup/presets/preset.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
 #include "app/view/model/placing.h"
+#include "app/view/model/preset_fixture.h"
 #include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
+#include "core/base/text.h"
 #include "core/dbm/solid.h"
 #include "gcode/language/canonical.h"
 
@@ -203,6 +206,83 @@ bool SetupForms::draw_cylinder(Frame& frame, StatedBody::Cylinder& round) {
     return ImGui::Combo("##axis", &round.axis, "along X\0along Y\0along Z\0") || is_changed;
 }
 
+/// "jaw_height" as "Jaw height".
+std::string label_of(std::string_view key) {
+    std::string label(key);
+    std::replace(label.begin(), label.end(), '_', ' ');
+    label[0] = core::upper(label[0]);
+    return label;
+}
+
+/// A list of the presets of the same kind. Calls `choose` for another one.
+void draw_presets(Frame& frame, const StatedBody& body,
+                  const std::function<void(std::string_view)>& choose) {
+    const Preset* const preset = find_preset(body.preset);
+    field_name(frame, "Preset");
+    ImGui::SetNextItemWidth(frame.px(208));
+    if (!ImGui::BeginCombo("##preset", body.preset.c_str())) return;
+    for (const Preset& other : presets()) {
+        if (preset && other.kind != preset->kind) continue;
+        const std::string name(other.name);
+        if (ImGui::Selectable(name.c_str(), name == body.preset) && name != body.preset)
+            choose(name);
+    }
+    ImGui::EndCombo();
+}
+
+void SetupForms::draw_preset_sizes(Frame& frame, const StatedBody& body, const BodyPath& path,
+                                   std::span<const PresetParameter> parameters) {
+    ViewModel& model = frame.model;
+    for (const PresetParameter& parameter : parameters) {
+        const auto stated = body.preset_values.find(parameter.key);
+        const bool is_stated = stated != body.preset_values.end();
+        const double value = is_stated ? stated->second : parameter.standard;
+        const std::string id = "##" + std::string(parameter.key);
+        const bool is_length = parameter.measure == PresetMeasure::length;
+        field_name(frame, label_of(parameter.key));
+        const auto typed = is_length ? fields_.length(frame, id.c_str(), value)
+                                     : fields_.number(frame, id.c_str(), value);
+        tip(frame, std::string(parameter.meaning));
+        if (typed)
+            edit_setup(model, "Change " + body.name, [&](const std::string& t) {
+                return with_preset_value(t, path, parameter.key, *typed);
+            });
+        if (is_length) unit_label(frame, length_unit(model));
+        source_mark(frame, is_stated ? SetupSource::stated : SetupSource::assumed);
+    }
+}
+
+void SetupForms::draw_preset(Frame& frame, const StatedBody& body, const BodyPath& path) {
+    ViewModel& model = frame.model;
+    const auto change = [&](const SetupDocument::Edit& edit) {
+        edit_setup(model, "Change " + body.name, edit);
+    };
+    draw_presets(frame, body, [&](std::string_view name) {
+        change([&](const std::string& t) { return with_preset(t, path, name); });
+    });
+    const Preset* const preset = find_preset(body.preset);
+    if (!preset) return;
+    if (const auto usual = usual_grip(model, body)) {
+        field_name(frame, "In the jaws");
+        if (const auto depth = fields_.size(frame, "##grip", grip_.value_or(*usual))) grip_ = depth;
+        unit_label(frame, length_unit(model));
+        ImGui::SameLine();
+        ImGui::BeginDisabled(!is_current(model));
+        if (ImGui::Button("Clamp the stock")) clamp_stock(model, body, grip_.value_or(*usual));
+        ImGui::EndDisabled();
+        tip(frame, "Puts the vise around the stock, so deep in its jaws, and closes it");
+    }
+    constexpr size_t shown = 3;
+    const std::span<const PresetParameter> all = preset->parameters;
+    const size_t first = std::min(shown, all.size());
+    draw_preset_sizes(frame, body, path, all.first(first));
+    if (first == all.size()
+        || !ImGui::TreeNodeEx("More sizes", ImGuiTreeNodeFlags_NoTreePushOnOpen))
+        return;
+    draw_preset_sizes(frame, body, path, all.subspan(first));
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), std::string(preset->source));
+}
+
 void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath& path) {
     ViewModel& model = frame.model;
     const bool is_stock = path.key() == stock_name, is_part = path.key() == part_name;
@@ -218,6 +298,7 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
             return with_cylinder(t, path, round.radius, round.height, round.axis);
         });
     };
+    if (!body.preset.empty()) return draw_preset(frame, body, path);
     const FileWish wish = is_stock ? FileWish::stock : is_part ? FileWish::part : FileWish::mesh;
     const int kind = body.box ? 0 : body.cylinder ? 1 : 2;
     if (!is_part)

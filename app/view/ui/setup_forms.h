@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include "app/setup/stated_setup.h"
@@ -32,6 +33,9 @@ private:
     void draw_assumed_stock(Frame& frame, const SetupSheet& sheet);
     void draw_fixture(Frame& frame, const StatedBody& body);
     void draw_part(Frame& frame, const StatedBody& body);
+    void draw_preset_sizes(Frame& frame, const StatedBody& body, const TomlPath& path,
+                           std::span<const PresetParameter> parameters);
+    void draw_preset(Frame& frame, const StatedBody& body, const TomlPath& path);
     void draw_shape(Frame& frame, const StatedBody& body, const TomlPath& path);
     void draw_kinds(Frame& frame, int kind, const char* file,
                     const std::function<void(int)>& choose);
@@ -46,6 +50,7 @@ private:
     void draw_library(Frame& frame, core::ToolNumber number);
     void draw_allowance(Frame& frame);
 
+    std::optional<double> grip_; // mm in the jaws of a vise; empty: as usual
     SetupFields fields_;
     // of the lists of faces
     std::string listed_body_, other_body_;

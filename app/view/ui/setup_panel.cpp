@@ -7,7 +7,9 @@
 
 #include "app/base/sha256.h"
 #include "app/check/setup_sheet.h"
+#include "app/setup/presets/preset.h"
 #include "app/setup/setup_changes.h"
+#include "app/view/model/preset_fixture.h"
 #include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
@@ -222,6 +224,15 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere(); // Enter chooses the first
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
         if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
+        for (const PresetKind kind : preset_kinds) {
+            if (!ImGui::BeginMenu(std::string(title_of(kind)).c_str())) continue;
+            for (const Preset& preset : presets())
+                if (preset.kind == kind
+                    && ImGui::MenuItem(std::string(preset.title).c_str(),
+                                       std::string(preset.name).c_str()))
+                    add_preset(model, preset);
+            ImGui::EndMenu();
+        }
         if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
         if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
         if (ImGui::MenuItem("Tools and stock: FreeCAD job \xE2\x80\xA6"))
