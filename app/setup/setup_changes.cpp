@@ -420,6 +420,48 @@ Result<std::string> without_tool(const std::string& text, core::ToolNumber numbe
     return path ? toml_without(text, *path) : Result<std::string>(text);
 }
 
+namespace {
+
+Result<void> check_new_number(const std::string& text, core::ToolNumber number) {
+    if (core::value_of(number) < 0)
+        return core::fail(ErrorCode::invalid_value, "the number of a tool is 0 or above");
+    if (path_of_tool(text, number))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("there is a tool {} already: choose another number",
+                                      core::value_of(number)));
+    return {};
+}
+
+std::string number_text(core::ToolNumber number) { return std::to_string(core::value_of(number)); }
+
+} // namespace
+
+Result<std::string> with_copied_tool(const std::string& text, core::ToolNumber number,
+                                     core::ToolNumber copy) {
+    const auto path = path_of_tool(text, number);
+    if (!path) return text;
+    if (const auto fits = check_new_number(text, copy); !fits) return tl::unexpected(fits.error());
+    FEELER_TRY(const std::string body,
+               toml_body_of(text, "tool", std::get<size_t>(path->steps()[1])));
+    FEELER_TRY(const std::string more, toml_with_table(text, "tool", body));
+    const size_t last = root_of(more)["tool"].as_array()->size() - 1;
+    return toml_with_value(more, {"tool", last, "number"}, number_text(copy));
+}
+
+Result<std::string> with_tool_number(const std::string& text, core::ToolNumber number,
+                                     core::ToolNumber other) {
+    const auto path = path_of_tool(text, number);
+    if (!path || number == other) return text;
+    if (const auto fits = check_new_number(text, other); !fits) return tl::unexpected(fits.error());
+    const TomlPath at_start{"program", "tool_at_start"};
+    const bool is_held = root_of(text)["program"]["tool_at_start"].value<int64_t>()
+                         == int64_t{core::value_of(number)};
+    Changes changes(text);
+    changes.set(*path / "number", number_text(other));
+    if (is_held) changes.set(at_start, number_text(other));
+    return std::move(changes).text();
+}
+
 Result<std::string> with_offset(const std::string& text, const std::string& name,
                                 const core::Vec3& origin) {
     const TomlPath path{"offsets", name};

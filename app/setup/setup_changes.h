@@ -108,6 +108,14 @@ core::Result<std::string> with_tool(const std::string& text, const core::ToolDes
 /// the source has none.
 core::Result<std::string> with_tool(const std::string& text, const FoundTool& found);
 core::Result<std::string> without_tool(const std::string& text, core::ToolNumber number);
+/// Adds a copy of a tool under another number, or gives a tool another one, also where the set-up
+/// says which tool is in the spindle at the start.
+///
+/// Errors: also invalid_value for a number that another tool has, or that no tool can have.
+core::Result<std::string> with_copied_tool(const std::string& text, core::ToolNumber number,
+                                           core::ToolNumber copy);
+core::Result<std::string> with_tool_number(const std::string& text, core::ToolNumber number,
+                                           core::ToolNumber other);
 
 /// States the origin of a work offset: machine coordinates of X, Y, Z; its other axes stay. The
 /// work offsets are then not assumed.

@@ -457,6 +457,25 @@ TEST(SetupChanges, StateAStockOfAnotherShape) {
     EXPECT_THAT(text, HasSubstr("frame = \"G55\""));
 }
 
+TEST(SetupChanges, CopyAndRenumberTools) {
+    const core::ToolNumber two{2}, five{5};
+    const std::string text = "[program]\ntool_at_start = 2\n\n[[tool]]\nnumber = 2 # the long one\n"
+                             "stick_out = 90\n\n[[tool]]\nnumber = 3\n";
+    const std::string copied = changed(app::with_copied_tool(text, two, five));
+    EXPECT_EQ(copied, text + "\n[[tool]]\nnumber = 5 # the long one\nstick_out = 90\n");
+    EXPECT_FALSE(app::with_copied_tool(text, two, core::ToolNumber{3}));
+    EXPECT_EQ(changed(app::with_copied_tool(text, core::ToolNumber{9}, five)), text);
+    const std::string other = changed(app::with_tool_number(text, two, five));
+    EXPECT_THAT(other, HasSubstr("tool_at_start = 5\n"));
+    EXPECT_THAT(other, HasSubstr("number = 5 # the long one\n"));
+    EXPECT_EQ(changed(app::with_tool_number(other, five, two)), text);
+    const auto taken = app::with_tool_number(text, two, core::ToolNumber{3});
+    ASSERT_FALSE(taken);
+    EXPECT_THAT(taken.error().message, HasSubstr("there is a tool 3 already"));
+    EXPECT_FALSE(app::with_tool_number(text, two, core::ToolNumber{-1}));
+    EXPECT_EQ(changed(app::with_tool_number(text, two, two)), text);
+}
+
 TEST(SetupChanges, StateTheUnitOfAMesh) {
     const std::string mm = "[[fixture]]\nname = \"a\"\nmesh = \"a.stl\" # from CAD\n";
     const app::TomlPath a{"fixture", size_t{0}};

@@ -235,6 +235,27 @@ TEST(Workspace, ExchangesAToolForAnother) {
               "flute_length = \"unknown\"\nstick_out = \"unknown\"\nholder = \"BT40-ER32\"\n");
 }
 
+TEST(Workspace, AddsCopiesAndRenumbersTools) {
+    ViewModel model = opened_model("[[tool]]\nnumber = 3\nstick_out = 50\n");
+    add_tool(model);
+    EXPECT_EQ(model.workspace.selected, (SetupItem{Kind::tool, {}, core::ToolNumber{4}}));
+    EXPECT_THAT(text_of_setup(model),
+                HasSubstr("[[tool]]\nnumber = 4\nshape = \"flat\"\ndiameter = 10\n"));
+    model.workspace.selected = {Kind::tool, {}, core::ToolNumber{3}};
+    copy_selected(model);
+    EXPECT_EQ(model.workspace.selected.tool, core::ToolNumber{5});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("[[tool]]\nnumber = 5\nstick_out = 50\n"));
+    renumber_selected(model, core::ToolNumber{12});
+    EXPECT_EQ(model.workspace.selected.tool, core::ToolNumber{12});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("[[tool]]\nnumber = 12\nstick_out = 50\n"));
+    const std::string before = text_of_setup(model);
+    renumber_selected(model, core::ToolNumber{3});
+    EXPECT_EQ(text_of_setup(model), before);
+    EXPECT_THAT(model.workspace.refusal, HasSubstr("tool 3 already"));
+    delete_selected(model);
+    EXPECT_EQ(text_of_setup(model).find("12"), std::string::npos);
+}
+
 TEST(Workspace, MarksWhatAnErrorIsAbout) {
     ViewModel model =
         opened_model("mesh_size = 1\n[stock]\nbox = 3\n\n[[fixture]]\nname = \"a\"\n"

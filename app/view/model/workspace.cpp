@@ -12,6 +12,7 @@
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
+#include "app/setup/tools/found_tool.h"
 #include "app/view/model/file_watch.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/samples.h"
@@ -372,8 +373,59 @@ bool add_file(ViewModel& model, const std::string& file) {
     return true;
 }
 
+namespace {
+
+/// The number after those of all tools of the program and the set-up.
+core::ToolNumber next_tool_number(const ViewModel& model) {
+    int last = 0;
+    for (const core::ToolNumber number : model.workspace.stated->tools)
+        last = std::max(last, core::value_of(number));
+    if (const SetupSheet* sheet = sheet_of(model))
+        for (const SheetTool& tool : sheet->tools)
+            last = std::max(last, core::value_of(tool.tool.number));
+    return core::ToolNumber{last + 1};
+}
+
+void copy_tool(ViewModel& model, core::ToolNumber number) {
+    const core::ToolNumber copy = next_tool_number(model);
+    const SetupSheet* const sheet = sheet_of(model);
+    const SheetTool* const shown = sheet ? sheet->tool(number) : nullptr;
+    const auto edit = [&](const std::string& text) -> core::Result<std::string> {
+        if (model.workspace.stated->has_tool(number)) return with_copied_tool(text, number, copy);
+        if (!shown) return text;
+        core::ToolDescription tool = shown->tool;
+        tool.number = copy;
+        return with_tool(text, tool);
+    };
+    if (edit_setup(model, fmt::format("Copy T{}", core::value_of(number)), edit))
+        model.workspace.selected = item(Kind::tool, {}, copy);
+}
+
+} // namespace
+
+void add_tool(ViewModel& model) {
+    FoundTool mill;
+    mill.tool.number = next_tool_number(model);
+    mill.tool.diameter = model.settings.inch ? 12.7 : 10.0;
+    mill.has_shape = true;
+    const core::ToolDescription tool = complete(mill).tool;
+    if (edit_setup(model, fmt::format("Add T{}", core::value_of(tool.number)),
+                   [&](const std::string& text) { return with_tool(text, tool); }))
+        model.workspace.selected = item(Kind::tool, {}, tool.number);
+}
+
+void renumber_selected(ViewModel& model, core::ToolNumber number) {
+    const SetupItem selected = model.workspace.selected;
+    if (selected.kind != Kind::tool || selected.tool == number) return;
+    if (edit_setup(
+            model, fmt::format("Renumber T{}", core::value_of(selected.tool)),
+            [&](const std::string& text) { return with_tool_number(text, selected.tool, number); }))
+        model.workspace.selected.tool = number;
+}
+
 void copy_selected(ViewModel& model) {
     const SetupItem selected = model.workspace.selected;
+    if (selected.kind == Kind::tool) return copy_tool(model, selected.tool);
     if (selected.kind != Kind::fixture) return;
     const std::string copy = free_name(model.workspace.document.text(), selected.name);
     const StatedBody* const body = model.workspace.stated->fixture(selected.name);

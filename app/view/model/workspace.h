@@ -164,6 +164,10 @@ void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool
 /// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it
 /// is none of these.
 bool add_file(ViewModel& model, const std::string& file);
+/// Adds an end mill under the next free number, and selects it.
+void add_tool(ViewModel& model);
+/// Gives the selected tool another number, if the set-up states it.
+void renumber_selected(ViewModel& model, core::ToolNumber number);
 /// Copies, removes or renames the selected thing, if that is possible.
 void copy_selected(ViewModel& model);
 void delete_selected(ViewModel& model);

@@ -1,6 +1,7 @@
 #include "app/view/ui/setup_forms.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -611,7 +612,7 @@ void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
     const core::ToolNumber number = shown.tool.number;
     const bool is_stated = model.workspace.stated->has_tool(number);
     ImGui::PushID(core::value_of(number));
-    draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), false, is_stated);
+    draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), true, is_stated);
     if (shown.tool.shape == core::ToolShape::profile) {
         wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      "Edit its outline in the set-up file.");
@@ -632,6 +633,15 @@ void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
         draw_tool_sizes(frame, shown);
         draw_holder(frame, shown);
         draw_library(frame, number);
+    }
+    if (is_stated) {
+        field_name(frame, "Number");
+        if (std::exchange(wants_name, false)) ImGui::SetKeyboardFocusHere();
+        const auto typed = fields_.number(frame, "##number", core::value_of(number));
+        if (typed && *typed >= 0.0 && *typed <= 1e6 && *typed == std::floor(*typed))
+            renumber_selected(model, core::ToolNumber{static_cast<int>(*typed)});
+        else if (typed)
+            model.workspace.refusal = "The number of a tool is a whole number from 0 on";
     }
     if (!shown.why.empty())
         wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),

@@ -22,7 +22,8 @@ class SetupForms {
 public:
     void draw(Frame& frame);
 
-    bool wants_name = false; // the name of the fixture gets the keyboard
+    bool wants_name =
+        false; // the name of the fixture, or the number of the tool, gets the keyboard
 
 private:
     void draw_item(Frame& frame);

@@ -234,6 +234,7 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
             ImGui::EndMenu();
         }
         if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
+        if (ImGui::MenuItem("Tool")) add_tool(model);
         if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
         if (ImGui::MenuItem("Tools and stock: FreeCAD job \xE2\x80\xA6"))
             browse(model, FileWish::job);
@@ -263,7 +264,8 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
     draw_list_tabs(frame);
     draw_counts(frame, area);
     if (has_keys() && ImGui::IsKeyPressed(key::function(2), false))
-        forms_.wants_name = model.workspace.selected.kind == Kind::fixture;
+        forms_.wants_name = model.workspace.selected.kind == Kind::fixture
+                            || model.workspace.selected.kind == Kind::tool;
     ImGui::Dummy(ImVec2(0, frame.px(3)));
     draw_head(frame);
     draw_banners(frame);
