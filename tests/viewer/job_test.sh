@@ -149,15 +149,15 @@ still 02-clamped
 scroll 5
 pick 100 304 # T1
 pick 220 577 # its holder
-pick 160 683 # BT40-EM20
+pick 160 721 # BT40-EM20
 pick 100 325
 pick 158 553 # its stick-out
 fill 24
 pick 220 577
-pick 160 626 # BT40-EM10
+pick 160 664 # BT40-EM10
 pick 100 346
 pick 220 601
-pick 160 669 # BT40-EM12
+pick 160 707 # BT40-EM12
 still 03-done
 printf 'set up with %s clicks in %s s\n' "$clicks" "$((SECONDS - begin))" # clock: is printed
 ((clicks <= 30)) || die 'a job is set up with at most 30 clicks'

@@ -538,6 +538,17 @@ void SetupForms::draw_part(Frame& frame, const StatedBody& body) {
                    [&](const std::string& t) { return with_part_tolerance(t, *tolerance); });
 }
 
+/// The shipped holders, with numbers in names by their values.
+const std::vector<std::string>& holder_names() {
+    static const std::vector<std::string> sorted = [] {
+        std::vector<std::string> names;
+        for (const auto& [name, cones] : shipped_holder_library()) names.push_back(name);
+        std::sort(names.begin(), names.end(), is_before_in_list);
+        return names;
+    }();
+    return sorted;
+}
+
 void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
     ViewModel& model = frame.model;
     const core::ToolNumber number = shown.tool.number;
@@ -554,7 +565,7 @@ void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
     ImGui::SetNextItemWidth(frame.px(190));
     if (ImGui::BeginCombo("##holder", now.c_str())) {
         if (ImGui::Selectable("none", shown.tool.holder.empty())) set(std::nullopt);
-        for (const auto& [name, cones] : shipped_holder_library())
+        for (const std::string& name : holder_names())
             if (ImGui::Selectable(name.c_str(), name == now)) set(toml_text(name));
         ImGui::EndCombo();
     }
