@@ -79,7 +79,8 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     const bool is_assumed = file.needs_stock || file.assumed.contains("stock");
     if (is_assumed) sheet.stock_source = SetupSource::assumed;
     for (const auto& [number, tool] : setup.tools) sheet.tools.push_back(sheet_tool(file, tool));
-    for (const auto& [number, found] : file.library) sheet.library.push_back(found);
+    for (const auto& [number, found] : file.library)
+        sheet.library.push_back(editable(complete(found).tool));
     sheet.offsets = sheet_offsets(file);
     sheet.allowance = setup.allowance;
     const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();

@@ -375,44 +375,24 @@ Result<std::string> with_tool_size(const std::string& text, core::ToolNumber num
                                            : setup_length(value, unit_of_setup(text)));
 }
 
-namespace {
-
-/// Puts the body of a `[[tool]]` in place of that of this number. `kept`: keys that stay if the new
-/// body has none of them.
-Result<std::string> with_tool_body(const std::string& text, core::ToolNumber number,
-                                   const std::string& body, const std::set<std::string>& kept) {
-    const auto path = path_of_tool(text, number);
+Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
+    const std::string body = body_of(tool_table(tool, unit_of_setup(text)));
+    const auto path = path_of_tool(text, tool.number);
     if (!path) return toml_with_table(text, "tool", body);
     // Value by value, so that the comments of the values that stay are kept.
     const toml::table wanted = root_of(body);
     const toml::table root = root_of(text);
     const size_t index = std::get<size_t>(path->steps()[1]);
     const toml::table* before = root["tool"][index].as_table();
-    const bool has_own = std::any_of(kept.begin(), kept.end(),
-                                     [&](const std::string& key) { return wanted.contains(key); });
     Changes changes(text);
-    for (const auto& [key, value] : *before) {
-        const std::string name(key.str());
-        const bool stays = wanted.contains(key) || (!has_own && kept.contains(name));
-        if (!stays) changes.erase(*path / name);
-    }
+    for (const auto& [key, value] : *before)
+        if (!wanted.contains(key)) changes.erase(*path / std::string(key.str()));
     for (const auto& [key, value] : wanted) {
         const toml::node* old = before->get(key);
         const std::string now = value_text(value);
         if (!old || value_text(*old) != now) changes.set(*path / std::string(key.str()), now);
     }
     return std::move(changes).text();
-}
-
-} // namespace
-
-Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
-    return with_tool_body(text, tool.number, body_of(tool_table(tool, unit_of_setup(text))), {});
-}
-
-Result<std::string> with_tool(const std::string& text, const FoundTool& found) {
-    return with_tool_body(text, found.tool.number, body_of(tool_table(found, unit_of_setup(text))),
-                          {"holder", "holder_file", "holder_mesh", "mesh_unit"});
 }
 
 Result<std::string> without_tool(const std::string& text, core::ToolNumber number) {

@@ -111,9 +111,10 @@ std::string toml_text(std::string_view text) {
     return "\"" + safe + "\"";
 }
 
-namespace {
-
-std::string exact_table(const core::ToolDescription& tool, LengthUnit unit) {
+std::string tool_table(const core::ToolDescription& exact, LengthUnit unit) {
+    core::ToolDescription tool = exact;
+    if (unit == LengthUnit::inch) tool = rounded_tool(exact, unit);
+    if (!core::assemble(tool)) tool = exact;
     std::string text = "\n[[tool]]\n";
     text += fmt::format("number = {}\n", core::value_of(tool.number));
     if (!tool.name.empty()) text += fmt::format("name = {}\n", toml_text(tool.name));
@@ -127,67 +128,6 @@ std::string exact_table(const core::ToolDescription& tool, LengthUnit unit) {
                 + length_key("centre_diameter", 2.0 * tool.centre_radius, unit);
     if (tool.single_point) text += "single_point = true\n";
     return text;
-}
-
-} // namespace
-
-std::string tool_table(const core::ToolDescription& exact, LengthUnit unit) {
-    core::ToolDescription tool = exact;
-    if (unit == LengthUnit::inch) tool = rounded_tool(exact, unit);
-    if (!core::assemble(tool)) tool = exact;
-    return exact_table(tool, unit);
-}
-
-namespace {
-
-/// A tool with a cylinder as its shank in the form of a diameter.
-core::ToolDescription with_shank_diameter(core::ToolDescription tool) {
-    const bool is_plain =
-        tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
-    if (is_plain && tool.stick_out) {
-        tool.shank_diameter = tool.shank[0].lower_diameter;
-        tool.shank.clear();
-    }
-    return tool;
-}
-
-/// Lines for the sizes without which no tool of this shape is complete, if a tool lacks them.
-std::string unknown_sizes(const FoundTool& found) {
-    const core::ToolDescription& tool = found.tool;
-    std::string text;
-    const auto add = [&](bool is_missing, const char* key) {
-        if (is_missing) text += fmt::format("{} = \"unknown\"\n", key);
-    };
-    const bool has_outline = tool.shape == core::ToolShape::profile;
-    add(!found.has_diameter && !has_outline, "diameter");
-    add(tool.flute_length <= 0.0 && !has_outline && tool.shape != core::ToolShape::lollipop,
-        "flute_length");
-    add(!tool.stick_out && tool.shank.empty() && !(tool.gauge_length && !tool.holder.empty()),
-        "stick_out");
-    return text;
-}
-
-/// Removes the line of a key.
-void erase_line(std::string& text, const std::string& key) {
-    const size_t begin = text.find("\n" + key + " = ");
-    if (begin != std::string::npos) text.erase(begin, text.find('\n', begin + 1) - begin);
-}
-
-} // namespace
-
-std::string tool_table(const FoundTool& found, LengthUnit unit) {
-    const core::ToolDescription tool = with_shank_diameter(found.tool);
-    const std::string unknown = unknown_sizes(found);
-    const CompleteTool whole = complete(found);
-    // What contradicts itself is not left to be completed.
-    if (!core::assemble(whole.tool)) return tool_table(whole.tool, unit);
-    if (found.has_shape && unknown.empty() && core::assemble(tool)) return tool_table(tool, unit);
-    core::ToolDescription known = tool;
-    if (unit == LengthUnit::inch) known = rounded_tool(tool, unit);
-    std::string text = exact_table(known, unit);
-    if (!found.has_diameter) erase_line(text, "diameter");
-    if (!found.has_shape) erase_line(text, "shape");
-    return found.has_shape ? text + unknown : text;
 }
 
 namespace {
@@ -461,13 +401,15 @@ std::string partial_tool_text(const FoundTool& found, const core::ToolDescriptio
     return text + line(false, stated("holder", "\"BT40-ER32\""), "or other cones, see the manual");
 }
 
-/// A tool of a library: what that states, and the length that the control uses.
-std::string library_tool_text(FoundTool found, const core::ToolDescription& used, LengthUnit unit) {
-    found.tool.number = used.number;
-    found.tool.name = used.name;
-    found.tool.touched_off = used.touched_off;
-    found.tool.length_is_guess = used.length_is_guess;
-    return tool_table(found, unit);
+/// A tool of a library, which describes it completely.
+std::string library_tool_text(core::ToolDescription tool, LengthUnit unit) {
+    const bool is_plain =
+        tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
+    if (is_plain && tool.stick_out) {
+        tool.shank_diameter = tool.shank[0].lower_diameter;
+        tool.shank.clear();
+    }
+    return tool_table(tool, unit);
 }
 
 } // namespace
@@ -475,13 +417,9 @@ std::string library_tool_text(FoundTool found, const core::ToolDescription& used
 std::string tool_text(const SetupFile& setup, core::ToolNumber number) {
     const core::ToolDescription& tool = setup.setup.tools.at(number).description;
     const auto found = setup.found_tools.find(number);
-    if (found == setup.found_tools.end())
-        return tool_table(with_shank_diameter(tool), setup.length_unit);
-    const auto in_library = setup.library.find(number);
-    const bool is_of_library = in_library != setup.library.end()
-                               && found->second.source.starts_with(in_library->second.source);
-    return is_of_library ? library_tool_text(found->second, tool, setup.length_unit)
-                         : partial_tool_text(found->second, tool, setup.length_unit);
+    const bool is_partial = found != setup.found_tools.end() && !setup.library.contains(number);
+    return is_partial ? partial_tool_text(found->second, tool, setup.length_unit)
+                      : library_tool_text(tool, setup.length_unit);
 }
 
 std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {

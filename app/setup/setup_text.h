@@ -12,7 +12,6 @@ struct ToolDescription;
 
 namespace app {
 
-struct FoundTool;
 struct SetupFile;
 
 /// Where a set-up comes from.
@@ -29,10 +28,6 @@ std::string toml_text(std::string_view text);
 /// in inches rounded as by setup_length(), or exact where rounded lengths would contradict each
 /// other.
 std::string tool_table(const core::ToolDescription& exact, gcode::LengthUnit unit);
-
-/// A `[[tool]]` that states what a source says of a tool and nothing else: a size that a tool must
-/// have is "unknown" if the source lacks it, so that it is assumed until somebody states it.
-std::string tool_table(const FoundTool& found, gcode::LengthUnit unit);
 
 /// Parts of a set-up file in its unit, each after an empty line, with assumed lines commented out.
 /// A tool or a stock of which the file is to state nothing gives only comments.

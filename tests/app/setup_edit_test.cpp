@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +8,6 @@
 #include "app/check/prepared_check.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
-#include "app/setup/inference/imported_setup.h"
 #include "app/setup/inference/inferred_setup.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_changes.h"
@@ -333,74 +331,6 @@ TEST(InferredSetup, WrittenToAFileMeansTheSame) {
         ASSERT_TRUE(after) << path << ": " << after.error().message;
         expect_same(*before, *after, path);
     }
-}
-
-TEST(ImportedSetup, WrittenToAFileHasTheSameTools) {
-    std::mt19937 rng(3);
-    std::uniform_real_distribution<double> size(1.0, 20.0);
-    size_t unknown = 0;
-    for (const std::string& path : real_programs()) {
-        const test_support::ScopedFolder folder;
-        const auto program = gcode::read_program(path);
-        const auto bare = app::infer_setup(*program, {});
-        ASSERT_TRUE(bare) << path;
-        std::string tools;
-        for (const core::ToolNumber number : bare->tools_used) {
-            const double diameter = size(rng);
-            tools += fmt::format(
-                R"({}{{"type": "{}", "unit": "millimeters", "geometry": {{"DC": {:.3f}{}{}}},)"
-                R"("post-process": {{"number": {}}}}})",
-                tools.empty() ? "" : ",", rng() % 2 == 0 ? "ball end mill" : "flat end mill",
-                diameter, rng() % 2 == 0 ? fmt::format(", \"LCF\": {:.3f}", 3.0 * diameter) : "",
-                rng() % 2 == 0 ? fmt::format(", \"LB\": {:.3f}", 5.0 * diameter) : "",
-                core::value_of(number));
-        }
-        const std::string library =
-            folder.write("tools.json", "{\"data\": [" + tools + "], \"version\": 1}");
-        const auto import = app::infer_setup_with(*program, {}, library);
-        ASSERT_TRUE(import) << path << ": " << import.error().message;
-        if (import->length_unit == gcode::LengthUnit::inch) continue; // lengths are rounded
-        CheckJob job;
-        job.program = path;
-        const std::string text = app::setup_text(*import, {.program = path});
-        job.setup = folder.write("s.toml", text);
-        const auto after = app::read_check(job);
-        ASSERT_TRUE(after) << path << ": " << after.error().message << text;
-        for (const auto& [number, tool] : import->setup.tools)
-            expect_same_tool(tool, after->run.setup.tools.at(number), path + text);
-        unknown += text.find("flute_length = \"unknown\"") != std::string::npos;
-    }
-    EXPECT_GT(unknown, 5U);
-}
-
-TEST(PartialTool, StatesItsShapeAndLeavesASizeUnknown) {
-    const std::string program = "G21 G90\n(T3 D=6. CR=0. - flat end mill)\nT3 M6\nS5000 M3\n"
-                                "G0 G43 H3 X0 Y0 Z20.\nG1 Z-30. F200\nX40.\nG0 Z20.\nM30\n";
-    const test_support::ScopedFolder folder;
-    CheckJob job;
-    job.program = folder.write("p.nc", program);
-    const std::string ball = "[[tool]]\nnumber = 3\nshape = \"ball\"\n";
-    job.setup_text = ball + "diameter = 8\nflute_length = \"unknown\"\n";
-    auto check = app::read_check(job);
-    ASSERT_TRUE(check) << check.error().message;
-    const core::ToolDescription& tool = check->run.setup.tools.at(core::ToolNumber{3}).description;
-    EXPECT_EQ(tool.shape, core::ToolShape::ball);
-    EXPECT_EQ(tool.diameter, 8.0);
-    EXPECT_GE(tool.flute_length, 30.0) << "as long as the program needs";
-    const app::SheetTool* shown = sheet_of(job).tool(core::ToolNumber{3});
-    ASSERT_TRUE(shown);
-    EXPECT_TRUE(shown->stated.contains("shape"));
-    EXPECT_FALSE(shown->stated.contains("flute_length"));
-    // The diameter of the program's comment, if that is what is not known.
-    job.setup_text = ball + "diameter = \"unknown\"\nflute_length = 40\n";
-    check = app::read_check(job);
-    ASSERT_TRUE(check) << check.error().message;
-    EXPECT_EQ(check->run.setup.tools.at(core::ToolNumber{3}).description.diameter, 6.0);
-    // Without that word a size that is missing is an error, as before.
-    job.setup_text = ball + "diameter = 8\n";
-    EXPECT_FALSE(app::read_check(job));
-    job.setup_text = ball + "diameter = 8\nflute_length = \"unknwn\"\n";
-    EXPECT_FALSE(app::read_check(job));
 }
 
 TEST(InferredSetup, IsUtf8ForAnyNameOfTheProgram) {

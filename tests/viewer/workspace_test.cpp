@@ -211,28 +211,16 @@ TEST(Workspace, ExchangesAToolForAnother) {
     ViewModel model =
         opened_model("[[tool]]\nnumber = 3 # in pocket 7\nshape = \"flat\"\ndiameter = 6\n"
                      "flute_length = 18\ncorner_radius = 1\n");
-    app::FoundTool found;
-    core::ToolDescription& tool = found.tool;
+    core::ToolDescription tool;
     tool.number = core::ToolNumber{40};
     tool.shape = core::ToolShape::drill;
     tool.diameter = 8.5;
     tool.flute_length = 60.0;
     tool.stick_out = 75.0;
-    found.has_shape = true;
-    take_library_tool(model, core::ToolNumber{3}, found);
+    take_library_tool(model, core::ToolNumber{3}, tool);
     EXPECT_EQ(text_of_setup(model),
               "[[tool]]\nnumber = 3 # in pocket 7\nshape = \"drill\"\ndiameter = 8.5\n"
               "flute_length = 60\nstick_out = 75\n");
-    // What the library does not say is not stated either; the holder in the spindle stays.
-    edit_setup(model, "Choose a holder", [](const std::string& text) {
-        return app::toml_with_value(text, {"tool", size_t{0}, "holder"}, "\"BT40-ER32\"");
-    });
-    tool.flute_length = 0.0;
-    tool.stick_out.reset();
-    take_library_tool(model, core::ToolNumber{3}, found);
-    EXPECT_EQ(text_of_setup(model),
-              "[[tool]]\nnumber = 3 # in pocket 7\nshape = \"drill\"\ndiameter = 8.5\n"
-              "flute_length = \"unknown\"\nstick_out = \"unknown\"\nholder = \"BT40-ER32\"\n");
 }
 
 TEST(Workspace, AddsCopiesAndRenumbersTools) {

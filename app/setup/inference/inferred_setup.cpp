@@ -199,25 +199,9 @@ FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
     return tool;
 }
 
-/// A tool of which the set-up states the shape: other sources count only for what it lacks.
-FoundTool with_own_shape(const FoundTool& found, const PartialTool& partial) {
-    FoundTool own;
-    own.tool = partial.tool;
-    own.has_shape = true;
-    own.source = "the set-up";
-    if (!partial.stated.contains("name")) own.tool.name = found.tool.name;
-    if (!partial.stated.contains("diameter")) {
-        own.tool.diameter = found.tool.diameter;
-        own.has_diameter = found.has_diameter;
-        own.source += " and " + found.source;
-    }
-    return own;
-}
-
 /// A found tool with the values that the set-up states of it.
 FoundTool overlaid(FoundTool found, const PartialTool& partial) {
     const auto states = [&](const char* key) { return partial.stated.contains(key); };
-    if (states("shape")) return with_own_shape(found, partial);
     core::ToolDescription& tool = found.tool;
     const core::ToolDescription& stated = partial.tool;
     if (states("stick_out") || states("holder") || states("holder_mesh")) tool.gauge_length.reset();
@@ -334,8 +318,8 @@ void add_notes_on_unused(SetupFile& file, const std::vector<FoundTool>& used) {
         };
         if (std::any_of(used.begin(), used.end(), is_it)) continue;
         file.assumptions.push_back(
-            fmt::format("tool {} is described in part, and the program does not use it: it is left "
-                        "out",
+            fmt::format("tool {} is described without a shape, and the program does not use it: it "
+                        "is left out",
                         core::value_of(number)));
     }
 }

@@ -14,7 +14,6 @@
 
 namespace app {
 enum class SetupSource : uint8_t;
-struct FoundTool;
 struct SheetOffset;
 struct StatedSetup;
 } // namespace app
@@ -160,7 +159,7 @@ void add_part(ViewModel& model, const std::string& file);
 void use_tool_library(ViewModel& model, const std::string& file);
 void use_machine(ViewModel& model, const std::string& file);
 /// Takes another tool for a number, such as one of the library.
-void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool);
+void take_library_tool(ViewModel& model, core::ToolNumber number, core::ToolDescription tool);
 /// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it
 /// is none of these.
 bool add_file(ViewModel& model, const std::string& file);

@@ -580,13 +580,12 @@ void SetupForms::draw_library(Frame& frame, core::ToolNumber number) {
     field_name(frame, "Exchange for");
     ImGui::SetNextItemWidth(frame.px(190));
     if (!ImGui::BeginCombo("##library", "a tool of the library")) return;
-    for (const FoundTool& found : sheet.library) {
-        const core::ToolDescription& tool = found.tool;
+    for (const core::ToolDescription& tool : sheet.library) {
         ImGui::PushID(core::value_of(tool.number));
         const std::string label =
             fmt::format("{}  {} {}  {}", core::value_of(tool.number), core::name_of(tool.shape),
                         length_text(model, tool.diameter), tool.name);
-        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, found);
+        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, tool);
         ImGui::PopID();
     }
     ImGui::EndCombo();
