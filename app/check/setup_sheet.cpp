@@ -6,7 +6,6 @@
 #include "app/setup/coverage.h"
 #include "app/setup/holder_library.h"
 #include "app/setup/setup_file.h"
-#include "app/setup/tools/found_tool.h"
 #include "core/sim/setup.h"
 #include "gcode/language/canonical.h"
 
@@ -20,8 +19,12 @@ SheetTool sheet_tool(const SetupFile& file, const core::ToolAssembly& tool) {
     if (const auto why = file.inferred_tools.find(number); why != file.inferred_tools.end())
         shown.why = why->second;
     if (file.is_inferred || !shown.why.empty()) shown.source = SetupSource::assumed;
-    if (const auto partial = file.partial_tools.find(number); partial != file.partial_tools.end())
+    const auto partial = file.partial_tools.find(number);
+    if (partial != file.partial_tools.end()) {
         shown.stated = partial->second.stated;
+        // It is used in another way.
+        if (partial->second.tool.shape != shown.tool.shape) shown.stated.erase("shape");
+    }
     return shown;
 }
 
@@ -79,8 +82,7 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     const bool is_assumed = file.needs_stock || file.assumed.contains("stock");
     if (is_assumed) sheet.stock_source = SetupSource::assumed;
     for (const auto& [number, tool] : setup.tools) sheet.tools.push_back(sheet_tool(file, tool));
-    for (const auto& [number, found] : file.library)
-        sheet.library.push_back(editable(complete(found).tool));
+    for (const auto& [number, found] : file.library) sheet.library.push_back(found);
     sheet.offsets = sheet_offsets(file);
     sheet.allowance = setup.allowance;
     const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();

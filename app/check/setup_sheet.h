@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/tools/found_tool.h"
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "core/dbm/solid.h"
@@ -54,7 +55,7 @@ struct SetupSheet {
     SetupSource stock_source = SetupSource::stated;
     std::string stock_why; // reason for assuming it, a sentence
     std::vector<SheetTool> tools;
-    std::vector<core::ToolDescription> library; // tools of the tool library, by number
+    std::vector<FoundTool> library; // tools of the tool library, by number
     std::vector<SheetOffset> offsets;
     std::optional<double> allowance; // the general one; empty: the defaults
     /// Poses of the named frames relative to the stock: "machine", "stock", work offsets, fixtures.

@@ -11,6 +11,7 @@
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_file.h"
+#include "app/setup/tools/found_tool.h"
 #include "core/dbm/solid.h"
 #include "core/sim/tool_description.h"
 #include "gcode/language/canonical.h"
@@ -375,12 +376,14 @@ Result<std::string> with_tool_size(const std::string& text, core::ToolNumber num
                                            : setup_length(value, unit_of_setup(text)));
 }
 
-Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
-    const std::string body = body_of(tool_table(tool, unit_of_setup(text)));
-    const auto path = path_of_tool(text, tool.number);
-    if (!path) return toml_with_table(text, "tool", body);
-    // Value by value, so that the comments of the values that stay are kept.
-    const toml::table wanted = root_of(body);
+namespace {
+
+/// The text with these lines as the `[[tool]]` of a number. Values that stay keep their comments.
+Result<std::string> with_tool_lines(const std::string& text, core::ToolNumber number,
+                                    const std::string& lines) {
+    const auto path = path_of_tool(text, number);
+    if (!path) return toml_with_table(text, "tool", lines);
+    const toml::table wanted = root_of(lines);
     const toml::table root = root_of(text);
     const size_t index = std::get<size_t>(path->steps()[1]);
     const toml::table* before = root["tool"][index].as_table();
@@ -393,6 +396,16 @@ Result<std::string> with_tool(const std::string& text, const core::ToolDescripti
         if (!old || value_text(*old) != now) changes.set(*path / std::string(key.str()), now);
     }
     return std::move(changes).text();
+}
+
+} // namespace
+
+Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool) {
+    return with_tool_lines(text, tool.number, body_of(tool_table(tool, unit_of_setup(text))));
+}
+
+Result<std::string> with_found_tool(const std::string& text, const FoundTool& tool) {
+    return with_tool_lines(text, tool.tool.number, found_tool_lines(tool, unit_of_setup(text)));
 }
 
 Result<std::string> without_tool(const std::string& text, core::ToolNumber number) {

@@ -22,6 +22,8 @@ enum class LengthUnit : uint8_t;
 
 namespace app {
 
+struct FoundTool;
+
 /// Functions that change the text of a set-up file, one statement at a time. They keep everything
 /// else in it, as the functions of toml_edit.h do, whose errors they return. Lengths are mm, and
 /// are written in the unit of the text, rounded as by setup_length(); angles are degrees.
@@ -102,6 +104,8 @@ core::Result<std::string> with_tool_size(const std::string& text, core::ToolNumb
                                          const core::ToolSize& size, double value);
 /// States a tool completely, in place of the old description.
 core::Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool);
+/// States what a source states of a tool, in place of the old description; the rest is assumed.
+core::Result<std::string> with_found_tool(const std::string& text, const FoundTool& tool);
 core::Result<std::string> without_tool(const std::string& text, core::ToolNumber number);
 /// Adds a copy of a tool under another number, or gives a tool another one, also where the set-up
 /// says which tool is in the spindle at the start.

@@ -38,10 +38,11 @@ struct StatedControl {
 core::Result<std::vector<std::string>>
 apply(const StatedControl& control, gcode::Environment& environment, core::Machine& machine);
 
-/// A `[[tool]]` without a shape: it states only some values of a tool, and the rest is inferred.
+/// A `[[tool]]` without a shape, or with a size that is "unknown": it states only some values of a
+/// tool, and the rest is inferred.
 struct PartialTool {
     core::ToolDescription tool;   // values of the stated keys
-    std::set<std::string> stated; // keys
+    std::set<std::string> stated; // keys, without those that are "unknown"
     core::SourceSpan where;       // in the set-up file
 };
 

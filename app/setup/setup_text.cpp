@@ -54,6 +54,16 @@ std::string before(std::string_view key, const core::ToolDescription& tool, Leng
     return key == "gauge_length" ? cones("holder", tool.holder, unit) : std::string();
 }
 
+std::string touched_off(const core::ToolDescription& tool, LengthUnit unit) {
+    if (tool.length_is_guess)
+        return "touched_off = \"unknown\"     # length that the control uses: 0 where it matters; "
+               "state it, or remove this to use the true length\n";
+    if (!tool.touched_off) return {};
+    return fmt::format("touched_off = {}     # length that the control uses, matching the work "
+                       "offset; remove it to use the true length\n",
+                       exact_length(*tool.touched_off, unit));
+}
+
 std::string sizes(const core::ToolDescription& tool, LengthUnit unit) {
     std::string text;
     for (const core::ToolSize& size : core::tool_sizes()) {
@@ -64,14 +74,7 @@ std::string sizes(const core::ToolDescription& tool, LengthUnit unit) {
         else if (value)
             text += length_key(size.key, *value, unit);
     }
-    if (tool.length_is_guess)
-        text += "touched_off = \"unknown\"     # length that the control uses: 0 where it matters; "
-                "state it, or remove this to use the true length\n";
-    else if (tool.touched_off)
-        text += fmt::format("touched_off = {}     # length that the control uses, matching the "
-                            "work offset; remove it to use the true length\n",
-                            exact_length(*tool.touched_off, unit));
-    return text;
+    return text + touched_off(tool, unit);
 }
 
 void round_cones(std::vector<core::ConeStep>& steps, LengthUnit unit) {
@@ -401,25 +404,87 @@ std::string partial_tool_text(const FoundTool& found, const core::ToolDescriptio
     return text + line(false, stated("holder", "\"BT40-ER32\""), "or other cones, see the manual");
 }
 
-/// A tool of a library, which describes it completely.
-std::string library_tool_text(core::ToolDescription tool, LengthUnit unit) {
-    const bool is_plain =
-        tool.shank.size() == 1 && tool.shank[0].lower_diameter == tool.shank[0].upper_diameter;
-    if (is_plain && tool.stick_out) {
-        tool.shank_diameter = tool.shank[0].lower_diameter;
-        tool.shank.clear();
+/// A size with a remark, or "unknown" with what is assumed.
+std::string size_line(const core::ToolSize& size, double value, bool is_known, LengthUnit unit) {
+    const std::string written = size.is_angle() ? toml_number(value) : exact_length(value, unit);
+    if (is_known)
+        return line(true, stated(size.key, written),
+                    std::string_view(size.key) == "stick_out" ? "from the tip to the holder" : "");
+    const std::string assumed = size.is_angle() ? setup_number(value) : assumed_length(value, unit);
+    return line(true, stated(size.key, "\"unknown\""), assumed + " is assumed");
+}
+
+/// The sizes that a source states. With a shape, "unknown" says which are assumed; without one all
+/// others are.
+std::string found_sizes(const FoundTool& found, const core::ToolDescription& whole,
+                        LengthUnit unit) {
+    std::string text;
+    for (const core::ToolSize& size : core::tool_sizes()) {
+        text += before(size.key, found.tool, unit);
+        const auto said = size.of(found.tool), used = size.of(whole);
+        const bool is_replaced = used && used != said;
+        if (said && !is_replaced)
+            text += size_line(size, *said, true, unit);
+        else if (is_replaced && found.has_shape)
+            text += size_line(size, *used, false, unit);
     }
-    return tool_table(tool, unit);
+    return text;
+}
+
+/// The tool that stands for one whose sizes no tool can have.
+FoundTool without_contradictions(const FoundTool& found) {
+    if (core::assemble(complete(found).tool)) return found;
+    FoundTool plain{.tool = {}, .has_shape = true, .source = found.source};
+    plain.tool.number = found.tool.number;
+    plain.tool.name = found.tool.name;
+    plain.tool.diameter = found.tool.diameter;
+    plain.assumed = {"that it is a flat end mill, because its sizes contradict each other,"};
+    return plain;
+}
+
+std::string found_lines(const FoundTool& found, const core::ToolDescription& whole,
+                        LengthUnit unit) {
+    const core::ToolDescription& tool = found.tool;
+    std::string text = line(true, stated("number", fmt::format("{}", core::value_of(tool.number))));
+    if (!tool.name.empty()) text += line(true, stated("name", toml_text(tool.name)));
+    if (found.has_shape)
+        text += line(true, stated("shape", fmt::format("\"{}\"", core::name_of(tool.shape))));
+    text += found_sizes(found, whole, unit);
+    if (tool.cuts == core::SpindleDirection::counterclockwise)
+        text += line(true, stated("spindle", "\"counterclockwise\""));
+    return text;
+}
+
+/// What a library says about a tool, and what is assumed.
+std::string library_tool_text(const FoundTool& listed, const core::ToolDescription& whole,
+                              LengthUnit unit) {
+    const FoundTool found = without_contradictions(listed);
+    std::string about =
+        fmt::format("{}, according to {}", core::description_of(found.tool.shape), found.source);
+    if (!found.assumed.empty())
+        about += fmt::format("; {} {} assumed", fmt::join(found.assumed, ", "),
+                             found.assumed.size() == 1 ? "is" : "are");
+    std::string text = "\n" + comment(about) + "[[tool]]\n" + found_lines(found, whole, unit)
+                       + touched_off(whole, unit);
+    if (found.tool.holder.empty())
+        text += line(false, stated("holder", "\"BT40-ER32\""), "or other cones, see the manual");
+    return text;
 }
 
 } // namespace
 
+std::string found_tool_lines(const FoundTool& listed, LengthUnit unit) {
+    const FoundTool found = without_contradictions(listed);
+    return found_lines(found, complete(found).tool, unit);
+}
+
 std::string tool_text(const SetupFile& setup, core::ToolNumber number) {
     const core::ToolDescription& tool = setup.setup.tools.at(number).description;
     const auto found = setup.found_tools.find(number);
-    const bool is_partial = found != setup.found_tools.end() && !setup.library.contains(number);
-    return is_partial ? partial_tool_text(found->second, tool, setup.length_unit)
-                      : library_tool_text(tool, setup.length_unit);
+    if (found == setup.found_tools.end()) return tool_table(tool, setup.length_unit);
+    return setup.library.contains(number)
+               ? library_tool_text(found->second, tool, setup.length_unit)
+               : partial_tool_text(found->second, tool, setup.length_unit);
 }
 
 std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {

@@ -12,6 +12,7 @@ struct ToolDescription;
 
 namespace app {
 
+struct FoundTool;
 struct SetupFile;
 
 /// Where a set-up comes from.
@@ -28,6 +29,11 @@ std::string toml_text(std::string_view text);
 /// in inches rounded as by setup_length(), or exact where rounded lengths would contradict each
 /// other.
 std::string tool_table(const core::ToolDescription& exact, gcode::LengthUnit unit);
+
+/// The lines of a `[[tool]]` without its header, which states what a source states of a tool. If
+/// the source names the shape, sizes that are assumed are "unknown". Lengths are exact to the last
+/// bit.
+std::string found_tool_lines(const FoundTool& listed, gcode::LengthUnit unit);
 
 /// Parts of a set-up file in its unit, each after an empty line, with assumed lines commented out.
 /// A tool or a stock of which the file is to state nothing gives only comments.

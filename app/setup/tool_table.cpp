@@ -1,5 +1,8 @@
 #include "app/setup/tool_table.h"
 
+#include <set>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "app/setup/body_table.h"
@@ -13,13 +16,32 @@
 namespace app {
 namespace {
 
+/// A value that nobody has stated, for a size of a tool.
+constexpr const char* unknown_size = "unknown";
+
+bool is_unknown(TableReader& table, const char* key) {
+    return table.is_text(key) && table.string(key) == unknown_size;
+}
+
+/// The sizes that the table calls unknown.
+std::set<std::string> unknown_sizes(TableReader& table) {
+    std::set<std::string> keys;
+    for (const core::ToolSize& size : core::tool_sizes())
+        if (is_unknown(table, size.key)) keys.insert(size.key);
+    return keys;
+}
+
+void read_size(TableReader& table, const core::ToolSize& size, core::ToolDescription& tool) {
+    if (is_unknown(table, size.key)) return;
+    size.put(tool, table.number(size.key, size.is_angle() ? Measure::angle : Measure::length));
+}
+
 void read_shape(TableReader& table, core::ToolDescription& tool) {
     std::vector<std::string_view> names;
     for (const core::ToolShapeEntry& entry : core::tool_shapes()) names.emplace_back(entry.name);
     const auto shape = table.word("shape", names);
     if (shape) tool.shape = *core::tool_shape_named(*shape);
-    for (const core::ToolSize& size : core::tool_sizes())
-        size.put(tool, table.number(size.key, size.is_angle() ? Measure::angle : Measure::length));
+    for (const core::ToolSize& size : core::tool_sizes()) read_size(table, size, tool);
     tool.teeth = table.integer("teeth");
     for (const std::vector<double>& row : table.rows("profile", Measure::length, 2))
         tool.outline.push_back({row[0], row[1]});
@@ -76,10 +98,13 @@ void refuse_twice(TableReader& table, const core::ToolDescription& tool) {
 
 /// Adds a tool of which the table states only some values.
 void add_partial(TableReader& table, const core::ToolDescription& tool, SetupFile& file) {
-    if (!tool.outline.empty()) return table.refuse("profile", "needs shape = \"profile\"");
+    if (!tool.outline.empty() && tool.shape != core::ToolShape::profile)
+        return table.refuse("profile", "needs shape = \"profile\"");
     if (!tool.name.empty()) file.environment.tool_names.emplace(tool.name, tool.number);
     PartialTool partial{tool, {}, {table.line(), 0, 0}};
-    for (const std::string& key : table.keys()) partial.stated.insert(key);
+    const std::set<std::string> unknown = unknown_sizes(table);
+    for (const std::string& key : table.keys())
+        if (!unknown.contains(key)) partial.stated.insert(key);
     if (file.setup.tools.contains(tool.number)
         || !file.partial_tools.emplace(tool.number, std::move(partial)).second)
         refuse_twice(table, tool);
@@ -106,7 +131,7 @@ void read_tool(TableReader& table, BodyContext& context) {
                                               : core::SpindleDirection::clockwise;
     read_centre(table, tool);
     table.finish();
-    if (!table.has("shape")) return add_partial(table, tool, file);
+    if (!table.has("shape") || !unknown_sizes(table).empty()) return add_partial(table, tool, file);
 
     const auto assembled = core::assemble(tool);
     if (!assembled) return table.refuse_whole(assembled.error().message);

@@ -211,16 +211,19 @@ TEST(Workspace, ExchangesAToolForAnother) {
     ViewModel model =
         opened_model("[[tool]]\nnumber = 3 # in pocket 7\nshape = \"flat\"\ndiameter = 6\n"
                      "flute_length = 18\ncorner_radius = 1\n");
-    core::ToolDescription tool;
+    app::FoundTool found{.tool = {}, .has_shape = true, .source = "shop.tools"};
+    core::ToolDescription& tool = found.tool;
     tool.number = core::ToolNumber{40};
     tool.shape = core::ToolShape::drill;
     tool.diameter = 8.5;
-    tool.flute_length = 60.0;
+    tool.point_deg = 140.0;
     tool.stick_out = 75.0;
-    take_library_tool(model, core::ToolNumber{3}, tool);
+    take_library_tool(model, core::ToolNumber{3}, found);
     EXPECT_EQ(text_of_setup(model),
               "[[tool]]\nnumber = 3 # in pocket 7\nshape = \"drill\"\ndiameter = 8.5\n"
-              "flute_length = 60\nstick_out = 75\n");
+              "flute_length = \"unknown\"\npoint_deg = 140\nshank_diameter = "
+              "\"unknown\"\nstick_out = 75\n")
+        << "states what the library states";
 }
 
 TEST(Workspace, AddsCopiesAndRenumbersTools) {

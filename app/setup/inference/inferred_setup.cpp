@@ -199,9 +199,20 @@ FoundTool as_used(FoundTool tool, const ProgramSurvey& seen) {
     return tool;
 }
 
+/// A tool of which the set-up states the shape: what other sources say of it does not count.
+FoundTool stated_tool(const FoundTool& found, const PartialTool& partial) {
+    FoundTool stated{.tool = partial.tool, .has_shape = true, .source = "the set-up"};
+    if (!partial.stated.contains("name")) stated.tool.name = found.tool.name;
+    if (partial.stated.contains("diameter")) return stated;
+    stated.has_diameter = false;
+    stated.tool.diameter = found.tool.diameter;
+    return stated;
+}
+
 /// A found tool with the values that the set-up states of it.
 FoundTool overlaid(FoundTool found, const PartialTool& partial) {
     const auto states = [&](const char* key) { return partial.stated.contains(key); };
+    if (states("shape")) return stated_tool(found, partial);
     core::ToolDescription& tool = found.tool;
     const core::ToolDescription& stated = partial.tool;
     if (states("stick_out") || states("holder") || states("holder_mesh")) tool.gauge_length.reset();
@@ -236,14 +247,28 @@ FoundTool overlaid(FoundTool found, const PartialTool& partial) {
     return found;
 }
 
+/// A tool of a library that does not name its shape: the program decides what it is.
+FoundTool shaped(const FoundTool& listed, const FoundTool& in_program) {
+    const PartialTool known{listed.tool, known_keys(listed), {}};
+    FoundTool found = overlaid(in_program, known);
+    found.tool.number = listed.tool.number;
+    found.has_shape = in_program.has_shape && in_program.is_described;
+    found.is_described = true;
+    found.source = listed.source;
+    if (in_program.is_described) found.source += " and " + in_program.source;
+    return found;
+}
+
 /// Puts the stated values of partly described tools into the missing ones.
 ///
 /// Errors: invalid_value if they do not fit to what is known of the tool.
-core::Result<void> overlay(const SetupFile& file, std::vector<FoundTool>& missing) {
+core::Result<void> overlay(const SetupFile& file, const ProgramSurvey& seen,
+                           std::vector<FoundTool>& missing) {
     for (FoundTool& found : missing) {
         const auto partial = file.partial_tools.find(found.tool.number);
         if (partial == file.partial_tools.end()) continue;
         found = overlaid(std::move(found), partial->second);
+        if (file.is_partial) found = as_used(std::move(found), seen);
         const auto assembled = core::assemble(complete(found).tool);
         if (!assembled)
             return tl::unexpected<core::Error>(
@@ -253,6 +278,12 @@ core::Result<void> overlay(const SetupFile& file, std::vector<FoundTool>& missin
                  file.path});
     }
     return {};
+}
+
+/// Whether all tools on offer are those of the library.
+bool names_none(const SuggestedTools& offered, const SetupFile& file) {
+    return std::all_of(offered.tools.begin(), offered.tools.end(),
+                       [&](const auto& tool) { return file.library.contains(tool.first); });
 }
 
 /// The tools that the program uses and the set-up lacks, with what is known of them.
@@ -272,11 +303,15 @@ core::Result<std::vector<FoundTool>> missing_tools(SetupFile& file, const gcode:
         const auto found = offered.tools.find(number);
         if (file.setup.tools.contains(number)) continue;
         // The only tool of a program whose calls have variables, as in T#1 M6.
-        const bool is_only =
-            file.is_partial && offered.in_spindle && offered.tools.empty() && wanted.size() == 1;
+        const bool may_be_only = file.is_partial && offered.in_spindle && wanted.size() == 1;
+        const bool is_only = may_be_only && offered.tools.empty();
         if (found != offered.tools.end() || is_only) {
             FoundTool tool = is_only ? *offered.in_spindle : found->second;
             tool.tool.number = number;
+            if (!tool.has_shape && file.library.contains(number))
+                tool = shaped(tool, may_be_only && names_none(offered, file)
+                                        ? *offered.in_spindle
+                                        : unknown_tool(number, mills(number), unit));
             missing.push_back(file.is_partial ? as_used(std::move(tool), seen) : tool);
         } else if (file.is_partial || file.partial_tools.contains(number)) {
             missing.push_back(unknown_tool(number, mills(number), unit));
@@ -318,8 +353,8 @@ void add_notes_on_unused(SetupFile& file, const std::vector<FoundTool>& used) {
         };
         if (std::any_of(used.begin(), used.end(), is_it)) continue;
         file.assumptions.push_back(
-            fmt::format("tool {} is described without a shape, and the program does not use it: it "
-                        "is left out",
+            fmt::format("tool {} is described in part, and the program does not use it: it is left "
+                        "out",
                         core::value_of(number)));
     }
 }
@@ -616,7 +651,7 @@ core::Result<void> complete_setup(SetupFile& file, const gcode::Program& program
     if (file.infers_frame && assume_extended_offsets(file.environment, first))
         first = survey(program, file.environment, sizes(file, true));
     FEELER_TRY(std::vector<FoundTool> tools, missing_tools(file, program, first));
-    if (const auto fits = overlay(file, tools); !fits) return tl::unexpected(fits.error());
+    if (const auto fits = overlay(file, first, tools); !fits) return tl::unexpected(fits.error());
     add_notes_on_unused(file, tools);
     const bool touches_off = !first.offsets_lengths && may_touch_off(file);
     if (touches_off && !file.setup.tools.empty()) assume_touch_off(file);
@@ -717,13 +752,13 @@ double usual_diameter(gcode::LengthUnit unit) {
 }
 
 /// A plain tool of that diameter, for sizes that contradict each other.
-core::ToolAssembly plain_tool(const core::ToolDescription& tool) {
+core::ToolAssembly plain_tool(const core::ToolDescription& tool, double least_flutes) {
     FoundTool plain;
     plain.tool.number = tool.number;
     plain.tool.diameter = tool.diameter;
     plain.tool.touched_off = tool.touched_off;
     plain.tool.length_is_guess = tool.length_is_guess;
-    const auto assembled = core::assemble(complete(plain).tool);
+    const auto assembled = core::assemble(complete(plain, least_flutes).tool);
     return assembled ? *assembled : core::ToolAssembly{.description = plain.tool, .parts = {}};
 }
 
@@ -734,6 +769,10 @@ core::Result<SuggestedTools> suggested_tools(const SetupFile& file, const gcode:
     offered.tools = file.library;
     ProgramTools named =
         tools_of_program(program, unit_of_program(program, unit_at_start(file.environment)));
+    for (auto& [number, listed] : offered.tools)
+        if (const auto said = named.tools.find(number);
+            said != named.tools.end() && said->second.has_shape && !listed.has_shape)
+            listed = shaped(listed, said->second);
     offered.tools.merge(named.tools);
     offered.in_spindle = std::move(named.in_spindle);
     if (!file.tool_table.empty()) {
@@ -782,7 +821,7 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     if (!assembled) {
         whole.assumed = fmt::format("{}; treated as a flat end mill of {:g} mm",
                                     assembled.error().message, tool.diameter);
-        assembled = plain_tool(tool);
+        assembled = plain_tool(tool, least_flutes);
     }
     assembled->reach_is_assumed = !is_held;
     file.environment.tool_lengths[tool.number] = assembled->length;

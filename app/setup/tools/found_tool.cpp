@@ -207,6 +207,25 @@ std::optional<core::ToolShape> shape_in(std::span<const ShapeName> names, std::s
     return found == names.end() ? std::nullopt : std::optional(found->shape);
 }
 
+std::set<std::string> known_keys(const FoundTool& found) {
+    const ToolDescription& tool = found.tool;
+    std::set<std::string> keys;
+    const auto add = [&](const char* key, bool is_known) {
+        if (is_known) keys.insert(key);
+    };
+    if (!found.is_described) return keys;
+    for (const core::ToolSize& size : core::tool_sizes()) add(size.key, size.of(tool).has_value());
+    if (!found.has_diameter) keys.erase("diameter");
+    add("shape", found.has_shape);
+    add("name", !tool.name.empty());
+    add("profile", !tool.outline.empty());
+    add("shank", !tool.shank.empty());
+    add("holder", !tool.holder.empty());
+    add("teeth", tool.teeth.has_value());
+    add("spindle", tool.cuts == core::SpindleDirection::counterclockwise);
+    return keys;
+}
+
 CompleteTool complete(const FoundTool& found, double least_flutes) {
     CompleteTool whole{found.tool, {}};
     std::vector<std::string> assumed = found.assumed;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,9 @@ struct FoundTool {
     std::vector<std::string> assumed{}; // what its reader assumed, each to precede "is assumed"
     bool is_described = true;           // else only its use is known
 };
+
+/// The keys of the values that a source states of a tool, as a set-up names them.
+std::set<std::string> known_keys(const FoundTool& found);
 
 /// A tool completed with the sizes that such tools usually have.
 ///

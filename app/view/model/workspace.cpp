@@ -352,10 +352,10 @@ void use_machine(ViewModel& model, const std::string& file) {
         model.workspace.selected = item(Kind::machine);
 }
 
-void take_library_tool(ViewModel& model, core::ToolNumber number, core::ToolDescription tool) {
-    tool.number = number;
+void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool) {
+    tool.tool.number = number;
     edit_setup(model, fmt::format("Exchange T{}", core::value_of(number)),
-               [&](const std::string& text) { return with_tool(text, tool); });
+               [&](const std::string& text) { return with_found_tool(text, tool); });
 }
 
 bool add_file(ViewModel& model, const std::string& file) {

@@ -14,16 +14,13 @@
 
 namespace app {
 enum class SetupSource : uint8_t;
+struct FoundTool;
 struct SheetOffset;
 struct StatedSetup;
 } // namespace app
 
 namespace gcode {
 enum class LengthUnit : uint8_t;
-}
-
-namespace core {
-struct ToolDescription;
 }
 
 namespace app::viewer {
@@ -158,8 +155,8 @@ void add_part(ViewModel& model, const std::string& file);
 /// Takes tools from a library, or the machine from a file; without a file: no longer.
 void use_tool_library(ViewModel& model, const std::string& file);
 void use_machine(ViewModel& model, const std::string& file);
-/// Takes another tool for a number, such as one of the library.
-void take_library_tool(ViewModel& model, core::ToolNumber number, core::ToolDescription tool);
+/// Takes a tool of the library for a number: states what the library states.
+void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool);
 /// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it
 /// is none of these.
 bool add_file(ViewModel& model, const std::string& file);

@@ -554,7 +554,7 @@ void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
     const core::ToolNumber number = shown.tool.number;
     const std::string known = holder_name(shown.tool);
     const std::string now = !known.empty()              ? known
-                            : shown.tool.holder.empty() ? "none"
+                            : shown.tool.holder.empty() ? "not described"
                                                         : "as described";
     const auto set = [&](const std::optional<std::string>& value) {
         edit_setup(
@@ -564,12 +564,13 @@ void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
     field_name(frame, "Holder");
     ImGui::SetNextItemWidth(frame.px(190));
     if (ImGui::BeginCombo("##holder", now.c_str())) {
-        if (ImGui::Selectable("none", shown.tool.holder.empty())) set(std::nullopt);
+        if (ImGui::Selectable("not described", shown.tool.holder.empty())) set(std::nullopt);
         for (const std::string& name : holder_names())
             if (ImGui::Selectable(name.c_str(), name == now)) set(toml_text(name));
         ImGui::EndCombo();
     }
-    source_mark(frame, shown.source_of("holder"));
+    source_mark(frame,
+                shown.tool.holder.empty() ? SetupSource::assumed : shown.source_of("holder"));
 }
 
 /// The tools of the library, to exchange a tool for one of them.
@@ -580,12 +581,13 @@ void SetupForms::draw_library(Frame& frame, core::ToolNumber number) {
     field_name(frame, "Exchange for");
     ImGui::SetNextItemWidth(frame.px(190));
     if (!ImGui::BeginCombo("##library", "a tool of the library")) return;
-    for (const core::ToolDescription& tool : sheet.library) {
+    for (const FoundTool& found : sheet.library) {
+        const core::ToolDescription& tool = found.tool;
         ImGui::PushID(core::value_of(tool.number));
         const std::string label =
             fmt::format("{}  {} {}  {}", core::value_of(tool.number), core::name_of(tool.shape),
                         length_text(model, tool.diameter), tool.name);
-        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, tool);
+        if (ImGui::Selectable(label.c_str())) take_library_tool(model, number, found);
         ImGui::PopID();
     }
     ImGui::EndCombo();

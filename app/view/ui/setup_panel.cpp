@@ -43,6 +43,10 @@ void draw_banner(Frame& frame, Role role, const std::string& words) {
 /// Whether the panel that is being drawn has the keyboard.
 bool has_keys() { return ImGui::IsWindowFocused(ImGuiFocusedFlags_ChildWindows); }
 
+bool has_tool(const StatedSetup& stated, const SetupItem& item) {
+    return item.kind == Kind::tool && stated.has_tool(item.tool);
+}
+
 } // namespace
 
 struct SetupPanel::State {
@@ -265,7 +269,7 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
     draw_counts(frame, area);
     if (has_keys() && ImGui::IsKeyPressed(key::function(2), false))
         forms_.wants_name = model.workspace.selected.kind == Kind::fixture
-                            || model.workspace.selected.kind == Kind::tool;
+                            || has_tool(*model.workspace.stated, model.workspace.selected);
     ImGui::Dummy(ImVec2(0, frame.px(3)));
     draw_head(frame);
     draw_banners(frame);
