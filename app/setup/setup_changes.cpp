@@ -379,17 +379,24 @@ Result<std::string> with_tool_size(const std::string& text, core::ToolNumber num
 namespace {
 
 /// The text with these lines as the `[[tool]]` of a number. Values that stay keep their comments.
+/// `kept`: keys that stay if the lines have none of them.
 Result<std::string> with_tool_lines(const std::string& text, core::ToolNumber number,
-                                    const std::string& lines) {
+                                    const std::string& lines,
+                                    const std::set<std::string>& kept = {}) {
     const auto path = path_of_tool(text, number);
     if (!path) return toml_with_table(text, "tool", lines);
     const toml::table wanted = root_of(lines);
     const toml::table root = root_of(text);
     const size_t index = std::get<size_t>(path->steps()[1]);
     const toml::table* before = root["tool"][index].as_table();
+    const bool replaces_kept = std::any_of(
+        kept.begin(), kept.end(), [&](const std::string& key) { return wanted.contains(key); });
     Changes changes(text);
-    for (const auto& [key, value] : *before)
-        if (!wanted.contains(key)) changes.erase(*path / std::string(key.str()));
+    for (const auto& [key, value] : *before) {
+        const std::string name(key.str());
+        const bool stays = wanted.contains(name) || (!replaces_kept && kept.contains(name));
+        if (!stays) changes.erase(*path / name);
+    }
     for (const auto& [key, value] : wanted) {
         const toml::node* old = before->get(key);
         const std::string now = value_text(value);
@@ -405,7 +412,8 @@ Result<std::string> with_tool(const std::string& text, const core::ToolDescripti
 }
 
 Result<std::string> with_found_tool(const std::string& text, const FoundTool& tool) {
-    return with_tool_lines(text, tool.tool.number, found_tool_lines(tool, unit_of_setup(text)));
+    return with_tool_lines(text, tool.tool.number, found_tool_lines(tool, unit_of_setup(text)),
+                           {"holder", "holder_file", "holder_mesh", "mesh_unit"});
 }
 
 Result<std::string> without_tool(const std::string& text, core::ToolNumber number) {

@@ -104,7 +104,8 @@ core::Result<std::string> with_tool_size(const std::string& text, core::ToolNumb
                                          const core::ToolSize& size, double value);
 /// States a tool completely, in place of the old description.
 core::Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool);
-/// States what a source states of a tool, in place of the old description; the rest is assumed.
+/// States what a source states of a tool, in place of the old description; the rest is assumed. A
+/// holder stays if the source has none.
 core::Result<std::string> with_found_tool(const std::string& text, const FoundTool& tool);
 core::Result<std::string> without_tool(const std::string& text, core::ToolNumber number);
 /// Adds a copy of a tool under another number, or gives a tool another one, also where the set-up

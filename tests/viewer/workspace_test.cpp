@@ -224,6 +224,14 @@ TEST(Workspace, ExchangesAToolForAnother) {
               "flute_length = \"unknown\"\npoint_deg = 140\nshank_diameter = "
               "\"unknown\"\nstick_out = 75\n")
         << "states what the library states";
+    edit_setup(model, "Choose a holder", [](const std::string& text) {
+        return app::toml_with_value(text, {"tool", size_t{0}, "holder"}, "\"BT40-ER32\"");
+    });
+    take_library_tool(model, core::ToolNumber{3}, found);
+    EXPECT_THAT(text_of_setup(model), HasSubstr("holder = \"BT40-ER32\"\n")) << "it stays";
+    tool.holder = {{30.0, 40.0, 25.0}};
+    take_library_tool(model, core::ToolNumber{3}, found);
+    EXPECT_THAT(text_of_setup(model), HasSubstr("30, 40, 25"));
 }
 
 TEST(Workspace, AddsCopiesAndRenumbersTools) {
