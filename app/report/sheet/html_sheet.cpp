@@ -65,11 +65,15 @@ std::string tolerance_fact(const CheckRun& run, const SheetContent& content) {
                                               : "has no effect on the check");
 }
 
+/// The file of the set-up, and the begin of the SHA-256 of its text.
 std::string setup_text(const SheetContent& content) {
+    constexpr size_t digits = 16;
     const std::string& path = content.sheet.path;
-    if (!content.has_unsaved_edits)
-        return path.empty() ? "inferred from the program" : last_part(path);
-    return path.empty() ? "not saved yet" : last_part(path) + " with edits that are not saved";
+    std::string text = path.empty() ? "inferred from the program" : last_part(path);
+    if (content.has_unsaved_edits)
+        text = path.empty() ? "not saved yet" : text + " with edits that are not saved";
+    if (content.setup_sha256.empty()) return text;
+    return text + ", SHA-256 " + content.setup_sha256.substr(0, digits) + " \xE2\x80\xA6";
 }
 
 std::string facts_html(const CheckRun& run, const SheetContent& content) {
@@ -80,7 +84,6 @@ std::string facts_html(const CheckRun& run, const SheetContent& content) {
                                         content.program_date));
     rows += fact("SHA-256", run.sha256);
     rows += fact("Set-up", setup_text(content));
-    rows += fact("SHA-256", content.setup_sha256);
     rows += fact("Machine", machine_text(run, content));
     rows += fact("Check",
                  fmt::format("{}{}Feeler {}: {}", content.check_date,

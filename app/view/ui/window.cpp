@@ -76,9 +76,10 @@ public:
     void add(int code, bool is_down);
     /// Adds a character that was typed.
     void add_character(unsigned character);
-    /// Whether characters wait for a frame, or for the focus to move. A command must then wait,
-    /// too, because it may be meant as a character: see add_command().
-    bool is_waiting() const;
+    /// Whether characters wait for a frame. A command must then wait, too: see add_command().
+    bool has_characters() const;
+    /// Whether the focus is about to move. A key that may be meant as a character must then wait.
+    bool moves_now() const;
     /// Adds the command of a key with modifiers, to be taken after the frames of all that waits.
     void add_command(int code, int modifiers);
     /// The command that is due before the next frame, as code and modifiers.
@@ -471,7 +472,8 @@ void Window::update_setup(double now) {
 void Window::press(int code, int modifiers) {
     log_.key(code);
     damage();
-    if (keys_.is_waiting())
+    const bool may_be_typed = code < key::escape && (modifiers & mod::control) == 0;
+    if (keys_.has_characters() || (may_be_typed && keys_.moves_now()))
         keys_.add_command(code, modifiers);
     else
         perform_key(code, modifiers);
@@ -752,12 +754,16 @@ void KeyQueue::add(int code, bool is_down) {
 
 void KeyQueue::add_character(unsigned character) { events_.push_back({.character = character}); }
 
-bool KeyQueue::is_waiting() const {
-    const auto waits = [](const Event& event) {
-        return event.character != 0 || event.is_command
-               || (event.is_down && moves_focus(event.code));
-    };
-    return frames_to_wait_ > 0 || std::any_of(events_.begin(), events_.end(), waits);
+bool KeyQueue::has_characters() const {
+    return std::any_of(events_.begin(), events_.end(),
+                       [](const Event& event) { return event.character != 0 || event.is_command; });
+}
+
+bool KeyQueue::moves_now() const {
+    return frames_to_wait_ > 0
+           || std::any_of(events_.begin(), events_.end(), [](const Event& event) {
+                  return event.is_down && moves_focus(event.code);
+              });
 }
 
 void KeyQueue::add_command(int code, int modifiers) {
