@@ -25,6 +25,7 @@ std::string names_text(const Coverage& coverage, Known known) {
     for (const CoverageItem& item : items_of(coverage)) {
         if (item.known != known) continue;
         if (coverage.limits_need_offsets && item.key == std::string_view("limits")) continue;
+        if (coverage.stock_is_elsewhere && item.key == std::string_view("stock")) continue;
         const bool is_tools = item.key == std::string_view("holders");
         const bool has_tools = is_tools && !coverage.tools_without_holder.empty();
         text += (text.empty() ? "" : ", ")
@@ -53,8 +54,9 @@ void reduce_by(const std::vector<core::Finding>& findings, Coverage& coverage) {
     for (const core::Finding& finding : findings) {
         if (finding.rule == core::rule_id("nothing-moves")) coverage.moves = false;
         if (finding.rule == core::rule_id("first-move")) coverage.start = Known::inferred;
-        if (finding.rule == core::rule_id("offset-implausible"))
-            coverage.stock = std::min(coverage.stock, Known::inferred);
+        if (finding.rule != core::rule_id("offset-implausible")) continue;
+        coverage.stock_is_elsewhere |= coverage.stock == Known::described;
+        coverage.stock = std::min(coverage.stock, Known::inferred);
     }
 }
 
@@ -69,6 +71,9 @@ std::string uncovered_text(const Coverage& coverage) {
     const std::string inferred = names_text(coverage, Known::inferred);
     std::string text = missing.empty() ? "" : missing + ": not described";
     if (!inferred.empty()) text += (text.empty() ? "" : "; ") + inferred + ": assumed";
+    if (coverage.stock_is_elsewhere)
+        text +=
+            std::string(text.empty() ? "" : "; ") + "stock: not everywhere where the program cuts";
     if (coverage.limits_need_offsets)
         text += std::string(text.empty() ? "" : "; ")
                 + "axis limits: not checked, because no work offset is stated";

@@ -34,6 +34,7 @@ struct Coverage {
     std::vector<core::ToolNumber> tools_without_holder; // that feed; in ascending order
     bool moves = false;                                 // some block moves
     bool limits_need_offsets = false; // the limits are described, but not where the work is
+    bool stock_is_elsewhere = false;  // than some or all of the cuts; then it counts as inferred
 
     bool is_complete() const;
     bool operator==(const Coverage&) const = default;

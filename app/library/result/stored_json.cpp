@@ -64,6 +64,7 @@ StoredJson json_of(const Coverage& coverage) {
         json["tools_without_holder"].push_back(core::value_of(tool));
     json["moves"] = coverage.moves;
     json["limits_need_offsets"] = coverage.limits_need_offsets;
+    json["stock_is_elsewhere"] = coverage.stock_is_elsewhere;
     json["complete"] = coverage.is_complete();
     return json;
 }
@@ -85,6 +86,7 @@ Coverage coverage_from(const StoredJson& json) {
     if (!json.at("moves").is_boolean()) throw std::invalid_argument("neither true nor false");
     coverage.moves = json.at("moves").get<bool>();
     coverage.limits_need_offsets = json.value("limits_need_offsets", false);
+    coverage.stock_is_elsewhere = json.value("stock_is_elsewhere", false);
     return coverage;
 }
 
