@@ -35,9 +35,9 @@ core::Result<SetupFile> stated_by(const TraceOptions& options) {
     FEELER_TRY(const ProgramSettings settings, settings_of(options.reading));
     if (!options.setup.empty()) return read_setup(options.setup, settings);
     SetupFile file;
-    FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
-    print_notes(notes);
-    file.dialect = settings.dialect;
+    FEELER_TRY(const AppliedSettings applied, apply(settings, file.environment));
+    print_notes(applied.notes);
+    file.dialect = applied.settings.dialect;
     return file;
 }
 

@@ -67,6 +67,7 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
     FEELER_TRY(const IniFile ini, read_ini(settings.ini));
     environment.ini_values = ini.values;
     ProgramSettings stated;
+    stated.dialect = gcode::DialectId::linuxcnc;
     environment.tool_change = tool_change_motion(
         ini, settings.machine_unit.value_or(ini.machine_unit.value_or(environment.machine_unit)));
     if (!ini.locking_indexers.empty())
@@ -116,10 +117,11 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     return settings;
 }
 
-core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
-                                             gcode::Environment& environment) {
-    std::vector<std::string> notes;
-    FEELER_TRY(const ProgramSettings settings, with_ini(given, environment, notes));
+core::Result<AppliedSettings> apply(const ProgramSettings& given, gcode::Environment& environment) {
+    AppliedSettings applied;
+    std::vector<std::string>& notes = applied.notes;
+    FEELER_TRY(applied.settings, with_ini(given, environment, notes));
+    const ProgramSettings& settings = applied.settings;
     if (settings.dialect) environment.dialect = *settings.dialect;
     if (settings.block_delete) {
         environment.block_delete = *settings.block_delete;
@@ -156,7 +158,7 @@ core::Result<std::vector<std::string>> apply(const ProgramSettings& given,
         notes.push_back(fmt::format("{}: RS274NGC_STARTUP_CODE is executed before the program: {}",
                                     settings.ini, environment.startup_code));
     }
-    return notes;
+    return applied;
 }
 
 std::optional<gcode::Position> position_in(const std::string& text) {
@@ -266,6 +268,7 @@ ProgramSettings read_program_table(TableReader& table, const std::filesystem::pa
         settings.units_at_start = *units == "mm" ? gcode::LengthUnit::mm : gcode::LengthUnit::inch;
     if (const auto steps = table.word("no_decimal_point", {"units", "steps"}))
         settings.counts_smallest_steps = *steps == "steps";
+    settings.ini = path_of(table, "ini", folder);
     settings.parameters = path_of(table, "parameters", folder);
     settings.tool_table = path_of(table, "tool_table", folder);
     for (const std::string& name :

@@ -46,13 +46,19 @@ struct ProgramSettings {
 /// Merges settings; those of `over` take precedence.
 ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over);
 
-/// Applies settings and the files they name to an environment. Returns notes for the user. Offsets
-/// and reference points of a variables file become those of the environment. An ini file supplies
-/// only what the settings do not state.
+/// Settings together with what their ini file adds.
+struct AppliedSettings {
+    ProgramSettings settings;
+    std::vector<std::string> notes; // for the user
+};
+
+/// Applies settings and the files they name to an environment. Offsets and reference points of a
+/// variables file become those of the environment. An ini file supplies only what the settings do
+/// not state; without a dialect, the program is one for LinuxCNC.
 ///
 /// Errors: those of the files, with file and line.
-core::Result<std::vector<std::string>> apply(const ProgramSettings& settings,
-                                             gcode::Environment& environment);
+core::Result<AppliedSettings> apply(const ProgramSettings& settings,
+                                    gcode::Environment& environment);
 
 /// Executes the start-up code of the environment once, for its errors.
 core::Result<void> check_startup_code(const gcode::Environment& environment);

@@ -239,21 +239,23 @@ core::Error explained(core::Error error) {
 
 /// Applies the settings of [program] and of the command line. Must come before the bodies are read:
 /// their frames depend on the work offsets of a variables file.
-void apply_settings(const ProgramSettings& settings, SetupFile& file,
+void apply_settings(const ProgramSettings& given, SetupFile& file,
                     std::optional<core::Error>& error) {
     if (error) return;
-    auto notes = apply(settings, file.environment);
-    if (!notes) {
-        error = std::move(notes).error();
+    auto applied = apply(given, file.environment);
+    if (!applied) {
+        error = std::move(applied).error();
         return;
     }
+    const ProgramSettings& settings = applied->settings;
+    const std::vector<std::string>& notes = applied->notes;
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
     file.setup.tool_at_start = settings.tool_at_start;
     file.speed_by_hand = settings.speed_by_hand.value_or(false);
     file.setup.spindle_at_start =
         settings.spindle_at_start.value_or(core::SpindleDirection::stopped);
-    file.assumptions.insert(file.assumptions.end(), notes->begin(), notes->end());
+    file.assumptions.insert(file.assumptions.end(), notes.begin(), notes.end());
 }
 
 void read_offsets(TableReader& table, SetupFile& file) {

@@ -5,6 +5,7 @@
 #include "app/setup/ini_file.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
+#include "gcode/language/dialect.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app {
@@ -42,6 +43,44 @@ TEST(IniMachine, HasTheLimitsSpeedsAndHomesOfTheFile) {
     EXPECT_EQ(machine.axes[1].home, 2.0);
     EXPECT_EQ(machine.axes[2].min, -100.0);
     EXPECT_EQ(machine.axes[2].home, 3.0);
+}
+
+/// A set-up in a folder of its own, with an ini file and a tool table.
+core::Result<SetupFile> read_with_ini(const std::string& program_table,
+                                      const ProgramSettings& options = {}) {
+    const test_support::ScopedFolder folder;
+    std::filesystem::create_directories(folder / "control");
+    std::ofstream(folder / "control/mill.ini")
+        << metric << "[EMCIO]\nTOOL_TABLE = mill.tbl\nTOOL_CHANGE_QUILL_UP = 1\n";
+    std::ofstream(folder / "control/mill.tbl") << "T3 P3 Z-25.5 D6\n";
+    std::ofstream(folder / "setup.toml")
+        << "[program]\n"
+        << program_table << "[stock]\nbox = [[0,0,0],[1,1,1]]\n[offsets]\nG54 = { X = 1 }\n";
+    return read_setup(folder / "setup.toml", options);
+}
+
+TEST(IniMachine, CanBeNamedInTheSetup) {
+    const auto file = read_with_ini("ini = \"control/mill.ini\"\n");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->setup.machine.axes[0].max, 500.0);
+    EXPECT_TRUE(file->environment.tool_change.quill_up);
+    EXPECT_EQ(file->dialect, gcode::DialectId::linuxcnc);
+    EXPECT_TRUE(file->tool_table.ends_with("control/mill.tbl")) << file->tool_table;
+    EXPECT_EQ(file->environment.length_offsets.count(core::OffsetNumber{3}), 1u);
+}
+
+TEST(IniMachine, LeavesTheDialectThatIsStated) {
+    const auto file = read_with_ini("ini = \"control/mill.ini\"\ndialect = \"fanuc\"\n");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->dialect, gcode::DialectId::fanuc);
+}
+
+TEST(IniMachine, IsTheOneOfTheOptionsIfBothAreStated) {
+    ProgramSettings options;
+    options.ini = "/missing/other.ini";
+    const auto file = read_with_ini("ini = \"control/mill.ini\"\n", options);
+    ASSERT_FALSE(file);
+    EXPECT_NE(file.error().file.find("other.ini"), std::string::npos);
 }
 
 TEST(IniMachine, CountsInTheFilesUnit) {

@@ -378,6 +378,7 @@ const std::set<std::string> other_keys = {
     "unit",
     "units_at_start",
     "no_decimal_point",
+    "ini",
     "parameters",
     "tool_table",
     "search_path",

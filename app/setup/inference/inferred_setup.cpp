@@ -612,10 +612,11 @@ std::vector<std::string> unknown_reaches(const core::Setup& setup) {
 
 } // namespace
 
-core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
+core::Result<SetupFile> bare_setup(const ProgramSettings& given) {
     SetupFile file;
     file.is_inferred = file.is_partial = file.infers_frame = file.needs_stock = true;
-    FEELER_TRY(const std::vector<std::string> notes, apply(settings, file.environment));
+    FEELER_TRY(AppliedSettings applied, apply(given, file.environment));
+    const ProgramSettings& settings = applied.settings;
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
     const std::string position = assume_machine_zero(file);
@@ -623,7 +624,7 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& settings) {
     file.setup.stock_mount.link_from_body = core::translation({zero[0], zero[1], zero[2]});
     file.frames["G54"] = file.frames["stock"] = file.setup.stock_mount.link_from_body;
     file.frames["machine"] = {};
-    file.assumptions = notes;
+    file.assumptions = std::move(applied.notes);
     const std::string speeds = complete_machine(file.setup.machine, file.environment, false);
     if (!speeds.empty()) file.assumptions.push_back(speeds);
     file.assumptions.push_back("no set-up: no fixtures, no axis limits; " + position);
