@@ -6,6 +6,7 @@
 #include "app/setup/coverage.h"
 #include "app/setup/holder_library.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_text.h"
 #include "core/sim/setup.h"
 #include "gcode/language/canonical.h"
 
@@ -41,7 +42,8 @@ std::vector<SheetOffset> sheet_offsets(const SetupFile& file) {
                            {origin[0], origin[1], origin[2]},
                            is_stated && !file.assumed.contains("offsets") ? SetupSource::stated
                                                                           : SetupSource::assumed,
-                           file.offsets_used.contains(index)});
+                           file.offsets_used.contains(index),
+                           offset_name(file, index)});
     }
     return offsets;
 }

@@ -45,6 +45,7 @@ struct SheetOffset {
     core::Vec3 origin = core::Vec3(0.0); // X, Y, Z, machine coordinates
     SetupSource source = SetupSource::stated;
     bool is_used = false; // by the program
+    std::string shown;    // the name on the control: "G505" for G58 of a Siemens control
 };
 
 /// The values of a set-up as they are checked, with their sources.

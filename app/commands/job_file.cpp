@@ -74,6 +74,11 @@ core::Result<viewer::JobFileNews> compare_file(const CheckJob& job, const std::s
     viewer::JobFileNews news;
     news.title = "Offsets in " + name_of_file(path);
     news.text = offset_text(comparison, {setup_path(job), {path}});
+    if (!job.setup_text) return news; // nothing states values that could be replaced
+    FEELER_TRY(std::string taken, with_work_offsets(*job.setup_text, comparison));
+    if (taken == *job.setup_text) return news;
+    news.proposed = std::move(taken);
+    news.question = "Take the work offsets";
     return news;
 }
 

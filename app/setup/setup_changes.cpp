@@ -10,6 +10,7 @@
 #include "app/setup/presets/preset.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
+#include "app/setup/stated_setup.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tools/found_tool.h"
 #include "core/dbm/solid.h"
@@ -465,7 +466,7 @@ Result<std::string> with_tool_number(const std::string& text, core::ToolNumber n
 
 Result<std::string> with_offset(const std::string& text, const std::string& name,
                                 const core::Vec3& origin) {
-    const TomlPath path{"offsets", name};
+    const TomlPath path = path_of_offset(text, name);
     const bool is_new = !toml_has(text, path);
     const gcode::LengthUnit unit = unit_of_setup(text);
     Changes changes(text);
@@ -480,14 +481,15 @@ Result<std::string> with_offset(const std::string& text, const std::string& name
 
 Result<std::string> without_offset(const std::string& text, const std::string& name) {
     const auto offset = gcode::offset_of_name(name);
-    if (offset && toml_has(text, {"offsets", name}))
+    const TomlPath path = path_of_offset(text, name);
+    if (offset && toml_has(text, path))
         if (const auto bodies = bodies_in_offset(root_of(text), *offset); !bodies.empty())
             return core::fail(ErrorCode::invalid_value,
                               fmt::format("{} {} positioned in {}: give {} another frame first",
                                           fmt::join(bodies, ", "),
                                           bodies.size() == 1 ? "is" : "are", name,
                                           bodies.size() == 1 ? "it" : "them"));
-    FEELER_TRY(std::string left, toml_without(text, {"offsets", name}));
+    FEELER_TRY(std::string left, toml_without(text, path));
     const toml::table root = root_of(left);
     const toml::table* offsets = root["offsets"].as_table();
     if (offsets && offsets->empty()) return toml_without(left, "offsets");

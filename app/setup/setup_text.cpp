@@ -206,6 +206,7 @@ std::string options_text(const SetupFile& setup, const SetupOrigin& origin) {
     if (environment.counts_smallest_steps) state("no_decimal_point", "\"steps\"");
     if (environment.block_delete) state("block_delete", "true");
     if (options.max_blocks) state("max_blocks", fmt::format("{}", *options.max_blocks));
+    if (!options.ini.empty()) state("ini", path_text(options.ini, origin.folder));
     if (!options.parameters.empty())
         state("parameters", path_text(options.parameters, origin.folder));
     if (!options.tool_table.empty())
@@ -256,8 +257,17 @@ std::string machine_text(const SetupFile& setup) {
            + line(false, stated("axis", fmt::format("[{}]", fmt::join(axes, ", "))));
 }
 
-std::string offset_key(size_t index) {
-    const std::string name = gcode::name_of_offset(index);
+} // namespace
+
+std::string offset_name(const SetupFile& setup, size_t index) {
+    return setup.dialect == gcode::DialectId::siemens ? gcode::siemens_name_of_offset(index)
+                                                      : gcode::name_of_offset(index);
+}
+
+namespace {
+
+std::string offset_key(const SetupFile& setup, size_t index) {
+    const std::string name = offset_name(setup, index);
     return name.find_first_of(". ") == std::string::npos ? name : toml_text(name);
 }
 
@@ -268,8 +278,9 @@ std::string offsets_header() {
 }
 
 std::string offset_line(const SetupFile& setup, size_t index) {
-    return line(false, stated(offset_key(index), origin_text(setup.environment.work_offset(index),
-                                                             setup.length_unit)));
+    return line(false,
+                stated(offset_key(setup, index),
+                       origin_text(setup.environment.work_offset(index), setup.length_unit)));
 }
 
 namespace {

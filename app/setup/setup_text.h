@@ -39,6 +39,10 @@ std::string found_tool_lines(const FoundTool& listed, gcode::LengthUnit unit);
 /// A tool or a stock of which the file is to state nothing gives only comments.
 std::string tool_text(const SetupFile& setup, core::ToolNumber number);
 std::string stock_text(const SetupFile& setup);
+/// The name of a work offset on the control of the program: "G505" on a Siemens control, else
+/// "G58".
+std::string offset_name(const SetupFile& setup, size_t index);
+
 std::string offsets_header();
 /// The line of a work offset, which is commented out.
 std::string offset_line(const SetupFile& setup, size_t index);

@@ -65,7 +65,7 @@ std::optional<size_t> end_of_offsets(const std::vector<std::string>& lines) {
 std::vector<size_t> new_offsets(const std::vector<std::string>& lines, const SetupFile& file) {
     std::vector<size_t> found;
     for (const size_t index : file.offsets_used) {
-        const std::string name = gcode::name_of_offset(index);
+        const std::string name = offset_name(file, index);
         const bool is_stated = file.offsets_set.contains(static_cast<int>(index));
         const bool is_there =
             is_stated || std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
@@ -100,7 +100,7 @@ void add_offsets(SetupUpdate& update, const SetupFile& file) {
         line.pop_back();
         added.push_back(std::move(line));
         if (update.text.find("\r\n") != std::string::npos) added.back() += '\r';
-        update.added.push_back("work offset " + gcode::name_of_offset(index)
+        update.added.push_back("work offset " + offset_name(file, index)
                                + ", commented out because nobody has stated it");
     }
     if (const auto at = end_of_offsets(lines)) {

@@ -5,6 +5,7 @@
 #include "app/setup/setup_length.h"
 #include "app/setup/toml_file.h"
 #include "core/sim/tool_description.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 namespace {
@@ -119,6 +120,17 @@ bool StatedSetup::has_offset(const std::string& name) const {
     return std::find(offsets.begin(), offsets.end(), name) != offsets.end();
 }
 
+TomlPath path_of_offset(const std::string& text, const std::string& name) {
+    const auto index = gcode::offset_of_name(name);
+    const auto root = parsed_toml(text);
+    const toml::table* const offsets = root ? (*root)["offsets"].as_table() : nullptr;
+    if (index && offsets)
+        for (const auto& [key, value] : *offsets)
+            if (gcode::offset_of_name(key.str()) == index)
+                return {"offsets", std::string(key.str())};
+    return {"offsets", name};
+}
+
 std::optional<double> stated_tool_size(const std::string& text, core::ToolNumber number,
                                        const core::ToolSize& size) {
     std::optional<double> value;
@@ -149,15 +161,18 @@ StatedSetup stated_in(const std::string& text) {
     });
     if (const toml::table* offsets = (*root)["offsets"].as_table())
         for (const auto& [name, value] : *offsets) {
-            const std::string known(name.str());
+            const std::string key(name.str());
+            const auto index = gcode::offset_of_name(key);
+            const std::string known = index ? gcode::name_of_offset(*index) : key;
             stated.offsets.push_back(known);
             core::Vec3 origin(0.0);
             for (int axis = 0; axis < 3; ++axis)
-                origin[axis] = numbers.length((*offsets)[known][std::string(1, "XYZ"[axis])].node())
+                origin[axis] = numbers.length((*offsets)[key][std::string(1, "XYZ"[axis])].node())
                                    .value_or(0.0);
             stated.origins[known] = origin;
         }
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());
+    stated.ini = (*root)["program"]["ini"].value_or(std::string());
     stated.tool_library = (*root)["tool_library"].value_or(std::string());
     stated.has_no_fixtures = (*root)["fixtures"].value<std::string>() == "none";
     return stated;

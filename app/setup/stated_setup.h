@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/setup/presets/preset.h"
+#include "app/setup/toml_edit.h"
 #include "core/base/ids.h"
 #include "core/base/vec.h"
 #include "gcode/language/modal_state.h"
@@ -48,7 +49,7 @@ struct StatedSetup {
     std::vector<core::ToolNumber> tools;
     std::vector<std::string> offsets;          // names as written
     std::map<std::string, core::Vec3> origins; // of the offsets; 0 for an axis that is not stated
-    std::string machine_file, tool_library;
+    std::string machine_file, ini, tool_library;
     bool has_no_fixtures = false;                          // fixtures = "none"
     gcode::LengthUnit length_unit = gcode::LengthUnit::mm; // of the text
 
@@ -57,6 +58,10 @@ struct StatedSetup {
     bool has_tool(core::ToolNumber number) const;
     bool has_offset(const std::string& name) const;
 };
+
+/// The key that states a work offset, which may have another of its names: "G505" for "G58". A new
+/// one has the name itself.
+TomlPath path_of_offset(const std::string& text, const std::string& name);
 
 /// A size that the text of a set-up states of a tool, mm or degrees; empty if it does not.
 std::optional<double> stated_tool_size(const std::string& text, core::ToolNumber number,

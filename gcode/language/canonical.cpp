@@ -41,6 +41,11 @@ std::string name_of_offset(size_t index) {
     return fmt::format("G54.1 P{}", index - plain_offset_count + 1);
 }
 
+std::string siemens_name_of_offset(size_t index) {
+    return index < 4 || index == no_work_offset ? name_of_offset(index)
+                                                : fmt::format("G{}", index - 4 + 505);
+}
+
 std::optional<size_t> offset_of_name(std::string_view name) {
     for (size_t index = 0; index < plain_offset_count; ++index)
         if (name == name_of_offset(index)) return index;

@@ -178,6 +178,9 @@ std::string_view command_name(const CanonicalCommand& command);
 /// G54 to G59.3, then "G54.1 P1" and up; G500 for no offset.
 std::string name_of_offset(size_t index);
 
+/// The same as a Siemens control has it: "G505" and up after G57.
+std::string siemens_name_of_offset(size_t index);
+
 /// The index of a work offset by its name on any control: also "G154 P7", and Siemens' G505 to
 /// G599.
 std::optional<size_t> offset_of_name(std::string_view name);

@@ -344,6 +344,40 @@ TEST(OffsetDifferences, ComparesWhatTheProgramUses) {
     EXPECT_EQ(compared.differences(), 3u);
 }
 
+/// The set-up after its work offsets were replaced by those of the control.
+std::string taken(const std::string& text, const std::string& control,
+                  const std::set<size_t>& used = {0}) {
+    const auto changed =
+        with_work_offsets(text, differences(setup_with(text), offsets_in(control), {.work = used}));
+    EXPECT_TRUE(changed) << (changed ? "" : changed.error().message);
+    return changed.value_or("");
+}
+
+TEST(OffsetDifferences, AreGoneAfterTheControlsWereTaken) {
+    const std::string control = "G10 L2 P1 X-350. Y-201.25 Z-419.5\nG10 L2 P2 X1. Y2. Z3. A30.\n";
+    const std::string text = taken(plate, control, {0, 1});
+    EXPECT_NE(text.find("G54 = { X = -350, Y = -201.25, Z = -419.5 }"), std::string::npos) << text;
+    const auto left =
+        differences(setup_with(text), offsets_in(control), {.work = {0, 1}}).differences();
+    EXPECT_EQ(left, 0u) << text;
+    EXPECT_EQ(taken(text, control, {0, 1}), text);
+}
+
+TEST(OffsetDifferences, KeepWhatTheControlDoesNotStateAndWhatIsEqual) {
+    EXPECT_EQ(taken(plate, "G10 L2 P1 X-350.0004\n"), std::string(plate));
+    const std::string text = taken(plate, "G10 L2 P1 Z-400.\n");
+    EXPECT_NE(text.find("G54 = { X = -350, Y = -200, Z = -400 }"), std::string::npos) << text;
+}
+
+TEST(OffsetDifferences, TakeTheRestOfAnOffsetFromTheVariablesFile) {
+    kept_folder().write("old.var", "5221 -350\n5222 -200\n5223 -420\n");
+    std::string text(plate);
+    const std::string before = text.substr(0, text.find("[stock]"));
+    text.replace(0, before.size(), "[program]\ndialect = \"linuxcnc\"\nparameters = \"old.var\"\n");
+    text = taken(text, "G10 L2 P1 X-350. Y-200. Z-410.\n");
+    EXPECT_NE(text.find("G54 = { X = -350, Y = -200, Z = -410 }"), std::string::npos) << text;
+}
+
 TEST(OffsetDifferences, LeavesOutKindsThatNoFileStates) {
     const SetupFile setup = setup_with(plate);
     const UsedOffsets used{.work = {0}, .lengths = {OffsetNumber{1}}, .diameters = {}};

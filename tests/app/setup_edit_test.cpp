@@ -480,6 +480,19 @@ TEST(SetupChanges, StateOffsets) {
               "mesh_size = 1\n");
 }
 
+TEST(SetupChanges, ChangeAnOffsetUnderTheNameThatItHas) {
+    const std::string siemens = "[offsets]\nG505 = { X = 1, Y = 2, Z = 3 } # on the left\n";
+    EXPECT_EQ(changed(app::with_offset(siemens, "G58", {5, 2, 3})),
+              "[offsets]\nG505 = { X = 5, Y = 2, Z = 3 } # on the left\n");
+    EXPECT_EQ(changed(app::with_offset("[offsets]\n\"G154 P2\" = { X = 1, Y = 0, Z = 0 }\n",
+                                       "G54.1 P2", {2, 0, 0})),
+              "[offsets]\n\"G154 P2\" = { X = 2, Y = 0, Z = 0 }\n");
+    EXPECT_EQ(changed(app::without_offset("mesh_size = 1\n" + siemens, "G58")), "mesh_size = 1\n");
+    const app::StatedSetup stated = app::stated_in(siemens);
+    EXPECT_TRUE(stated.has_offset("G58"));
+    EXPECT_EQ(stated.origins.at("G58"), core::Vec3(1, 2, 3));
+}
+
 TEST(SetupChanges, WriteRoundNumbers) {
     EXPECT_EQ(app::setup_number(-14.700000000000045), "-14.7");
     EXPECT_EQ(app::setup_number(-0.0), "0");

@@ -40,7 +40,7 @@ ViewModel opened_model(const std::string& text = {}, const std::string& path = {
     tool.diameter = 6.0;
     tool.flute_length = 18.0;
     sheet->tools.push_back({tool, app::SetupSource::assumed, "because", {}});
-    sheet->offsets.push_back({"G54", {0, 0, -500}, app::SetupSource::assumed, true});
+    sheet->offsets.push_back({"G54", {0, 0, -500}, app::SetupSource::assumed, true, "G54"});
     opened.sheet = sheet;
     opened.setup_text = text;
     model.program = std::make_shared<const OpenedProgram>(opened);
@@ -193,16 +193,19 @@ TEST(Workspace, AddsFilesByTheirKind) {
     EXPECT_TRUE(add_file(model, folder / "a/VISE.STL"));
     EXPECT_TRUE(add_file(model, folder / "shop.tools"));
     EXPECT_TRUE(add_file(model, folder.write("mill.toml", "[[axis]]\nname = \"X\"\n")));
+    EXPECT_TRUE(add_file(model, folder / "emc/mill.ini"));
     EXPECT_FALSE(add_file(model, folder.write("other.toml", "[stock]\n"))) << "a set-up";
     EXPECT_FALSE(add_file(model, folder / "p.nc"));
     add_part(model, folder / "part.stl");
     EXPECT_EQ(text_of_setup(model),
               "tool_library = \"shop.tools\"\n\n[[fixture]]\nname = \"VISE\"\nmesh = "
               "\"a/VISE.STL\"\nat = [0, 0, 0]\nframe = \"G54\"\n\n[machine]\nfile = "
-              "\"mill.toml\"\n\n[part]\nmesh = \"part.stl\"\nframe = \"G54\"\n");
+              "\"mill.toml\"\n\n[program]\nini = \"emc/mill.ini\"\n\n[part]\nmesh = "
+              "\"part.stl\"\nframe = \"G54\"\n");
     EXPECT_EQ(model.workspace.selected.kind, Kind::part);
     use_tool_library(model, "");
     use_machine(model, "");
+    use_ini(model, "");
     EXPECT_EQ(text_of_setup(model).find("shop"), std::string::npos);
     EXPECT_EQ(text_of_setup(model).find("mill"), std::string::npos);
 }

@@ -8,7 +8,11 @@
 
 #include "app/setup/control/control_offsets.h"
 #include "app/setup/control/used_offsets.h"
+#include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_length.h"
+#include "app/setup/stated_setup.h"
+#include "app/setup/toml_edit.h"
 #include "core/base/units.h"
 #include "gcode/language/canonical.h"
 
@@ -59,8 +63,8 @@ private:
     std::optional<double> diameter_in_setup(core::OffsetNumber number) const;
     bool guesses_length(core::ToolNumber number) const;
     const ControlToolOffset* tool(core::OffsetNumber number) const;
-    void add(std::string name, bool is_angle, std::optional<double> setup,
-             const std::optional<EffectiveValue>& control);
+    ComparedOffset& add(std::string name, bool is_angle, std::optional<double> setup,
+                        const std::optional<EffectiveValue>& control);
 
     const SetupFile& setup_;
     const ControlOffsets& control_;
@@ -68,8 +72,8 @@ private:
     OffsetComparison found_;
 };
 
-void Comparison::add(std::string name, bool is_angle, std::optional<double> setup,
-                     const std::optional<EffectiveValue>& control) {
+ComparedOffset& Comparison::add(std::string name, bool is_angle, std::optional<double> setup,
+                                const std::optional<EffectiveValue>& control) {
     ComparedOffset row{.name = std::move(name), .is_angle = is_angle, .setup = setup};
     if (control) {
         row.control = control->value;
@@ -77,7 +81,7 @@ void Comparison::add(std::string name, bool is_angle, std::optional<double> setu
         row.line = control->source->line;
     }
     row.state = state_of(row.setup, row.control, control && control->source->in_inches);
-    found_.values.push_back(std::move(row));
+    return found_.values.emplace_back(std::move(row));
 }
 
 /// Whether the set-up, or the variables file that it names, states a work offset.
@@ -95,9 +99,12 @@ void Comparison::compare_work_offset(size_t index) {
     for (size_t axis = 0; axis < core::axis_count; ++axis) {
         const auto control = in_effect(origin.axes[axis], control_.external.axes[axis]);
         const bool matters = axis < 3 || stated[axis] != 0.0 || (control && control->value != 0.0);
-        if (matters && (control || is_stated))
+        if (!matters || (!control && !is_stated)) continue;
+        ComparedOffset& row =
             add(fmt::format("{} {}", name, core::axis_letters[axis]), gcode::is_rotary(axis),
                 is_stated ? std::optional(stated[axis]) : std::nullopt, control);
+        row.work_offset = name;
+        row.axis = axis;
     }
     if (origin.rotation_deg && origin.rotation_deg->value != 0.0)
         add(name + " rotation", true, 0.0, in_effect(origin.rotation_deg));
@@ -228,6 +235,46 @@ size_t OffsetComparison::differences() const {
 OffsetComparison differences(const SetupFile& setup, const ControlOffsets& control,
                              const UsedOffsets& used) {
     return Comparison(setup, control, used).result();
+}
+
+namespace {
+
+/// Whether a row is a value of a work offset that a set-up can take from the control.
+bool is_taken(const ComparedOffset& row) {
+    return !row.work_offset.empty() && row.control && std::isfinite(*row.control)
+           && row.state != OffsetState::equal;
+}
+
+/// X, Y and Z of a work offset after the change: those of the control, else of the set-up.
+core::Vec3 origin_after(const OffsetComparison& comparison, const std::string& name) {
+    core::Vec3 origin(0.0);
+    for (const ComparedOffset& row : comparison.values)
+        if (row.work_offset == name && row.axis < 3)
+            origin[static_cast<int>(row.axis)] =
+                is_taken(row) ? *row.control : row.setup.value_or(0.0);
+    return origin;
+}
+
+} // namespace
+
+core::Result<std::string> with_work_offsets(const std::string& text,
+                                            const OffsetComparison& comparison) {
+    std::string changed = text;
+    for (const ComparedOffset& row : comparison.values) {
+        if (!is_taken(row)) continue;
+        const TomlPath offset = path_of_offset(changed, row.work_offset);
+        if (!toml_has(changed, offset)) {
+            FEELER_TRY(changed, with_offset(changed, row.work_offset,
+                                            origin_after(comparison, row.work_offset)));
+            if (row.axis < 3) continue;
+        }
+        const std::string axis(1, core::axis_letters[row.axis]);
+        FEELER_TRY(changed,
+                   toml_with_value(changed, offset / axis,
+                                   row.is_angle ? setup_number(*row.control)
+                                                : setup_length(*row.control, comparison.unit)));
+    }
+    return changed;
 }
 
 } // namespace app

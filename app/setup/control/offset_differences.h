@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/result.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -26,6 +27,8 @@ struct ComparedOffset {
     std::string file{};                   // that states the control's value; empty: none
     uint32_t line = 0;
     OffsetState state = OffsetState::equal;
+    std::string work_offset{}; // "G54", whose axis this is; empty: another value
+    size_t axis = 0;           // of the work offset, as in core::axis_letters
 };
 
 /// A set-up compared with the files of a control.
@@ -45,5 +48,12 @@ struct OffsetComparison {
 /// Result: equal within half the last digit that controls show: 0.0005 mm or degrees, 0.00005 inch.
 OffsetComparison differences(const SetupFile& setup, const ControlOffsets& control,
                              const UsedOffsets& used);
+
+/// A set-up that states the work offsets of the control where they differ from its own.
+///
+/// Result: the text; as it was if no work offset differs, or if the control states none.
+/// Errors: those of toml_with_value.
+core::Result<std::string> with_work_offsets(const std::string& text,
+                                            const OffsetComparison& comparison);
 
 } // namespace app

@@ -10,6 +10,7 @@
 #include "app/base/text.h"
 #include "app/setup/setup_text.h"
 #include "app/setup/toml_edit.h"
+#include "app/view/model/file_watch.h"
 #include "app/view/model/folder_listing.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/samples.h"
@@ -159,7 +160,7 @@ void choose_file(ViewModel& model, const std::string& path) {
         use_tool_library(model, path);
         break;
     case FileWish::machine:
-        use_machine(model, path);
+        is_ini_file(path) ? use_ini(model, path) : use_machine(model, path);
         break;
     case FileWish::job:
     case FileWish::offsets:
@@ -226,7 +227,7 @@ FileEndings endings_for(FileWish wish) {
     case FileWish::tools:
         return {"Tool libraries", {"tools", "json", "hsmlib", "fctl", "fctb", "tbl"}};
     case FileWish::machine:
-        return {"Machines", {"toml", "machine", "mch"}};
+        return {"Machines", {"toml", "machine", "mch", "ini"}};
     case FileWish::job:
         return {"FreeCAD jobs", {"FCStd"}};
     case FileWish::save_setup:

@@ -236,6 +236,9 @@ struct ViewModel {
     bool wants_saving = false;                      // of the set-up, under its name
     std::string job_file;                           // of a CAM system or a control, to be read
     std::string report_title, report_text;          // about it
+    std::optional<std::string> report_setup;        // the set-up that a button of it gives
+    std::string report_question;                    // that button
+    uint64_t report_version = 0;                    // of the set-up for which it is
     std::string sheet_path = {}; // the set-up sheet is to be saved under this name
     std::string save_path = {};  // the set-up is to be saved under this name
 

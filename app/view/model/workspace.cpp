@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/base/text.h"
 #include "app/check/setup_sheet.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_length.h"
@@ -55,12 +56,14 @@ SetupRow heading_row(std::string title) { return {.item = {}, .title = std::move
 
 void add_machine_rows(const Workspace& workspace, const SetupSheet& sheet,
                       std::vector<SetupRow>& rows) {
-    const std::string& file = workspace.stated->machine_file;
+    const std::string &file = workspace.stated->machine_file, &ini = workspace.stated->ini;
+    const bool is_stated = sheet.has_machine || !ini.empty();
     SetupRow row{item(Kind::machine), "Machine", "not described",
-                 sheet.has_machine ? SetupSource::stated : SetupSource::usual};
-    row.is_missing = !sheet.has_machine;
+                 is_stated ? SetupSource::stated : SetupSource::usual};
+    row.is_missing = !is_stated;
     if (sheet.has_machine) row.detail = "in the set-up";
-    if (!file.empty()) row.detail = std::filesystem::path(file).filename().generic_string();
+    if (const std::string& shown = file.empty() ? ini : file; !shown.empty())
+        row.detail = std::filesystem::path(shown).filename().generic_string();
     rows.push_back(std::move(row));
 }
 
@@ -68,7 +71,7 @@ void add_offset_rows(const ViewModel& model, const SetupSheet& sheet, std::vecto
     rows.push_back(heading_row("Work offsets"));
     for (const SheetOffset& offset : sheet.offsets) {
         const core::Vec3 origin = origin_of(*model.workspace.stated, offset);
-        rows.push_back({item(Kind::offset, offset.name), offset.name,
+        rows.push_back({item(Kind::offset, offset.name), offset.shown,
                         fmt::format("{}, {}, {}", length_text(model, origin.x),
                                     length_text(model, origin.y), length_text(model, origin.z)),
                         offset.source});
@@ -132,7 +135,7 @@ void step_back_or_forth(ViewModel& model, bool back, double now) {
 core::Result<std::string> stated_offset(const std::string& text, const StatedSetup& stated,
                                         const SheetOffset& offset) {
     return stated.has_offset(offset.name) ? with_known(text, "offsets")
-                                          : with_offset(text, offset.name, offset.origin);
+                                          : with_offset(text, offset.shown, offset.origin);
 }
 
 } // namespace
@@ -226,7 +229,7 @@ SetupItem item_at_line(const Workspace& workspace, uint32_t line) {
         if (const auto path = path_of_tool(text, number))
             offer(toml_span(text, *path).line, item(Kind::tool, {}, number));
     for (const std::string& name : stated.offsets)
-        offer(toml_span(text, {"offsets", name}).line, item(Kind::offset, name));
+        offer(toml_span(text, path_of_offset(text, name)).line, item(Kind::offset, name));
     for (const char* other : {"program", "machine", "control", "rules", "allowance"})
         offer(toml_span(text, other).line,
               std::string_view(other) == "machine" ? item(Kind::machine) : SetupItem{});
@@ -352,6 +355,15 @@ void use_machine(ViewModel& model, const std::string& file) {
         model.workspace.selected = item(Kind::machine);
 }
 
+void use_ini(ViewModel& model, const std::string& file) {
+    const std::string path = path_in_setup(model, file);
+    if (edit_setup(model, "Change the ini file", [&](const std::string& text) {
+            return file.empty() ? toml_without(text, {"program", "ini"})
+                                : toml_with_value(text, {"program", "ini"}, toml_text(path));
+        }))
+        model.workspace.selected = item(Kind::machine);
+}
+
 void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool) {
     tool.tool.number = number;
     edit_setup(model, fmt::format("Exchange T{}", core::value_of(number)),
@@ -366,6 +378,8 @@ bool add_file(ViewModel& model, const std::string& file) {
         use_tool_library(model, file);
     else if (is_machine_file(file))
         use_machine(model, file);
+    else if (is_ini_file(file))
+        use_ini(model, file);
     else if (is_cam_job(file) || is_offset_file(file))
         model.job_file = file;
     else
@@ -500,8 +514,9 @@ void delete_selected(ViewModel& model) {
     keep_selection(model.workspace);
 }
 
-void rename_selected(ViewModel& model, const std::string& name) {
+void rename_selected(ViewModel& model, const std::string& typed) {
     const SetupItem selected = model.workspace.selected;
+    const std::string name(trimmed(typed));
     if (selected.kind != Kind::fixture || name == selected.name) return;
     if (edit_setup(model, fmt::format("Rename {}", selected.name), [&](const std::string& text) {
             return with_renamed_fixture(text, selected.name, name);

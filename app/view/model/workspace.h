@@ -155,6 +155,9 @@ void add_part(ViewModel& model, const std::string& file);
 /// Takes tools from a library, or the machine from a file; without a file: no longer.
 void use_tool_library(ViewModel& model, const std::string& file);
 void use_machine(ViewModel& model, const std::string& file);
+
+/// States the ini file of LinuxCNC; none if `file` is empty.
+void use_ini(ViewModel& model, const std::string& file);
 /// Takes a tool of the library for a number: states what the library states.
 void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool);
 /// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it

@@ -156,6 +156,7 @@ private:
     void draw_breakpoint(Frame& frame);
     void draw_what_if(Frame& frame);
     void draw_leaving(Frame& frame);
+    void draw_report(Frame& frame);
     void draw_lengths(Frame& frame, const core::Setup& setup);
     void draw_fixture(Frame& frame, const core::Setup& setup);
 

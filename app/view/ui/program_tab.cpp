@@ -193,8 +193,9 @@ bool ProgramTab::read_job_file_if_wanted(double now) {
         && job_file_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
     if (!is_read) return false;
     auto news = job_file_.get();
-    const bool is_outdated = news.setup_text && read_text_ != model.workspace.document.text();
-    if (is_outdated) news.text = "The set-up was edited meanwhile: import the file again.\n";
+    const bool is_outdated =
+        (news.setup_text || news.proposed) && read_text_ != model.workspace.document.text();
+    if (is_outdated) news.text = "The set-up was edited meanwhile: open the file again.\n";
     if (news.setup_text && !is_outdated) {
         edit_setup(model, news.title, [&](const std::string&) { return *news.setup_text; });
         show_setup(model, true);
@@ -202,6 +203,9 @@ bool ProgramTab::read_job_file_if_wanted(double now) {
     model.message_until = now;
     model.report_title = news.title;
     model.report_text = news.text;
+    model.report_setup = is_outdated ? std::nullopt : std::move(news.proposed);
+    model.report_question = news.question;
+    model.report_version = model.workspace.document.version();
     model.popup = Popup::report;
     return true;
 }

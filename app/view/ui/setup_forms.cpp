@@ -13,6 +13,7 @@
 #include "app/setup/presets/preset.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
+#include "app/view/model/file_watch.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/preset_fixture.h"
 #include "app/view/model/unit_words.h"
@@ -88,31 +89,35 @@ void SetupForms::draw_item_head(Frame& frame, const std::string& title, bool can
 
 void SetupForms::draw_machine(Frame& frame) {
     ViewModel& model = frame.model;
-    const StatedSetup& stated = *model.workspace.stated;
+    const auto kept = model.workspace.stated; // edits replace it
     draw_item_head(frame, "Machine", false, false);
     field_name(frame, "File");
     const auto file =
-        fields_.words(frame, "##file", stated.machine_file, "MACHINE.toml, .machine or .mch", 200);
+        fields_.words(frame, "##file", kept->machine_file, "MACHINE.toml, .machine or .mch", 200);
     if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, FileWish::machine);
-    if (file) use_machine(model, *file);
-    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
-                 model.program->sheet->has_machine
-                     ? "Its axes, limits and bodies are in that file."
-                     : "Without a machine, axis limits are not checked, and X, Y and Z move the "
-                       "tool.");
+    if (file) is_ini_file(*file) ? use_ini(model, *file) : use_machine(model, *file);
+    field_name(frame, "LinuxCNC");
+    const auto ini = fields_.words(frame, "##ini", kept->ini, "its .ini file", 200);
+    if (ini) use_ini(model, *ini);
+    const char* const what =
+        model.program->sheet->has_machine ? "Its axes, limits and bodies are in that file."
+        : kept->ini.empty()
+            ? "Without a machine, axis limits are not checked, and X, Y and Z move the tool."
+            : "Limits, speeds and home positions are in the ini file; X, Y and Z move the tool.";
+    wrapped_text(frame.fonts.small, frame.palette.color(Role::dim), what);
 }
 
 void SetupForms::draw_offset(Frame& frame, const SheetOffset& offset) {
     ViewModel& model = frame.model;
-    draw_item_head(frame, "Work offset " + offset.name, false,
+    draw_item_head(frame, "Work offset " + offset.shown, false,
                    model.workspace.stated->has_offset(offset.name));
     field_name(frame, "X Y Z");
     // What is stated comes from the text: the last check may not know it yet.
     const auto origin = fields_.point(frame, "origin", origin_of(*model.workspace.stated, offset));
     source_mark(frame, offset.source);
     if (origin)
-        edit_setup(model, "Change " + offset.name,
-                   [&](const std::string& t) { return with_offset(t, offset.name, *origin); });
+        edit_setup(model, "Change " + offset.shown,
+                   [&](const std::string& t) { return with_offset(t, offset.shown, *origin); });
     draw_zero(frame, offset.name);
     wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
                  offset.is_used ? "Machine coordinates of program zero, as on the control's page."

@@ -22,8 +22,8 @@ std::string setup_for(const std::string& program, const std::vector<std::string>
 } // namespace
 
 bool is_part_of_setup(const std::string& path) {
-    return is_mesh_file(path) || is_tool_library(path) || is_machine_file(path) || is_cam_job(path)
-           || is_offset_file(path);
+    return is_mesh_file(path) || is_tool_library(path) || is_machine_file(path) || is_ini_file(path)
+           || is_cam_job(path) || is_offset_file(path);
 }
 
 bool can_open(const std::vector<std::string>& paths, ViewModel& model, double now) {
@@ -44,12 +44,7 @@ std::vector<CheckJob> dropped_programs(CheckJob check, const std::vector<std::st
                                        ViewModel& model, double now) {
     std::vector<std::string> programs, setups;
     for (const std::string& path : paths) {
-        if (is_ini_file(path))
-            say(model,
-                readable_name(path)
-                    + " configures LinuxCNC: start Feeler with --ini FILE to check with it",
-                now);
-        else if (!is_part_of_setup(path))
+        if (!is_part_of_setup(path))
             (is_setup_file(path) ? setups : programs).push_back(path);
         else if (model.program && add_file(model, path))
             show_setup(model, true);
