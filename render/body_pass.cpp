@@ -176,7 +176,11 @@ BodyPass::Item BodyPass::stock_item(const ViewFrame& frame) const {
 
 template <typename Act>
 void BodyPass::for_meshes(const ViewFrame& frame, const Item& item, const Act& act, bool whole) {
-    if (item.body != nullptr) return act(meshes_.of(item.body->mesh));
+    if (item.body != nullptr) {
+        const SharedMesh& mesh = item.body->mesh;
+        const bool is_rough = frame.options.rough && mesh->rough && !item.cut && !whole;
+        return act(meshes_.of(is_rough ? mesh->rough : mesh));
+    }
     const Mat4 clip_from_scene = frame.clip_from_view * frame.view_from_scene;
     for (const auto& brick : frame.scene.stock)
         if (may_be_seen(brick->mesh.bounds, clip_from_scene))

@@ -44,6 +44,7 @@ struct DrawOptions {
     double scale = 1.0;       // of lines and points, for high-resolution screens
     bool hollows = false;     // ambient occlusion, for still pictures
     bool edges = true;        // lines along the edges of bodies and stock
+    bool rough = false;       // fixtures and machine with few triangles, unless they are cut
     bool path_on_top = false; // hidden parts of the path are drawn faintly
 };
 

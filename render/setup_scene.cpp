@@ -8,6 +8,7 @@
 #include "core/motion/machine.h"
 #include "core/sim/moving_body.h"
 #include "render/body_mesh.h"
+#include "render/coarse_mesh.h"
 
 namespace render {
 namespace {
@@ -73,6 +74,22 @@ SetupMeshes setup_meshes(const core::Setup& setup) {
         meshes.machine.push_back(shared(mesh_of(body.body)));
     meshes.raw_stock = shared(mesh_of(setup.stock));
     if (setup.part) meshes.part = shared(mesh_of(core::ExactBody(setup.part->solid)));
+    return meshes;
+}
+
+SetupMeshes setup_meshes_to_turn(const core::Setup& setup) {
+    constexpr size_t many = 100'000, few = 40'000; // triangles
+    SetupMeshes meshes = setup_meshes(setup);
+    const auto add_rough = [&](SharedMesh& mesh) {
+        if (!mesh || mesh->triangles.size() < many) return;
+        TriangleMesh with = *mesh;
+        const TriangleMesh* const part = &with;
+        with.rough = shared(coarse(std::span(&part, 1), few));
+        mesh = shared(std::move(with));
+    };
+    for (SharedMesh& mesh : meshes.fixtures) add_rough(mesh);
+    for (SharedMesh& mesh : meshes.machine) add_rough(mesh);
+    add_rough(meshes.part);
     return meshes;
 }
 

@@ -36,6 +36,7 @@ struct TriangleMesh {
     core::Aabb bounds;
     std::vector<core::Aabb> boxes; // of `stretch` triangles each, for picking; optional
     bool closed = true;            // a section of it can be filled
+    std::shared_ptr<const TriangleMesh> rough{}; // with few triangles; null: it has few itself
 };
 
 using SharedMesh = std::shared_ptr<const TriangleMesh>;

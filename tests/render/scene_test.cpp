@@ -8,6 +8,7 @@
 #include "render/motion_path.h"
 #include "render/setup_scene.h"
 #include "tests/render/sample_scene.h"
+#include "tests/support/meshes.h"
 
 namespace render {
 namespace {
@@ -166,6 +167,17 @@ TEST(SetupScene, LeavesOutFixturesThatAreNotThere) {
     ASSERT_EQ(bodies.size(), 1u);
     EXPECT_EQ(bodies[0].name, "clamp-1");
     EXPECT_EQ(bodies[0].role, BodyRole::clamp);
+}
+
+TEST(SetupScene, HasRoughVersionsOfLargeMeshesOnly) {
+    core::Setup setup = sample_setup();
+    setup.fixtures[0].body = core::solid_mesh(test_support::ball_mesh(40.0, 300, 400));
+    const SetupMeshes meshes = setup_meshes_to_turn(setup);
+    ASSERT_TRUE(meshes.fixtures[0]->rough);
+    EXPECT_GT(meshes.fixtures[0]->triangles.size(), 200'000u);
+    EXPECT_LE(meshes.fixtures[0]->rough->triangles.size(), 40'000u);
+    EXPECT_NEAR(volume(*meshes.fixtures[0]->rough) / volume(*meshes.fixtures[0]), 1.0, 0.01);
+    for (size_t i = 1; i < meshes.fixtures.size(); ++i) EXPECT_FALSE(meshes.fixtures[i]->rough);
 }
 
 TEST(ToolPath, FindsThePointsOfABlock) {

@@ -18,7 +18,7 @@ namespace app::viewer {
 std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
     auto scene = std::make_shared<SceneSetup>();
     scene->setup = setup;
-    scene->meshes = render::setup_meshes(setup);
+    scene->meshes = render::setup_meshes_to_turn(setup);
     for (const auto& [number, tool] : setup.tools)
         scene->tools.emplace(number, render::tool_meshes(tool));
     return scene;

@@ -289,6 +289,7 @@ void ScenePanel::State::render_scene(Frame& frame, const render::Viewport& view)
     options.theme = frame.palette.theme;
     options.scale = frame.fonts.scale * (is_coarse ? 0.5 : 1.0);
     options.edges = !is_coarse;
+    options.rough = is_coarse;
     const auto begin = std::chrono::steady_clock::now();
     renderer_.draw(scene_, frame.model.camera, options, *canvas_);
     drawn_ = key;
