@@ -172,6 +172,18 @@ void switch_following(Execution& execution, core::SourceSpan where, std::string_
         following.unknown_axes = all_linear;
 }
 
+bool switch_tip_control(Execution& execution, bool on) {
+    const ModalState& modal = execution.modal();
+    Offsets offsets = modal.offsets;
+    if (!offsets.machine || offsets.tool[0] != 0.0 || offsets.tool[1] != 0.0) return false;
+    if (offsets.follows_tip == on) return true;
+    offsets.follows_tip = on;
+    change_offsets(execution, offsets);
+    execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, on,
+                                       lacks_length(*execution.state.tables, modal.length_number)});
+    return true;
+}
+
 void check_turn(Execution& execution, const ModalState& before, size_t axis, Addressing way,
                 std::string_view code) {
     ModalState& modal = execution.modal();

@@ -23,6 +23,14 @@ enum class FollowingSwitch : uint8_t { on, off, perhaps };
 void switch_following(Execution& execution, core::SourceSpan where, std::string_view code,
                       FollowingSwitch to);
 
+/// Switches tool centre point control on or off as G43.4 does: the tip stays where it is relative
+/// to the work when a rotary axis turns, and moves straight relative to it. Rotary axes turn
+/// evenly.
+///
+/// False, and nothing changes, if the rotary axes of the machine are not described, or if the
+/// length of the tool does not count along Z.
+bool switch_tip_control(Execution& execution, bool on);
+
 /// Records that a code moved X, Y and Z to places that are not known, with the finding `why`.
 void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
                     std::string cure);

@@ -30,16 +30,43 @@ bool ends_block(const Execution& execution, ModalGroup group, CodeNumber last) {
     return entry && entry->code->number == last;
 }
 
-/// M128 and M129; FUNCTION TCPM and FUNCTION RESET TCPM are read as these.
-void switch_tip_control(Execution& execution) {
-    for (const CodeWord& entry : execution.statement.codes()) {
-        const bool on = entry.code->number == m_code(128);
-        if (!on && entry.code->number != m_code(129)) continue;
-        const core::SourceSpan where = entry.word->span;
-        std::string_view code = execution.block.text.substr(where.column - 1, where.length);
-        if (code.starts_with("FUNCTION")) code = on ? "FUNCTION TCPM" : "FUNCTION RESET TCPM";
-        switch_following(execution, where, code, on ? FollowingSwitch::on : FollowingSwitch::off);
-    }
+/// The M128 or M129 of the block; FUNCTION TCPM and FUNCTION RESET TCPM are read as these. Null if
+/// there is none.
+const CodeWord* tip_control(const Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes())
+        if (entry.code->number == m_code(128) || entry.code->number == m_code(129)) return &entry;
+    return nullptr;
+}
+
+/// Switches tool centre point control. Where it cannot be followed, its blocks are undecided.
+///
+/// Source: HEIDENHAIN iTNC 530, user's manual, M128: the tip stays relative to the work, and the
+///         coordinates turn with a tilting table. M128 acts at the start of its block, M129 at the
+///         end. TNC 640, FUNCTION TCPM: AXIS POS and PATHCTRL AXIS do the same.
+void use_tip_control(Execution& execution, const CodeWord& entry) {
+    const bool on = entry.code->number == m_code(128);
+    const bool was_followed = execution.modal().offsets.follows_tip;
+    const bool is_followed = on ? !klartext_of(execution.block).turns_otherwise : was_followed;
+    if (on && !is_followed && was_followed) switch_tip_control(execution, false);
+    if (is_followed && switch_tip_control(execution, on)) return;
+    const core::SourceSpan where = entry.word->span;
+    std::string_view code = execution.block.text.substr(where.column - 1, where.length);
+    if (code.starts_with("FUNCTION")) code = on ? "FUNCTION TCPM" : "FUNCTION RESET TCPM";
+    switch_following(execution, where, code, on ? FollowingSwitch::on : FollowingSwitch::off);
+}
+
+/// What tool centre point control does to a move with M91 is not known: the maker says to switch it
+/// off before.
+void check_machine_move(Execution& execution, core::SourceSpan where) {
+    const ModalState& modal = execution.modal();
+    if (!in_machine_coordinates(execution) || !modal.offsets.follows_tip || !is_work_turned(modal))
+        return;
+    lose_positions(
+        execution, where,
+        "M91 while M128 is on and a rotary axis is away from 0: how the axes move is not "
+        "known. This block and later ones are not checked until X, Y and Z have been "
+        "programmed again",
+        "Program M129 before it.");
 }
 
 /// M118 lets the operator shift the axes with the handwheel; M101 lets the control change to a
@@ -160,7 +187,9 @@ core::Result<void> run_klartext_block(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     warn_of_unknown_m_codes(execution);
     note_what_may_intervene(execution);
-    switch_tip_control(execution);
+    const CodeWord* const tip = tip_control(execution);
+    if (tip && tip->code->number == m_code(128))
+        use_tip_control(execution, *tip); // M129: at the end
     const bool late_spindle = ends_block(execution, ModalGroup::spindle, m_code(5));
     const bool late_coolant = ends_block(execution, ModalGroup::coolant, m_code(9));
     for (const auto step : {turn_rotary_axes, set_units, select_plane, take_feed})
@@ -172,6 +201,7 @@ core::Result<void> run_klartext_block(Execution& execution) {
     if (in_machine_coordinates(execution) && is_motion(command.kind) && command.kind != straight)
         return refuse_statement(execution, "M91 is only supported with L");
     if (auto done = run_statement(execution); !done) return done;
+    if (is_motion(command.kind)) check_machine_move(execution, command.span);
     const bool calls = command.calls_cycle || command.calls_from_here
                        || klartext_of(execution.state).calls_after_motions;
     if (calls)
@@ -180,6 +210,7 @@ core::Result<void> run_klartext_block(Execution& execution) {
         if (auto done = turn_spindle(execution); !done) return done;
     if (late_coolant)
         if (auto done = set_coolant(execution); !done) return done;
+    if (tip && tip->code->number == m_code(129)) use_tip_control(execution, *tip);
     return stop(execution);
 }
 

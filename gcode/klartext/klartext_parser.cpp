@@ -79,6 +79,22 @@ core::Result<void> read_plane(KlartextReader& reader) {
     return {};
 }
 
+/// The words after FUNCTION TCPM. False if they select what M128 does not do: rotary words that are
+/// angles in space, a tool that turns in a plane, another point than the tip.
+bool is_as_m128(KlartextReader& reader) {
+    bool is_same = true;
+    while (reader.next() != '\0') {
+        const bool is_known = reader.accept("F") ? reader.accept("TCP") || reader.accept("CONT")
+                              : reader.accept("AXIS")
+                                  ? reader.accept("POS")
+                                  : reader.accept("PATHCTRL") && reader.accept("AXIS");
+        if (is_known) continue;
+        is_same = false;
+        reader.lexer.at += std::max<size_t>(reader.letters().size(), 1);
+    }
+    return is_same;
+}
+
 /// `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS` and `FUNCTION RESET TCPM`, read as M128 and M129.
 core::Result<void> read_function_mode(KlartextReader& reader) {
     const bool resets = reader.accept("RESET");
@@ -86,6 +102,7 @@ core::Result<void> read_function_mode(KlartextReader& reader) {
         return reader.refuse("'FUNCTION' is only supported with TCPM and RESET TCPM", reader.begin,
                              ErrorCode::unsupported);
     reader.add_word('M', resets ? 129.0 : 128.0, reader.begin);
+    reader.command.turns_otherwise = !is_as_m128(reader);
     reader.lexer.at = reader.lexer.line.size();
     reader.command.kind = CommandKind::modes;
     return {};
