@@ -64,6 +64,7 @@ expect 'opens' '^bracket.nc, line 2'
 press e
 drop "$work/shop.json"
 expect 'a tool library is taken' '^\* bracket.nc'
+still 00-library
 pick 73 265  # T1
 pick 207 567 # Exchange for
 press Down Return
@@ -71,20 +72,21 @@ settle
 ((clicks <= 2)) || die 'two clicks open the list of tools'
 still 01-exchanged
 press Insert Return
-settle
+still 02-block
 clicks=0
 pick 163 588 # Face to face
 pick 508 303 # the front of the block
-still 02-first-face
+still 03-first-face
 pick 969 529 # the right side of the stock
 ((clicks <= 3)) || die 'three clicks put a face to another'
-still 03-face-to-face
+still 04-face-to-face
 drop "$work/mill.var"
-still 04-compared
+shows 05-compared 'the offsets are compared' differ 05-compared 04-face-to-face 20000
+settle
 press Return # Take the work offsets
 settle
 drop "$work/mill.ini"
-still 05-ini
+still 06-ini
 press ctrl+s
 settle
 press Return
