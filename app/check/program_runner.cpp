@@ -135,6 +135,12 @@ LengthMismatch CorrectedRun::end() {
 
 namespace {
 
+/// Whether a motion depends on a value that only the machine knows.
+bool is_unknown_value(const core::Finding& finding) {
+    return finding.rule == core::rule_id("unknown-value")
+           && finding.severity == core::Severity::error;
+}
+
 /// Drops the pairs that no report shows. Keeps the deciding pair, else the nearest, and all pairs
 /// that are not clear. Findings of the block are already in the run.
 void drop_unreported(core::BlockResult& result) {
@@ -381,8 +387,7 @@ bool ProgramRunner::advance() {
     record_.verdict = std::max(record_.verdict, checked.result.verdict);
     record_.removed += checked.result.removed;
     for (core::Finding& finding : (**step).findings) {
-        if (finding.rule == core::rule_id("unknown-value")
-            && finding.severity == core::Severity::error)
+        if (is_unknown_value(finding))
             record_.verdict = std::max(record_.verdict, core::Verdict::undecided);
         record_.findings.push_back(std::move(finding));
     }
@@ -422,6 +427,8 @@ void ProgramRunner::go_back(const RunState& state, size_t blocks, size_t finding
         record_.removed += block.result.removed;
         if (block.file.empty()) last_line_ = block.line;
     }
+    if (std::any_of(record_.findings.begin(), record_.findings.end(), is_unknown_value))
+        record_.verdict = std::max(record_.verdict, core::Verdict::undecided);
 }
 
 void ProgramRunner::end() {

@@ -89,6 +89,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.setup_error, later.setup_error);
     take(news.stopped, later.stopped);
     news.fraction = later.fraction;
+    news.verdict = later.verdict;
     news.is_recorded = later.is_recorded;
     news.is_busy = later.is_busy;
     news.has_news = true;
@@ -243,6 +244,7 @@ void SessionPublisher::publish(const DebugSession& session, SessionUpdate& news)
     if (session.is_recorded() && !is_whole_) news.stopped = run.stopped;
     is_whole_ = session.is_recorded();
     news.fraction = session.recorded_fraction();
+    news.verdict = run.verdict;
     news.is_recorded = is_whole_;
     news.has_news = true;
 }

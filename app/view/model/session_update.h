@@ -12,6 +12,7 @@
 #include "app/debug/condition.h"
 #include "app/view/model/block_row.h"
 #include "core/motion/event.h"
+#include "core/sim/verdict.h"
 #include "render/stock_brick.h"
 #include "render/tool_path.h"
 
@@ -145,6 +146,8 @@ struct SessionUpdate {
     std::optional<std::string> refusal; // why a request was refused, as a sentence
     std::optional<core::Error> stopped; // the program could not be run to its end
     double fraction = 0.0;              // of the program, checked so far
+    // Of the program so far; that of the whole program may be worse than that of its blocks.
+    core::Verdict verdict = core::Verdict::clear;
     bool is_recorded = false;
     bool is_busy = false; // with opening or walking
 

@@ -275,6 +275,7 @@ SessionUpdate WorkerSession::take_update() {
     news_ = {};
     news_.opening = news.opening = openings_;
     news_.fraction = news.fraction;
+    news_.verdict = news.verdict;
     news_.is_recorded = news.is_recorded;
     return news;
 }

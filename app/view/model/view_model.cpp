@@ -65,6 +65,7 @@ void start_anew(ViewModel& model, uint64_t opening) {
     stay(model);
     model.playback.running = false;
     model.fraction = 0.0;
+    model.program_verdict = core::Verdict::clear;
     model.is_recorded = false;
     model.device.study = nullptr;
 }
@@ -184,7 +185,7 @@ std::string words_of_gaps(const Coverage& coverage) {
 VerdictWords words_of_verdict(const ViewModel& model, const Coverage& coverage) {
     using render::ClearanceState;
     if (!model.has_rows()) return {};
-    Judged judged{.is_stopped = model.stopped.has_value()};
+    Judged judged{.verdict = model.program_verdict, .is_stopped = model.stopped.has_value()};
     for (const size_t block : model.offending)
         judged.verdict = std::max(judged.verdict, model.rows[block].verdict);
     judged.has_errors =
@@ -258,6 +259,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     if (news.failure) model.failure = news.failure;
     if (news.stopped) model.stopped = news.stopped;
     model.fraction = news.fraction;
+    model.program_verdict = news.verdict;
     model.is_recorded = news.is_recorded;
     model.is_busy = news.is_busy;
     if (news.refusal) say(model, *news.refusal, now);

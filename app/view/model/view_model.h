@@ -168,6 +168,7 @@ struct ViewModel {
     std::optional<core::Error> failure, stopped;
     std::string missing; // a file that was read, but has since been deleted or emptied
     double fraction = 0.0;
+    core::Verdict program_verdict = core::Verdict::clear; // so far
     bool is_recorded = false, is_busy = false;
     uint64_t reading = 0; // the request to open the program that has no answer yet; 0: none
     DeviceModel device;
