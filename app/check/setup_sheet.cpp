@@ -78,7 +78,7 @@ const SheetOffset* SetupSheet::offset(const std::string& name) const {
 SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     SetupSheet sheet;
     sheet.path = file.path;
-    sheet.frame = file.stock_frame;
+    sheet.frame = file.needs_stock ? stock_frame(file) : file.stock_frame;
     sheet.stock = setup.stock;
     sheet.stock_why = file.stock_comment.empty() ? file.inferred_stock : file.stock_comment;
     const bool is_assumed = file.needs_stock || file.assumed.contains("stock");

@@ -79,6 +79,9 @@ core::Result<viewer::JobFileNews> compare_file(const CheckJob& job, const std::s
     if (taken == *job.setup_text) return news;
     news.proposed = std::move(taken);
     news.question = "Take the work offsets";
+    news.text +=
+        "\n\"Take the work offsets\" states the control's positions of the axes. Rotations of "
+        "work offsets, G92,\ntool lengths and diameters stay as they are in the set-up.\n";
     return news;
 }
 

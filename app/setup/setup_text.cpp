@@ -294,7 +294,8 @@ std::string offsets_text(const SetupFile& setup) {
     return text;
 }
 
-/// The work offset at whose origin the stock is mounted, if possible one of the program.
+} // namespace
+
 std::string stock_frame(const SetupFile& setup) {
     const core::Vec3& mount = setup.setup.stock_mount.link_from_body.translation;
     const auto is_mount = [&](size_t index) {
@@ -305,6 +306,8 @@ std::string stock_frame(const SetupFile& setup) {
         if (is_mount(index)) return gcode::name_of_offset(index);
     return "G54";
 }
+
+namespace {
 
 /// A `[stock]` that gives the box or cylinder of a set-up; empty for a mesh, which needs a file.
 std::string stock_table(const SetupFile& setup) {

@@ -43,6 +43,9 @@ std::string stock_text(const SetupFile& setup);
 /// "G58".
 std::string offset_name(const SetupFile& setup, size_t index);
 
+/// The work offset at whose origin the stock is mounted, if possible one of the program.
+std::string stock_frame(const SetupFile& setup);
+
 std::string offsets_header();
 /// The line of a work offset, which is commented out.
 std::string offset_line(const SetupFile& setup, size_t index);

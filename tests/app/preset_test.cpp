@@ -569,6 +569,34 @@ TEST(ViseFit, TouchesABoxWithBothJaws) {
     }
 }
 
+/// A turned vise holds a box as the vise that is not turned holds the box turned back.
+TEST(ViseFit, HoldsABoxFromEachSide) {
+    const Preset& vise = *app::find_preset("vise-6");
+    const core::Aabb box{{10, -20, 5}, {100, 40, 35}};
+    const double height = PresetSizes(vise.parameters, {})["jaw_height"];
+    for (int turns = -1; turns < 6; ++turns) {
+        SCOPED_TRACE(turns);
+        const app::ViseFit fit = app::vise_around(vise, {}, box, 12, turns).value();
+        const core::Mat3 turned = core::rotation_xyz_deg(Vec3(0, 0, 90.0 * turns));
+        core::Mesh mesh = app::preset_mesh(vise, {{"opening", fit.opening}}).value();
+        double fixed = core::infinity, moving = core::infinity;
+        const Vec3 middle = 0.5 * (box.min + box.max), half = 0.5 * box.size();
+        const Vec3 across = turned * Vec3(0, 1, 0);
+        const double reach = std::abs(across.x) * half.x + std::abs(across.y) * half.y;
+        EXPECT_NEAR(fit.opening, 2.0 * reach, 1e-9);
+        for (const Vec3& vertex : mesh.vertices) {
+            const Vec3 p = turned * vertex + fit.at;
+            if (p.z < fit.at.z + height - 1e-9) continue;
+            const double side = glm::dot(p - middle, across);
+            double& nearest = side > 0.0 ? fixed : moving;
+            nearest = std::min(nearest, std::abs(side) - reach);
+        }
+        EXPECT_NEAR(fixed, 0.0, 1e-9);
+        EXPECT_NEAR(moving, 0.0, 1e-9);
+        EXPECT_NEAR(glm::dot(fit.at - middle, glm::cross(across, Vec3(0, 0, 1))), 0.0, 1e-9);
+    }
+}
+
 TEST(ViseFit, RefusesWhatTheViseCannotHold) {
     const Preset& vise = *app::find_preset("vise-4");
     const auto error = [&](const Vec3& size, double depth) {

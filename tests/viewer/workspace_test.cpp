@@ -7,8 +7,11 @@
 #include "app/base/sha256.h"
 #include "app/check/setup_sheet.h"
 #include "app/commands/output.h"
+#include "app/setup/presets/preset.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/stated_setup.h"
+#include "app/view/model/placing.h"
+#include "app/view/model/preset_fixture.h"
 #include "app/view/model/samples.h"
 #include "app/view/model/unsaved_setup.h"
 #include "app/view/model/view_model.h"
@@ -185,6 +188,37 @@ TEST(Workspace, NamesMeshesRelativeToItsFolder) {
     EXPECT_EQ(path_in_setup(model, "/other/vise.stl"), "/other/vise.stl");
     add_mesh(model, "/jobs/meshes/vise.stl");
     EXPECT_THAT(text_of_setup(model), HasSubstr("name = \"vise\"\nmesh = \"meshes/vise.stl\""));
+}
+
+/// The stock measures 120 x 80 x 10; vise-4 opens to 130 mm.
+TEST(Workspace, PutsAViseAroundTheStockTurnedIfItMustBe) {
+    ViewModel model = opened_model();
+    add_preset(model, *app::find_preset("vise-4"));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("opening = 80\nat = [60, 80, "));
+    auto with_stock = [&](const core::Vec3& size) {
+        model = opened_model();
+        OpenedProgram opened = *model.program;
+        auto sheet = std::make_shared<app::SetupSheet>(*opened.sheet);
+        sheet->stock = {core::SolidBox{{{0, 0, -10}, {size.x, size.y, 0}}}, 0.0};
+        opened.sheet = sheet;
+        model.program = std::make_shared<const OpenedProgram>(opened);
+        add_preset(model, *app::find_preset("vise-4"));
+    };
+    with_stock({100, 300, 10});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("opening = 100\nat = [0, 150, "));
+    EXPECT_THAT(text_of_setup(model), HasSubstr("rotate_deg = [0, 0, 90]"));
+    EXPECT_EQ(model.workspace.refusal, "");
+    EXPECT_TRUE(usual_grip(model, *model.workspace.stated->fixture("vise-4")));
+    with_stock({400, 300, 10});
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("opening")));
+    EXPECT_THAT(model.workspace.refusal, HasSubstr("it stands beside the stock"));
+}
+
+TEST(Workspace, ChangesTheFrameThatCannotBeRead) {
+    ViewModel model = opened_model("[stock]\nbox = [[0, 0, 0], [1, 1, 1]]\nframe = \"G55\"\n");
+    model.workspace.error = core::Error{core::ErrorCode::invalid_value, {}, "no such offset"};
+    EXPECT_TRUE(change_frame(model, "stock", "G54"));
+    EXPECT_EQ(text_of_setup(model), "[stock]\nbox = [[0, 0, 0], [1, 1, 1]]\nframe = \"G54\"\n");
 }
 
 TEST(Workspace, AddsFilesByTheirKind) {

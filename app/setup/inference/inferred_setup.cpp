@@ -141,6 +141,10 @@ std::vector<std::string> move_apart(SetupFile& file, const ProgramSurvey& seen) 
         has_moved = true;
     }
     if (!has_moved) return {};
+    constexpr std::string_view equal = "all work offsets are equal; ";
+    for (std::string& text : file.assumptions)
+        if (const size_t at = text.find(equal); at != std::string::npos)
+            text.replace(at, equal.size(), "all work offsets are at the same height; ");
     return {fmt::format("the program cuts in {} and {}, assumed to be separate workpieces. The "
                         "stock is at {}, where most is cut; there is none at {}, so cuts there "
                         "are not checked: to check them, state the offsets and a stock in a "

@@ -308,20 +308,25 @@ bool change_frame(ViewModel& model, const std::string& name, const std::string& 
     if (name == stock_name && stated->stock) body = &*stated->stock;
     if (name == part_name && stated->part) body = &*stated->part;
     if (!body) return false;
+    const BodyPath path =
+        path_of_fixture(model.workspace.document.text(), name).value_or(BodyPath{name});
+    if (model.workspace.error) // perhaps because of this frame; where the body is, is not known
+        return edit_setup(model, "Change the frame of " + name, [&](const std::string& text) {
+            return toml_with_value(text, path / "frame", toml_text(frame));
+        });
     if (!is_current(model)) return refuse_outdated(model);
     const auto from = sheet->frames.find(body->frame), to = sheet->frames.find(frame);
     if (from == sheet->frames.end() || to == sheet->frames.end())
         return refuse(model, "The place of " + (to == sheet->frames.end() ? frame : body->frame)
                                  + " is not known");
     const core::Transform pose = to->second.inverse() * from->second * pose_of(*body);
-    return edit_setup(
-        model, "Change the frame of " + name,
-        [&](const std::string& text) -> core::Result<std::string> {
-            const BodyPath path = path_of_fixture(text, name).value_or(BodyPath{name});
-            FEELER_TRY(const std::string placed, with_pose(text, path, pose.translation,
-                                                           core::angles_xyz_deg(pose.rotation)));
-            return toml_with_value(placed, path / "frame", toml_text(frame));
-        });
+    return edit_setup(model, "Change the frame of " + name,
+                      [&](const std::string& text) -> core::Result<std::string> {
+                          FEELER_TRY(const std::string placed,
+                                     with_pose(text, path, pose.translation,
+                                               core::angles_xyz_deg(pose.rotation)));
+                          return toml_with_value(placed, path / "frame", toml_text(frame));
+                      });
 }
 
 bool slide_to_contact(ViewModel& model, const std::string& name, const core::Vec3& direction) {

@@ -1,6 +1,7 @@
 #include "app/view/model/preset_fixture.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -34,6 +35,14 @@ core::Vec3 place_beside(const Preset& preset, const core::Aabb& stock) {
     return {stock.min.x - body.max.x, 0.5 * (stock.min.y + stock.max.y), stock.min.z - body.min.z};
 }
 
+/// How many quarter turns about Z a body is turned by, 0 to 3; empty if it is turned otherwise.
+std::optional<int> quarter_turns_of(const StatedBody& body) {
+    const double turns = body.rotate_deg.z / 90.0;
+    const bool is_quarter = body.rotate_deg.x == 0.0 && body.rotate_deg.y == 0.0
+                            && std::abs(turns) <= 4.0 && turns == std::floor(turns);
+    return is_quarter ? std::optional((static_cast<int>(turns) + 4) % 4) : std::nullopt;
+}
+
 } // namespace
 
 void add_preset(ViewModel& model, const Preset& preset) {
@@ -42,32 +51,43 @@ void add_preset(ViewModel& model, const Preset& preset) {
     const core::Aabb stock = core::bounds(sheet->stock);
     core::Vec3 at = place_beside(preset, stock);
     std::optional<double> opening;
+    int turns = 0;
+    std::string refusal;
     if (preset.kind == PresetKind::vise) {
-        if (const auto fit = vise_around(preset, {}, stock, grip_of(preset, {}, stock))) {
+        const double grip = grip_of(preset, {}, stock);
+        auto fit = vise_around(preset, {}, stock, grip);
+        if (!fit) refusal = fit.error().message + ": it stands beside the stock";
+        if (!fit) fit = vise_around(preset, {}, stock, grip, turns = 1);
+        if (fit) {
+            refusal.clear();
             at = fit->at;
             opening = fit->opening;
         }
     }
     add_fixture(model, std::string(preset.name), [&](gcode::LengthUnit unit) {
-        return fmt::format("preset = {}\n{}at = {}\nframe = {}\n", toml_text(preset.name),
+        return fmt::format("preset = {}\n{}at = {}\n{}frame = {}\n", toml_text(preset.name),
                            opening ? "opening = " + setup_length(*opening, unit) + "\n" : "",
-                           setup_point(at, unit), toml_text(sheet->frame));
+                           setup_point(at, unit),
+                           opening && turns == 1 ? "rotate_deg = [0, 0, 90]\n" : "",
+                           toml_text(sheet->frame));
     });
+    if (!refusal.empty()) model.workspace.refusal = refusal;
 }
 
 std::optional<double> usual_grip(const ViewModel& model, const StatedBody& body) {
     const Preset* const preset = find_preset(body.preset);
     const SetupSheet* const sheet = sheet_of(model);
     const bool can_hold = preset && preset->kind == PresetKind::vise && sheet
-                          && body.frame == sheet->frame && body.rotate_deg == core::Vec3(0.0);
+                          && body.frame == sheet->frame && quarter_turns_of(body);
     if (!can_hold) return std::nullopt;
     return grip_of(*preset, body.preset_values, core::bounds(sheet->stock));
 }
 
 void clamp_stock(ViewModel& model, const StatedBody& body, double depth) {
     if (!usual_grip(model, body) || !is_current(model)) return;
-    const auto fit = vise_around(*find_preset(body.preset), body.preset_values,
-                                 core::bounds(sheet_of(model)->stock), depth);
+    const auto fit =
+        vise_around(*find_preset(body.preset), body.preset_values,
+                    core::bounds(sheet_of(model)->stock), depth, *quarter_turns_of(body));
     if (!fit) {
         model.workspace.refusal = fit.error().message;
         return;
@@ -78,7 +98,7 @@ void clamp_stock(ViewModel& model, const StatedBody& body, double depth) {
                    const auto path = path_of_fixture(text, name);
                    if (!path) return text;
                    FEELER_TRY(const std::string placed,
-                              with_pose(text, *path, fit->at, core::Vec3(0.0)));
+                              with_pose(text, *path, fit->at, body.rotate_deg));
                    return with_preset_value(placed, *path, "opening", fit->opening);
                });
 }

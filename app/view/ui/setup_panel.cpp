@@ -230,11 +230,14 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
         if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
         for (const PresetKind kind : preset_kinds) {
             if (!ImGui::BeginMenu(std::string(title_of(kind)).c_str())) continue;
-            for (const Preset& preset : presets())
-                if (preset.kind == kind
-                    && ImGui::MenuItem(std::string(preset.title).c_str(),
-                                       std::string(preset.name).c_str()))
+            for (const Preset& preset : presets()) {
+                if (preset.kind != kind) continue;
+                ImGui::PushID(preset.name.data()); // titles are not unique
+                if (ImGui::MenuItem(std::string(preset.title).c_str(),
+                                    std::string(preset.name).c_str()))
                     add_preset(model, preset);
+                ImGui::PopID();
+            }
             ImGui::EndMenu();
         }
         if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);

@@ -283,7 +283,7 @@ void TimelinePanel::draw(Frame& frame, const Area& area) {
     if (model.device.study) bars.area.height = 0.6F * room.height;
     const double allowance = shown_allowance(model);
     bars.allowance = allowance;
-    bars.top = 5.5 * allowance;
+    if (allowance > 0.0) bars.top = 5.5 * allowance;
     list.AddRectFilled(bars.area.corner(), bars.area.far_corner(),
                        frame.palette.color(Role::background, 0.75), frame.px(4));
     ImGui::SetCursorScreenPos(room.corner());
