@@ -77,19 +77,28 @@ SetupMeshes setup_meshes(const core::Setup& setup) {
     return meshes;
 }
 
-SetupMeshes setup_meshes_to_turn(const core::Setup& setup) {
+SharedMesh SurfaceMaker::surface_of(const core::ExactBody& body) {
     constexpr size_t many = 100'000, few = 40'000; // triangles
-    SetupMeshes meshes = setup_meshes(setup);
-    const auto add_rough = [&](SharedMesh& mesh) {
-        if (!mesh || mesh->triangles.size() < many) return;
-        TriangleMesh with = *mesh;
-        const TriangleMesh* const part = &with;
-        with.rough = shared(coarse(std::span(&part, 1), few));
-        mesh = shared(std::move(with));
-    };
-    for (SharedMesh& mesh : meshes.fixtures) add_rough(mesh);
-    for (SharedMesh& mesh : meshes.machine) add_rough(mesh);
-    add_rough(meshes.part);
+    const auto* solid = std::get_if<core::SolidMesh>(&body);
+    if (!solid || solid->mesh->triangles.size() < many) return shared(mesh_of(body));
+    if (const auto made = made_.find(solid->mesh); made != made_.end())
+        return now_[solid->mesh] = made->second;
+    TriangleMesh surface = mesh_of(body);
+    const TriangleMesh* const part = &surface;
+    surface.rough = shared(coarse(std::span(&part, 1), few));
+    return now_[solid->mesh] = made_[solid->mesh] = shared(std::move(surface));
+}
+
+SetupMeshes SurfaceMaker::meshes_of(const core::Setup& setup) {
+    now_.clear();
+    SetupMeshes meshes;
+    for (const core::Fixture& fixture : setup.fixtures)
+        meshes.fixtures.push_back(surface_of(fixture.body));
+    for (const core::MachineBody& body : setup.machine.bodies)
+        meshes.machine.push_back(surface_of(body.body));
+    meshes.raw_stock = shared(mesh_of(setup.stock));
+    if (setup.part) meshes.part = surface_of(core::ExactBody(setup.part->solid));
+    made_ = now_;
     return meshes;
 }
 

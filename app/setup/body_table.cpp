@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "app/base/text.h"
+#include "app/setup/kept_meshes.h"
 #include "app/setup/presets/preset.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
@@ -191,8 +192,7 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
         const core::Vec3 at = frame_from_body.translation;
         return {core::SolidBox{{box.min + at, box.max + at}}, 0.0};
     }
-    return {core::solid_mesh(read_polyhedron(table, context.meshes(), shape, frame_from_body)),
-            0.0};
+    return {kept_solid(read_polyhedron(table, context.meshes(), shape, frame_from_body)), 0.0};
 }
 
 /// A cylinder along one of its body's axes, with its base centre at the body's origin.
@@ -266,7 +266,7 @@ std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& 
     if (*shape == "box") return core::posed(core::convex(read_box(table)), target_from_body);
     auto mesh =
         *shape == "preset" ? read_preset(table, source) : read_mesh_file(table, "mesh", source);
-    return core::solid_mesh(moved(std::move(mesh).value_or(core::Mesh{}), target_from_body));
+    return kept_solid(moved(std::move(mesh).value_or(core::Mesh{}), target_from_body));
 }
 
 bool has_no_shape(const TableReader& table) {
@@ -295,7 +295,7 @@ void read_envelope(TableReader& table, BodyContext& context, const Placement& pl
 
 core::ExactBody moved(const core::ExactBody& body, const core::Transform& by) {
     if (const auto* shape = std::get_if<core::ConvexShape>(&body)) return core::posed(*shape, by);
-    return core::solid_mesh(moved(*std::get<core::SolidMesh>(body).mesh, by));
+    return kept_solid(moved(*std::get<core::SolidMesh>(body).mesh, by));
 }
 
 /// The number of an M code such as "M61"; empty for any other text.
@@ -366,19 +366,20 @@ std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
         return std::nullopt;
     };
     if (name.empty()) return refuse("must name a file");
-    auto read = core::read_mesh(source.folder / name);
+    const auto read = kept_mesh(source.folder / name);
     if (!read) return refuse(read.error().message);
-    for (const std::string& repair : read->repairs)
+    for (const std::string& repair : (*read)->repairs)
         source.assumptions.push_back(fmt::format("{}: {}", name, repair));
+    core::Mesh mesh = (*read)->mesh;
     if (is_inch)
-        for (core::Vec3& v : read->mesh.vertices) v *= mm_per_inch;
-    const core::Aabb box = read->mesh.bounds();
+        for (core::Vec3& v : mesh.vertices) v *= mm_per_inch;
+    const core::Aabb box = mesh.bounds();
     for (const core::Vec3& corner : {box.min, box.max})
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(corner[axis]) > largest_number)
                 return refuse(fmt::format("reaches to {} {:g} mm, beyond {:.0f} mm (1 km)",
                                           "XYZ"[axis], corner[axis], largest_number));
-    return std::move(read->mesh);
+    return mesh;
 }
 
 std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
@@ -464,8 +465,28 @@ void read_part(TableReader& table, BodyContext& context) {
     }
     table.finish();
     if (mesh.triangles.empty()) return;
-    part.solid = core::solid_mesh(std::move(mesh));
+    part.solid = kept_solid(std::move(mesh));
     setup.part = std::move(part);
+}
+
+/// The moves of the fixture in whose frame a fixture is: it goes along. A frame that is removed, or
+/// moves of its own besides, leave open where it is, and are refused.
+std::vector<FrameMove> moves_of_frame(TableReader& table, const BodyContext& context,
+                                      bool moves_itself) {
+    const std::string frame = table.string("frame").value_or("");
+    const auto found = context.frames.moves.find(frame);
+    if (found == context.frames.moves.end() || found->second.empty()) return {};
+    const bool is_removed = std::any_of(found->second.begin(), found->second.end(),
+                                        [](const FrameMove& move) { return move.is_removed; });
+    if (is_removed)
+        table.refuse("frame", fmt::format("\"{}\" is removed during the program: give it another "
+                                          "frame, and a [[fixture.move]] if it is removed, too",
+                                          frame));
+    if (!is_removed && moves_itself)
+        table.refuse("frame", fmt::format("\"{}\" moves during the program and takes it along: "
+                                          "give it another frame for moves of its own",
+                                          frame));
+    return is_removed || moves_itself ? std::vector<FrameMove>() : found->second;
 }
 
 void read_fixture(TableReader& table, BodyContext& context) {
@@ -491,18 +512,32 @@ void read_fixture(TableReader& table, BodyContext& context) {
     fixture.body = *body;
     context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
     std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
+    const std::vector<FrameMove> carried = moves_of_frame(table, context, !moves.empty());
     table.finish();
     setup.fixtures.push_back(fixture);
-    const core::Transform body_from_stock = (stock_from_frame * frame_from_body).inverse();
+    const core::Transform body_from_machine = (machine_from_frame * frame_from_body).inverse();
+    const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();
+    std::vector<FrameMove>& own = context.frames.moves[fixture.name];
     size_t last = setup.fixtures.size() - 1;
-    for (TableReader& move : moves) {
-        const auto to = read_move(move, setup, last, context.file.environment.known_m_codes);
-        if (!to) continue;
+    const auto add_place = [&](const core::Transform& machine_from_body) {
         core::Fixture there = fixture;
         there.is_there = false;
-        there.body = moved(fixture.body, stock_from_frame * *to * body_from_stock);
+        there.body = moved(fixture.body, stock_from_machine * machine_from_body * body_from_machine
+                                             * stock_from_machine.inverse());
         last = setup.fixtures.size();
         setup.fixtures.push_back(std::move(there));
+    };
+    for (TableReader& move : moves) {
+        const auto to = read_move(move, setup, last, context.file.environment.known_m_codes);
+        own.push_back(
+            {setup.fixture_moves.back(), machine_from_frame * to.value_or(core::Transform{}), !to});
+        if (to) add_place(own.back().machine_from_body);
+    }
+    for (const FrameMove& move : carried) {
+        setup.fixture_moves.push_back(
+            {move.when.line, move.when.code, last, setup.fixtures.size()});
+        own.push_back({move.when, move.machine_from_body * frame_from_body});
+        add_place(own.back().machine_from_body);
     }
 }
 

@@ -8,19 +8,24 @@
 
 #include "core/base/vec.h"
 #include "core/distance/body_distance.h"
-
-namespace core {
-struct Setup;
-}
+#include "core/sim/setup.h"
 
 namespace app {
 
 class TableReader;
 struct SetupFile;
 
+/// When a body that is a frame moves during the program, and where it is then.
+struct FrameMove {
+    core::FixtureMove when; // line or code
+    core::Transform machine_from_body;
+    bool is_removed = false;
+};
+
 /// Poses of named frames in the machine: "machine", the work offsets, the bodies read so far.
 struct NamedFrames {
     std::map<std::string, core::Transform> machine_from;
+    std::map<std::string, std::vector<FrameMove>> moves; // of those that move
 
     std::optional<core::Transform> find(const std::string& name) const {
         const auto found = machine_from.find(name);

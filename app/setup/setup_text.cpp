@@ -260,8 +260,9 @@ std::string machine_text(const SetupFile& setup) {
 } // namespace
 
 std::string offset_name(const SetupFile& setup, size_t index) {
-    return setup.dialect == gcode::DialectId::siemens ? gcode::siemens_name_of_offset(index)
-                                                      : gcode::name_of_offset(index);
+    return setup.environment.dialect == gcode::DialectId::siemens
+               ? gcode::siemens_name_of_offset(index)
+               : gcode::name_of_offset(index);
 }
 
 namespace {

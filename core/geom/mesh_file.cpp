@@ -457,8 +457,7 @@ Result<PolygonSoup> complete_soup(const MeshText& plain, MeshFormat format) {
     return soup;
 }
 
-Result<MeshFile> read_solid(const std::filesystem::path& path) {
-    FEELER_TRY(std::string bytes, read_bytes(path));
+Result<MeshFile> read_solid(const std::filesystem::path& path, std::string bytes) {
     FEELER_TRY(const MeshFormat format, format_of(path, bytes));
     FEELER_TRY(const MeshText plain, plain_form(std::move(bytes), format));
     FEELER_TRY(PolygonSoup soup, complete_soup(plain, format));
@@ -473,12 +472,29 @@ Result<MeshFile> read_solid(const std::filesystem::path& path) {
 
 } // namespace
 
-Result<MeshFile> read_mesh(const std::filesystem::path& path) {
-    return read_solid(path).map_error([&](Error error) {
-        error.message = fmt::format("{}: {}", path.generic_string(), error.message);
-        error.file = path.generic_string();
-        return error;
+namespace {
+
+Error about(Error error, const std::filesystem::path& path) {
+    error.message = fmt::format("{}: {}", path.generic_string(), error.message);
+    error.file = path.generic_string();
+    return error;
+}
+
+} // namespace
+
+Result<std::string> read_mesh_bytes(const std::filesystem::path& path) {
+    return read_bytes(path).map_error([&](Error error) { return about(std::move(error), path); });
+}
+
+Result<MeshFile> read_mesh(const std::filesystem::path& path, std::string bytes) {
+    return read_solid(path, std::move(bytes)).map_error([&](Error error) {
+        return about(std::move(error), path);
     });
+}
+
+Result<MeshFile> read_mesh(const std::filesystem::path& path) {
+    FEELER_TRY(std::string bytes, read_mesh_bytes(path));
+    return read_mesh(path, std::move(bytes));
 }
 
 } // namespace core

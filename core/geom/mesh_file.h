@@ -24,6 +24,10 @@ struct MeshFile {
 ///          file is never read in part.
 Result<MeshFile> read_mesh(const std::filesystem::path& path);
 
+/// The two steps of it: the bytes of the file, and the body from them.
+Result<std::string> read_mesh_bytes(const std::filesystem::path& path);
+Result<MeshFile> read_mesh(const std::filesystem::path& path, std::string bytes);
+
 /// One side of a triangle, on the edge between the vertices `low` < `high`.
 struct EdgeUse {
     uint32_t low, high;

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
 #include "tests/app/checked.h"
 #include "tests/support/program_writer.h"
+#include "tests/support/scoped_folder.h"
 
 namespace app_test {
 namespace {
@@ -49,6 +52,56 @@ TEST(FixtureMove, ComesBackAndIsMetThere) {
               program({"G0 X-20. Y50.", "Z10.", "M61", "X120.", "M62", "X-20.", "Z60."}));
     EXPECT_NE(checked.at_line(9).verdict, "collision");
     EXPECT_EQ(checked.at_line(11).verdict, "collision");
+}
+
+/// A plate that moves with two posts on it, one of them on the other.
+TEST(FixtureMove, TakesAlongWhatStandsInItsFrame) {
+    const std::string moves = "[[fixture.move]]\ncode = \"M61\"\nat = [10, 130, -70]\nrotate_deg = "
+                              "[0, 0, 90]\n[[fixture.move]]\nline = 11\nat = [0, 0, -70]\n";
+    const auto with = [&](const std::string& low, const std::string& high) {
+        return SetupWriter()
+            .fixture("plate", "box = [[0, 0, 0], [100, 100, 5]]\nat = [0, 0, -70]\n" + moves)
+            .fixture("low", "box = [[0, 0, 0], [10, 10, 70]]\n" + low)
+            .fixture("high", "box = [[0, 0, 0], [10, 10, 15]]\n" + high);
+    };
+    const std::string text =
+        program({"G0 X-20. Y50.", "Z10.", "M61", "X120.", "M5", "M3 S5000", "X-20.", "Z60."});
+    const Checked carried = check(
+        with("frame = \"plate\"\nat = [-50, 20, 5]\n", "frame = \"low\"\nat = [0, 0, 70]\n"), text);
+    // The same by hand: turned by 90 degrees, [x, y] is at [10 - y, 130 + x].
+    const Checked by_hand = check(
+        with("at = [-50, 20, -65]\n[[fixture.move]]\ncode = \"M61\"\nat = [-10, 80, "
+             "-65]\nrotate_deg "
+             "= [0, 0, 90]\n[[fixture.move]]\nline = 11\nat = [-50, 20, -65]\n",
+             "at = [-50, 20, 5]\n[[fixture.move]]\ncode = \"M61\"\nat = [-10, 80, 5]\nrotate_deg = "
+             "[0, 0, 90]\n[[fixture.move]]\nline = 11\nat = [-50, 20, 5]\n"),
+        text);
+    ASSERT_EQ(carried.blocks.size(), by_hand.blocks.size());
+    EXPECT_EQ(carried.errors(), by_hand.errors());
+    for (size_t i = 0; i < carried.blocks.size(); ++i) {
+        const BlockLine &a = carried.blocks[i], &b = by_hand.blocks[i];
+        ASSERT_EQ(a.pairs.size(), b.pairs.size()) << a.line;
+        for (size_t pair = 0; pair < a.pairs.size(); ++pair)
+            EXPECT_NEAR(a.pairs[pair].lower, b.pairs[pair].lower, 1e-9) << a.line;
+    }
+    expect_encloses(carried.at_line(9).pair("flutes high"), 80.0 - 50.0 - 5.0, 1e-6);
+}
+
+TEST(FixtureMove, IsRefusedForAFrameThatLeavesOpenWhereAFixtureIs) {
+    const auto error = [&](const std::string& move, const std::string& own) {
+        const test_support::ScopedFolder folder;
+        const SetupWriter setup =
+            SetupWriter()
+                .fixture("plate", "box = [[0, 0, -50], [9, 9, -45]]\n" + move)
+                .fixture("post", "frame = \"plate\"\nbox = [[40, 45, 0], [60, 55, 20]]\n" + own);
+        const auto read = app::read_setup(folder.write("s.toml", setup.text()), {});
+        return read ? std::string() : read.error().message;
+    };
+    const std::string away = "[[fixture.move]]\ncode = \"M61\"\nremove = true\n";
+    const std::string aside = "[[fixture.move]]\ncode = \"M61\"\nat = [0, 20, 0]\n";
+    EXPECT_NE(error(away, "").find("is removed during the program"), std::string::npos);
+    EXPECT_NE(error(aside, aside).find("takes it along"), std::string::npos);
+    EXPECT_EQ(error("", aside), "");
 }
 
 TEST(FixtureMove, OntoTheToolIsFoundWhereItIsPut) {

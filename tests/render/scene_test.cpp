@@ -172,12 +172,20 @@ TEST(SetupScene, LeavesOutFixturesThatAreNotThere) {
 TEST(SetupScene, HasRoughVersionsOfLargeMeshesOnly) {
     core::Setup setup = sample_setup();
     setup.fixtures[0].body = core::solid_mesh(test_support::ball_mesh(40.0, 300, 400));
-    const SetupMeshes meshes = setup_meshes_to_turn(setup);
+    SurfaceMaker maker;
+    const SetupMeshes meshes = maker.meshes_of(setup);
     ASSERT_TRUE(meshes.fixtures[0]->rough);
     EXPECT_GT(meshes.fixtures[0]->triangles.size(), 200'000u);
     EXPECT_LE(meshes.fixtures[0]->rough->triangles.size(), 40'000u);
     EXPECT_NEAR(volume(*meshes.fixtures[0]->rough) / volume(*meshes.fixtures[0]), 1.0, 0.01);
     for (size_t i = 1; i < meshes.fixtures.size(); ++i) EXPECT_FALSE(meshes.fixtures[i]->rough);
+    // It is made once, as long as set-ups have it.
+    setup.fixtures[1].name = "other";
+    EXPECT_EQ(maker.meshes_of(setup).fixtures[0], meshes.fixtures[0]);
+    const core::ExactBody ball = std::exchange(setup.fixtures[0].body, setup.fixtures[1].body);
+    maker.meshes_of(setup);
+    setup.fixtures[0].body = ball;
+    EXPECT_NE(maker.meshes_of(setup).fixtures[0], meshes.fixtures[0]);
 }
 
 TEST(ToolPath, FindsThePointsOfABlock) {

@@ -31,10 +31,14 @@ public:
                                  const std::string& name, const core::ExactBody& body);
 
 private:
-    using Found = std::shared_future<core::MeshFeatures>;
+    struct Found {
+        std::shared_ptr<const core::Mesh> mesh; // null: another shape
+        std::shared_future<core::MeshFeatures> features;
+    };
 
     std::weak_ptr<const SceneSetup> scene_;
     std::map<std::string, Found> found_;
+    std::vector<std::shared_future<core::MeshFeatures>> leaving_; // dropping one would wait for it
 };
 
 namespace {
@@ -52,19 +56,29 @@ size_t triangles_of(const core::ExactBody& body) {
 
 const core::MeshFeatures* BodyFeatures::of(const std::shared_ptr<const SceneSetup>& scene,
                                            const std::string& name, const core::ExactBody& body) {
+    const auto is_ready = [](const std::shared_future<core::MeshFeatures>& features) {
+        return features.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
+    };
+    std::erase_if(leaving_, is_ready);
     if (scene_.lock() != scene) {
         scene_ = scene;
-        found_.clear();
+        std::erase_if(found_, [&](const auto& entry) {
+            if (!entry.second.mesh) leaving_.push_back(entry.second.features);
+            return !entry.second.mesh;
+        });
     }
-    const auto [found, is_new] = found_.try_emplace(name);
-    if (is_new) {
+    const auto* solid = std::get_if<core::SolidMesh>(&body);
+    Found& found = found_[name];
+    if (found.features.valid() && found.mesh && (!solid || solid->mesh != found.mesh))
+        leaving_.push_back(std::exchange(found, {}).features);
+    if (!found.features.valid()) {
+        found.mesh = solid ? solid->mesh : nullptr;
         const auto how =
             triangles_of(body) > small_mesh ? std::launch::async : std::launch::deferred;
-        found->second =
+        found.features =
             std::async(how, [scene, kept = body] { return core::features_of(kept); }).share();
     }
-    const auto status = found->second.wait_for(std::chrono::seconds(0));
-    return status == std::future_status::timeout ? nullptr : &found->second.get();
+    return is_ready(found.features) ? &found.features.get() : nullptr;
 }
 
 namespace {

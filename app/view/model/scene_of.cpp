@@ -15,10 +15,11 @@
 
 namespace app::viewer {
 
-std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup) {
+std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup,
+                                                   render::SurfaceMaker& surfaces) {
     auto scene = std::make_shared<SceneSetup>();
     scene->setup = setup;
-    scene->meshes = render::setup_meshes_to_turn(setup);
+    scene->meshes = surfaces.meshes_of(setup);
     for (const auto& [number, tool] : setup.tools)
         scene->tools.emplace(number, render::tool_meshes(tool));
     return scene;

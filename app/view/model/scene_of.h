@@ -23,7 +23,8 @@ struct SceneSetup {
     std::map<core::ToolNumber, std::vector<render::SharedMesh>> tools;
 };
 
-std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup);
+std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup,
+                                                   render::SurfaceMaker& surfaces);
 
 /// The scene at the cursor. Cheap, because large data is shared.
 render::Scene scene_of(const ViewModel& model);

@@ -18,7 +18,8 @@
 
 namespace app::viewer {
 
-OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
+OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check,
+                             render::SurfaceMaker& surfaces) {
     OpenedProgram opened;
     opened.program = job.program;
     opened.setup = job.setup;
@@ -31,7 +32,7 @@ OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check) {
     opened.coverage = check.run.coverage;
     for (const auto& [number, tool] : check.run.setup.tools)
         if (!tool.description.holder.empty()) opened.tools_with_holder.insert(number);
-    opened.scene = make_scene_setup(check.run.setup);
+    opened.scene = make_scene_setup(check.run.setup, surfaces);
     opened.proposed_path = setup_path(job);
     opened.setup_text = job.setup_text.value_or("");
     opened.sheet = std::make_shared<const SetupSheet>(sheet_of(check.file, check.run.setup));

@@ -19,6 +19,9 @@
 namespace core {
 struct Machine;
 } // namespace core
+namespace render {
+class SurfaceMaker;
+} // namespace render
 
 namespace app {
 struct CheckJob;
@@ -97,7 +100,8 @@ struct OpenedProgram {
 };
 
 /// A program as it was read and its set-up completed.
-OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check);
+OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check,
+                             render::SurfaceMaker& surfaces);
 
 /// New or changed rows; they replace those from `first` on.
 struct RowsUpdate {

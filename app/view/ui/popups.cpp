@@ -324,16 +324,17 @@ void PopupPanel::draw_leaving(Frame& frame) {
 void PopupPanel::draw_report(Frame& frame) {
     ViewModel& model = frame.model;
     text(frame.fonts.mono, frame.palette.color(Role::text), model.report_text);
-    if (!model.report_setup || model.report_version != model.workspace.document.version()) return;
     ImGui::Dummy(ImVec2(0, frame.px(4)));
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    if (ImGui::Button(model.report_question.c_str())) {
+    const bool can_take =
+        model.report_setup && model.report_version == model.workspace.document.version();
+    if (can_take && ImGui::Button(model.report_question.c_str())) {
         const std::string setup = *std::exchange(model.report_setup, std::nullopt);
         edit_setup(model, model.report_question, [&](const std::string&) { return setup; });
         show_setup(model, true);
         model.popup = Popup::none;
     }
-    ImGui::SameLine();
+    if (can_take) ImGui::SameLine();
     if (ImGui::Button("Close")) model.popup = Popup::none;
 }
 

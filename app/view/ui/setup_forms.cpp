@@ -716,8 +716,8 @@ void SetupForms::draw_item(Frame& frame) {
     }
 }
 
-void SetupForms::draw(Frame& frame) {
-    ImGui::BeginChild("item", ImVec2(0, 0), false, ImGuiWindowFlags_NavFlattened);
+void SetupForms::draw(Frame& frame, float below) {
+    ImGui::BeginChild("item", ImVec2(0, -below), false, ImGuiWindowFlags_NavFlattened);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(frame.px(7), frame.px(2.5)));
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(frame.px(6), frame.px(4)));
     fields_.begin(frame);

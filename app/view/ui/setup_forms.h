@@ -20,7 +20,8 @@ namespace app::viewer {
 /// The fields of the thing that is selected in the set-up.
 class SetupForms {
 public:
-    void draw(Frame& frame);
+    /// `below`: room that is left free at the bottom of the panel.
+    void draw(Frame& frame, float below);
 
     bool wants_name =
         false; // the name of the fixture, or the number of the tool, gets the keyboard

@@ -54,7 +54,8 @@ struct SetupPanel::State {
 
 private:
     void draw_head(Frame& frame);
-    void draw_banners(Frame& frame);
+    void draw_questions(Frame& frame);
+    void draw_problems(Frame& frame);
     void draw_found(Frame& frame);
     void draw_tree(Frame& frame, const std::vector<SetupRow>& rows);
     void draw_row(Frame& frame, const SetupRow& row, int index);
@@ -63,6 +64,7 @@ private:
 
     SetupForms forms_;
     SetupItem focused_; // of the tree, by the keyboard
+    float problems_height_ = 0.0F;
 };
 
 void SetupPanel::State::draw_head(Frame& frame) {
@@ -95,9 +97,10 @@ void SetupPanel::State::draw_head(Frame& frame) {
     button(Icon::save, Command::save_setup, document.is_modified() || document.path().empty(), "");
 }
 
-void SetupPanel::State::draw_banners(Frame& frame) {
-    ViewModel& model = frame.model;
-    Workspace& workspace = model.workspace;
+/// Draws what is wrong below everything else, so that nothing moves under the mouse.
+void SetupPanel::State::draw_problems(Frame& frame) {
+    const Workspace& workspace = frame.model.workspace;
+    const float top = ImGui::GetCursorPosY();
     if (workspace.error) {
         const core::Error& error = *workspace.error;
         std::string where = std::filesystem::path(error.file).filename().generic_string();
@@ -108,6 +111,12 @@ void SetupPanel::State::draw_banners(Frame& frame) {
                                 frame.fonts.icon(Icon::warning), where, error.message));
     }
     if (!workspace.refusal.empty()) draw_banner(frame, Role::violation, workspace.refusal);
+    problems_height_ = ImGui::GetCursorPosY() - top;
+}
+
+void SetupPanel::State::draw_questions(Frame& frame) {
+    ViewModel& model = frame.model;
+    Workspace& workspace = model.workspace;
     if (workspace.on_disk) {
         draw_banner(frame, Role::near,
                     "The file has been changed elsewhere, and there are edits here.");
@@ -275,11 +284,11 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
                             || has_tool(*model.workspace.stated, model.workspace.selected);
     ImGui::Dummy(ImVec2(0, frame.px(3)));
     draw_head(frame);
-    draw_banners(frame);
+    draw_questions(frame);
     if (!model.program || !model.program->sheet) {
         text(frame.fonts.text, frame.palette.color(Role::dim),
              "The set-up is being read \xE2\x80\xA6");
-        return;
+        return draw_problems(frame);
     }
     const auto sheet = model.program->sheet; // an edit does not replace it while it is drawn
     draw_tree(frame, rows_of_setup(model));
@@ -291,7 +300,8 @@ void SetupPanel::State::draw(Frame& frame, const Area& area) {
     if (ImGui::Button("Sheet")) frame.perform(Command::print_sheet);
     tip(frame, tip_of(Command::print_sheet));
     ImGui::Separator();
-    forms_.draw(frame);
+    forms_.draw(frame, problems_height_);
+    draw_problems(frame);
     model.workspace.has_keys = has_keys();
     if (std::exchange(model.workspace.wants_focus, false)) ImGui::SetWindowFocus();
 }
