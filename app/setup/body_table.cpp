@@ -469,24 +469,25 @@ void read_part(TableReader& table, BodyContext& context) {
     setup.part = std::move(part);
 }
 
-/// The moves of the fixture in whose frame a fixture is: it goes along. A frame that is removed, or
-/// moves of its own besides, leave open where it is, and are refused.
+/// The moves of the fixture in whose frame a fixture is: it goes along, unless it has a move of its
+/// own for each. `own`: the fixture's own moves.
 std::vector<FrameMove> moves_of_frame(TableReader& table, const BodyContext& context,
-                                      bool moves_itself) {
+                                      const std::vector<FrameMove>& own) {
     const std::string frame = table.string("frame").value_or("");
     const auto found = context.frames.moves.find(frame);
-    if (found == context.frames.moves.end() || found->second.empty()) return {};
-    const bool is_removed = std::any_of(found->second.begin(), found->second.end(),
-                                        [](const FrameMove& move) { return move.is_removed; });
-    if (is_removed)
-        table.refuse("frame", fmt::format("\"{}\" is removed during the program: give it another "
-                                          "frame, and a [[fixture.move]] if it is removed, too",
-                                          frame));
-    if (!is_removed && moves_itself)
+    if (found == context.frames.moves.end()) return {};
+    const auto has_own = [&](const FrameMove& move) {
+        return std::any_of(own.begin(), own.end(), [&](const FrameMove& other) {
+            return other.when.line == move.when.line && other.when.code == move.when.code;
+        });
+    };
+    if (own.empty()) return found->second;
+    if (!std::all_of(found->second.begin(), found->second.end(), has_own))
         table.refuse("frame", fmt::format("\"{}\" moves during the program and takes it along: "
-                                          "give it another frame for moves of its own",
+                                          "state a move of its own for each of those, or give it "
+                                          "another frame",
                                           frame));
-    return is_removed || moves_itself ? std::vector<FrameMove>() : found->second;
+    return {};
 }
 
 void read_fixture(TableReader& table, BodyContext& context) {
@@ -512,8 +513,6 @@ void read_fixture(TableReader& table, BodyContext& context) {
     fixture.body = *body;
     context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
     std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
-    const std::vector<FrameMove> carried = moves_of_frame(table, context, !moves.empty());
-    table.finish();
     setup.fixtures.push_back(fixture);
     const core::Transform body_from_machine = (machine_from_frame * frame_from_body).inverse();
     const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();
@@ -533,12 +532,14 @@ void read_fixture(TableReader& table, BodyContext& context) {
             {setup.fixture_moves.back(), machine_from_frame * to.value_or(core::Transform{}), !to});
         if (to) add_place(own.back().machine_from_body);
     }
-    for (const FrameMove& move : carried) {
-        setup.fixture_moves.push_back(
-            {move.when.line, move.when.code, last, setup.fixtures.size()});
-        own.push_back({move.when, move.machine_from_body * frame_from_body});
-        add_place(own.back().machine_from_body);
+    for (const FrameMove& move : moves_of_frame(table, context, own)) {
+        core::FixtureMove along{move.when.line, move.when.code, last, {}};
+        if (!move.is_removed) along.to = setup.fixtures.size();
+        setup.fixture_moves.push_back(along);
+        own.push_back({along, move.machine_from_body * frame_from_body, move.is_removed});
+        if (!move.is_removed) add_place(own.back().machine_from_body);
     }
+    table.finish();
 }
 
 } // namespace app

@@ -517,6 +517,32 @@ Result<std::string> with_allowance(const std::string& text, std::optional<double
     return toml_with_table(text, "allowance", "distance = " + value + "\n");
 }
 
+Result<std::string> with_pair_allowance(const std::string& text, size_t index, double distance) {
+    return toml_with_value(text, {"allowance", index, "distance"},
+                           setup_length(distance, unit_of_setup(text)));
+}
+
+Result<std::string> without_pair_allowance(const std::string& text, size_t index) {
+    return toml_without(text, {"allowance", index});
+}
+
+Result<std::string> with_new_pair_allowance(const std::string& text,
+                                            const std::array<std::string, 2>& between,
+                                            double distance) {
+    const gcode::LengthUnit unit = unit_of_setup(text);
+    std::string list = text;
+    // TOML has no number and list of one name: the general one becomes a member of the list.
+    const toml::table root = root_of(text);
+    if (const auto general = root["allowance"].value<double>()) {
+        FEELER_TRY(list, toml_without(list, "allowance"));
+        FEELER_TRY(list, toml_with_table(list, "allowance",
+                                         "distance = " + setup_number(*general) + "\n"));
+    }
+    return toml_with_table(list, "allowance",
+                           fmt::format("between = [{}, {}]\ndistance = {}\n", toml_text(between[0]),
+                                       toml_text(between[1]), setup_length(distance, unit)));
+}
+
 Result<std::string> with_known(const std::string& text, std::string_view word) {
     const toml::table root = root_of(text);
     const toml::array* words = root["assumed"].as_array();

@@ -132,6 +132,14 @@ core::Result<std::string> with_part_tolerance(const std::string& text, double to
 /// Sets the general minimum clearance, or leaves it to the defaults.
 core::Result<std::string> with_allowance(const std::string& text, std::optional<double> distance);
 
+/// Changes the distance of an `[[allowance]]` between two bodies, removes one, or adds one.
+core::Result<std::string> with_pair_allowance(const std::string& text, size_t index,
+                                              double distance);
+core::Result<std::string> without_pair_allowance(const std::string& text, size_t index);
+core::Result<std::string> with_new_pair_allowance(const std::string& text,
+                                                  const std::array<std::string, 2>& between,
+                                                  double distance);
+
 /// Removes a word from `assumed`: the value is known.
 core::Result<std::string> with_known(const std::string& text, std::string_view word);
 

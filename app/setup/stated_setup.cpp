@@ -171,6 +171,14 @@ StatedSetup stated_in(const std::string& text) {
                                    .value_or(0.0);
             stated.origins[known] = origin;
         }
+    size_t allowances = 0;
+    visit_tables(*root, "allowance", [&](const toml::table& table) {
+        const size_t index = allowances++;
+        const auto name = [&](size_t side) { return table["between"][side].value<std::string>(); };
+        if (name(0) && name(1))
+            stated.allowances.push_back(
+                {index, {*name(0), *name(1)}, numbers.length(table.get("distance"))});
+    });
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());
     stated.ini = (*root)["program"]["ini"].value_or(std::string());
     stated.tool_library = (*root)["tool_library"].value_or(std::string());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,6 +43,13 @@ struct StatedBody {
     }
 };
 
+/// An `[[allowance]]` between two bodies or kinds of bodies.
+struct StatedAllowance {
+    size_t index = 0; // of all `[[allowance]]`
+    std::array<std::string, 2> between;
+    std::optional<double> distance; // mm
+};
+
 /// What the text of a set-up states, for editing it.
 struct StatedSetup {
     std::optional<StatedBody> stock, part;
@@ -49,6 +57,7 @@ struct StatedSetup {
     std::vector<core::ToolNumber> tools;
     std::vector<std::string> offsets;          // names as written
     std::map<std::string, core::Vec3> origins; // of the offsets; 0 for an axis that is not stated
+    std::vector<StatedAllowance> allowances;   // without the general one
     std::string machine_file, ini, tool_library;
     bool has_no_fixtures = false;                          // fixtures = "none"
     gcode::LengthUnit length_unit = gcode::LengthUnit::mm; // of the text

@@ -87,7 +87,7 @@ TEST(FixtureMove, TakesAlongWhatStandsInItsFrame) {
     expect_encloses(carried.at_line(9).pair("flutes high"), 80.0 - 50.0 - 5.0, 1e-6);
 }
 
-TEST(FixtureMove, IsRefusedForAFrameThatLeavesOpenWhereAFixtureIs) {
+TEST(FixtureMove, OfAFrameIsNotMixedWithMovesOfAFixtureInIt) {
     const auto error = [&](const std::string& move, const std::string& own) {
         const test_support::ScopedFolder folder;
         const SetupWriter setup =
@@ -99,9 +99,24 @@ TEST(FixtureMove, IsRefusedForAFrameThatLeavesOpenWhereAFixtureIs) {
     };
     const std::string away = "[[fixture.move]]\ncode = \"M61\"\nremove = true\n";
     const std::string aside = "[[fixture.move]]\ncode = \"M61\"\nat = [0, 20, 0]\n";
-    EXPECT_NE(error(away, "").find("is removed during the program"), std::string::npos);
-    EXPECT_NE(error(aside, aside).find("takes it along"), std::string::npos);
+    const std::string later = "[[fixture.move]]\ncode = \"M62\"\nat = [0, 20, 0]\n";
+    EXPECT_NE(error(aside, later).find("takes it along"), std::string::npos);
+    EXPECT_NE(error(aside + later, aside).find("takes it along"), std::string::npos);
+    EXPECT_EQ(error(aside, aside), "");
+    EXPECT_EQ(error(aside, aside + later), "");
+    EXPECT_EQ(error(away, ""), "");
     EXPECT_EQ(error("", aside), "");
+}
+
+TEST(FixtureMove, RemovesWhatStandsInItsFrame) {
+    const std::string away = "[[fixture.move]]\ncode = \"M61\"\nremove = true\n";
+    const auto with = [](const std::string& move) {
+        return SetupWriter()
+            .fixture("plate", "box = [[0, 0, -70], [9, 9, -65]]\n" + move)
+            .fixture("post", "frame = \"plate\"\nbox = [[40, 45, 0], [60, 55, 20]]\n");
+    };
+    EXPECT_EQ(check(with(""), there_and_back).verdict, "collision");
+    EXPECT_EQ(check(with(away), there_and_back).errors(), "");
 }
 
 TEST(FixtureMove, OntoTheToolIsFoundWhereItIsPut) {

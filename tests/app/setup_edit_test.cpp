@@ -493,6 +493,29 @@ TEST(SetupChanges, ChangeAnOffsetUnderTheNameThatItHas) {
     EXPECT_EQ(stated.origins.at("G58"), core::Vec3(1, 2, 3));
 }
 
+TEST(SetupChanges, StateMinimumClearancesOfPairs) {
+    std::string text = changed(app::with_new_pair_allowance(
+        "allowance = 3 # all\n[stock]\nbox = [[0, 0, 0], [1, 1, 1]]\n", {"flutes", "post"}, 7.5));
+    EXPECT_THAT(text, HasSubstr("[[allowance]]\ndistance = 3\n"));
+    EXPECT_THAT(text,
+                HasSubstr("[[allowance]]\nbetween = [\"flutes\", \"post\"]\ndistance = 7.5\n"));
+    text = changed(app::with_new_pair_allowance(text, {"holder", "stock"}, 0.5));
+    auto stated = app::stated_in(text).allowances;
+    ASSERT_EQ(stated.size(), 2u);
+    EXPECT_EQ(stated[0].index, 1u);
+    EXPECT_EQ(stated[1].between[0], "holder");
+    EXPECT_EQ(stated[1].distance, 0.5);
+    text = changed(app::with_pair_allowance(text, 2, 0.25));
+    text = changed(app::without_pair_allowance(text, 1));
+    stated = app::stated_in(text).allowances;
+    ASSERT_EQ(stated.size(), 1u);
+    EXPECT_EQ(stated[0].distance, 0.25);
+    text = changed(app::without_pair_allowance(text, 1));
+    EXPECT_TRUE(app::stated_in(text).allowances.empty());
+    EXPECT_THAT(changed(app::with_new_pair_allowance("length_unit = \"inch\"\n", {"a", "b"}, 25.4)),
+                HasSubstr("distance = 1\n"));
+}
+
 TEST(SetupChanges, WriteRoundNumbers) {
     EXPECT_EQ(app::setup_number(-14.700000000000045), "-14.7");
     EXPECT_EQ(app::setup_number(-0.0), "0");

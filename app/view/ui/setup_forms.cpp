@@ -19,6 +19,7 @@
 #include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "core/base/text.h"
+#include "core/base/units.h"
 #include "core/dbm/solid.h"
 #include "gcode/language/canonical.h"
 
@@ -683,6 +684,47 @@ void SetupForms::draw_allowance(Frame& frame) {
                                  "and machine.",
                                  length_text(model, 1.0), length_text(model, 2.0),
                                  length_unit(model)));
+    draw_pair_allowances(frame);
+}
+
+void SetupForms::draw_pair_allowances(Frame& frame) {
+    ViewModel& model = frame.model;
+    const auto kept = model.workspace.stated; // edits replace it
+    for (const StatedAllowance& pair : kept->allowances) {
+        const std::string names = pair.between[0] + ", " + pair.between[1];
+        ImGui::PushID(static_cast<int>(pair.index));
+        field_name(frame, shortened(frame.fonts.text, names, frame.px(100)));
+        tip(frame, names);
+        if (const auto distance = fields_.length(frame, "##pair", pair.distance))
+            edit_setup(model, "Change the minimum clearance", [&](const std::string& t) {
+                return with_pair_allowance(t, pair.index, *distance);
+            });
+        unit_label(frame, length_unit(model));
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Delete"))
+            edit_setup(model, "Delete a minimum clearance",
+                       [&](const std::string& t) { return without_pair_allowance(t, pair.index); });
+        ImGui::PopID();
+    }
+    std::vector<std::string> names = {"flutes", "shank",   "holder", "nose",
+                                      "stock",  "fixture", "machine"};
+    for (const StatedBody& fixture : kept->fixtures) names.push_back(fixture.name);
+    field_name(frame, "Between");
+    for (size_t side = 0; side < 2; ++side) {
+        if (std::find(names.begin(), names.end(), pair_[side]) == names.end())
+            pair_[side] = side == 0 ? "holder" : "fixture";
+        if (side == 1) ImGui::SameLine();
+        ImGui::SetNextItemWidth(frame.px(86));
+        if (!ImGui::BeginCombo(side == 0 ? "##first" : "##second", pair_[side].c_str())) continue;
+        for (const std::string& name : names)
+            if (ImGui::Selectable(name.c_str(), name == pair_[side])) pair_[side] = name;
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Add"))
+        edit_setup(model, "Add a minimum clearance",
+                   [&](const std::string& t) { return with_new_pair_allowance(t, pair_, 2.0); });
+    tip(frame, "A minimum clearance of their own for these two");
 }
 
 void SetupForms::draw_item(Frame& frame) {

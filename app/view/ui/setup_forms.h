@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -51,11 +52,13 @@ private:
     void draw_holder(Frame& frame, const SheetTool& shown);
     void draw_library(Frame& frame, core::ToolNumber number);
     void draw_allowance(Frame& frame);
+    void draw_pair_allowances(Frame& frame);
 
     std::optional<double> grip_; // mm in the jaws of a vise; empty: as usual
     SetupFields fields_;
     // of the lists of faces
     std::string listed_body_, other_body_;
+    std::array<std::string, 2> pair_; // for which a minimum clearance is to be added
     size_t own_face_ = 0, other_face_ = 0;
     int zero_[3] = {0, 0, 2}; // corner of the stock: least, middle, greatest
 };
