@@ -9,7 +9,6 @@
 #include "app/setup/setup_document.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/view_model.h"
-#include "render/setup_scene.h"
 #include "tests/support/scoped_folder.h"
 
 namespace {
@@ -37,8 +36,7 @@ public:
         job_.setup_text = model.workspace.document.text();
         const auto check = app::read_check(job_);
         ASSERT_TRUE(check) << check.error().message << "\n" << *job_.setup_text;
-        model.program =
-            std::make_shared<const OpenedProgram>(opened_program(job_, *check, surfaces_));
+        model.program = std::make_shared<const OpenedProgram>(opened_program(job_, *check));
         machine_from_stock_ = model.program->sheet->frames.at("machine").inverse();
     }
     /// After an edit that must succeed.
@@ -57,7 +55,6 @@ public:
 
 private:
     test_support::ScopedFolder folder_;
-    render::SurfaceMaker surfaces_;
     app::CheckJob job_;
     core::Transform machine_from_stock_;
 };

@@ -18,8 +18,7 @@ std::shared_ptr<const BlockState> state_with_stock(const core::Aabb& box) {
     auto brick = std::make_shared<render::StockBrick>();
     brick->mesh.bounds = box;
     auto state = std::make_shared<BlockState>();
-    render::SurfaceMaker surfaces;
-    state->scene = make_scene_setup({}, surfaces);
+    state->scene = make_scene_setup({});
     state->stock = {brick};
     return state;
 }
@@ -218,8 +217,7 @@ TEST(SceneOf, SeesTheWorkThroughAPartOfTheMachineInFrontOfIt) {
     machine_box("table", {-200, -100, -30}, {200, 100, -10});
     ViewModel model = with_stock(plate);
     auto state = std::make_shared<BlockState>(*model.block_state);
-    render::SurfaceMaker surfaces;
-    state->scene = make_scene_setup(setup, surfaces);
+    state->scene = make_scene_setup(setup);
     state->standing = core::AxisValues{};
     model.block_state = state;
     model.camera.target = plate.center();

@@ -16,10 +16,10 @@
 namespace app::viewer {
 
 std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup,
-                                                   render::SurfaceMaker& surfaces) {
+                                                   render::SurfaceMaker* surfaces) {
     auto scene = std::make_shared<SceneSetup>();
     scene->setup = setup;
-    scene->meshes = surfaces.meshes_of(setup);
+    scene->meshes = surfaces ? surfaces->meshes_of(setup) : render::setup_meshes(setup);
     for (const auto& [number, tool] : setup.tools)
         scene->tools.emplace(number, render::tool_meshes(tool));
     return scene;

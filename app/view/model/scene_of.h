@@ -23,8 +23,9 @@ struct SceneSetup {
     std::map<core::ToolNumber, std::vector<render::SharedMesh>> tools;
 };
 
+/// `surfaces`: makes the meshes; null: they are drawn in pictures that do not turn.
 std::shared_ptr<const SceneSetup> make_scene_setup(const core::Setup& setup,
-                                                   render::SurfaceMaker& surfaces);
+                                                   render::SurfaceMaker* surfaces = nullptr);
 
 /// The scene at the cursor. Cheap, because large data is shared.
 render::Scene scene_of(const ViewModel& model);

@@ -19,7 +19,7 @@
 namespace app::viewer {
 
 OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check,
-                             render::SurfaceMaker& surfaces) {
+                             render::SurfaceMaker* surfaces) {
     OpenedProgram opened;
     opened.program = job.program;
     opened.setup = job.setup;

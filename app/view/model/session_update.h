@@ -101,7 +101,7 @@ struct OpenedProgram {
 
 /// A program as it was read and its set-up completed.
 OpenedProgram opened_program(const CheckJob& job, const PreparedCheck& check,
-                             render::SurfaceMaker& surfaces);
+                             render::SurfaceMaker* surfaces = nullptr);
 
 /// New or changed rows; they replace those from `first` on.
 struct RowsUpdate {

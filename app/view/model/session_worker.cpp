@@ -100,7 +100,7 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     }
     if (is_again) begin(job, true);
     job.is_stopped = wanted.is_stopped;
-    OpenedProgram opened = opened_program(job, *check, surfaces_);
+    OpenedProgram opened = opened_program(job, *check, &surfaces_);
     scenes_.emplace_back(0, opened.scene);
     show_early(track_of(*check, opened.scene->setup, is_superseded));
     news_.files.assign(read.begin(), read.end()); // also subprograms
@@ -156,7 +156,7 @@ std::shared_ptr<const SceneSetup> WorkerSession::scene_at(size_t block) {
         if (change.block <= block) first = std::max(first, change.block);
     for (const auto& [known, scene] : scenes_)
         if (known == first) return scene;
-    scenes_.emplace_back(first, make_scene_setup(session_->setup_at(block), surfaces_));
+    scenes_.emplace_back(first, make_scene_setup(session_->setup_at(block), &surfaces_));
     return scenes_.back().second;
 }
 
