@@ -4,7 +4,7 @@
 #include <array>
 
 #include "app/setup/coverage.h"
-#include "app/setup/holder_library.h"
+#include "app/setup/holders/holder_preset.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/setup_text.h"
 #include "core/sim/setup.h"
@@ -105,13 +105,6 @@ bool is_cylinder(const std::vector<core::ConeStep>& steps) {
     return steps.size() == 1 && steps[0].lower_diameter == steps[0].upper_diameter;
 }
 
-bool are_equal(const std::vector<core::ConeStep>& a, const std::vector<core::ConeStep>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& two) {
-        return one.lower_diameter == two.lower_diameter && one.upper_diameter == two.upper_diameter
-               && one.length == two.length;
-    });
-}
-
 } // namespace
 
 std::vector<ToolSize> fields_of(ToolShape shape) {
@@ -166,9 +159,7 @@ ToolDescription reshaped(ToolDescription tool, ToolShape shape) {
 
 std::string holder_name(const ToolDescription& tool) {
     if (tool.holder.empty()) return {};
-    for (const auto& [name, cones] : shipped_holder_library())
-        if (are_equal(cones, tool.holder)) return name;
-    return {};
+    return name_of_holder(tool.holder);
 }
 
 } // namespace app

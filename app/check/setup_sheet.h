@@ -86,7 +86,7 @@ core::ToolDescription editable(core::ToolDescription tool);
 /// usual values.
 core::ToolDescription reshaped(core::ToolDescription tool, core::ToolShape shape);
 
-/// The name of the tool's holder in the shipped library; empty if it is not in it.
+/// The name of the preset that the tool's holder is; empty if it is none.
 std::string holder_name(const core::ToolDescription& tool);
 
 } // namespace app

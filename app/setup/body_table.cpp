@@ -212,7 +212,8 @@ std::string range_text(const TableReader& table, const PresetParameter& paramete
                        table.shown(parameter.greatest));
 }
 
-/// The parameters of a preset that a table states.
+} // namespace
+
 PresetValues read_preset_values(TableReader& table, const Preset& preset) {
     PresetValues values;
     for (const PresetParameter& parameter : preset.parameters) {
@@ -227,6 +228,8 @@ PresetValues read_preset_values(TableReader& table, const Preset& preset) {
     }
     return values;
 }
+
+namespace {
 
 /// Says which sizes of a body are those of its preset; empty if it states all.
 std::string preset_assumption(const std::string& body, const Preset& preset,

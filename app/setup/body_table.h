@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/presets/preset.h"
 #include "core/base/vec.h"
 #include "core/distance/body_distance.h"
 #include "core/sim/setup.h"
@@ -54,6 +55,9 @@ struct BodyContext {
 /// `mesh_unit` gives it. Relative paths are relative to the set-up. Empty after an error.
 std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
                                          const MeshSource& source);
+
+/// Reads the parameters of a preset that a table states. Refuses values out of their range.
+PresetValues read_preset_values(TableReader& table, const Preset& preset);
 
 /// Reads a body: its box, cylinder, mesh or preset, with `at` and `rotate_deg`; empty after an
 /// error.

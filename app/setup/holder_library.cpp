@@ -1,8 +1,6 @@
 #include "app/setup/holder_library.h"
 
-#include <cassert>
 #include <filesystem>
-#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -58,27 +56,12 @@ core::Result<HolderLibrary> read_library(const toml::table& parsed) {
     return library;
 }
 
-HolderLibrary shipped() {
-    HolderLibrary all;
-    for (const ShippedFile& file : shipped_holders()) {
-        auto library = read_library(toml::parse(file.text));
-        assert(library); // a test reads all of them
-        if (library) all.merge(*library);
-    }
-    return all;
-}
-
 } // namespace
 
 core::Result<HolderLibrary> read_holder_library(const std::string& path) {
     FEELER_TRY(const toml::table parsed, read_toml(path));
     auto library = read_library(parsed);
     if (!library && library.error().file.empty()) library.error().file = path;
-    return library;
-}
-
-const HolderLibrary& shipped_holder_library() {
-    static const HolderLibrary library = shipped();
     return library;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -25,9 +24,6 @@ using HolderLibrary = std::map<std::string, std::vector<core::ConeStep>>;
 ///         sizes, a duplicate name.
 core::Result<HolderLibrary> read_holder_library(const std::string& path);
 
-/// The holders shipped with Feeler.
-const HolderLibrary& shipped_holder_library();
-
 /// The names in a library that begin like `name`, else all names, for error messages.
 std::string names_like(const HolderLibrary& library, const std::string& name);
 
@@ -40,14 +36,5 @@ cones_of_outline(const std::vector<std::vector<double>>& points, gcode::LengthUn
 
 /// The cones of a profile, stacked from the lower end up.
 std::vector<core::ConeStep> cones_of_profile(const core::RevolvedProfile& profile);
-
-/// A file compiled into the program.
-struct ShippedFile {
-    const char* name;
-    const char* text;
-};
-
-/// The holder libraries of assets/holders, compiled into the program.
-std::span<const ShippedFile> shipped_holders();
 
 } // namespace app

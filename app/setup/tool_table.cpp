@@ -7,6 +7,7 @@
 
 #include "app/setup/body_table.h"
 #include "app/setup/holder_library.h"
+#include "app/setup/holders/holder_preset.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/table_reader.h"
 #include "core/geom/mesh_file.h"
@@ -167,23 +168,39 @@ namespace {
 constexpr double mesh_tolerance = 0.005; // mm by which cones may be larger than the mesh
 constexpr double same_level = 0.01;      // mm; meshes have single precision
 
+void put_holder(TableReader& table, core::Result<std::vector<core::ConeStep>> cones,
+                core::ToolDescription& tool) {
+    if (!cones) return table.refuse("holder", "= " + cones.error().message);
+    tool.holder = *std::move(cones);
+}
+
 void read_named(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
     const std::string name = table.string("holder").value_or("");
-    HolderLibrary library;
-    std::string where = "among the holders shipped with Feeler";
-    if (const auto file = table.string("holder_file")) {
-        auto read = read_holder_library((context.folder / *file).generic_string());
-        if (!read) return table.refuse_with(read.error());
-        library = *std::move(read);
-        where = "in " + *file;
-    } else {
-        library = shipped_holder_library();
-    }
-    const auto found = library.find(name);
-    if (found == library.end())
-        return table.refuse(
-            "holder", fmt::format("\"{}\" is not {}: {}", name, where, names_like(library, name)));
+    const auto file = table.string("holder_file");
+    if (!file) return put_holder(table, holder_cones(name), tool);
+    const auto library = read_holder_library((context.folder / *file).generic_string());
+    if (!library) return table.refuse_with(library.error());
+    const auto found = library->find(name);
+    if (found == library->end())
+        return table.refuse("holder", fmt::format("\"{}\" is not in {}: {}", name, *file,
+                                                  names_like(*library, name)));
     tool.holder = found->second;
+}
+
+/// Reads `{ preset = "NAME", length = 70, ... }`.
+void read_preset_holder(TableReader& table, core::ToolDescription& tool) {
+    auto sizes = table.table("holder", table.name() + " holder");
+    if (!sizes) return;
+    const auto name = sizes->string("preset");
+    if (!name) return sizes->need("preset");
+    const auto named = holder_named(*name);
+    if (!named) return sizes->refuse("preset", "= " + named.error().message);
+    PresetValues values = read_preset_values(*sizes, named->holder->preset);
+    if (values.contains("length") && named->values.contains("length"))
+        sizes->refuse("length", "is part of the name already");
+    values.insert(named->values.begin(), named->values.end());
+    sizes->finish();
+    put_holder(table, holder_cones(*named->holder, values), tool);
 }
 
 void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
@@ -221,6 +238,8 @@ void read_holder(TableReader& table, BodyContext& context, core::ToolDescription
     if (table.has("holder") && table.has("holder_mesh"))
         return table.refuse("holder_mesh", "cannot be combined with holder");
     if (table.is_text("holder")) return read_named(table, context, tool);
+    if (table.is_table("holder") && !table.has("holder_file"))
+        return read_preset_holder(table, tool);
     if (table.has("holder_file"))
         return table.refuse("holder_file", "needs holder = \"NAME\" to choose one of its holders");
     if (table.has("holder_mesh")) return read_mesh_holder(table, context, tool);

@@ -23,8 +23,8 @@ std::vector<std::string> notes_on(const core::ToolDescription& tool);
 /// Reads one `[[length_offset]]`.
 void read_length_offset(TableReader& table, SetupFile& file);
 
-/// Reads the holder of a tool: `holder` as cones, an outline or a name in a library (`holder_file`,
-/// else the holders shipped with Feeler), or `holder_mesh`.
+/// Reads the holder of a tool: `holder` as cones, an outline, the name of a preset or of a holder
+/// in `holder_file`, or a preset with its sizes; or `holder_mesh`.
 void read_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool);
 
 /// A part of a tool, given as cones (rows of three) or as an outline (rows of two).

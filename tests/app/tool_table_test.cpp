@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "app/report/text/text_report.h"
-#include "app/setup/holder_library.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "tests/support/meshes.h"
@@ -148,20 +147,6 @@ TEST(ToolTable, GivesTheControlLengthWearAndDiameter) {
     EXPECT_EQ(offset.diameter, 9.8);
     EXPECT_EQ(file->environment.tool_lengths.at(core::ToolNumber{4}), 88.0);
     EXPECT_EQ(file->environment.tool_diameters.at(core::ToolNumber{4}), 10.0);
-}
-
-TEST(HolderLibrary, HasWhatComesWithTheProgram) {
-    size_t holders = 0;
-    for (const ShippedFile& file : shipped_holders()) {
-        const auto library = read_holder_library(folder().write(file.name, file.text));
-        ASSERT_TRUE(library.has_value()) << error_text(library.error());
-        holders += library->size();
-    }
-    EXPECT_GE(holders, 40U);
-    EXPECT_EQ(shipped_holder_library().size(), holders); // no name is defined twice
-    for (const char* spindle : {"BT40", "HSK63A"})
-        for (const char* kind : {"ER32", "EM20", "SF12", "SM22"})
-            EXPECT_TRUE(shipped_holder_library().contains(std::string(spindle) + "-" + kind));
 }
 
 } // namespace

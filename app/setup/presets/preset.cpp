@@ -77,6 +77,8 @@ std::string_view name_of(PresetKind kind) {
         return "plate";
     case PresetKind::chuck:
         return "chuck";
+    case PresetKind::holder:
+        return "holder";
     }
     return {};
 }
@@ -93,6 +95,8 @@ std::string_view title_of(PresetKind kind) {
         return "Plates, tables and tombstones";
     case PresetKind::chuck:
         return "Chucks, collet blocks and dividing heads";
+    case PresetKind::holder:
+        return "Holders";
     }
     return {};
 }

@@ -14,8 +14,9 @@
 namespace app {
 
 /// What a preset is, for lists. The order is that of the lists.
-enum class PresetKind : uint8_t { vise, clamp, block, plate, chuck };
+enum class PresetKind : uint8_t { vise, clamp, block, plate, chuck, holder };
 
+/// The kinds of fixtures.
 inline constexpr std::array preset_kinds = {PresetKind::vise, PresetKind::clamp, PresetKind::block,
                                             PresetKind::plate, PresetKind::chuck};
 
@@ -43,6 +44,7 @@ class PresetSizes {
 public:
     PresetSizes(std::span<const PresetParameter> parameters, const PresetValues& stated);
 
+    bool has(std::string_view key) const { return values_.contains(key); }
     /// The value of a parameter that the preset has.
     double operator[](std::string_view key) const;
     int count(std::string_view key) const { return static_cast<int>((*this)[key]); }
@@ -51,7 +53,7 @@ private:
     PresetValues values_;
 };
 
-/// A body with sizes that can be changed, for a fixture or a part of the machine.
+/// A body with sizes that can be changed, for a fixture, a holder or a part of the machine.
 struct Preset {
     using Generator = core::Result<core::Mesh> (*)(const PresetSizes& sizes);
 
@@ -67,7 +69,7 @@ struct Preset {
     const PresetParameter* parameter(std::string_view key) const;
 };
 
-/// All presets, by kind, then by name, with numbers in names by their values.
+/// All presets of fixtures, by kind, then by name, with numbers in names by their values.
 std::span<const Preset> presets();
 
 /// Null if there is none of this name.

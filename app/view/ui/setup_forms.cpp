@@ -9,7 +9,7 @@
 #include <imgui.h>
 
 #include "app/check/setup_sheet.h"
-#include "app/setup/holder_library.h"
+#include "app/setup/holders/holder_preset.h"
 #include "app/setup/presets/preset.h"
 #include "app/setup/setup_changes.h"
 #include "app/setup/setup_text.h"
@@ -544,15 +544,36 @@ void SetupForms::draw_part(Frame& frame, const StatedBody& body) {
                    [&](const std::string& t) { return with_part_tolerance(t, *tolerance); });
 }
 
-/// The shipped holders, with numbers in names by their values.
-const std::vector<std::string>& holder_names() {
-    static const std::vector<std::string> sorted = [] {
-        std::vector<std::string> names;
-        for (const auto& [name, cones] : shipped_holder_library()) names.push_back(name);
-        std::sort(names.begin(), names.end(), is_before_in_list);
-        return names;
-    }();
-    return sorted;
+/// The holders of a kind with a taper, as a menu. Calls `choose` with the name of one.
+void draw_holder_kind(const HolderTaper& taper, HolderKind kind, const std::string& now,
+                      const std::function<void(std::string_view)>& choose) {
+    const auto is_of_kind = [&](const HolderPreset& holder) {
+        return holder.taper == &taper && holder.attachment->kind == kind;
+    };
+    const auto all = holder_presets();
+    if (std::none_of(all.begin(), all.end(), is_of_kind)) return;
+    if (!ImGui::BeginMenu(std::string(title_of(kind)).c_str())) return;
+    for (const HolderPreset& holder : all) {
+        const std::string name(holder.preset.name);
+        if (is_of_kind(holder) && ImGui::MenuItem(name.c_str(), nullptr, name == now)) choose(name);
+    }
+    ImGui::EndMenu();
+}
+
+/// The presets of holders, as menus: the taper, then the kind.
+void draw_holders(const std::string& now, const std::function<void(std::string_view)>& choose) {
+    for (const HolderTaper& taper : holder_tapers()) {
+        if (!ImGui::BeginMenu(std::string(taper.name).c_str())) continue;
+        for (const HolderKind kind : holder_kinds) draw_holder_kind(taper, kind, now, choose);
+        ImGui::EndMenu();
+    }
+}
+
+/// The name of a holder with another length, mm.
+std::string with_length(const HolderPreset& holder, double length) {
+    const std::string name(holder.preset.name);
+    const bool is_usual = length == holder.preset.parameter("length")->standard;
+    return is_usual ? name : fmt::format("{}-{}", name, core::number_text(length, 6));
 }
 
 void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
@@ -571,12 +592,35 @@ void SetupForms::draw_holder(Frame& frame, const SheetTool& shown) {
     ImGui::SetNextItemWidth(frame.px(190));
     if (ImGui::BeginCombo("##holder", now.c_str())) {
         if (ImGui::Selectable("not described", shown.tool.holder.empty())) set(std::nullopt);
-        for (const std::string& name : holder_names())
-            if (ImGui::Selectable(name.c_str(), name == now)) set(toml_text(name));
+        draw_holders(now, [&](std::string_view name) { set(toml_text(name)); });
         ImGui::EndCombo();
     }
     source_mark(frame,
                 shown.tool.holder.empty() ? SetupSource::assumed : shown.source_of("holder"));
+    if (!known.empty()) draw_holder_length(frame, shown, known);
+}
+
+void SetupForms::draw_holder_length(Frame& frame, const SheetTool& shown, const std::string& name) {
+    ViewModel& model = frame.model;
+    const auto named = holder_named(name);
+    if (!named) return;
+    field_name(frame, "Holder's length");
+    const auto typed =
+        fields_.length(frame, "##holder_length", core::total_length(shown.tool.holder));
+    unit_label(frame, length_unit(model));
+    tip(frame, "From the gauge line to the lower face of the holder");
+    if (!typed) return;
+    const auto cones = holder_cones(*named->holder, {{"length", *typed}});
+    if (!cones) {
+        model.workspace.refusal = cones.error().message;
+        return;
+    }
+    const core::ToolNumber number = shown.tool.number;
+    edit_setup(model, fmt::format("Change the holder of T{}", core::value_of(number)),
+               [&](const std::string& t) {
+                   return with_tool_value(t, number, "holder",
+                                          toml_text(with_length(*named->holder, *typed)));
+               });
 }
 
 /// The tools of the library, to exchange a tool for one of them.

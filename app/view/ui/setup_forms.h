@@ -50,6 +50,7 @@ private:
     void draw_tool(Frame& frame, const SheetTool& shown);
     void draw_tool_sizes(Frame& frame, const SheetTool& shown);
     void draw_holder(Frame& frame, const SheetTool& shown);
+    void draw_holder_length(Frame& frame, const SheetTool& shown, const std::string& name);
     void draw_library(Frame& frame, core::ToolNumber number);
     void draw_allowance(Frame& frame);
     void draw_pair_allowances(Frame& frame);
