@@ -8,6 +8,12 @@
 namespace core {
 namespace {
 
+/// Whether a machine body moves against the work: it is not on the table side, nor on the base if
+/// that carries the work.
+bool moves_against_work(const Machine& machine, const MachineBody& body) {
+    return body.link != machine.table && !is_on_table_side(machine, body.link);
+}
+
 /// The play of a part against the tip. A shank that is pulled out of the holder becomes longer; one
 /// that is pushed in disappears in it.
 Play play_of(PartKind kind, const ToolAssembly& tool) {
@@ -79,7 +85,7 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
     for (const ToolPart& part : tool.parts) bodies.push_back(moving_part(setup, tool, part));
     if (tool.reach_is_assumed) return bodies;
     for (size_t i = 0; i < setup.machine.bodies.size(); ++i)
-        if (!is_on_table_side(setup.machine, setup.machine.bodies[i].link))
+        if (moves_against_work(setup.machine, setup.machine.bodies[i]))
             bodies.push_back(moving_machine_body(setup, tool, i));
     return bodies;
 }
