@@ -12,6 +12,7 @@
 #include "app/setup/control_table.h"
 #include "app/setup/coverage.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/machine_table.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/toml_file.h"
@@ -370,10 +371,23 @@ void read_machine_file(const std::string& path, SetupFile& file,
     if (error && error->file.empty()) error->file = path;
 }
 
+/// Reads the machine of a preset. Returns the letters of axes that it has and that are not
+/// described.
+std::string read_named_machine(TableReader& table, SetupFile& file,
+                               std::optional<core::Error>& error) {
+    const auto preset = read_machine_preset(table);
+    if (!preset) return {};
+    TableReader reader(preset->machine, "machine", error);
+    file.has_axes = read_machine(reader, file.setup.machine, {{}, file.assumptions});
+    file.assumptions.insert(file.assumptions.end(), preset->notes.begin(), preset->notes.end());
+    return preset->others;
+}
+
 void read_machine_table(TableReader& table, BodyContext& context,
                         std::optional<core::Error>& error) {
     core::Machine& machine = context.file.setup.machine;
-    std::string others; // axes whose places nobody has stated yet
+    // Axes whose places nobody has stated yet.
+    std::string others = read_named_machine(table, context.file, error);
     if (const auto name = table.string("file")) {
         const std::string path = (context.folder / *name).generic_string();
         if (is_autodesk_machine(path))

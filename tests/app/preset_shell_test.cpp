@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/setup/holders/holder_preset.h"
+#include "app/setup/machines/machine_preset.h"
 #include "app/setup/presets/preset.h"
 #include "core/base/file_reads.h"
 #include "core/base/text.h"
@@ -246,6 +248,98 @@ TEST(PresetCheck, TakesEveryPresetAsFixture) {
     for (const std::string& assumption : checked.assumptions)
         if (assumption.find("-x: all sizes are those of the preset") != std::string::npos) ++told;
     EXPECT_EQ(told, app::presets().size());
+}
+
+// --- machines ---
+
+/// A set-up with a machine, and a small stock below its travel.
+std::string setup_on(const app::MachinePreset& machine) {
+    const auto at = [&](const char* key) { return *machine.size(key)->standard; };
+    return fmt::format("[machine]\npreset = \"{}\"\n[offsets]\nG54 = {{ X = {}, Y = {}, Z = {} }}\n"
+                       "[stock]\nbox = [[-5, -5, -10], [5, 5, 0]]\n[[tool]]\nnumber = 1\n"
+                       "shape = \"flat\"\ndiameter = 6\nflute_length = 20\nstick_out = 25\n",
+                       machine.name, (at("x_min") + at("x_max")) / 2,
+                       (at("y_min") + at("y_max")) / 2, at("z_min") - 60);
+}
+
+TEST(MachinesInChecks, ReachTheirTravelAndNoMore) {
+    const test_support::ScopedFolder folder;
+    for (const app::MachinePreset& machine : app::machine_presets()) {
+        const auto at = [&](const char* key) { return *machine.size(key)->standard; };
+        const std::string setup = folder.write("s.toml", setup_on(machine));
+        const std::string within = folder.write(
+            "in.ngc", fmt::format("G21 G90 G17 G49 T1 M6\nG53 G0 Z{}\nG53 G0 X{} Y{}\nG53 G0 X{} "
+                                  "Y{}\nG53 G0 X0 Y0 Z0\nM2\n",
+                                  at("z_max"), at("x_min"), at("y_min"), at("x_max"), at("y_max")));
+        const Checked good = check_files(within, setup, {"--dialect", "linuxcnc"});
+        EXPECT_EQ(good.errors(), "") << machine.name << good.err;
+        for (const char* move : {"X{x}", "Y{y}", "Z{z}"}) {
+            const std::string beyond = folder.write(
+                "out.ngc", "G21 G90 G17 G49 T1 M6\nG53 G0 "
+                               + fmt::format(fmt::runtime(move), fmt::arg("x", at("x_min") - 0.01),
+                                             fmt::arg("y", at("y_max") + 0.01),
+                                             fmt::arg("z", at("z_max") + 0.01))
+                               + "\nM2\n");
+            EXPECT_EQ(check_files(beyond, setup, {"--dialect", "linuxcnc"}).errors(),
+                      "over-travel 2")
+                << machine.name << move;
+        }
+    }
+}
+
+TEST(MachinesInChecks, LetTheStockLieOnTheBedOfARouter) {
+    const test_support::ScopedFolder folder;
+    const std::string setup = folder.write(
+        "s.toml",
+        "[machine]\npreset = \"generic-router\"\n[offsets]\nG54 = { X = -300, Y = -450, Z = "
+        "-150 }\n[stock]\nbox = [[-50, -50, -10], [50, 50, 0]]\n[[tool]]\nnumber = 1\n"
+        "shape = \"flat\"\ndiameter = 6\nflute_length = 60\nstick_out = 80\n");
+    const std::string program = folder.write(
+        "p.ngc",
+        "G21 G90 G17 G54 T1 M6\nG53 G0 Z0\nG43 H1 G0 X-40 Y0\nM3 S9000\nG0 Z5\nG1 Z-5 F300\nX40\n"
+        "G0 Z5\nG0 X70\nG0 Z-5\nG1 Z-10.5\nG53 G0 Z0\nM2\n");
+    const Checked checked = check_files(program, setup, {"--dialect", "linuxcnc"});
+    EXPECT_EQ(checked.errors(), "collision 11, collision 12"); // into the bed, and out of it
+}
+
+TEST(MachinesInChecks, StopWhereTheNoseMeetsTheTable) {
+    const test_support::ScopedFolder folder;
+    const std::string setup = folder.write(
+        "s.toml",
+        "[machine]\npreset = \"haas-vf-2\"\nnose_to_table = 500\nz_min = -600\n[offsets]\n"
+        "G54 = { X = -700, Y = -203, Z = -500 }\n[stock]\nbox = [[-5, -5, 0], [5, 5, "
+        "10]]\n[[tool]]\nnumber = 1\nshape = \"flat\"\ndiameter = 6\nflute_length = 5\n"
+        "stick_out = 6\n");
+    const auto errors = [&](double z) {
+        const std::string program = folder.write(
+            "p.ngc", fmt::format("G21 G90 G17 G49 T1 M6\nG53 G0 X-300 Y-203\nG53 G0 Z{}\nM2\n", z));
+        return check_files(program, setup, {"--dialect", "linuxcnc"}).errors();
+    };
+    EXPECT_EQ(errors(-490), "");
+    EXPECT_THAT(errors(-493.5), testing::AnyOf("near-miss 3", "undecided 3")); // 0.5 mm
+    EXPECT_THAT(errors(-501), HasSubstr("collision 3"));
+}
+
+TEST(MachinesInChecks, AreUndecidedWhereTheyTurnAboutAnUnknownCentre) {
+    const test_support::ScopedFolder folder;
+    for (const app::MachinePreset& machine : app::machine_presets()) {
+        if (machine.rotary == 0) continue;
+        const std::string program = folder.write(
+            "p.ngc", fmt::format("G21 G90 G17 G49 T1 M6\nG0 {}20\nM2\n", machine.rotary));
+        const std::string open = folder.write("s.toml", setup_on(machine));
+        EXPECT_THAT(check_files(program, open, {"--dialect", "linuxcnc"}).errors(),
+                    HasSubstr("undecided 2"))
+            << machine.name;
+        std::string lines;
+        for (const char* key : {"centre_x", "centre_y", "centre_z", "pivot_length"})
+            if (machine.size(key)) lines += fmt::format("{} = 150\n", key);
+        std::string stated = setup_on(machine);
+        stated.insert(stated.find("[offsets]"), lines);
+        EXPECT_EQ(check_files(program, folder.write("t.toml", stated), {"--dialect", "linuxcnc"})
+                      .errors(),
+                  "")
+            << machine.name;
+    }
 }
 
 } // namespace
