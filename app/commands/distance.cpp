@@ -150,7 +150,7 @@ core::Result<NamedBody> preset_body(const std::string& argument, size_t colon) {
 core::Error mesh_error(core::Error error, const std::string& argument) {
     if (error.file.empty()) error.file = argument;
     const std::string name = argument.substr(0, argument.find(','));
-    if (find_preset(name))
+    if (named_preset(name))
         error.message += fmt::format("; for the preset of this name, write preset:{}", argument);
     return error;
 }

@@ -89,6 +89,69 @@ TEST(PresetsCommand, RefusesMistakes) {
     expect_refused({"vise-6", "-o", "/no/such/folder/a.stl"}, "/no/such/folder/a.stl");
 }
 
+TEST(PresetsCommand, ListsHoldersAsATableAndMachinesByKind) {
+    const std::string list = feeler({"presets"}).out;
+    for (const app::HolderTaper& taper : app::holder_tapers())
+        EXPECT_THAT(list, HasSubstr(fmt::format("\n  {:8}  ", taper.name)));
+    for (const app::HolderAttachment& attachment : app::holder_attachments())
+        EXPECT_THAT(list, testing::ContainsRegex("[ :]" + attachment.name + "[ \n]"));
+    for (const app::MachinePreset& machine : app::machine_presets())
+        EXPECT_THAT(list, HasSubstr(fmt::format("\n    {} ", machine.name)));
+    EXPECT_LT(std::count(list.begin(), list.end(), '\n'), 130);
+    const json all = json::parse(feeler({"presets", "--format", "json"}).out);
+    EXPECT_EQ(all["holders"].size(), app::holder_presets().size());
+    EXPECT_EQ(all["machines"].size(), app::machine_presets().size());
+}
+
+TEST(PresetsCommand, ShowsAHolderAndWritesItsMesh) {
+    const test_support::ScopedFolder folder;
+    const test_support::Ran text = feeler({"presets", "CAT40-ER16-85", "--set", "nut_diameter=30"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_THAT(text.out,
+                HasSubstr("holder = { preset = \"CAT40-ER16-85\", nut_diameter = 30 }\n"));
+    EXPECT_THAT(text.out, HasSubstr("Z 0 to 85\n"));
+    const std::string path = folder / "holder.stl";
+    EXPECT_EQ(feeler({"presets", "BT40-ER32-100", "-o", path}).status, 0);
+    const auto mesh = core::read_mesh(path);
+    ASSERT_TRUE(mesh);
+    EXPECT_NEAR(mesh->mesh.bounds().max.z, 100, 1e-4);
+    EXPECT_GE(mesh->mesh.bounds().max.x, 31.5 - 1e-4);
+}
+
+TEST(PresetsCommand, ShowsAMachineAndWritesItsFile) {
+    const test_support::ScopedFolder folder;
+    const test_support::Ran text = feeler({"presets", "haas-vf-2", "--set", "x_min=-700"});
+    EXPECT_EQ(text.status, 0);
+    EXPECT_THAT(text.out, HasSubstr("-700 mm       stated   lower limit of X\n"));
+    EXPECT_THAT(text.out, HasSubstr("    preset = \"haas-vf-2\"\n    x_min = -700\n"));
+    const json one = json::parse(feeler({"presets", "haas-vf-2", "--format", "json"}).out);
+    EXPECT_EQ(one["kind"], "vertical");
+    EXPECT_EQ(one["sizes"][0]["origin"], "source");
+    EXPECT_TRUE(one["sizes"][2]["value"].is_null());
+    const std::string path = folder / "vf2.toml";
+    EXPECT_EQ(feeler({"presets", "haas-vf-2", "-o", path}).status, 0);
+    EXPECT_EQ(core::file_bytes(path).value(), one["file"].get<std::string>());
+}
+
+TEST(PresetsCommand, RefusesMistakesWithHoldersAndMachines) {
+    const auto error = [](std::vector<std::string> words) {
+        words.insert(words.begin(), "presets");
+        const test_support::Ran run = feeler(words);
+        EXPECT_EQ(run.status, 2);
+        return run.err;
+    };
+    EXPECT_THAT(error({"BT40-ER33"}), HasSubstr("did you mean \"BT40-ER32\"?"));
+    EXPECT_THAT(error({"ISO20-ER40"}), HasSubstr("ER40 is too large for ISO20"));
+    EXPECT_THAT(error({"haas-vf-3"}), HasSubstr("did you mean \"haas-vf-2\"?"));
+    EXPECT_THAT(error({"haas-vf-2", "-o", "x.stl"}), HasSubstr("is a machine and has no mesh"));
+    EXPECT_THAT(error({"haas-vf-2", "--set", "x_mim=5"}), HasSubstr("did you mean x_min?"));
+    EXPECT_THAT(error({"haas-vf-2", "--set", "x_min=5"}), HasSubstr("x_min must be below x_max"));
+    EXPECT_THAT(error({"haas-vf-2", "--set", "x_min=-5", "--set", "x_min=-6"}),
+                HasSubstr("x_min is given twice"));
+    EXPECT_THAT(error({"BT40-ER32-80", "--set", "length=90"}),
+                HasSubstr("length is part of the name already"));
+}
+
 /// The row of a size in the manual, for the presets with the same generator.
 std::string manual_row(const std::vector<const app::Preset*>& presets, size_t parameter) {
     const app::PresetParameter& first = presets[0]->parameters[parameter];
@@ -167,6 +230,9 @@ TEST(PresetDistance, RefusesMistakes) {
     EXPECT_THAT(error("preset:vise-6,opening"), HasSubstr("write KEY=VALUE"));
     EXPECT_THAT(error("preset:vise-6,opening=900"), HasSubstr("opening must be from 0.5 to 230"));
     EXPECT_THAT(error("vise-6"), HasSubstr("write preset:vise-6"));
+    EXPECT_THAT(error("preset:haas-vf-2"), HasSubstr("haas-vf-2 is a machine"));
+    EXPECT_THAT(error("preset:BT40-ER32-80,length=90"), HasSubstr("length is given twice"));
+    EXPECT_THAT(error("BT40-ER32-100"), HasSubstr("write preset:BT40-ER32-100"));
     EXPECT_THAT(error("vice-6"), Not(HasSubstr("preset:")));
 }
 
@@ -248,6 +314,30 @@ TEST(PresetCheck, TakesEveryPresetAsFixture) {
     for (const std::string& assumption : checked.assumptions)
         if (assumption.find("-x: all sizes are those of the preset") != std::string::npos) ++told;
     EXPECT_EQ(told, app::presets().size());
+}
+
+TEST(PresetCheck, TakesHoldersAndCountsTheirClearance) {
+    const test_support::ScopedFolder folder;
+    const std::string program = folder.write(
+        "p.ngc",
+        "G21 G90 G17 G49 G61 T1 M6\nG53 G0 Z300\nM3 S900\nG53 G0 X-100 Y0\nG53 G0 Z30\nM2\n");
+    for (size_t i = 0; i < app::holder_presets().size(); i += 5) {
+        const app::HolderPreset& holder = app::holder_presets()[i];
+        const double length = holder.preset.parameter("length")->standard;
+        const double lowest = 30 - length; // of the holder, with its gauge line at 30
+        const std::string setup = folder.write(
+            "s.toml",
+            fmt::format(
+                "[program]\nstart = {{ X = 0, Y = 0, Z = 300 }}\n[offsets]\nG54 = {{ Z = {} "
+                "}}\n[stock]\nbox = [[0, -10, -40], [10, 10, -30]]\n[[fixture]]\nname = "
+                "\"plate\"\nbox = [[-200, -100, -20], [-50, 100, -10]]\n[[tool]]\nnumber = "
+                "1\nshape = \"flat\"\ndiameter = 4\nflute_length = 4\nstick_out = 5\n"
+                "holder = \"{}\"\n",
+                lowest, holder.preset.name));
+        const Checked checked = check_files(program, setup, {"--dialect", "linuxcnc"});
+        const PairLine pair = checked.at_line(5).pair("holder plate");
+        expect_encloses(pair, 10.0, 1e-4);
+    }
 }
 
 // --- machines ---

@@ -6,7 +6,9 @@
 
 namespace app {
 
-/// The list of all presets, by kind.
+struct MachinePreset;
+
+/// The list of all presets: fixtures, holders and machines, by kind.
 std::string presets_text();
 /// The same with their parameters, as JSON.
 std::string presets_json();
@@ -17,5 +19,12 @@ std::string presets_json();
 /// Errors: those of preset_mesh.
 core::Result<std::string> preset_text(const Preset& preset, const PresetValues& values);
 core::Result<std::string> preset_json(const Preset& preset, const PresetValues& values);
+
+/// A machine with these sizes: where they come from, and how a set-up names it. The JSON also has
+/// the machine file.
+///
+/// Errors: those of machine_text.
+core::Result<std::string> machine_report(const MachinePreset& machine, const PresetValues& values);
+core::Result<std::string> machine_json(const MachinePreset& machine, const PresetValues& values);
 
 } // namespace app

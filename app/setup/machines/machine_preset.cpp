@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/setup/machines/machine_data.h"
+#include "app/setup/presets/preset_lists.h"
 #include "core/base/text.h"
 
 namespace app {
@@ -198,6 +199,12 @@ std::vector<MachinePreset> sorted_machines() {
 
 } // namespace
 
+std::string_view name_of(MachineKind kind) {
+    constexpr std::string_view names[] = {"router",     "bench-mill", "knee-mill",  "vertical",
+                                          "horizontal", "trunnion",   "head-table", "head-head"};
+    return names[static_cast<size_t>(kind)];
+}
+
 std::string_view title_of(MachineKind kind) {
     constexpr std::string_view titles[] = {"Routers",
                                            "Bench mills",
@@ -239,8 +246,10 @@ std::string unknown_machine_text(std::string_view name) {
     for (const MachinePreset& machine : machine_presets()) names.emplace_back(machine.name);
     const std::string nearest = core::nearest_name(core::lower_case(name), names);
     const bool is_near = core::edit_distance(core::lower_case(name), nearest) * 2 <= name.size();
-    return fmt::format("there is no machine \"{}\"{}: \"feeler presets\" lists all", name,
-                       is_near ? fmt::format("; did you mean \"{}\"?", nearest) : std::string());
+    return is_near ? fmt::format("there is no machine \"{}\"; did you mean \"{}\"? \"feeler "
+                                 "presets\" lists all",
+                                 name, nearest)
+                   : fmt::format("there is no machine \"{}\": \"feeler presets\" lists all", name);
 }
 
 std::string range_text(const MachineSize& size) {
@@ -250,6 +259,19 @@ std::string range_text(const MachineSize& size) {
 
 bool fits(const MachineSize& size, double value) {
     return value >= size.least && value <= size.greatest;
+}
+
+core::Result<void> check_machine_value(const MachinePreset& preset, std::string_view key,
+                                       double value) {
+    const MachineSize* const size = preset.size(key);
+    if (!size) {
+        std::vector<std::string> keys;
+        for (const MachineSize& each : preset.sizes) keys.emplace_back(each.key);
+        return unfit_sizes(fmt::format("{} has no size {}; did you mean {}?", preset.name, key,
+                                       core::nearest_name(key, keys)));
+    }
+    if (fits(*size, value)) return {};
+    return unfit_sizes(fmt::format("{} must be {}", key, range_text(*size)));
 }
 
 } // namespace app

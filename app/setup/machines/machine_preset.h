@@ -30,7 +30,9 @@ inline constexpr std::array machine_kinds = {MachineKind::router,     MachineKin
                                              MachineKind::horizontal, MachineKind::trunnion,
                                              MachineKind::head_table, MachineKind::head_head};
 
-/// "Small routers", a heading.
+/// "knee-mill".
+std::string_view name_of(MachineKind kind);
+/// "Knee mills", a heading.
 std::string_view title_of(MachineKind kind);
 
 enum class MachineUnit : uint8_t {
@@ -87,6 +89,12 @@ std::string range_text(const MachineSize& size);
 /// Whether a value can be that of a size.
 bool fits(const MachineSize& size, double value);
 
+/// Errors: invalid_value: a key that the preset does not have, with the nearest one, or a value
+/// that
+///         does not fit, with the range.
+core::Result<void> check_machine_value(const MachinePreset& preset, std::string_view key,
+                                       double value);
+
 /// A machine as a file states it.
 struct MachineText {
     std::string toml;               // a machine file, with comments
@@ -97,8 +105,8 @@ struct MachineText {
 /// The machine file of a preset, in mm, with some sizes as stated.
 ///
 /// Bodies and rotary axes are there only if all the sizes that they need are known.
-/// Errors: invalid_value: a key that the preset does not have, a value that does not fit, limits
-///         that contradict each other, or only some of the sizes of a rotary axis.
+/// Errors: those of check_machine_value; invalid_value: limits that contradict each other, or only
+///         some of the sizes of a rotary axis.
 core::Result<MachineText> machine_text(const MachinePreset& preset,
                                        const PresetValues& stated = {});
 

@@ -117,12 +117,9 @@ core::Result<bool> MachineWriter::is_described(Keys keys) const {
 }
 
 core::Result<void> MachineWriter::check() const {
-    for (const auto& [key, stated] : stated_) {
-        const MachineSize* const size = preset_.size(key);
-        if (!size) return unfit_sizes(fmt::format("{} has no size {}", preset_.name, key));
-        if (!fits(*size, stated))
-            return unfit_sizes(fmt::format("{} must be {}", key, range_text(*size)));
-    }
+    for (const auto& [key, stated] : stated_)
+        if (const auto checked = check_machine_value(preset_, key, stated); !checked)
+            return checked;
     for (const char* axis : {"x", "y", "z", "tilt", "rotary"})
         if (const auto checked = check_range(axis); !checked) return checked;
     return {};
