@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "app/setup/body_table.h"
+#include "app/setup/machines/machine_preset.h"
 #include "app/setup/presets/preset.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/setup_text.h"
@@ -553,6 +554,59 @@ Result<std::string> with_known(const std::string& text, std::string_view word) {
     if (!words || left.size() == words->size()) return text;
     if (left.empty()) return toml_without(text, "assumed");
     return toml_with_value(text, "assumed", fmt::format("[{}]", fmt::join(left, ", ")));
+}
+
+namespace {
+
+/// The preset of the machine; null if it has none that is known.
+const MachinePreset* machine_preset_of(const std::string& text) {
+    const toml::table root = root_of(text);
+    return find_machine_preset(root["machine"]["preset"].value_or(std::string()));
+}
+
+/// Removes the keys of the sizes of the machine's preset, apart from those that another one has.
+void drop_machine_values(Changes& changes, const std::string& text, const MachinePreset* other) {
+    const MachinePreset* const preset = machine_preset_of(text);
+    if (!preset) return;
+    for (const MachineSize& size : preset->sizes)
+        if (!other || !other->size(size.key)) changes.erase({"machine", std::string(size.key)});
+}
+
+} // namespace
+
+Result<std::string> with_machine_file(const std::string& text, const std::string& file) {
+    Changes changes(text);
+    drop_machine_values(changes, text, nullptr);
+    changes.erase({"machine", "preset"});
+    if (file.empty())
+        changes.erase({"machine", "file"});
+    else
+        changes.set({"machine", "file"}, toml_text(file));
+    return std::move(changes).text();
+}
+
+Result<std::string> with_machine_preset(const std::string& text, std::string_view name) {
+    const MachinePreset* const preset = find_machine_preset(name);
+    if (!preset) return core::fail(ErrorCode::invalid_value, unknown_machine_text(name));
+    Changes changes(text);
+    drop_machine_values(changes, text, preset);
+    changes.erase({"machine", "file"});
+    changes.set({"machine", "preset"}, toml_text(name));
+    return std::move(changes).text();
+}
+
+Result<std::string> with_machine_value(const std::string& text, std::string_view key,
+                                       std::optional<double> value) {
+    const MachinePreset* const preset = machine_preset_of(text);
+    if (!preset) return core::fail(ErrorCode::invalid_value, "the machine has no preset");
+    const TomlPath path{"machine", std::string(key)};
+    const MachineSize* const size = preset->size(key);
+    if (!value && size) return toml_without(text, path);
+    if (const auto valid = check_machine_value(*preset, key, value.value_or(0.0)); !valid)
+        return tl::unexpected(valid.error());
+    return toml_with_value(text, path,
+                           is_angle(size->unit) ? setup_number(*value)
+                                                : setup_length(*value, unit_of_setup(text)));
 }
 
 } // namespace app

@@ -143,4 +143,16 @@ core::Result<std::string> with_new_pair_allowance(const std::string& text,
 /// Removes a word from `assumed`: the value is known.
 core::Result<std::string> with_known(const std::string& text, std::string_view word);
 
+/// Takes the machine from a file, in place of a preset with its sizes.
+core::Result<std::string> with_machine_file(const std::string& text, const std::string& file);
+/// Takes the machine from a preset, in place of a file. Sizes that the new preset has too stay.
+///
+/// Errors: also invalid_value for a name that no machine has.
+core::Result<std::string> with_machine_preset(const std::string& text, std::string_view name);
+/// States a size of the machine's preset, in mm or degrees, or leaves it to the preset.
+///
+/// Errors: also invalid_value if the set-up names no preset, or the value does not fit it.
+core::Result<std::string> with_machine_value(const std::string& text, std::string_view key,
+                                             std::optional<double> value);
+
 } // namespace app

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/setup/machines/machine_preset.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/toml_file.h"
 #include "core/sim/tool_description.h"
@@ -22,6 +23,7 @@ struct StatedNumbers {
     std::optional<core::Aabb> box(const toml::node* node) const;
     std::optional<StatedBody::Cylinder> cylinder(const toml::node* node) const;
     PresetValues preset_values(const toml::table& table, const Preset& preset) const;
+    PresetValues machine_values(const toml::table& table, const MachinePreset& machine) const;
     StatedBody body(const toml::table& table) const;
 };
 
@@ -61,6 +63,19 @@ std::optional<StatedBody::Cylinder> StatedNumbers::cylinder(const toml::node* no
     return StatedBody::Cylinder{
         length(table->get("radius")).value_or(0.0), length(table->get("height")).value_or(0.0),
         axis.size() == 1 && axis[0] >= 'X' && axis[0] <= 'Z' ? axis[0] - 'X' : 2};
+}
+
+PresetValues StatedNumbers::machine_values(const toml::table& table,
+                                           const MachinePreset& machine) const {
+    PresetValues values;
+    for (const MachineSize& size : machine.sizes) {
+        const toml::node* node = table.get(size.key);
+        const auto value = !is_angle(size.unit) ? length(node)
+                           : node               ? node->value<double>()
+                                                : std::nullopt;
+        if (value) values.emplace(size.key, *value);
+    }
+    return values;
 }
 
 PresetValues StatedNumbers::preset_values(const toml::table& table, const Preset& preset) const {
@@ -181,6 +196,9 @@ StatedSetup stated_in(const std::string& text) {
     });
     stated.machine_file = (*root)["machine"]["file"].value_or(std::string());
     stated.ini = (*root)["program"]["ini"].value_or(std::string());
+    stated.machine_preset = (*root)["machine"]["preset"].value_or(std::string());
+    if (const MachinePreset* machine = find_machine_preset(stated.machine_preset))
+        stated.machine_values = numbers.machine_values(*(*root)["machine"].as_table(), *machine);
     stated.tool_library = (*root)["tool_library"].value_or(std::string());
     stated.has_no_fixtures = (*root)["fixtures"].value<std::string>() == "none";
     return stated;

@@ -58,7 +58,8 @@ struct StatedSetup {
     std::vector<std::string> offsets;          // names as written
     std::map<std::string, core::Vec3> origins; // of the offsets; 0 for an axis that is not stated
     std::vector<StatedAllowance> allowances;   // without the general one
-    std::string machine_file, ini, tool_library;
+    std::string machine_file, machine_preset, ini, tool_library;
+    PresetValues machine_values;                           // stated sizes of that preset, mm or deg
     bool has_no_fixtures = false;                          // fixtures = "none"
     gcode::LengthUnit length_unit = gcode::LengthUnit::mm; // of the text
 

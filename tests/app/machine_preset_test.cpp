@@ -10,7 +10,9 @@
 #include "app/report/text/text_report.h"
 #include "app/setup/machines/machine_preset.h"
 #include "app/setup/program_settings.h"
+#include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/stated_setup.h"
 #include "core/geom/mesh.h"
 #include "core/motion/event.h"
 #include "tests/support/scoped_folder.h"
@@ -361,6 +363,54 @@ TEST(MachinePresets, WithAnySizesAreAMachineOrAnError) {
         }
     EXPECT_GT(made, 500);
     EXPECT_GT(refused, 100);
+}
+
+// --- what a text states, and its edits ---
+
+const std::string text = R"(length_unit = "inch"
+[machine]          # in the corner
+preset = "haas-vf-2"  # the old one
+x_min = -30.5      # measured
+head_depth = 12
+)";
+
+TEST(StatedMachine, IsRead) {
+    const app::StatedSetup stated = app::stated_in(text);
+    EXPECT_EQ(stated.machine_preset, "haas-vf-2");
+    EXPECT_EQ(stated.machine_values,
+              (app::PresetValues{{"x_min", -30.5 * 25.4}, {"head_depth", 12 * 25.4}}));
+    EXPECT_EQ(app::stated_in("[machine]\npreset = \"no-such\"\nx_min = 3\n").machine_values.size(),
+              0u);
+    EXPECT_EQ(app::stated_in("machine = 5\n").machine_preset, "");
+}
+
+TEST(StatedMachine, IsReplacedWithTheSizesThatBothHave) {
+    const std::string router = app::with_machine_preset(text, "onefinity").value();
+    EXPECT_THAT(router, HasSubstr("preset = \"onefinity\"  # the old one\nx_min = -30.5      # "
+                                  "measured\n"));
+    EXPECT_THAT(router, testing::Not(HasSubstr("head_depth")));
+    EXPECT_EQ(error_of(router), "");
+    const std::string file = app::with_machine_file(text, "m.toml").value();
+    EXPECT_THAT(file, HasSubstr("file = \"m.toml\""));
+    EXPECT_THAT(file, testing::Not(HasSubstr("x_min")));
+    EXPECT_THAT(
+        app::with_machine_preset(file, "haas-vf-4").value(),
+        testing::AllOf(HasSubstr("preset = \"haas-vf-4\""), testing::Not(HasSubstr("m.toml"))));
+    EXPECT_THAT(app::with_machine_preset("", "haas-vf-2").value(),
+                HasSubstr("[machine]\npreset = \"haas-vf-2\"\n"));
+    EXPECT_FALSE(app::with_machine_preset(text, "haas-vf-3"));
+}
+
+TEST(StatedMachine, TakesValuesInTheUnitOfTheText) {
+    const std::string wide = app::with_machine_value(text, "nose_diameter", 127.0).value();
+    EXPECT_THAT(wide, HasSubstr("nose_diameter = 5\n"));
+    EXPECT_THAT(app::with_machine_value(wide, "nose_diameter", std::nullopt).value(),
+                testing::Not(HasSubstr("nose_diameter")));
+    EXPECT_THAT(app::with_machine_value(text, "x_min", -800.1).value(),
+                HasSubstr("x_min = -31.5      # measured\n"));
+    EXPECT_FALSE(app::with_machine_value(text, "x_min", 1e9));
+    EXPECT_FALSE(app::with_machine_value(text, "jaw", 5.0));
+    EXPECT_FALSE(app::with_machine_value("", "x_min", 5.0));
 }
 
 } // namespace

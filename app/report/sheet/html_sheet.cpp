@@ -52,6 +52,8 @@ std::string release_html(const CheckRun& run) {
 
 std::string machine_text(const CheckRun& run, const SheetContent& content) {
     if (!content.stated.machine_file.empty()) return last_part(content.stated.machine_file);
+    if (!content.stated.machine_preset.empty())
+        return fmt::format("preset {}", content.stated.machine_preset);
     if (content.sheet.has_machine) return "axes as in the set-up";
     return run.setup.machine.bodies.empty() ? "not described" : "bodies as in the set-up";
 }
