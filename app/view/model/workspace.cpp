@@ -64,6 +64,7 @@ void add_machine_rows(const Workspace& workspace, const SetupSheet& sheet,
     if (sheet.has_machine) row.detail = "in the set-up";
     if (const std::string& shown = file.empty() ? ini : file; !shown.empty())
         row.detail = std::filesystem::path(shown).filename().generic_string();
+    if (!workspace.stated->machine_preset.empty()) row.detail = workspace.stated->machine_preset;
     rows.push_back(std::move(row));
 }
 
@@ -349,8 +350,7 @@ void use_tool_library(ViewModel& model, const std::string& file) {
 void use_machine(ViewModel& model, const std::string& file) {
     const std::string path = path_in_setup(model, file);
     if (edit_setup(model, "Change the machine", [&](const std::string& text) {
-            return file.empty() ? toml_without(text, {"machine", "file"})
-                                : toml_with_value(text, {"machine", "file"}, toml_text(path));
+            return with_machine_file(text, file.empty() ? std::string() : path);
         }))
         model.workspace.selected = item(Kind::machine);
 }

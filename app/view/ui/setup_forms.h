@@ -11,6 +11,7 @@
 #include "core/base/ids.h"
 
 namespace app {
+struct MachinePreset;
 struct SetupSheet;
 struct SheetOffset;
 struct SheetTool;
@@ -30,6 +31,9 @@ public:
 private:
     void draw_item(Frame& frame);
     void draw_item_head(Frame& frame, const std::string& title, bool can_copy, bool can_delete);
+    /// Limits and sizes that the set-up states, or else all others.
+    void draw_machine_sizes(Frame& frame, const MachinePreset& machine, bool first);
+    void draw_machine_preset(Frame& frame);
     void draw_machine(Frame& frame);
     void draw_offset(Frame& frame, const SheetOffset& offset);
     void draw_stock(Frame& frame);
