@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Makes the pictures of docs/manual/presets.md: docs/images/presets/NAME.png.
+"""Makes the pictures of presets in the manual: docs/images/presets/NAME.png.
 
     presets.py FEELER [NAME...]     FEELER: the program; without names, all pictures
 
-Each shows a preset with a part, and arrows at its origin. `feeler shot` takes the picture; it is stored with at most
-128 colours, so that all of them together stay small.
+Each shows a fixture with a part, a holder with a tool, or a machine with a part, and arrows at the origin. `feeler
+shot` takes the picture; it is stored with at most 128 colours, so that all of them together stay small.
 """
 import collections
+import json
 import pathlib
 import struct
 import subprocess
@@ -16,6 +17,8 @@ import zlib
 
 FOLDER = pathlib.Path(__file__).parent / "presets"
 SIZE = (400, 300)
+HOLDER_SIZE = (200, 200)
+MACHINE_SIZE = (260, 200)
 COLOURS = 128
 
 # The part in the picture, as the shape of [stock], in the frame of the preset.
@@ -38,6 +41,10 @@ PARTS = {
     "dividing-head": 'cylinder = { radius = 20, height = 110, axis = "X" }',
 }
 
+# One of each taper, one of each attachment.
+HOLDERS = ("BT30-ER16", "BT40-ER32", "CAT40-ER20", "CAT50-ER40", "SK40-ER25", "HSK-A63-ER32", "ISO20-ER16", "R8-ER20",
+           "ROUTER-ER20", "CAT40-EM16", "BT40-SF12", "HSK-A63-HC12", "BT40-SM27", "R8-DC13", "BT40-TC12")
+
 # The tool stays far above, out of the picture.
 PROGRAM = "G21 G90 G54\nG0 Z5000\nM30\n"
 
@@ -55,8 +62,99 @@ preset = "{preset}"
 """
 
 
+HOLDER_SETUP = """\
+[program]
+dialect = "fanuc"
+start = {{ X = 0, Y = 0, Z = 5000 }}
+[offsets]
+G54 = {{ X = 0, Y = 0, Z = 0 }}
+[stock]
+cylinder = {{ radius = {radius}, height = 40 }}
+at = [0, 0, -40]
+[[fixture]]
+name = "body"
+mesh = "p.stl"
+"""
+
+MACHINE_SETUP = """\
+allowance = 0
+[program]
+dialect = "fanuc"
+start = {{ X = {x}, Y = {y}, Z = {z} }}
+[machine]
+preset = "{preset}"
+{sizes}
+[offsets]
+G54 = {{ X = {x}, Y = {y}, Z = {top} }}
+[stock]
+box = [[-{half}, -{half}, 0], [{half}, {half}, {half}]]
+{corners}
+"""
+
+
+def picture_of(feeler, program, setup, folder, size):
+    """The rows of pixels (red, green, blue)."""
+    (folder / "p.nc").write_text(program)
+    (folder / "p.toml").write_text(setup)
+    subprocess.run([feeler, "shot", folder / "p.nc", "--setup", folder / "p.toml", "--block", "0", "--no-ui", "--theme",
+                    "light", "--view", "iso", "--size", "x".join(map(str, size)), "-o", folder / "p.png"], check=True)
+    return pixels_of((folder / "p.png").read_bytes())
+
+
+def shoot_holder(feeler, preset, folder):
+    """A holder above a tool."""
+    subprocess.run([feeler, "presets", preset, "-o", folder / "p.stl"], check=True)
+    radius = 3 if "16" in preset or "SF" in preset or "HC" in preset else 5
+    return picture_of(feeler, "G21 G90 G54\nM30\n", HOLDER_SETUP.format(radius=radius), folder, HOLDER_SIZE)
+
+
+def machine_names(feeler):
+    listed = subprocess.run([feeler, "presets", "--format", "json"], check=True, capture_output=True)
+    return [machine["name"] for machine in json.loads(listed.stdout)["machines"]]
+
+
+def with_usual_places(sizes):
+    """The sizes that a picture needs and nobody has stated."""
+    x, y = (0.5 * (sizes[axis + "_min"] + sizes[axis + "_max"]) for axis in "xy")
+    travel = sizes["z_max"] - sizes["z_min"]
+    usual = {"centre_x": x, "centre_y": y, "centre_z": sizes["z_min"] - 100, "centre_to_table": 50,
+             "spindle_to_table": 60, "pivot_length": 250, "nose_to_table": travel + 100,
+             "table_length": 1.2 * (sizes["x_max"] - sizes["x_min"]), "table_width": sizes["y_max"] - sizes["y_min"],
+             "table_diameter": 300}
+    return {key: value for key, value in usual.items() if key in sizes and sizes[key] is None}
+
+
+def shoot_machine(feeler, preset, folder):
+    """A machine in the middle of its travel, with a part. What nobody has stated has some size."""
+    shown = subprocess.run([feeler, "presets", preset, "--format", "json"], check=True, capture_output=True)
+    report = json.loads(shown.stdout)
+    sizes = {size["key"]: size["value"] for size in report["sizes"]}
+    stated = with_usual_places(sizes)
+    sizes |= stated
+    x, y, z = (0.5 * (sizes[axis + "_min"] + sizes[axis + "_max"]) for axis in "xyz")
+    half = 0.06 * (sizes["x_max"] - sizes["x_min"])
+    if report["kind"] == "horizontal":
+        top, low, high = sizes["z_min"] - 100, y - 300, y + 300
+    elif "centre_to_table" in sizes:
+        top = low = high = sizes["centre_z"] - 50
+    else:
+        top = low = high = sizes["z_max"] - sizes["nose_to_table"]
+    reach = 0.6 * max(sizes["x_max"] - sizes["x_min"], sizes["y_max"] - sizes["y_min"])
+    body = sizes["nose_length"] + sizes.get("head_height", 0)
+    corners = ((x - reach, y - reach, top - 60), (x + reach, y + reach, z + body))
+    text = "".join(f'[[fixture]]\nname = "corner-{i}"\nframe = "machine"\nbox = [[{u}, {v}, {w}], [{u + .1}, {v + .1}, {w + .1}]]\n'
+                   for i, (u, v, w) in enumerate(corners))
+    setup = MACHINE_SETUP.format(preset=preset, x=x, y=y, z=z, top=top, half=half, corners=text,
+                                 sizes="".join(f"{key} = {value}\n" for key, value in stated.items()))
+    return picture_of(feeler, "G21 G90 G54\nM30\n", setup, folder, MACHINE_SIZE)
+
+
 def shoot(feeler, preset, folder):
     """The picture as rows of pixels (red, green, blue)."""
+    if preset in HOLDERS:
+        return shoot_holder(feeler, preset, folder)
+    if preset not in PARTS:
+        return shoot_machine(feeler, preset, folder)
     kind = "vise" if "vise" in preset or "chuck" in preset else "clamp" if "clamp" in preset else "body"
     program, setup, picture = folder / "p.nc", folder / "p.toml", folder / "p.png"
     program.write_text(PROGRAM)
@@ -132,7 +230,7 @@ def png_of(palette, rows):
 def main(feeler, names):
     FOLDER.mkdir(exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        for preset in names or PARTS:
+        for preset in names or [*PARTS, *HOLDERS, *machine_names(feeler)]:
             picture = png_of(*with_few_colours(shoot(feeler, preset, pathlib.Path(folder))))
             (FOLDER / f"{preset}.png").write_bytes(picture)
     return 0

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <regex>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -190,6 +191,50 @@ TEST(PresetsManual, HasARowForEachSizeAndAPictureForEachForm) {
         EXPECT_THAT(page, HasSubstr("| size |" + names + " range | meaning |\n"));
         for (size_t i = 0; i < form[0]->parameters.size(); ++i)
             EXPECT_THAT(page, HasSubstr(manual_row(form, i)));
+    }
+}
+
+TEST(PresetsManual, HasARowAndAPictureOfEachMachine) {
+    const std::string page =
+        core::file_bytes(FEELER_SOURCE_DIR "/docs/manual/machine-presets.md").value();
+    for (const app::MachinePreset& machine : app::machine_presets()) {
+        const auto range = [&](const std::string& axis) {
+            return fmt::format("{} to {}",
+                               core::number_text(*machine.size(axis + "_min")->standard, 3),
+                               core::number_text(*machine.size(axis + "_max")->standard, 3));
+        };
+        EXPECT_THAT(page,
+                    HasSubstr(fmt::format("\n| `{}` | {} | {} | {} | {} |", machine.name,
+                                          machine.title, range("x"), range("y"), range("z"))));
+        EXPECT_THAT(page, HasSubstr(fmt::format("(../images/presets/{}.png)", machine.name)));
+        EXPECT_THAT(page, HasSubstr(machine.source));
+        EXPECT_THAT(page, HasSubstr(machine.zero));
+        for (const app::MachineSize& size : machine.sizes) {
+            const std::string key(size.key);
+            const bool is_listed = page.find(fmt::format("`{}`", key)) != std::string::npos;
+            EXPECT_TRUE(is_listed || key[0] == 'y' || key[0] == 'z') << key;
+        }
+    }
+}
+
+TEST(PresetsManual, HasARowOfEachTaperAndAttachment) {
+    const std::string page =
+        core::file_bytes(FEELER_SOURCE_DIR "/docs/manual/holder-presets.md").value();
+    for (const app::HolderTaper& taper : app::holder_tapers()) {
+        EXPECT_THAT(page, HasSubstr(fmt::format("\n| `{}`", taper.name)));
+        EXPECT_THAT(page, HasSubstr(fmt::format("(../images/presets/{}-", taper.name)));
+        if (taper.flange_height == 0) continue;
+        EXPECT_THAT(
+            page, HasSubstr(fmt::format("| {} | {} |", core::number_text(taper.flange_diameter, 3),
+                                        core::number_text(taper.flange_height, 3))));
+    }
+    for (const app::HolderAttachment& attachment : app::holder_attachments()) {
+        const size_t digits = attachment.name.find_first_of("0123456789");
+        const std::string letters = attachment.name.substr(0, digits);
+        const std::string size = core::number_text(attachment.size, 3);
+        const std::regex row("\\| `" + letters + "[^|]*\\b" + size + "\\b[^|]*\\|");
+        EXPECT_TRUE(std::regex_search(page, row)) << attachment.name;
+        EXPECT_THAT(page, testing::ContainsRegex("presets/[A-Z0-9-]*-" + letters + "[0-9]*.png"));
     }
 }
 

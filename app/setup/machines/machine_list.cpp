@@ -98,7 +98,7 @@ void add_bench_mills(std::vector<MachineData>& list) {
     list.push_back({"smithy-1240",
                     MachineKind::bench_mill,
                     "Smithy 1240",
-                    "R8",
+                    "",
                     linuxcnc_source,
                     config_zero,
                     {-21.8 * in, 0.2 * in, 300 * in, 7.5 * in},
@@ -114,7 +114,7 @@ void add_bench_mills(std::vector<MachineData>& list) {
 
 void add_mills(std::vector<MachineData>& list) {
     list.push_back({"bridgeport-boss", MachineKind::knee_mill, "Bridgeport BOSS, Z is the quill",
-                    "R8", linuxcnc_source, front_zero, above_zero(18 * in, 120 * in, 10 * in),
+                    "", linuxcnc_source, front_zero, above_zero(18 * in, 120 * in, 10 * in),
                     above_zero(12 * in, 120 * in, 10 * in),
                     below_zero(4.75 * in, 120 * in, 10 * in)});
     list.push_back({"generic-knee-mill", MachineKind::knee_mill, "Knee mill, Z is the quill", "R8",
@@ -174,7 +174,7 @@ void add_five_axis_machines(std::vector<MachineData>& list) {
     };
     trunnion("haas-umc-750", "Haas UMC-750", "CAT40", d2m_source, {}, 762, 508, 508,
              {'B', {-35, 120, {}, {}}}, 500);
-    trunnion("dmg-dmu-50", "DMG MORI DMU 50", "SK40", d2m_source, {}, 500, 450, 400,
+    trunnion("dmg-dmu-50", "DMG MORI DMU 50", "", d2m_source, {}, 500, 450, 400,
              {'B', {-35, 110, {}, {}}}, {});
     trunnion("generic-trunnion", "Five axes, trunnion about X", "HSK-A63", generic_source, 30000,
              500, 450, 400, {'A', {-120, 30, 9000, {}}}, 400);
