@@ -56,6 +56,13 @@ void source_mark(Frame& frame, SetupSource source) {
               source);
 }
 
+std::string label_of(std::string_view key) {
+    std::string label(key);
+    std::replace(label.begin(), label.end(), '_', ' ');
+    label[0] = core::upper(label[0]);
+    return label;
+}
+
 void field_name(Frame& frame, const std::string& name) {
     const float left = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();

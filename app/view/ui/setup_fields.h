@@ -56,6 +56,8 @@ private:
 
 /// Draws the label of a row; its field follows on the same line.
 void field_name(Frame& frame, const std::string& name);
+/// "Jaw height" for the key "jaw_height".
+std::string label_of(std::string_view key);
 
 /// Draws a dot for what is stated, and a ring for what is not.
 void draw_mark(const Frame& frame, ImDrawList& list, ImVec2 middle, SetupSource source);
