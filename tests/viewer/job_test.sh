@@ -89,6 +89,13 @@ add_mesh() {
     press Return
     settle
 }
+# holder N: the one after this many of the end-mill holders for BT40, in the open list.
+holder() {
+    press Down Down Right Down Right
+    for _ in $(seq "$1"); do press Down; done
+    press Return
+    settle
+}
 scroll() {
     xdotool mousemove 150 300 click "$1" click "$1" click "$1" click "$1" click "$1" click "$1"
     frames
@@ -149,15 +156,15 @@ still 02-clamped
 scroll 5
 pick 100 304 # T1
 pick 220 577 # its holder
-pick 160 721 # BT40-EM20
+holder 7 # BT40-EM20
 pick 100 325
 pick 158 553 # its stick-out
 fill 24
 pick 220 577
-pick 160 664 # BT40-EM10
+holder 2 # BT40-EM10
 pick 100 346
 pick 220 601
-pick 160 707 # BT40-EM12
+holder 3 # BT40-EM12
 still 03-done
 printf 'set up with %s clicks in %s s\n' "$clicks" "$((SECONDS - begin))" # clock: is printed
 ((clicks <= 30)) || die 'a job is set up with at most 30 clicks'
