@@ -277,13 +277,23 @@ core::Vec3 usual_block(const ViewModel& model) {
     return model.settings.inch ? core::Vec3(50.8, 25.4, 25.4) : core::Vec3(50.0, 25.0, 25.0);
 }
 
+namespace {
+
+/// Selects what was added; its row gets the keyboard, which an older row may have.
+void select_for_keys(Workspace& workspace, SetupItem added) {
+    workspace.selected = std::move(added);
+    workspace.wants_focus = true;
+}
+
+} // namespace
+
 void add_fixture(ViewModel& model, const std::string& wanted_name,
                  const std::function<std::string(gcode::LengthUnit)>& lines) {
     const std::string name = free_name(model.workspace.document.text(), wanted_name);
     if (edit_setup(model, "Add " + name, [&](const std::string& text) {
             return with_fixture(text, name, lines(unit_of_setup(text)));
         }))
-        model.workspace.selected = item(Kind::fixture, name);
+        select_for_keys(model.workspace, item(Kind::fixture, name));
 }
 
 void add_box(ViewModel& model) {
