@@ -242,7 +242,8 @@ std::string program_text(const SetupFile& setup, const SetupOrigin& origin) {
 
 /// The axes with their assumed home.
 std::string machine_text(const SetupFile& setup) {
-    std::string text = "\n" + line(false, "[machine]", "or file = \"MACHINE.toml\"");
+    std::string text =
+        "\n" + line(false, "[machine]", "or preset = \"haas-vf-2\", file = \"MACHINE.toml\"");
     if (setup.uses_other_axes)
         text += line(false, stated("other_axes", "\"not described\""),
                      "remove it when all axes are below");
