@@ -12,6 +12,7 @@
 #include "app/setup/holders/holder_preset.h"
 #include "app/setup/presets/preset_solid.h"
 #include "app/setup/program_settings.h"
+#include "app/setup/setup_changes.h"
 #include "app/setup/setup_file.h"
 #include "core/geom/mesh_features.h"
 #include "core/geom/mesh_file.h"
@@ -308,6 +309,27 @@ TEST(HolderInSetup, RefusesMistakesWithTheirPlace) {
             << value;
     EXPECT_THAT(error_in("{ preset = \"CAT40-ER16\", length = 50 }", "length_unit = \"inch\"\n"),
                 HasSubstr("between 0.039 in and 39.37 in"));
+}
+
+TEST(HolderInSetup, IsReplacedInEitherForm) {
+    const std::string head = "[[tool]]\nnumber = 4\ndiameter = 10\n";
+    for (const std::string& form :
+         {std::string("holder = \"BT40-ER16\" # mine\n"),
+          std::string("holder = { preset = \"BT40-ER16\", nut_diameter = 30 } # mine\n")}) {
+        const auto changed =
+            app::with_tool_value(head + form, core::ToolNumber{4}, "holder", "\"BT40-ER32\"");
+        ASSERT_TRUE(changed) << form;
+        EXPECT_THAT(*changed, HasSubstr("holder = \"BT40-ER32\"")) << form;
+        EXPECT_TRUE(app::read_setup_text(*changed, "s.toml", {})) << *changed;
+        const auto removed =
+            app::with_tool_value(head + form, core::ToolNumber{4}, "holder", std::nullopt);
+        ASSERT_TRUE(removed) << form;
+        EXPECT_THAT(*removed, testing::Not(HasSubstr("BT40"))) << form;
+    }
+    const auto table = app::with_tool_value(head + "[tool.holder]\npreset = \"BT40-ER16\"\n",
+                                            core::ToolNumber{4}, "holder", "\"BT40-ER32\"");
+    ASSERT_FALSE(table);
+    EXPECT_THAT(table.error().message, HasSubstr("holder"));
 }
 
 } // namespace
