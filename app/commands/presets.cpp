@@ -24,20 +24,24 @@ struct PresetOptions {
     std::vector<std::string> values;
 };
 
-/// Accepts the names of presets. Shells complete them from the list in its description.
-CLI::Validator preset_name() {
-    std::vector<std::string_view> names;
-    for (const Preset& preset : presets()) names.push_back(preset.name);
-    for (const MachinePreset& machine : machine_presets()) names.push_back(machine.name);
-    for (const HolderPreset& holder : holder_presets()) names.push_back(holder.preset.name);
-    return CLI::Validator(
-        [](const std::string& name) {
+/// Accepts the names of presets. Shells complete them from the list in its description, which is
+/// made only when it is asked for: there are hundreds of holders.
+struct PresetName : CLI::Validator {
+    PresetName() {
+        func_ = [](const std::string& name) {
             if (find_machine_preset(name)) return std::string();
             const auto named = named_preset(name);
             return named ? std::string() : named.error().message;
-        },
-        fmt::format("{{{}}}", fmt::join(names, ",")));
-}
+        };
+        desc_function_ = [] {
+            std::vector<std::string_view> names;
+            for (const Preset& preset : presets()) names.push_back(preset.name);
+            for (const MachinePreset& machine : machine_presets()) names.push_back(machine.name);
+            for (const HolderPreset& holder : holder_presets()) names.push_back(holder.preset.name);
+            return fmt::format("{{{}}}", fmt::join(names, ","));
+        };
+    }
+};
 
 bool names_mesh(const std::string& path) {
     const std::string output = core::lower_case(path);
@@ -115,7 +119,7 @@ void add_presets(CLI::App& cli, ExitCode& exit_code) {
     CLI::App& command = *cli.add_subcommand(
         "presets", "List fixtures, holders and machines that a set-up can name");
     command.add_option("name", options->name, "Preset whose sizes are shown")
-        ->check(preset_name())
+        ->check(PresetName())
         ->option_text("NAME");
     command.add_option("--set", options->values, "Set a size: KEY=VALUE, in mm; may be repeated")
         ->type_name("KEY=VALUE")

@@ -15,6 +15,7 @@
 #include "app/setup/toml_file.h"
 #include "app/setup/tools/found_tool.h"
 #include "core/dbm/solid.h"
+#include "core/sim/clearance.h"
 #include "core/sim/tool_description.h"
 #include "gcode/language/canonical.h"
 
@@ -502,7 +503,20 @@ Result<std::string> with_part_tolerance(const std::string& text, double toleranc
                            setup_length(tolerance, unit_of_setup(text)));
 }
 
+namespace {
+
+Result<void> check_allowance(const std::string& text, double distance) {
+    if (distance >= 0.0 && distance <= core::largest_allowance) return {};
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("a minimum clearance lies between 0 and {}",
+                                  setup_length(core::largest_allowance, unit_of_setup(text))));
+}
+
+} // namespace
+
 Result<std::string> with_allowance(const std::string& text, std::optional<double> distance) {
+    if (const auto fits = check_allowance(text, distance.value_or(0.0)); !fits)
+        return tl::unexpected(fits.error());
     const toml::table root = root_of(text);
     const toml::array* rules = root["allowance"].as_array();
     const std::string value = setup_length(distance.value_or(0.0), unit_of_setup(root));
@@ -519,6 +533,8 @@ Result<std::string> with_allowance(const std::string& text, std::optional<double
 }
 
 Result<std::string> with_pair_allowance(const std::string& text, size_t index, double distance) {
+    if (const auto fits = check_allowance(text, distance); !fits)
+        return tl::unexpected(fits.error());
     return toml_with_value(text, {"allowance", index, "distance"},
                            setup_length(distance, unit_of_setup(text)));
 }

@@ -31,7 +31,8 @@ namespace app {
 /// Reads `[machine]` or a machine file. Values that it does not state are unchanged.
 ///
 /// Result: whether it states axes.
-bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source);
+bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source,
+                  bool has_own_axes = false);
 
 namespace {
 
@@ -196,6 +197,42 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
     table.finish();
 }
 
+/// The axes of a machine that has axes of its own, together with those of a table that replace or
+/// join them: what a table does not connect otherwise stays connected as it was.
+AxisList with_axes_before(const core::Machine& before, const core::Machine& machine,
+                          const AxisList& list) {
+    AxisList whole;
+    const auto stays = [&](size_t index) {
+        return before.axes[index].present && list.parents[index].empty()
+               && before.axes[index].side == machine.axes[index].side;
+    };
+    // From the base on: what follows without a parent is carried by the last.
+    const auto depth = [&](size_t index) {
+        size_t links = 0;
+        for (LinkId link = core::link_of(index); link != LinkId::base && links <= core::axis_count;
+             link = before.axes[static_cast<size_t>(link)].carrier)
+            ++links;
+        return links;
+    };
+    for (size_t index = 0; index < core::axis_count; ++index)
+        if (stays(index)) whole.order.push_back(index);
+    std::stable_sort(whole.order.begin(), whole.order.end(),
+                     [&](size_t a, size_t b) { return depth(a) < depth(b); });
+    for (const size_t index : whole.order) {
+        const LinkId carrier = before.axes[index].carrier;
+        whole.parents[index] =
+            carrier == LinkId::base
+                ? "base"
+                : std::string(1, core::axis_letters[static_cast<size_t>(carrier)]);
+    }
+    for (const size_t index : list.order)
+        if (!stays(index)) {
+            whole.order.push_back(index);
+            whole.parents[index] = list.parents[index];
+        }
+    return whole;
+}
+
 /// Whether the rapids of the machine are straight answers a question about the control, too.
 void answer_rapids(const TableReader& table, SetupFile& file) {
     if (!table.has("rapid")) return;
@@ -206,11 +243,14 @@ void answer_rapids(const TableReader& table, SetupFile& file) {
 
 } // namespace
 
-bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source) {
+bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source,
+                  bool has_own_axes) {
     AxisList list;
+    const core::Machine before = machine;
     for (TableReader& axis : table.tables("axis", "[[axis]]")) read_axis(axis, machine, list);
     const bool has_axes = !list.order.empty();
-    if (has_axes) connect(table, machine, std::move(list));
+    if (has_axes)
+        connect(table, machine, has_own_axes ? with_axes_before(before, machine, list) : list);
     for (TableReader& body : table.tables("body", "[[body]]"))
         read_machine_body(body, machine, source);
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
@@ -396,7 +436,8 @@ void read_machine_table(TableReader& table, BodyContext& context,
             read_machine_file(path, context.file, error);
     }
     const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
-    if (read_machine(table, machine, context.meshes())) context.file.has_axes = true;
+    if (read_machine(table, machine, context.meshes(), context.file.has_axes))
+        context.file.has_axes = true;
     answer_rapids(table, context.file);
     const bool lacks_axes = std::any_of(others.begin(), others.end(), [&](char letter) {
         return !machine.axes[core::axis_letters.find(letter)].present;

@@ -105,6 +105,7 @@ StatedBody StatedNumbers::body(const toml::table& table) const {
     read.rotate_deg = vector_in(table.get("rotate_deg")).value_or(core::Vec3(0.0));
     read.frame = table["frame"].value_or(std::string("G54"));
     read.expendable = table["expendable"].value_or(false);
+    read.moves = table.contains("move");
     read.tolerance = length(table.get("tolerance"));
     read.margin = length(table.get("margin"));
     read.line = table.source().begin.line;

@@ -34,7 +34,7 @@ struct StatedBody {
     gcode::LengthUnit mesh_unit = gcode::LengthUnit::mm; // of the mesh file
     core::Vec3 at = core::Vec3(0.0), rotate_deg = core::Vec3(0.0);
     std::string frame = "G54";
-    bool expendable = false;
+    bool expendable = false, moves = false;  // moves: it has a [[fixture.move]]
     std::optional<double> tolerance, margin; // mm
     uint32_t line = 0;                       // of its header
 

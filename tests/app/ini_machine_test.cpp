@@ -45,6 +45,30 @@ TEST(IniMachine, HasTheLimitsSpeedsAndHomesOfTheFile) {
     EXPECT_EQ(machine.axes[2].home, 3.0);
 }
 
+/// An axis that replaces one of a machine file leaves the others connected as they were.
+TEST(IniMachine, KeepsTheChainOfAMachineFile) {
+    const std::string file =
+        "file = \"" + std::string(FEELER_SOURCE_DIR) + "/assets/machines/mill3.toml\"\n";
+    const auto with = [&](const std::string& axes) {
+        return machine_of("", "[machine]\n" + file + axes);
+    };
+    const core::Machine plain = with(""),
+                        lower = with("[[machine.axis]]\nname = \"Z\"\nmin = -300\n"),
+                        shorter =
+                            with("[[machine.axis]]\nname = \"X\"\nside = \"table\"\nmax = 0\n"),
+                        rotary = with("[[machine.axis]]\nname = \"A\"\npoint = [0, 0, -100]\n");
+    EXPECT_EQ(plain.axes[0].carrier, core::link_of(1));
+    EXPECT_EQ(plain.table, core::link_of(0));
+    EXPECT_EQ(lower.axes[0].carrier, core::link_of(1));
+    EXPECT_EQ(lower.table, core::link_of(0));
+    EXPECT_EQ(lower.spindle, core::link_of(2));
+    EXPECT_EQ(lower.axes[2].min, -300.0);
+    EXPECT_EQ(shorter.axes[0].carrier, core::link_of(1));
+    EXPECT_EQ(shorter.table, core::link_of(0));
+    EXPECT_EQ(rotary.axes[3].carrier, core::link_of(0)) << "on the end of the table side";
+    EXPECT_EQ(rotary.table, core::link_of(3));
+}
+
 /// A set-up in a folder of its own, with an ini file and a tool table.
 core::Result<SetupFile> read_with_ini(const std::string& program_table,
                                       const ProgramSettings& options = {}) {

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 
 #include <gmock/gmock.h>
@@ -512,6 +513,10 @@ TEST(SetupChanges, StateMinimumClearancesOfPairs) {
     EXPECT_EQ(stated[0].distance, 0.25);
     text = changed(app::without_pair_allowance(text, 1));
     EXPECT_TRUE(app::stated_in(text).allowances.empty());
+    for (const double wrong : {-1.0, 1000.5, std::nan("")}) {
+        EXPECT_FALSE(app::with_allowance(text, wrong)) << wrong;
+        EXPECT_FALSE(app::with_pair_allowance(text, 0, wrong)) << wrong;
+    }
     EXPECT_THAT(changed(app::with_new_pair_allowance("length_unit = \"inch\"\n", {"a", "b"}, 25.4)),
                 HasSubstr("distance = 1\n"));
 }

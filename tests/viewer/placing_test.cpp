@@ -97,6 +97,26 @@ TEST(Placing, ClosesTheJawsOfAVise) {
     EXPECT_THAT(job.model.workspace.refusal, HasSubstr("Nothing is in the way"));
 }
 
+TEST(Placing, MovesAFixtureByHandOnlyWhereTheSetupPutsIt) {
+    Job job(
+        stock
+        + "[[fixture]]\nname = \"post\"\nbox = [[60, 0, 0], [70, 9, 9]]\n[[fixture.move]]\nline = "
+          "7\nat = [5, 0, 0]\n");
+    EXPECT_TRUE(can_move(job.model, "post"));
+    const core::Aabb before = job.box("post");
+    auto state = std::make_shared<BlockState>();
+    state->scene = job.model.program->scene;
+    state->mounted_fixtures = {false, true};
+    job.model.block_state = state;
+    EXPECT_FALSE(can_move(job.model, "post"));
+    EXPECT_FALSE(move_body(job.model, "post", core::translation({1, 0, 0}), "Move"));
+    expect_near(job.box("post").min, before.min + Vec3(5, 0, 0)); // it is seen where it is
+    state = std::make_shared<BlockState>(*state);
+    state->mounted_fixtures = {true, false};
+    job.model.block_state = state;
+    EXPECT_TRUE(can_move(job.model, "post"));
+}
+
 TEST(Placing, TurnsAndMovesAStockOfAnyShape) {
     const std::string offsets = "[offsets]\nG54 = { X = -300, Y = -200, Z = -400 }\n";
     for (const char* shape :

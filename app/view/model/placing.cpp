@@ -107,6 +107,13 @@ std::optional<core::ExactBody> body_of(const core::Solid& stock) {
     return core::posed(upright, {core::rotation_xyz_deg(turns[round.axis]), round.base});
 }
 
+/// Whether a fixture of a set-up is where it is listed, at the cursor.
+bool is_mounted(const ViewModel& model, const core::Setup& setup, size_t fixture) {
+    const auto& state = model.block_state;
+    const bool is_known = state && state->mounted_fixtures.size() == setup.fixtures.size();
+    return is_known ? state->mounted_fixtures[fixture] : setup.fixtures[fixture].is_there;
+}
+
 std::vector<SceneBody> bodies_of(const ViewModel& model) {
     std::vector<SceneBody> bodies;
     const auto scene = scene_setup(model);
@@ -115,10 +122,12 @@ std::vector<SceneBody> bodies_of(const ViewModel& model) {
     const auto standing = model.block_state ? model.block_state->standing : std::nullopt;
     const core::AxisValues values = standing.value_or(core::AxisValues{});
     if (const auto stock = body_of(setup.stock)) bodies.push_back({stock_name, *stock, {}});
-    for (const core::Fixture& fixture : setup.fixtures)
-        if (fixture.is_there)
+    for (size_t i = 0; i < setup.fixtures.size(); ++i) {
+        const core::Fixture& fixture = setup.fixtures[i];
+        if (is_mounted(model, setup, i))
             bodies.push_back({fixture.name, fixture.body,
                               render::stock_from_mount(setup, fixture.mount, values)});
+    }
     return bodies;
 }
 
@@ -269,7 +278,14 @@ const ScenePick* meant_pick(const ViewModel& model) {
 
 bool can_move(const ViewModel& model, const std::string& body) {
     if (!model.workspace.stated || !sheet_of(model)) return false;
-    return body == stock_name || model.workspace.stated->fixture(body) != nullptr;
+    if (body == stock_name) return true;
+    // A [[fixture.move]] may have taken it elsewhere, where the set-up's numbers are others.
+    if (const auto scene = scene_setup(model))
+        for (size_t i = 0; i < scene->setup.fixtures.size(); ++i)
+            if (scene->setup.fixtures[i].name == body && scene->setup.fixtures[i].is_there
+                && !is_mounted(model, scene->setup, i))
+                return false;
+    return model.workspace.stated->fixture(body) != nullptr;
 }
 
 std::vector<std::string> bodies_to_meet(const ViewModel& model) {

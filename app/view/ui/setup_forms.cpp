@@ -244,7 +244,7 @@ void SetupForms::draw_preset(Frame& frame, const StatedBody& body, const BodyPat
         field_name(frame, "In the jaws");
         if (const auto depth = fields_.size(frame, "##grip", grip_.value_or(*usual))) grip_ = depth;
         unit_label(frame, length_unit(model));
-        ImGui::SameLine();
+        field_name(frame, "");
         ImGui::BeginDisabled(!is_current(model));
         if (ImGui::Button("Clamp the stock")) clamp_stock(model, body, grip_.value_or(*usual));
         ImGui::EndDisabled();
@@ -493,6 +493,10 @@ void SetupForms::draw_fixture(Frame& frame, const StatedBody& body) {
         rename_selected(model, *name);
     draw_shape(frame, body, *path);
     draw_pose(frame, body, *path);
+    if (body.moves)
+        wrapped_text(frame.fonts.small, frame.palette.color(Role::dim),
+                     "It is moved during the program ([[fixture.move]] in the set-up): this is its "
+                     "place before. The mouse moves it while the cursor is before that block.");
     draw_placing(frame, body.name);
     bool expendable = body.expendable;
     field_name(frame, "");
