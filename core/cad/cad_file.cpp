@@ -1,0 +1,352 @@
+#include "core/cad/cad_file.h"
+
+#include <algorithm>
+#include <cassert>
+#include <deque>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/base/file_reads.h"
+#include "core/base/platform.h"
+#include "core/base/text.h"
+#include "core/cad/cad_message.h"
+#include "core/cad/reader_process.h"
+#include "core/geom/mesh_file.h"
+
+namespace core {
+
+namespace {
+
+thread_local const CadReadObserver* current_observer = nullptr;
+
+constexpr size_t largest_cad_file = size_t{1} << 30U; // bytes
+constexpr size_t most_triangles = 20'000'000;         // of a file; 1.5 GB
+
+} // namespace
+
+CadReadObserver::CadReadObserver(Callback callback)
+    : callback_(std::move(callback)), older_(current_observer) {
+    current_observer = this;
+}
+
+CadReadObserver::~CadReadObserver() { current_observer = older_; }
+
+const CadReadObserver* CadReadObserver::current() { return current_observer; }
+
+bool is_cad_file(const std::filesystem::path& path) {
+    const std::string extension = lower_case(path.extension().generic_string());
+    return extension == ".step" || extension == ".stp" || extension == ".iges"
+           || extension == ".igs";
+}
+
+#ifdef FEELER_OPENCASCADE
+
+std::string_view cad_library() { return "Open CASCADE " FEELER_OPENCASCADE; }
+
+namespace {
+
+struct ReaderProgram {
+    std::mutex mutex;
+    std::filesystem::path path;
+};
+
+ReaderProgram& reader_program() {
+    static ReaderProgram program;
+    return program;
+}
+
+/// Where the program is that reads CAD files: beside this one, or where an installation has it.
+std::filesystem::path reader_path() {
+    {
+        const std::lock_guard lock(reader_program().mutex);
+        if (!reader_program().path.empty()) return reader_program().path;
+    }
+    const std::filesystem::path folder = platform::program_path().parent_path();
+    const std::filesystem::path installed = folder.parent_path() / "lib" / "feeler" / "feeler-cad";
+    return platform::facts_of(folder / "feeler-cad") ? folder / "feeler-cad" : installed;
+}
+
+bool is_step(const std::filesystem::path& path) {
+    const std::string extension = lower_case(path.extension().generic_string());
+    return extension == ".step" || extension == ".stp";
+}
+
+/// What can be said about the bytes of a STEP file before it is read.
+Result<bool> check_step(std::string_view bytes) {
+    constexpr size_t head = 4096, tail = 4096;
+    if (bytes.substr(0, head).find("ISO-10303-21") == std::string_view::npos)
+        return fail(ErrorCode::syntax, "it is no STEP file: ISO-10303-21 is not at its start");
+    const std::string_view end = bytes.substr(bytes.size() - std::min(bytes.size(), tail));
+    if (end.find("END-ISO-10303-21") == std::string_view::npos)
+        return fail(ErrorCode::syntax,
+                    "it is not complete: END-ISO-10303-21 is missing at its end");
+    return true;
+}
+
+/// What can be said about the bytes of an IGES file before it is read: lines of 80 columns, with
+/// the section in column 73, end with section T.
+Result<bool> check_iges(std::string_view bytes) {
+    constexpr size_t section = 72;
+    if (bytes.size() <= section || (bytes[section] != 'S' && bytes[section] != 'C'))
+        return fail(ErrorCode::syntax, "it is no IGES file: section S is not at its start");
+    const size_t last = bytes.find_last_not_of("\r\n \t\x1a");
+    const size_t line = bytes.find_last_of("\r\n", last) + 1; // 0 if there is none
+    if (line + section >= bytes.size() || bytes[line + section] != 'T')
+        return fail(ErrorCode::syntax, "it is not complete: section T is missing at its end");
+    return true;
+}
+
+Result<std::string> cad_bytes(const std::filesystem::path& path) {
+    if (const std::string why = why_no_file(path); !why.empty()) return fail(ErrorCode::io, why);
+    std::optional<std::string> bytes = file_bytes(path, largest_cad_file);
+    if (!bytes) return fail(ErrorCode::io, "it cannot be read");
+    if (bytes->empty()) return fail(ErrorCode::syntax, "the file is empty");
+    if (bytes->size() > largest_cad_file)
+        return fail(ErrorCode::unsupported, "it has more than 1 GiB, the limit");
+    FEELER_TRY([[maybe_unused]] const bool is_plausible,
+               is_step(path) ? check_step(*bytes) : check_iges(*bytes));
+    return *std::move(bytes);
+}
+
+/// Seconds that the reader may take: far more than an intact file needs.
+unsigned seconds_for(size_t bytes) { return 60 + static_cast<unsigned>(bytes >> 14U); }
+
+/// Takes the messages of the reader apart.
+class Intake {
+public:
+    explicit Intake(std::string file) : file_(std::move(file)) {}
+
+    bool take(std::string_view bytes) {
+        received_ += bytes;
+        std::string_view rest = received_;
+        while (const auto message = cad::take_message(rest))
+            if (!take(*message)) return false;
+        received_.erase(0, received_.size() - rest.size());
+        const CadReadObserver* observer = CadReadObserver::current();
+        return !observer || observer->goes_on({file_, progress_.step, progress_.fraction});
+    }
+
+    Result<CadFile> result(cad::ReaderEnd end, unsigned seconds) &&;
+
+private:
+    bool take(const cad::Message& message);
+
+    std::string file_, received_, error_;
+    CadProgress progress_{{}, "reading", 0.0};
+    CadFile read_;
+    bool is_complete_ = false;
+};
+
+bool Intake::take(const cad::Message& message) {
+    using Kind = cad::MessageKind;
+    switch (message.kind) {
+    case Kind::progress:
+        progress_ = cad::progress_of(message.text).value_or(progress_);
+        return true;
+    case Kind::note:
+        read_.notes.emplace_back(message.text);
+        return true;
+    case Kind::error:
+        error_ = message.text;
+        return true;
+    case Kind::solid:
+        if (auto solid = cad::solid_of(message.text)) {
+            read_.solids.push_back(*std::move(solid));
+            return true;
+        }
+        return false;
+    case Kind::end:
+        is_complete_ = true;
+        return true;
+    }
+    return false;
+}
+
+Result<CadFile> Intake::result(cad::ReaderEnd end, unsigned seconds) && {
+    using End = cad::ReaderEnd;
+    if (is_complete_ && error_.empty()) return std::move(read_);
+    if (is_complete_) return fail(ErrorCode::invalid_value, error_);
+    if (end == End::stopped) return fail(ErrorCode::io, "reading it was stopped");
+    if (end == End::not_there)
+        return fail(
+            ErrorCode::unsupported,
+            fmt::format("{}, which reads CAD files, cannot be started: install Feeler again, "
+                        "or export the body as STL",
+                        reader_path().generic_string()));
+    if (end == End::no_library)
+        return fail(ErrorCode::unsupported,
+                    "the libraries of Open CASCADE are not installed: install the packages "
+                    "libocct-data-exchange-7.6 and libocct-ocaf-7.6, or export the body as STL");
+    if (end == End::out_of_time)
+        return fail(ErrorCode::unsupported,
+                    fmt::format("Open CASCADE did not read it within {} s of processor time: it is "
+                                "damaged, or too large; export the body as STL",
+                                seconds));
+    return fail(ErrorCode::invalid_value,
+                "Open CASCADE crashes when it reads it: it is damaged, or "
+                "needs a repair in the CAD system");
+}
+
+/// The solids as checked bodies. What is repaired comes from the mesh, not from the file: two faces
+/// can have a triangle each between three points of their edge, which are a shell of no volume.
+Result<CadFile> checked(CadFile file) {
+    for (CadSolid& solid : file.solids) {
+        std::vector<std::string> repairs;
+        auto mesh = checked_solid(std::move(solid.mesh), repairs);
+        if (!mesh) {
+            mesh.error().message = fmt::format("{}: {}", solid.name(), mesh.error().message);
+            return tl::unexpected(mesh.error());
+        }
+        solid.mesh = *std::move(mesh);
+    }
+    return file;
+}
+
+Result<CadFile> read_fresh(const std::filesystem::path& path, double deviation, size_t size) {
+    const std::string name = path.generic_string();
+    const unsigned seconds = seconds_for(size);
+    Intake intake(name);
+    const cad::ReaderEnd end =
+        cad::run_reader({reader_path().string(), path.string(), is_step(path) ? "step" : "iges",
+                         fmt::format("{}", deviation), fmt::format("{}", most_triangles),
+                         fmt::format("{}", seconds)},
+                        [&](std::string_view bytes) { return intake.take(bytes); });
+    FEELER_TRY(CadFile file, std::move(intake).result(end, seconds));
+    return checked(std::move(file));
+}
+
+/// A file that was read, kept because a set-up is read again after each change.
+struct KeptFile {
+    std::string bytes;
+    bool is_step = false;
+    double deviation = 0.0;
+    std::shared_ptr<const CadFile> file;
+};
+
+struct KeptFiles {
+    std::mutex mutex;
+    std::deque<KeptFile> files; // the last used first
+};
+
+KeptFiles& kept_files() {
+    static KeptFiles kept;
+    return kept;
+}
+
+std::shared_ptr<const CadFile> find_kept(const KeptFile& wanted) {
+    KeptFiles& kept = kept_files();
+    const std::lock_guard lock(kept.mutex);
+    const auto same = [&](const KeptFile& file) {
+        return file.deviation == wanted.deviation && file.is_step == wanted.is_step
+               && file.bytes == wanted.bytes;
+    };
+    const auto found = std::find_if(kept.files.begin(), kept.files.end(), same);
+    if (found == kept.files.end()) return {};
+    std::rotate(kept.files.begin(), found, found + 1);
+    return kept.files.front().file;
+}
+
+void keep(KeptFile file) {
+    constexpr size_t most_files = 8, most_bytes = size_t{64} << 20U;
+    if (file.bytes.size() > most_bytes) return;
+    KeptFiles& kept = kept_files();
+    const std::lock_guard lock(kept.mutex);
+    kept.files.push_front(std::move(file));
+    if (kept.files.size() > most_files) kept.files.pop_back();
+}
+
+Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path& path,
+                                                    double deviation) {
+    FEELER_TRY(std::string bytes, cad_bytes(path));
+    KeptFile wanted{std::move(bytes), is_step(path), deviation, {}};
+    if (auto file = find_kept(wanted)) return file;
+    FEELER_TRY(CadFile file, read_fresh(path, deviation, wanted.bytes.size()));
+    wanted.file = std::make_shared<const CadFile>(std::move(file));
+    keep(wanted);
+    return wanted.file;
+}
+
+} // namespace
+
+void set_cad_reader(const std::filesystem::path& program) {
+    const std::lock_guard lock(reader_program().mutex);
+    reader_program().path = program;
+}
+
+#else
+
+std::string_view cad_library() { return {}; }
+
+void set_cad_reader(const std::filesystem::path&) {}
+
+namespace {
+
+Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&, double) {
+    return fail(ErrorCode::unsupported,
+                "this feeler was built without Open CASCADE, so it cannot read STEP and IGES: "
+                "export the body as STL, or build Feeler with the packages of "
+                ".ci/packages/cad.txt installed");
+}
+
+} // namespace
+
+#endif
+
+Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& path,
+                                                double deviation) {
+    assert(deviation >= least_cad_deviation && deviation <= largest_cad_deviation);
+    return read_or_kept(path, deviation).map_error([&](Error error) {
+        error.message = fmt::format("{}: {}", path.generic_string(), error.message);
+        error.file = path.generic_string();
+        return error;
+    });
+}
+
+namespace {
+
+bool has_name(const CadSolid& solid, const std::string& name) {
+    return name.empty()
+           || std::find(solid.names.begin(), solid.names.end(), name) != solid.names.end();
+}
+
+/// The names of a file, in its order, each once and not more than fit in a message.
+std::string names_text(const CadFile& file) {
+    constexpr size_t most = 30;
+    std::vector<std::string> names;
+    for (const CadSolid& solid : file.solids)
+        for (const std::string& name : solid.names)
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    const size_t count = names.size();
+    names.resize(std::min(count, most));
+    return fmt::format("\"{}\"{}", fmt::join(names, "\", \""),
+                       count > most ? fmt::format(" and {} more", count - most) : "");
+}
+
+void append(Mesh& mesh, const Mesh& other) {
+    const auto first = static_cast<uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+    for (const auto& [a, b, c] : other.triangles)
+        mesh.triangles.push_back({first + a, first + b, first + c});
+}
+
+} // namespace
+
+Result<CadBody> body_of(const CadFile& file, const std::string& name) {
+    CadBody body;
+    for (const CadSolid& solid : file.solids) {
+        if (!has_name(solid, name)) continue;
+        append(body.mesh, solid.mesh);
+        body.deviation = std::max(body.deviation, solid.deviation);
+        body.gap = std::max(body.gap, solid.gap);
+        body.is_proven = body.is_proven && solid.is_proven;
+        ++body.solids;
+    }
+    if (body.solids > 0) return body;
+    return fail(ErrorCode::invalid_value,
+                fmt::format("no solid has the name \"{}\"; there are {}", name, names_text(file)));
+}
+
+} // namespace core

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/cad/cad_file.h"
+
+namespace core::cad {
+
+// What the program that reads CAD files writes to its standard output.
+
+enum class MessageKind : uint8_t { progress = 1, note, error, solid, end };
+
+/// A message in the output.
+struct Message {
+    MessageKind kind = MessageKind::end;
+    std::string_view text; // its contents
+};
+
+std::string progress_message(std::string_view step, double fraction);
+std::string text_message(MessageKind kind, std::string_view text);
+std::string solid_message(const CadSolid& solid);
+std::string end_message();
+
+/// The first message of the output; empty if it is not complete yet. Takes it off.
+std::optional<Message> take_message(std::string_view& output);
+
+/// The contents of messages; empty for bytes that are no such contents.
+std::optional<CadProgress> progress_of(std::string_view text);
+std::optional<CadSolid> solid_of(std::string_view text);
+
+} // namespace core::cad

@@ -1,0 +1,428 @@
+#include "core/cad/reader/document.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
+#include <IFSelect_ReturnStatus.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <StepShape_SolidModel.hxx>
+#include <TCollection_AsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Shell.hxx>
+#include <TopoDS_Solid.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <fmt/format.h>
+
+namespace core::cad {
+
+namespace {
+
+/// A name of a file as one line of UTF-8.
+std::string plain_name(std::string_view text) {
+    constexpr size_t longest = 200;
+    std::string line;
+    for (const char c : text) {
+        const bool is_printed = static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+        line += is_printed ? c : ' ';
+    }
+    const size_t first = std::min(line.find_first_not_of(' '), line.size());
+    line = line.substr(first, line.find_last_not_of(' ') + 1 - first);
+    size_t end = std::min(line.size(), longest);
+    const auto is_inside_character = [&](size_t at) {
+        return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xc0U) == 0x80U;
+    };
+    while (is_inside_character(end)) --end;
+    return line.substr(0, end);
+}
+
+/// The name of a label; empty if it has none.
+std::string name_of(const TDF_Label& label) {
+    Handle(TDataStd_Name) name;
+    if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
+    const TCollection_AsciiString text(name->Get());
+    return plain_name({text.ToCString(), static_cast<size_t>(text.Length())});
+}
+
+/// The names of the solids themselves, not of the parts that consist of them.
+struct SolidName {
+    TopoDS_Shape solid;
+    std::string name;
+};
+using SolidNames = std::vector<SolidName>;
+
+/// The number of shapes of a kind outside of shapes of another kind.
+size_t count_outside(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind, TopAbs_ShapeEnum outside) {
+    size_t count = 0;
+    for (TopExp_Explorer e(shape, kind, outside); e.More(); e.Next()) ++count;
+    return count;
+}
+
+std::string place_of_edge(const TopoDS_Edge& edge) {
+    const BRepAdaptor_Curve curve(edge);
+    const gp_Pnt a = curve.Value(curve.FirstParameter()), b = curve.Value(curve.LastParameter());
+    return fmt::format("({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g})", a.X(), a.Y(), a.Z(),
+                       b.X(), b.Y(), b.Z());
+}
+
+/// Faces that belong to no solid, joined.
+struct Sewn {
+    std::vector<TopoDS_Shape> solids;
+    size_t open_edges = 0;
+    std::string open_edge; // where one of them is
+};
+
+TopoDS_Shape solid_of(const TopoDS_Shell& shell) {
+    TopoDS_Solid solid;
+    BRep_Builder builder;
+    builder.MakeSolid(solid);
+    builder.Add(solid, shell);
+    return solid;
+}
+
+Sewn sewn(const TopoDS_Shape& shape, double tolerance) {
+    BRepBuilderAPI_Sewing sewing(tolerance);
+    for (TopExp_Explorer e(shape, TopAbs_FACE, TopAbs_SOLID); e.More(); e.Next())
+        sewing.Add(e.Current());
+    sewing.Perform();
+    Sewn result;
+    result.open_edges = static_cast<size_t>(sewing.NbFreeEdges());
+    if (result.open_edges > 0) result.open_edge = place_of_edge(sewing.FreeEdge(1));
+    for (TopExp_Explorer e(sewing.SewedShape(), TopAbs_SHELL); e.More(); e.Next())
+        if (BRep_Tool::IsClosed(e.Current()))
+            result.solids.push_back(solid_of(TopoDS::Shell(e.Current())));
+    return result;
+}
+
+/// Collects the solids of a document.
+class Collector {
+public:
+    Collector(const Handle(TDocStd_Document) & document, const SolidNames& names, double sewing)
+        : names_(names),
+          shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+          colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+          sewing_(sewing) {}
+
+    Result<Document> collect();
+
+private:
+    /// Where a label stands in the assembly.
+    struct Context {
+        std::vector<std::string> names;
+        std::optional<Colour> colour;
+        TopLoc_Location place;
+        int depth = 0;
+    };
+
+    void add(const TDF_Label& label, Context context);
+    void add_part(const TDF_Label& label, const Context& context);
+    void add_solids(const TDF_Label& label, const Context& context,
+                    const std::vector<TopoDS_Shape>& solids, bool is_sewn);
+    void take_names(const TDF_Label& label, Context& context) const;
+    std::optional<Colour> colour_of(const TDF_Label& label) const;
+    std::optional<Colour> colour_of(const TopoDS_Shape& shape) const;
+    void make_names_unique();
+    Result<Document> nothing() const;
+
+    const SolidNames& names_;
+    Handle(XCAFDoc_ShapeTool) shapes_;
+    Handle(XCAFDoc_ColorTool) colours_;
+    double sewing_;
+    Document document_;
+    std::map<std::string, std::string> left_out_; // by part: why
+    std::string open_part_, open_edge_;           // a part with an open surface
+    size_t open_edges_ = 0;
+    size_t curves_ = 0;
+    bool is_too_deep_ = false;
+};
+
+Colour bytes_of(const Quantity_Color& colour) {
+    double red = 0.0, green = 0.0, blue = 0.0;
+    colour.Values(red, green, blue, Quantity_TOC_sRGB);
+    const auto byte = [](double part) {
+        return static_cast<uint8_t>(std::clamp(255.0 * part + 0.5, 0.0, 255.0));
+    };
+    return {byte(red), byte(green), byte(blue)};
+}
+
+std::optional<Colour> Collector::colour_of(const TDF_Label& label) const {
+    Quantity_Color colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+        if (colours_->GetColor(label, type, colour)) return bytes_of(colour);
+    return std::nullopt;
+}
+
+std::optional<Colour> Collector::colour_of(const TopoDS_Shape& shape) const {
+    Quantity_Color colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+        if (colours_->GetColor(shape, type, colour)) return bytes_of(colour);
+    return std::nullopt;
+}
+
+void Collector::take_names(const TDF_Label& label, Context& context) const {
+    const std::string name = name_of(label);
+    const auto known = std::find(context.names.begin(), context.names.end(), name);
+    if (!name.empty() && known == context.names.end()) context.names.push_back(name);
+}
+
+void Collector::add(const TDF_Label& label, Context context) {
+    constexpr int deepest = 100; // a file can nest an assembly in itself
+    if (context.depth > deepest) {
+        is_too_deep_ = true;
+        return;
+    }
+    ++context.depth;
+    take_names(label, context);
+    if (const auto colour = colour_of(label)) context.colour = colour;
+    TDF_Label part = label;
+    if (XCAFDoc_ShapeTool::IsReference(label)) {
+        context.place = context.place * XCAFDoc_ShapeTool::GetLocation(label);
+        XCAFDoc_ShapeTool::GetReferredShape(label, part);
+        take_names(part, context);
+        if (!context.colour) context.colour = colour_of(part);
+    }
+    if (!XCAFDoc_ShapeTool::IsAssembly(part)) return add_part(part, context);
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(part, components);
+    for (const TDF_Label& component : components) add(component, context);
+}
+
+void Collector::add_solids(const TDF_Label& label, const Context& context,
+                           const std::vector<TopoDS_Shape>& solids, bool is_sewn) {
+    for (const TopoDS_Shape& solid : solids) {
+        PlacedSolid placed;
+        placed.names = context.names;
+        placed.colour = context.colour;
+        placed.shape = solid.Located(TopLoc_Location());
+        placed.place = (context.place * solid.Location()).Transformation();
+        for (const SolidName& own : names_)
+            if (solids.size() > 1 && own.solid.IsPartner(solid)) placed.names.push_back(own.name);
+        TDF_Label own;
+        if (!is_sewn && shapes_->FindSubShape(label, solid, own))
+            if (const auto colour = colour_of(own)) placed.colour = colour;
+        if (!placed.colour) placed.colour = colour_of(solid);
+        TopExp_Explorer face(solid, TopAbs_FACE);
+        if (!placed.colour && face.More()) placed.colour = colour_of(face.Current());
+        if (placed.names.empty()) placed.names.emplace_back("solid");
+        document_.solids.push_back(std::move(placed));
+    }
+}
+
+void Collector::add_part(const TDF_Label& label, const Context& context) {
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    if (shape.IsNull()) return;
+    std::vector<TopoDS_Shape> solids;
+    for (TopExp_Explorer e(shape, TopAbs_SOLID); e.More(); e.Next()) solids.push_back(e.Current());
+    add_solids(label, context, solids, false);
+    curves_ += count_outside(shape, TopAbs_EDGE, TopAbs_FACE);
+    const size_t faces = count_outside(shape, TopAbs_FACE, TopAbs_SOLID);
+    if (faces == 0) return;
+    const std::string name = context.names.empty() ? "the file" : context.names.back();
+    const Sewn found = sewn(shape, sewing_);
+    add_solids(label, context, found.solids, true);
+    if (!found.solids.empty())
+        document_.notes.push_back(fmt::format(
+            "{}: its surfaces are no solid and were joined, across gaps of up to {:g} mm", name,
+            sewing_));
+    if (found.open_edges == 0 && !found.solids.empty()) return;
+    left_out_[name] = fmt::format("{}: {} that {} no solid {} left out", name,
+                                  faces == 1 ? "a surface" : "surfaces",
+                                  faces == 1 ? "encloses" : "enclose", faces == 1 ? "is" : "are");
+    if (!open_part_.empty()) return;
+    open_part_ = name;
+    open_edge_ = found.open_edge;
+    open_edges_ = found.open_edges;
+}
+
+/// Gives each solid a last name of its own: "bolt", "bolt (2)", ...
+void Collector::make_names_unique() {
+    std::set<std::string> taken;
+    for (const PlacedSolid& solid : document_.solids)
+        taken.insert(solid.names.begin(), solid.names.end());
+    std::map<std::string, size_t> count;
+    for (const PlacedSolid& solid : document_.solids) ++count[solid.names.back()];
+    std::map<std::string, size_t> next;
+    for (PlacedSolid& solid : document_.solids) {
+        const std::string name = solid.names.back();
+        if (count[name] == 1) continue;
+        size_t& number = next[name];
+        std::string own;
+        do own = fmt::format("{} ({})", name, ++number);
+        while (!taken.insert(own).second);
+        solid.names.push_back(own);
+    }
+}
+
+/// Why a file has no solids.
+Result<Document> Collector::nothing() const {
+    if (open_edges_ > 0)
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("{} has an open surface and no solid: {} {} a face on one side "
+                                "only, one of them from {}; close it in the CAD system, or export "
+                                "a solid",
+                                open_part_, open_edges_,
+                                open_edges_ == 1 ? "edge has" : "edges have", open_edge_));
+    if (!open_part_.empty())
+        return fail(
+            ErrorCode::invalid_value,
+            fmt::format("{} has surfaces that enclose no solid: export a solid", open_part_));
+    if (curves_ > 0)
+        return fail(ErrorCode::invalid_value,
+                    "it has curves and no surfaces: export the body as a solid");
+    return fail(ErrorCode::missing_value, "it has no bodies");
+}
+
+Result<Document> Collector::collect() {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) add(root, {});
+    if (is_too_deep_)
+        return fail(ErrorCode::invalid_value, "its assemblies are nested more than 100 deep");
+    if (document_.solids.empty()) return nothing();
+    for (const auto& [part, why] : left_out_) document_.notes.push_back(why);
+    if (curves_ > 0)
+        document_.notes.push_back(
+            fmt::format("{} {} left out", curves_, curves_ == 1 ? "curve is" : "curves are"));
+    make_names_unique();
+    return std::move(document_);
+}
+
+/// The number of an entity in its file, for a message: "#12".
+std::string entity_text(const Handle(Interface_InterfaceModel) & model,
+                        const Handle(Standard_Transient) & entity) {
+    const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+    return label.IsNull() ? "an entity" : std::string(label->ToCString());
+}
+
+bool has_any(std::string_view text, const std::vector<std::string_view>& parts) {
+    return std::any_of(parts.begin(), parts.end(), [&](std::string_view part) {
+        return text.find(part) != std::string_view::npos;
+    });
+}
+
+/// Whether a body could be missing, out of shape or out of place without an entity of this type.
+///
+/// Files are full of entities that Open CASCADE does not understand, about dimensions, tolerances,
+/// displays and persons. A shape representation with such items is one of them: if a solid were
+/// among the items, `names_of_solids` would find it missing.
+bool is_needed(std::string_view type) {
+    if (type.starts_with("StepGeom_") || type.starts_with("IGESGeom_")
+        || type.starts_with("IGESSolid_") || type.starts_with("IGESBasic_"))
+        return true;
+    if (type.starts_with("StepShape_"))
+        return type != "StepShape_ShapeRepresentation"
+               && !has_any(type, {"Dimension", "Tolerance", "Limits"});
+    if (type.starts_with("StepRepr_"))
+        return has_any(type, {"Transformation", "AssemblyUsage", "MappedItem", "RepresentationMap",
+                              "Relationship", "UnitAssigned", "ProductDefinitionShape"});
+    return type.starts_with("StepBasic_") && has_any(type, {"Unit", "ProductDefinition"});
+}
+
+/// Refuses a file with a needed entity that could not be read.
+Result<bool> check_entities(const Handle(Interface_InterfaceModel) & model) {
+    for (int i = 1; i <= model->NbEntities(); ++i)
+        if (model->IsErrorEntity(i) && is_needed(model->Value(i)->DynamicType()->Name()))
+            return fail(ErrorCode::syntax, fmt::format("it is damaged: {} cannot be read",
+                                                       entity_text(model, model->Value(i))));
+    return true;
+}
+
+/// The names of the solids; errors if Open CASCADE could not make one of them.
+Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session) {
+    const Handle(Interface_InterfaceModel) model = session->Model();
+    const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
+    SolidNames names;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto entity = Handle(StepShape_SolidModel)::DownCast(model->Value(i));
+        if (entity.IsNull()) continue;
+        const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
+        if (solid.IsNull())
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("Open CASCADE cannot make the solid {}: repair it in the CAD "
+                                    "system, or export the body as STL",
+                                    entity_text(model, entity)));
+        const Handle(TCollection_HAsciiString) text = entity->Name();
+        const std::string name = text.IsNull() ? "" : plain_name(text->ToCString());
+        if (!name.empty()) names.push_back({solid, name});
+    }
+    return names;
+}
+
+tl::unexpected<Error> fail_reading(IFSelect_ReturnStatus status, const char* format) {
+    return fail(ErrorCode::syntax, status == IFSelect_RetVoid
+                                       ? fmt::format("it has no contents that {} defines", format)
+                                       : fmt::format("it is damaged, or no {} file", format));
+}
+
+Result<SolidNames> read_step(const std::string& path, Handle(TDocStd_Document) & document,
+                             const Message_ProgressRange& progress) {
+    STEPCAFControl_Reader reader;
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    reader.SetNameMode(true);
+    reader.SetColorMode(true);
+    reader.SetLayerMode(false);
+    reader.SetPropsMode(false);
+    reader.SetGDTMode(false);
+    reader.SetMatMode(false);
+    const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
+    if (status != IFSelect_RetDone) return fail_reading(status, "STEP");
+    const Handle(XSControl_WorkSession) session = reader.Reader().WS();
+    FEELER_TRY([[maybe_unused]] const bool is_whole, check_entities(session->Model()));
+    if (!reader.Transfer(document, progress))
+        return fail(ErrorCode::invalid_value, "it has no bodies that Open CASCADE can read");
+    return names_of_solids(session);
+}
+
+Result<SolidNames> read_iges(const std::string& path, Handle(TDocStd_Document) & document,
+                             const Message_ProgressRange& progress) {
+    IGESCAFControl_Reader reader;
+    Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    reader.SetNameMode(true);
+    reader.SetColorMode(true);
+    reader.SetLayerMode(false);
+    const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
+    if (status != IFSelect_RetDone) return fail_reading(status, "IGES");
+    FEELER_TRY([[maybe_unused]] const bool is_whole, check_entities(reader.WS()->Model()));
+    if (!reader.Transfer(document, progress))
+        return fail(ErrorCode::invalid_value, "it has no bodies that Open CASCADE can read");
+    return SolidNames{};
+}
+
+} // namespace
+
+Result<Document> read_document(const std::string& path, CadFormat format, double sewing,
+                               const Message_ProgressRange& progress) {
+    Handle(TDocStd_Document) document;
+    XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
+    FEELER_TRY(const SolidNames names, format == CadFormat::step
+                                           ? read_step(path, document, progress)
+                                           : read_iges(path, document, progress));
+    return Collector(document, names, sewing).collect();
+}
+
+} // namespace core::cad

@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/cad/cad_file.h"
+#include "tests/cad/cad_models.h"
+#include "tests/support/scoped_folder.h"
+
+namespace core {
+namespace {
+
+using test_support::cad_box;
+using test_support::cad_compound;
+using test_support::cad_cylinder;
+using test_support::cad_moved;
+using test_support::cad_open_shell;
+using test_support::cad_wires;
+using test_support::CadPart;
+using test_support::ScopedFolder;
+using test_support::write_iges;
+using test_support::write_step;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class CadFileTest : public ::testing::Test {
+protected:
+    CadFileTest() { set_cad_reader(FEELER_CAD_READER); }
+
+    std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+    std::shared_ptr<const CadFile> read(const std::string& name, double deviation = 0.01) const {
+        auto file = read_cad(path(name), deviation);
+        EXPECT_TRUE(file) << (file ? "" : file.error().message);
+        return file ? *file : std::make_shared<const CadFile>();
+    }
+
+    std::string error_of(const std::string& name) const {
+        const auto file = read_cad(path(name));
+        if (file) return "it was read";
+        EXPECT_THAT(file.error().message, HasSubstr(name)); // every error names its file
+        return file.error().message;
+    }
+
+    std::string write(const std::string& name, const std::string& bytes) const {
+        std::ofstream(path(name), std::ios::binary) << bytes;
+        return name;
+    }
+
+    std::string bytes_of(const std::filesystem::path& file) const {
+        std::ostringstream bytes;
+        bytes << std::ifstream(file, std::ios::binary).rdbuf();
+        return bytes.str();
+    }
+
+    ScopedFolder folder_;
+};
+
+TEST_F(CadFileTest, HoldsABoxExactly) {
+    write_step(path("box.step"), cad_box(Vec3(1, 2, 3), Vec3(11, 22, 33)));
+    const auto file = read("box.step");
+    ASSERT_EQ(file->solids.size(), 1u);
+    const CadSolid& box = file->solids[0];
+    EXPECT_EQ(box.mesh.triangles.size(), 12u);
+    EXPECT_LT(box.deviation, 1e-6);
+    EXPECT_TRUE(box.is_proven);
+    EXPECT_NEAR(signed_volume(box.mesh), 6000.0, 1e-6);
+    EXPECT_NEAR(glm::distance(box.mesh.bounds().min, Vec3(1, 2, 3)), 0.0, 1e-9);
+}
+
+TEST_F(CadFileTest, IsInMillimetresWhateverItsUnit) {
+    // Open CASCADE writes the numbers as they are, and the unit beside them.
+    const std::map<std::string, double> units = {{"INCH", 25.4}, {"M", 1000.0}, {"CM", 10.0}};
+    for (const auto& [unit, in_mm] : units) {
+        write_step(path("unit.stp"), cad_box(Vec3(0), Vec3(2, 1, 1)), unit);
+        const Aabb box = read("unit.stp")->solids[0].mesh.bounds();
+        EXPECT_NEAR(box.max.x, 2.0 * in_mm, 1e-9) << unit;
+    }
+}
+
+TEST_F(CadFileTest, HasNamesColoursAndPlacesOfAssemblies) {
+    const CadPart bolt{"bolt", cad_cylinder(3, 20), {}, 0, {}, std::array<double, 3>{1, 0, 0}};
+    CadPart first = bolt, second = bolt;
+    first.at = {10, 0, 0};
+    second.at = {-10, 0, 0};
+    const CadPart jaw{"jaw", cad_box(Vec3(0), Vec3(5, 40, 10)), {100, 0, 0}, 90};
+    write_step(path("vise.step"),
+               CadPart{"vise", {}, {}, 0, {{"bolts", {}, {0, 0, 7}, 0, {first, second}}, jaw}});
+    const auto file = read("vise.step");
+    ASSERT_EQ(file->solids.size(), 3u);
+    EXPECT_THAT(file->solids[0].names,
+                AllOf(Contains("vise"), Contains("bolts"), Contains("bolt")));
+    EXPECT_NE(file->solids[0].name(), file->solids[1].name());
+    EXPECT_EQ(file->solids[0].colour, (Colour{255, 0, 0}));
+    EXPECT_NEAR(file->solids[0].mesh.bounds().center().x, 10.0, 0.02);
+    EXPECT_NEAR(file->solids[1].mesh.bounds().center().x, -10.0, 0.02);
+    EXPECT_NEAR(file->solids[1].mesh.bounds().min.z, 7.0, 1e-9);
+    const auto jaw_alone = body_of(*file, "jaw");
+    ASSERT_TRUE(jaw_alone);
+    EXPECT_EQ(jaw_alone->solids, 1u);
+    EXPECT_NEAR(jaw_alone->mesh.bounds().min.x, 60.0, 1e-9); // turned by 90 degrees
+    EXPECT_EQ(body_of(*file, "bolt")->solids, 2u);
+    EXPECT_EQ(body_of(*file, "bolts")->solids, 2u);
+    EXPECT_EQ(body_of(*file, "")->solids, 3u);
+    const auto unknown = body_of(*file, "jar");
+    ASSERT_FALSE(unknown);
+    EXPECT_THAT(unknown.error().message, AllOf(HasSubstr("\"jar\""), HasSubstr("\"jaw\"")));
+}
+
+TEST_F(CadFileTest, CanBeIgesWithSolidsOrFaces) {
+    const TopoDS_Shape body = BRepPrimAPI_MakeSphere(12).Shape();
+    for (const bool as_solid : {true, false}) {
+        write_iges(path("ball.igs"), as_solid ? body : cad_box(Vec3(0), Vec3(10)), as_solid);
+        const auto file = read("ball.igs");
+        ASSERT_EQ(file->solids.size(), 1u);
+        EXPECT_LE(file->solids[0].deviation, 0.011);
+        EXPECT_NEAR(signed_volume(file->solids[0].mesh), as_solid ? 7238.2 : 1000.0, 20.0);
+    }
+}
+
+TEST_F(CadFileTest, SaysWhatItLeavesOut) {
+    const TopoDS_Shape box = cad_box(Vec3(0), Vec3(10)), far = cad_moved(box, Vec3(30, 0, 0));
+    write_step(path("mixed.step"), cad_compound({box, cad_open_shell(far, 2)}));
+    const auto file = read("mixed.step");
+    EXPECT_EQ(file->solids.size(), 1u);
+    EXPECT_THAT(file->notes, Contains(HasSubstr("no solid")));
+}
+
+TEST_F(CadFileTest, WithoutASolidIsAClearError) {
+    const TopoDS_Shape box = cad_box(Vec3(0), Vec3(10));
+    write_step(path("open.step"), cad_open_shell(box, 1));
+    EXPECT_THAT(error_of("open.step"),
+                AllOf(HasSubstr("open surface"), HasSubstr("4 edges"), HasSubstr("from (")));
+    write_step(path("wires.step"), cad_wires(box));
+    EXPECT_THAT(error_of("wires.step"), HasSubstr("curves and no surfaces"));
+    write_iges(path("wires.igs"), cad_wires(box), false);
+    EXPECT_THAT(error_of("wires.igs"), HasSubstr("curves and no surfaces"));
+}
+
+TEST_F(CadFileTest, ThatIsDamagedIsAClearError) {
+    EXPECT_THAT(error_of("none.step"), HasSubstr("no such file"));
+    EXPECT_THAT(error_of(write("empty.step", "")), HasSubstr("empty"));
+    EXPECT_THAT(error_of(write("text.step", "solid ascii")), HasSubstr("no STEP file"));
+    EXPECT_THAT(error_of(write("text.igs", "solid ascii")), HasSubstr("no IGES file"));
+    EXPECT_THAT(error_of(write("nothing.step", "ISO-10303-21;\nEND-ISO-10303-21;\n")),
+                HasSubstr("damaged"));
+    write_step(path("whole.step"), cad_cylinder(5, 10));
+    const std::string whole = bytes_of(path("whole.step"));
+    EXPECT_THAT(error_of(write("half.step", whole.substr(0, whole.size() / 2))),
+                HasSubstr("not complete"));
+    // Complete to the eye, but without the entities of the second half.
+    EXPECT_THAT(error_of(write("hole.step", whole.substr(0, whole.find('\n', whole.size() / 2) + 1)
+                                                + "ENDSEC;\nEND-ISO-10303-21;\n")),
+                ::testing::Not(HasSubstr("it was read")));
+}
+
+TEST_F(CadFileTest, WithoutAReaderIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    set_cad_reader("/nowhere/feeler-cad");
+    EXPECT_THAT(error_of("box.step"), HasSubstr("cannot be started"));
+    set_cad_reader("/bin/false");
+    EXPECT_THAT(error_of("box.step"), HasSubstr("crashes"));
+}
+
+TEST_F(CadFileTest, StopsWhenItsObserverWantsThat) {
+    write_step(path("box.step"), cad_cylinder(5, 10));
+    size_t calls = 0;
+    {
+        const CadReadObserver observer([&](const CadProgress& progress) {
+            EXPECT_THAT(progress.file, HasSubstr("box.step"));
+            return ++calls < 3;
+        });
+        EXPECT_THAT(error_of("box.step"), HasSubstr("stopped"));
+    }
+    EXPECT_EQ(calls, 3u);
+    EXPECT_EQ(read("box.step")->solids.size(), 1u);
+}
+
+TEST_F(CadFileTest, IsKeptUntilItChanges) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    const auto first = read("box.step");
+    EXPECT_EQ(read("box.step"), first);
+    EXPECT_NE(read("box.step", 0.02), first);
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(12)));
+    EXPECT_NE(read("box.step"), first);
+}
+
+/// Reads damaged copies of a file: each is an error or a set of closed bodies, and none hangs.
+TEST_F(CadFileTest, NeverCrashesOnDamage) {
+    CadPart part{"part", cad_cylinder(5, 10), {1, 2, 3}};
+    write_step(path("whole.step"), CadPart{"all", {}, {}, 0, {part, part}});
+    const std::string whole = bytes_of(path("whole.step"));
+    std::mt19937 random(8);
+    const size_t data = whole.find("DATA;");
+    std::uniform_int_distribution<size_t> place(data, whole.size() - 30);
+    std::uniform_int_distribution<int> byte(32, 126);
+    size_t errors = 0;
+    for (int i = 0; i < 60; ++i) {
+        std::string damaged = whole;
+        for (int k = 0; k < 1 + i % 3; ++k)
+            damaged[place(random)] = static_cast<char>(byte(random));
+        const auto file = read_cad(path(write("damaged.step", damaged)));
+        EXPECT_TRUE(file || !file.error().message.empty());
+        errors += !file;
+    }
+    EXPECT_GT(errors, 10u);
+}
+
+TEST_F(CadFileTest, OfOthersIsRead) {
+    const auto shared = std::filesystem::path(FEELER_SOURCE_DIR) / "../shared/step";
+    if (!std::filesystem::exists(shared)) {
+        if (std::getenv("FEELER_REQUIRE_SHARED")) FAIL() << shared << " is missing";
+        GTEST_SKIP() << shared << " is missing";
+    }
+    const auto assembly = read_cad(shared / "as1-oc-214.stp");
+    ASSERT_TRUE(assembly) << assembly.error().message;
+    EXPECT_EQ((*assembly)->solids.size(), 18u);
+    EXPECT_EQ(body_of(**assembly, "bolt")->solids, 6u);
+    EXPECT_EQ(body_of(**assembly, "l-bracket-assembly")->solids, 14u);
+    const auto part = read_cad(shared / "io1-cm-214.stp");
+    ASSERT_TRUE(part) << part.error().message;
+    EXPECT_EQ((*part)->solids.size(), 1u);
+    for (const auto& file : {*assembly, *part})
+        for (const CadSolid& solid : file->solids) {
+            EXPECT_LE(solid.deviation, 0.01);
+            EXPECT_TRUE(solid.is_proven);
+        }
+}
+
+} // namespace
+} // namespace core
