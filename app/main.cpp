@@ -6,6 +6,7 @@
 #include <locale>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -19,17 +20,22 @@
 #include "app/commands/suggestion.h"
 #include "app/report/html/html_page.h"
 #include "core/base/platform.h"
+#include "core/cad/cad_file.h"
 
 namespace {
 
 /// The version, and what this build can do.
 std::string version_text() {
     const bool has_view = !app::view_bundle().empty();
+    const std::string_view cad = core::cad_library();
     return fmt::format("feeler {}\nwith     window and pictures (OpenGL), database of results "
-                       "(SQLite {}), line editing ({}){}{}",
+                       "(SQLite {}), line editing ({}){}{}{}{}",
                        app::version, sqlite3_libversion(), app::line_editor(),
                        has_view ? ", 3D view in HTML reports" : "",
-                       has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing");
+                       cad.empty() ? "" : fmt::format(", STEP and IGES files ({})", cad),
+                       has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing",
+                       cad.empty() ? "\nwithout  STEP and IGES files: Open CASCADE was missing"
+                                   : "");
 }
 
 /// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.

@@ -105,7 +105,7 @@ Maintainer: Feeler <feeler@feeler.invalid>
 Installed-Size: $(du -sk --exclude=DEBIAN "$tree" | cut -f1)
 Depends: $depends
 Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1, libegl1, libopengl0, libgl1-mesa-dri
-Suggests: ffmpeg
+Suggests: ffmpeg, libocct-data-exchange-7.6, libocct-ocaf-7.6
 Section: science
 Priority: optional
 Description: find collisions in NC programs before the machine does

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +16,9 @@
 #include "app/commands/read_files.h"
 #include "app/commands/suggestion.h"
 #include "app/report/text/bench_report.h"
+#include "core/cad/cad_file.h"
 #include "core/geom/mesh_file.h"
+#include "core/sim/verdict.h"
 
 namespace app {
 
@@ -22,14 +26,17 @@ namespace app {
 struct NamedBody {
     std::string name;
     MeasuredBody body;
-    std::vector<std::string> repairs; // of its mesh, as texts
+    std::vector<std::string> repairs; // of its mesh and how closely it is meshed, as texts
+    double deviation = 0.0;           // of its mesh from the true body, mm
 };
 
 /// Reads `sphere:R`, `box:X,Y,Z`, `cylinder:R,H` (axis Z), centred on the origin, a preset as in
-/// `preset:vise-6,opening=50`, or a mesh file.
+/// `preset:vise-6,opening=50`, a mesh file, a CAD file, or a solid of it as in `vise.step#jaw`.
+/// A CAD file is meshed within `deviation`.
 ///
-/// Errors: sizes that are not positive lengths; those of preset_argument, preset_mesh, read_mesh.
-core::Result<NamedBody> body_argument(const std::string& argument);
+/// Errors: sizes that are not positive lengths; those of preset_argument, preset_mesh, read_mesh,
+///         read_cad.
+core::Result<NamedBody> body_argument(const std::string& argument, double deviation);
 
 namespace {
 
@@ -38,20 +45,24 @@ struct DistanceOptions {
     std::string format = "text";
     std::string engine = "fast";
     double mesh_size = 0.5;
+    double deviation = core::default_cad_deviation;
     std::vector<double> move = {0, 0, 0}, rotate = {0, 0, 0}, sweep = {0, 0, 0};
 };
 
 core::Vec3 vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
 core::Result<std::string> answer(const DistanceOptions& options) {
-    FEELER_TRY(const NamedBody a, body_argument(options.a));
-    FEELER_TRY(const NamedBody b, body_argument(options.b));
+    FEELER_TRY(const NamedBody a, body_argument(options.a, options.deviation));
+    FEELER_TRY(const NamedBody b, body_argument(options.b, options.deviation));
     const core::Transform a_from_b{core::rotation_xyz_deg(vector(options.rotate)),
                                    vector(options.move)};
     const core::Vec3 sweep = vector(options.sweep);
     const auto engine = options.engine == "paper" ? core::paper_engine() : core::fast_engine();
-    FEELER_TRY(const BodyPairDistance found,
+    FEELER_TRY(BodyPairDistance found,
                measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine));
+    const double deviation = a.deviation + b.deviation;
+    found.lower = std::max(0.0, found.lower - deviation);
+    if (found.upper > 0.0) found.upper += deviation;
     for (const NamedBody* body : {&a, &b})
         for (const std::string& repair : body->repairs)
             print_note(fmt::format("{}: {}\n", body->name, repair));
@@ -80,12 +91,18 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
 void add_distance(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
-    const char* body = "Mesh file; sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin; or "
+    const char* body = "Mesh file; STEP or IGES file, or one of its solids, as in vise.step#jaw; "
+                       "sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin; or "
                        "preset:NAME,KEY=VALUE...";
     add_path(command, "a", options->a, body)->required();
     add_path(command, "b", options->b, body)->required();
     command.add_option("--mesh-size", options->mesh_size, "Spacing of the scan lines, mm")
         ->check(number_range(1e-300, 1e300))
+        ->capture_default_str();
+    command
+        .add_option("--mesh-deviation", options->deviation,
+                    "How far the mesh of a STEP or IGES file may be from its surface, mm")
+        ->check(number_range(core::least_cad_deviation, core::largest_cad_deviation))
         ->capture_default_str();
     add_vector(command, "--move", options->move, "Move B by X,Y,Z, mm");
     add_vector(command, "--rotate", options->rotate,
@@ -155,9 +172,36 @@ core::Error mesh_error(core::Error error, const std::string& argument) {
     return error;
 }
 
+/// The file and the solid of "vise.step#jaw"; no solid in the name of a file itself.
+struct CadArgument {
+    std::string file, solid;
+};
+
+std::optional<CadArgument> cad_argument(const std::string& argument) {
+    if (core::is_cad_file(argument)) return CadArgument{argument, {}};
+    const size_t hash = argument.rfind('#');
+    if (hash == std::string::npos || !core::is_cad_file(argument.substr(0, hash)))
+        return std::nullopt;
+    return CadArgument{argument.substr(0, hash), argument.substr(hash + 1)};
+}
+
+core::Result<NamedBody> cad_body(const std::string& argument, const CadArgument& cad,
+                                 double deviation) {
+    FEELER_TRY(const auto file, core::read_cad(cad.file, deviation));
+    auto body = core::body_of(*file, cad.solid);
+    if (!body) return tl::unexpected(core::in_file(body.error(), cad.file));
+    NamedBody named{argument, core::solid_mesh(std::move(body->mesh)), file->notes,
+                    body->deviation};
+    named.repairs.push_back(
+        fmt::format("meshed within {} mm of its surface ({})", core::at_most(body->deviation, 4),
+                    body->is_proven ? "proven" : "in part measured, and doubled"));
+    return named;
+}
+
 } // namespace
 
-core::Result<NamedBody> body_argument(const std::string& argument) {
+core::Result<NamedBody> body_argument(const std::string& argument, double deviation) {
+    if (const auto cad = cad_argument(argument)) return cad_body(argument, *cad, deviation);
     const size_t colon = argument.find(':');
     const std::string kind = argument.substr(0, std::min(colon, argument.size()));
     if (colon != std::string::npos && (kind == "sphere" || kind == "box" || kind == "cylinder")) {

@@ -400,15 +400,16 @@ bool CoprocessorCheck::is_far(const Question& q, const core::ExactBody& other,
 CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& body,
                                                       std::optional<size_t> fixture,
                                                       const core::Leg& leg, const At& at) const {
-    const core::Mount& mount = fixture ? setup_->fixtures[*fixture].mount : setup_->stock_mount;
     const core::Pair pair{body.kind, fixture, body.carried};
     const core::Allowance allowance = allowance_of(*setup_, pair);
     const double off = path_deviation(pair, at.off_motion, at.corners);
     // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
     const bool may_touch = allowance.distance <= core::resolution
                            && (off <= contact_depth(allowance) || (!fixture && at.follows));
-    return {body,      pair, relative_leg(setup_->machine, mount, body.mover, leg),
-            allowance, off,  may_touch};
+    const core::RelativeLeg way =
+        fixture ? leg_against(setup_->machine, setup_->fixtures[*fixture], body, leg)
+                : relative_leg(setup_->machine, setup_->stock_mount, body.mover, leg);
+    return {body, pair, way, allowance, off, may_touch};
 }
 
 Result<void> CoprocessorCheck::update_models(At& at) {

@@ -12,12 +12,14 @@
 #include "app/setup/table_reader.h"
 #include "core/base/file_reads.h"
 #include "core/base/text.h"
+#include "core/cad/cad_file.h"
 #include "core/dbm/stock_record.h"
 #include "core/geom/mesh.h"
 #include "core/geom/mesh_file.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "core/sim/clearance.h"
+#include "core/sim/verdict.h"
 #include "gcode/language/canonical.h"
 
 namespace app {
@@ -172,13 +174,15 @@ core::Mesh moved(core::Mesh mesh, const core::Transform& by) {
 }
 
 /// A box or mesh in the target frame, as a mesh.
-core::Mesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
-                           const core::Transform& target_from_body) {
-    core::Mesh mesh = shape == "box" ? core::mesh_of(read_box(table))
-                                     : read_mesh_file(table, "mesh", source).value_or(core::Mesh{});
-    return moved(std::move(mesh), target_from_body);
+BodyMesh read_polyhedron(TableReader& table, const MeshSource& source, const std::string& shape,
+                         const core::Transform& target_from_body) {
+    BodyMesh read = shape == "box" ? BodyMesh{core::mesh_of(read_box(table))}
+                                   : read_mesh_file(table, "mesh", source).value_or(BodyMesh{});
+    read.mesh = moved(std::move(read.mesh), target_from_body);
+    return read;
 }
 
+/// Also notes its deviation in the set-up.
 core::Solid stock_solid(TableReader& table, BodyContext& context, const std::string& shape,
                         const core::Transform& frame_from_body) {
     const bool rotated = frame_from_body.rotation != core::Mat3(1.0);
@@ -192,7 +196,9 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
         const core::Vec3 at = frame_from_body.translation;
         return {core::SolidBox{{box.min + at, box.max + at}}, 0.0};
     }
-    return {kept_solid(read_polyhedron(table, context.meshes(), shape, frame_from_body)), 0.0};
+    BodyMesh read = read_polyhedron(table, context.meshes(), shape, frame_from_body);
+    context.file.setup.stock_deviation = read.deviation;
+    return {kept_solid(std::move(read.mesh)), 0.0};
 }
 
 /// A cylinder along one of its body's axes, with its base centre at the body's origin.
@@ -261,15 +267,21 @@ std::optional<core::Mesh> read_preset(TableReader& table, const MeshSource& sour
     return *std::move(mesh);
 }
 
-std::optional<core::ExactBody> exact_body(TableReader& table, const MeshSource& source,
-                                          const core::Transform& target_from_body) {
+std::optional<DeviatingBody> exact_body(TableReader& table, const MeshSource& source,
+                                        const core::Transform& target_from_body) {
     const auto shape = only_shape(table, true);
     if (!shape) return std::nullopt;
-    if (*shape == "cylinder") return core::posed(standing(read_cylinder(table)), target_from_body);
-    if (*shape == "box") return core::posed(core::convex(read_box(table)), target_from_body);
-    auto mesh =
-        *shape == "preset" ? read_preset(table, source) : read_mesh_file(table, "mesh", source);
-    return kept_solid(moved(std::move(mesh).value_or(core::Mesh{}), target_from_body));
+    const auto exact = [&](const core::ConvexShape& convex) {
+        return DeviatingBody{core::posed(convex, target_from_body)};
+    };
+    if (*shape == "cylinder") return exact(standing(read_cylinder(table)));
+    if (*shape == "box") return exact(core::convex(read_box(table)));
+    BodyMesh read;
+    if (*shape == "preset")
+        read.mesh = read_preset(table, source).value_or(core::Mesh{});
+    else
+        read = read_mesh_file(table, "mesh", source).value_or(BodyMesh{});
+    return DeviatingBody{kept_solid(moved(std::move(read.mesh), target_from_body)), read.deviation};
 }
 
 bool has_no_shape(const TableReader& table) {
@@ -357,18 +369,64 @@ void read_model(TableReader& table, BodyContext& context, const Placement& place
     table.finish();
 }
 
-} // namespace
+/// "jaw of vise.step: meshed within 0.008 mm of its surface (proven)".
+std::string deviation_text(const std::string& file, const std::string& solid,
+                           const core::CadBody& body) {
+    std::string text =
+        fmt::format("{}{}: meshed within {} mm of its surface ({})",
+                    solid.empty() ? "" : solid + " of ", file, core::at_most(body.deviation, 4),
+                    body.is_proven ? "proven" : "in part measured, and doubled");
+    constexpr double small_gap = 1e-3; // mm
+    if (body.gap > small_gap)
+        text +=
+            fmt::format("; gaps between its faces are {} mm of this", core::at_most(body.gap, 4));
+    return text;
+}
 
-std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
-                                         const MeshSource& source) {
-    constexpr double mm_per_inch = 25.4;
-    const bool is_inch = table.word("mesh_unit", {"mm", "inch"}) == "inch";
-    const std::string name = table.string(key).value_or("");
-    const auto refuse = [&](const std::string& why) {
-        table.refuse(key, name.empty() ? why : fmt::format("= \"{}\": {}", name, why));
+/// Reads the CAD file that a key of a table names. Empty after an error.
+std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const std::string& name,
+                                      const MeshSource& source) {
+    const double wanted =
+        table.number_or("mesh_deviation", Measure::length, core::default_cad_deviation);
+    const std::string solid = table.string("solid").value_or("");
+    if (table.has("mesh_unit")) {
+        table.refuse("mesh_unit", fmt::format("does not apply to {}, which states its unit", name));
+        return std::nullopt;
+    }
+    if (!(wanted >= core::least_cad_deviation && wanted <= core::largest_cad_deviation)) {
+        table.refuse("mesh_deviation", fmt::format("must lie between {} and {}",
+                                                   table.shown(core::least_cad_deviation),
+                                                   table.shown(core::largest_cad_deviation)));
+        return std::nullopt;
+    }
+    const auto refuse = [&](const char* at, const std::string& why) {
+        table.refuse(at, fmt::format("= \"{}\": {}", at == key ? name : solid, why));
         return std::nullopt;
     };
-    if (name.empty()) return refuse("must name a file");
+    const auto file = core::read_cad(source.folder / name, wanted);
+    if (!file) return refuse(key, file.error().message);
+    auto body = core::body_of(**file, solid);
+    if (!body) return refuse("solid", body.error().message);
+    for (const std::string& note : (*file)->notes)
+        source.assumptions.push_back(fmt::format("{}: {}", name, note));
+    source.assumptions.push_back(deviation_text(name, solid, *body));
+    return BodyMesh{std::move(body->mesh), body->deviation};
+}
+
+/// Reads the mesh file that a key of a table names. Empty after an error.
+std::optional<core::Mesh> read_plain_mesh(TableReader& table, const char* key,
+                                          const std::string& name, const MeshSource& source) {
+    constexpr double mm_per_inch = 25.4;
+    const bool is_inch = table.word("mesh_unit", {"mm", "inch"}) == "inch";
+    for (const char* of_cad : {"solid", "mesh_deviation"})
+        if (table.has(of_cad)) {
+            table.refuse(of_cad, "applies only to STEP and IGES files");
+            return std::nullopt;
+        }
+    const auto refuse = [&](const std::string& why) {
+        table.refuse(key, fmt::format("= \"{}\": {}", name, why));
+        return std::nullopt;
+    };
     const auto read = kept_mesh(source.folder / name);
     if (!read) return refuse(read.error().message);
     for (const std::string& repair : (*read)->repairs)
@@ -376,17 +434,36 @@ std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
     core::Mesh mesh = (*read)->mesh;
     if (is_inch)
         for (core::Vec3& v : mesh.vertices) v *= mm_per_inch;
-    const core::Aabb box = mesh.bounds();
+    return mesh;
+}
+
+} // namespace
+
+std::optional<BodyMesh> read_mesh_file(TableReader& table, const char* key,
+                                       const MeshSource& source) {
+    const std::string name = table.string(key).value_or("");
+    const auto refuse = [&](const std::string& why) {
+        table.refuse(key, name.empty() ? why : fmt::format("= \"{}\": {}", name, why));
+        return std::nullopt;
+    };
+    if (name.empty()) return refuse("must name a file");
+    std::optional<BodyMesh> read;
+    if (core::is_cad_file(name))
+        read = read_cad_file(table, key, name, source);
+    else if (auto mesh = read_plain_mesh(table, key, name, source))
+        read = BodyMesh{*std::move(mesh)};
+    if (!read) return std::nullopt;
+    const core::Aabb box = read->mesh.bounds();
     for (const core::Vec3& corner : {box.min, box.max})
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(corner[axis]) > largest_number)
                 return refuse(fmt::format("reaches to {} {:g} mm, beyond {:.0f} mm (1 km)",
                                           "XYZ"[axis], corner[axis], largest_number));
-    return mesh;
+    return read;
 }
 
-std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
-                                               const core::Transform& target_from_frame) {
+std::optional<DeviatingBody> read_exact_body(TableReader& table, const MeshSource& source,
+                                             const core::Transform& target_from_frame) {
     return exact_body(table, source, target_from_frame * read_pose(table));
 }
 
@@ -411,7 +488,8 @@ void add_machine_bodies(TableReader& table, core::Setup& setup) {
             setup.fixtures.push_back({.name = body.name,
                                       .body = body.body,
                                       .mount = {body.link, body.place},
-                                      .is_machine = true});
+                                      .is_machine = true,
+                                      .deviation = body.deviation});
     }
 }
 
@@ -443,6 +521,7 @@ void read_stock(TableReader& table, BodyContext& context) {
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
     setup.stock.tolerance = table.number_or("tolerance", Measure::length, 0.0);
     if (setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
+    setup.stock.tolerance += setup.stock_deviation;
     context.frames.machine_from["stock"] = placement.machine_from_body();
     table.finish();
 }
@@ -456,8 +535,7 @@ void read_part(TableReader& table, BodyContext& context) {
     if (box == table.has("mesh")) return table.need("one of mesh, box");
     const core::Transform stock_from_body =
         setup.stock_mount.link_from_body.inverse() * placement.machine_from_body();
-    core::Mesh mesh =
-        read_polyhedron(table, context.meshes(), box ? "box" : "mesh", stock_from_body);
+    BodyMesh read = read_polyhedron(table, context.meshes(), box ? "box" : "mesh", stock_from_body);
     core::Part part;
     if (const auto tolerance = table.number("tolerance", Measure::length)) {
         if (!(*tolerance > 0.0)) table.refuse("tolerance", "must be above 0");
@@ -466,9 +544,14 @@ void read_part(TableReader& table, BodyContext& context) {
         context.file.assumptions.push_back(fmt::format(
             "the result may deviate from the part by {} mm either way", part.tolerance));
     }
+    if (!(part.tolerance > read.deviation))
+        table.refuse("tolerance", fmt::format("must be above {}, by which the mesh of the part may "
+                                              "deviate from it",
+                                              table.shown(read.deviation)));
+    part.tolerance -= read.deviation; // so that a gouge is found in any case
     table.finish();
-    if (mesh.triangles.empty()) return;
-    part.solid = kept_solid(std::move(mesh));
+    if (read.mesh.triangles.empty()) return;
+    part.solid = kept_solid(std::move(read.mesh));
     setup.part = std::move(part);
 }
 
@@ -513,7 +596,8 @@ void read_fixture(TableReader& table, BodyContext& context) {
     const core::Transform frame_from_body = read_pose(table);
     const auto body = exact_body(table, context.meshes(), stock_from_frame * frame_from_body);
     if (!body) return;
-    fixture.body = *body;
+    fixture.body = body->body;
+    fixture.deviation = body->deviation;
     context.frames.machine_from[fixture.name] = machine_from_frame * frame_from_body;
     std::vector<TableReader> moves = table.tables("move", "[[fixture.move]]");
     setup.fixtures.push_back(fixture);

@@ -51,18 +51,31 @@ struct BodyContext {
     MeshSource meshes();
 };
 
+/// A mesh, and how far it may be from the true surface, mm.
+struct BodyMesh {
+    core::Mesh mesh;
+    double deviation = 0.0;
+};
+
 /// Reads the mesh file that a key of a table names, in mm. A mesh file has no unit of its own:
-/// `mesh_unit` gives it. Relative paths are relative to the set-up. Empty after an error.
-std::optional<core::Mesh> read_mesh_file(TableReader& table, const char* key,
-                                         const MeshSource& source);
+/// `mesh_unit` gives it. Of a CAD file, `solid` and `mesh_deviation` say what is wanted. Relative
+/// paths are relative to the set-up. Empty after an error.
+std::optional<BodyMesh> read_mesh_file(TableReader& table, const char* key,
+                                       const MeshSource& source);
+
+/// A body, and how far it may be from the true one, mm.
+struct DeviatingBody {
+    core::ExactBody body;
+    double deviation = 0.0;
+};
 
 /// Reads the parameters of a preset that a table states. Refuses values out of their range.
 PresetValues read_preset_values(TableReader& table, const Preset& preset);
 
 /// Reads a body: its box, cylinder, mesh or preset, with `at` and `rotate_deg`; empty after an
 /// error.
-std::optional<core::ExactBody> read_exact_body(TableReader& table, const MeshSource& source,
-                                               const core::Transform& target_from_frame);
+std::optional<DeviatingBody> read_exact_body(TableReader& table, const MeshSource& source,
+                                             const core::Transform& target_from_frame);
 
 /// Reads `[stock]`. The frame of the stock becomes the frame of everything else.
 void read_stock(TableReader& table, BodyContext& context);

@@ -14,6 +14,7 @@
 #include "app/setup/stated_setup.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tools/found_tool.h"
+#include "core/cad/cad_file.h"
 #include "core/dbm/solid.h"
 #include "core/sim/clearance.h"
 #include "core/sim/tool_description.h"
@@ -97,7 +98,8 @@ void keep_shape(Changes& changes, const BodyPath& body, std::string_view shape,
                 const Preset* preset) {
     for (const char* key : {"box", "cylinder", "mesh", "model", "preset", "margin"})
         if (key != shape) changes.erase(body / key);
-    if (shape != "mesh") changes.erase(body / "mesh_unit");
+    if (shape != "mesh")
+        for (const char* key : {"mesh_unit", "solid", "mesh_deviation"}) changes.erase(body / key);
     if (shape != "preset") drop_preset_values(changes, body, preset, nullptr);
 }
 
@@ -237,6 +239,11 @@ Result<std::string> with_mesh(const std::string& text, const BodyPath& body,
                               const std::string& file) {
     Changes changes(text);
     changes.set(body / "mesh", toml_text(file));
+    changes.erase(body / "solid"); // of another file
+    if (core::is_cad_file(file))
+        changes.erase(body / "mesh_unit");
+    else
+        changes.erase(body / "mesh_deviation");
     keep_shape(changes, body, "mesh", preset_of(text, body));
     return std::move(changes).text();
 }

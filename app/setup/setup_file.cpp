@@ -191,7 +191,8 @@ void read_machine_body(TableReader& table, core::Machine& machine, const MeshSou
                      fmt::format("= \"{}\" is neither an axis of this machine nor \"base\"", axis));
     body.link = link.value_or(LinkId::base);
     if (const auto shape = read_exact_body(table, source, core::Transform())) {
-        body.body = *shape;
+        body.body = shape->body;
+        body.deviation = shape->deviation;
         machine.bodies.push_back(std::move(body));
     }
     table.finish();

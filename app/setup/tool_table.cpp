@@ -204,8 +204,9 @@ void read_preset_holder(TableReader& table, core::ToolDescription& tool) {
 }
 
 void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescription& tool) {
-    const auto mesh = read_mesh_file(table, "holder_mesh", context.meshes());
-    if (!mesh) return;
+    const auto read = read_mesh_file(table, "holder_mesh", context.meshes());
+    if (!read) return;
+    const core::Mesh* mesh = &read->mesh;
     const std::string name = table.string("holder_mesh").value_or("");
     const double lowest = mesh->bounds().min.z;
     if (std::abs(lowest) > same_level)
@@ -215,6 +216,7 @@ void read_mesh_holder(TableReader& table, BodyContext& context, core::ToolDescri
                 "= \"{}\": the origin must be in its lower face, but the mesh begins at Z {:g}",
                 name, lowest));
     tool.holder = cones_of_profile(core::revolved_hull(*mesh, mesh_tolerance));
+    tool.holder_deviation = read->deviation;
     context.file.assumptions.push_back(
         fmt::format("tool {}: its holder is the smallest body of revolution that contains {}",
                     core::value_of(tool.number), name));

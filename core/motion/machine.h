@@ -35,6 +35,7 @@ struct MachineBody {
     ExactBody body;
     LinkId link = LinkId::base; // the link that carries the body
     Transform place = {};       // moves it from where the machine describes it
+    double deviation = 0.0;     // of `body` from the true one, mm
 };
 
 /// A machine: linear and rotary axes from the base to the spindle and from the base to the table.

@@ -200,6 +200,13 @@ void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path
                              path.legs.end());
 }
 
+void widen_by_stock(PairClearance& pair, double deviation) {
+    if (pair.pair.fixture || deviation == 0.0 || pair.verdict == Verdict::collision) return;
+    pair.upper += deviation;
+    if (pair.verdict == Verdict::violation && pair.allowance.distance > resolution)
+        pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
+}
+
 double path_deviation(const Pair& pair, double of_block, const RoundedCorners& corners) {
     return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
 }

@@ -198,4 +198,8 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
 void widen(PairClearance& pair, double of_block, double of_rapids, const RoundedCorners& corners,
            bool follows_cuts);
 
+/// Widens the upper bound of a pair by the deviation of the stock's mesh; its tolerance is in the
+/// lower one already.
+void widen_by_stock(PairClearance& pair, double deviation);
+
 } // namespace core

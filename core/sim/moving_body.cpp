@@ -48,8 +48,8 @@ MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, siz
             .body = &body.body,
             .mover = {{body.link, place},
                       box.center(),
-                      0.5 * glm::length(box.size()),
-                      0.0,
+                      0.5 * glm::length(box.size()) + body.deviation,
+                      body.deviation,
                       setup.body_play.empty() ? tool.holder_play : setup.body_play[index]}};
 }
 
@@ -88,6 +88,13 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
         if (moves_against_work(setup.machine, setup.machine.bodies[i]))
             bodies.push_back(moving_machine_body(setup, tool, i));
     return bodies;
+}
+
+RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const MovingBody& body,
+                        const Leg& leg) {
+    RelativeLeg relative = relative_leg(machine, fixture.mount, body.mover, leg);
+    relative.error += fixture.deviation;
+    return relative;
 }
 
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture) {

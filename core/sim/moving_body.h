@@ -25,6 +25,10 @@ struct MovingBody {
 /// result refers to the set-up and the tool.
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
 
+/// The leg as seen from a fixture, without its play. Its deviation counts as an error of the leg.
+RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const MovingBody& body,
+                        const Leg& leg);
+
 /// Whether two bodies are never checked against each other: they are fixed to each other, or are
 /// machine bodies on neighbouring links.
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture);

@@ -27,7 +27,8 @@ struct Fixture {
     Mount mount = {};        // its link and its frame in that link
     bool is_there = true;    // at the start of the program
     bool is_machine = false;
-    Play play = {}; // it may stand anywhere on this segment; in the frame of its link
+    Play play = {};         // it may stand anywhere on this segment; in the frame of its link
+    double deviation = 0.0; // of `body` from the true one, mm: CAD files (core/cad/README.md)
 };
 
 /// Default tolerance of the comparison with the part, mm.
@@ -36,7 +37,7 @@ constexpr double default_part_tolerance = 0.1;
 /// The design shape of the finished workpiece. Frame: that of the stock.
 struct Part {
     SolidMesh solid;
-    double tolerance = default_part_tolerance; // mm, either way
+    double tolerance = default_part_tolerance; // mm, either way, less the deviation of `solid`
 };
 
 /// Minimum clearance of a pair of bodies, from the set-up. A name is that of a body or one of:
@@ -62,8 +63,9 @@ struct Setup {
     std::optional<double> allowance; // overrides the defaults for fixtures and holder
     std::vector<AllowanceRule> allowances;
     Machine machine;
-    Mount stock_mount; // link of the stock and its frame in that link
-    Solid stock;       // in the stock's frame
+    Mount stock_mount;            // link of the stock and its frame in that link
+    Solid stock;                  // in the stock's frame; its tolerance includes its deviation
+    double stock_deviation = 0.0; // of the mesh of the stock from the true one, mm
     std::shared_ptr<const std::vector<CutterSweep>> earlier_cuts; // of earlier programs, in order
     std::optional<Part> part;                                     // the design shape
     std::vector<Fixture> fixtures;

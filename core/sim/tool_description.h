@@ -85,6 +85,7 @@ struct ToolDescription {
     std::optional<int> teeth;         // threadmill: number of tooth rows; as many as fit if absent
     std::optional<double> thread_deg; // threadmill: included thread angle, 60 if absent
     std::vector<ConeStep> shank, holder;
+    double holder_deviation = 0.0;        // of the holder from the true one, mm
     std::optional<double> shank_diameter; // of the cylinder up to the holder if no shank is given
     std::optional<double> stick_out;      // tip to the holder's lower face
     std::optional<double> gauge_length;   // tip to the gauge line

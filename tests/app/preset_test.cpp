@@ -430,9 +430,10 @@ TEST_P(EachPreset, IsThatSolidForAllSizes) {
 
 TEST_P(EachPreset, HasParametersThatASetUpCanHold) {
     const std::set<std::string_view> taken = {
-        "name", "at",     "rotate_deg", "frame", "expendable", "mesh",      "mesh_unit",
-        "play", "box",    "cylinder",   "model", "axis",       "tolerance", "margin",
-        "move", "preset", "line",       "code",  "remove",     "number",    "length_unit"};
+        "name",      "at",    "rotate_deg",     "frame",  "expendable", "mesh",
+        "mesh_unit", "solid", "mesh_deviation", "play",   "box",        "cylinder",
+        "model",     "axis",  "tolerance",      "margin", "move",       "preset",
+        "line",      "code",  "remove",         "number", "length_unit"};
     std::set<std::string_view> keys;
     EXPECT_FALSE(preset().title.empty() || preset().source.empty() || preset().origin.empty());
     for (const app::PresetParameter& p : preset().parameters) {

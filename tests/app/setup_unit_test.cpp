@@ -405,6 +405,8 @@ const std::set<std::string> other_keys = {
     "cuts_at_centre",
     "mesh",
     "mesh_unit",
+    "solid",
+    "mesh_deviation", // a length, in cad_setup_test.cpp
     "preset",
     "model",
     "rotate_deg",

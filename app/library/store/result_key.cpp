@@ -13,6 +13,7 @@
 #include "app/check/check_run.h"
 #include "app/setup/program_settings.h"
 #include "core/base/platform.h"
+#include "core/cad/cad_file.h"
 
 namespace app {
 namespace {
@@ -110,7 +111,8 @@ std::string build_name() {
 } // namespace
 
 const std::string& build_version() {
-    static const std::string known = fmt::format("{} {}", version, build_name());
+    static const std::string known =
+        fmt::format("{} {} {}", version, build_name(), core::cad_library());
     return known;
 }
 

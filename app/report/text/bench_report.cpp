@@ -177,7 +177,8 @@ std::string text_distance(const BodyPairDistance& found, const std::string& a, c
         text += "  distance      0: they touch or overlap\n";
     else
         text +=
-            fmt::format("  distance      {:.6f} mm, guaranteed between {} and {}\n", found.upper,
+            fmt::format("  distance      {:.6f} mm, guaranteed between {} and {}\n",
+                        std::min(found.upper, glm::distance(found.on_a, found.on_b)),
                         core::clearance_at_least(found.lower, 9), core::at_most(found.upper, 9));
     text += fmt::format("  scan points   closest pair {} mm apart, of {} and {} points\n",
                         core::at_least(found.distance, 6), found.points_a, found.points_b);

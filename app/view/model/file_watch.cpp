@@ -4,6 +4,7 @@
 
 #include "app/setup/toml_file.h"
 #include "core/base/text.h"
+#include "core/cad/cad_file.h"
 
 namespace app::viewer {
 namespace {
@@ -17,7 +18,7 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
 } // namespace
 
 bool is_mesh_file(const std::string& path) {
-    return has_ending(path, {".stl", ".obj", ".ply", ".off"});
+    return has_ending(path, {".stl", ".obj", ".ply", ".off"}) || core::is_cad_file(path);
 }
 
 bool is_setup_file(const std::string& path) { return has_ending(path, {".toml"}); }

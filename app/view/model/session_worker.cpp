@@ -20,6 +20,7 @@
 #include "app/view/model/program_zero.h"
 #include "app/view/model/scene_of.h"
 #include "core/base/file_reads.h"
+#include "core/cad/cad_file.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -90,6 +91,8 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     const core::FileAccessObserver listening([&read](const core::FileAccess& access) {
         if (access.question == core::FileAccessKind::content) read.insert(access.path);
     });
+    const core::CadReadObserver stopping(
+        [&](const core::CadProgress&) { return !is_superseded(); });
     auto check = read_check(job);
     if (is_superseded()) return;
     news_.files.assign(read.begin(), read.end());

@@ -19,6 +19,7 @@
 #include "app/view/model/view_model.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
+#include "core/cad/cad_file.h"
 #include "core/dbm/solid.h"
 #include "gcode/language/canonical.h"
 
@@ -311,6 +312,15 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
             if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, wish);
         }
         if (body.mesh.empty()) return;
+        if (core::is_cad_file(body.mesh)) {
+            field_name(frame, "Solid");
+            if (const auto solid = fields_.words(frame, "##solid", body.solid, "all", 150))
+                change([&](const std::string& t) {
+                    return solid->empty() ? toml_without(t, path / "solid")
+                                          : toml_with_value(t, path / "solid", toml_text(*solid));
+                });
+            return;
+        }
         field_name(frame, "Its unit");
         ImGui::SetNextItemWidth(frame.px(84));
         using gcode::LengthUnit;

@@ -19,7 +19,7 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     const Fixture& fixture = context_.setup.fixtures[*known.pair.fixture];
     const Allowance& allowance = known.allowance;
     const double limit = std::min(context_.setup.search_limit, known.upper)
-                         + (relative.turns ? relative.error : 0.0);
+                         + (relative.turns || fixture.deviation > 0.0 ? relative.error : 0.0);
     const Separation seen =
         distance_over(relative, body, fixture.body, limit, context_.statistics.shape_tests);
     const Separation found = widened(seen, relative);
@@ -61,8 +61,12 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
 bool FixtureCheck::is_settled(const PairClearance& now, const PairClearance& known) const {
     constexpr double sharp = 1e-3; // mm
     const double nearest = std::min({known.upper, now.upper, context_.setup.search_limit});
+    // Shorter chords do not change the deviations of the shapes.
+    const MovingBody& body = context_.body_of(now.pair);
+    const double shapes = context_.setup.fixtures[*now.pair.fixture].deviation
+                          + (body.body ? body.mover.form_error : 0.0);
     return now.verdict == Verdict::collision
-           || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp);
+           || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp - 2.0 * shapes);
 }
 
 void FixtureCheck::check_passage(const Leg& leg, double start, size_t fixture,

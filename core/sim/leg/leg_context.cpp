@@ -31,7 +31,7 @@ std::vector<const MovingBody*> LegContext::likely_first(std::optional<size_t> fi
 RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
                                         const Leg& leg) const {
     const Fixture& target = setup.fixtures[fixture];
-    RelativeLeg relative = relative_leg(setup.machine, target.mount, body.mover, leg);
+    RelativeLeg relative = leg_against(setup.machine, target, body, leg);
     if (target.play.none()) return relative;
     // As seen from the fixture, the body is displaced the other way.
     const Play play = rotated(-glm::transpose(target.mount.link_from_body.rotation), target.play);

@@ -234,8 +234,6 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
     if (!leg.straight || leg.positions.size() < 2) return 0.0;
     const Pair& pair = near.pair;
     const MovingBody& body = context_.body_of(pair);
-    const Mount& target =
-        pair.fixture ? context_.setup.fixtures[*pair.fixture].mount : context_.setup.stock_mount;
     // As for the distance itself, if that is to a line along Z.
     const std::optional<LineId>& line = context_.memory.hints[static_cast<size_t>(body.kind)];
     const bool along_z_only =
@@ -243,8 +241,10 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
         && are_close(near.lower, distance, exact_within(near.allowance), stock.lines.grid.spacing);
     double after = 1.0; // the earliest known moment at which the pair is that near
     const auto until = [&](double fraction) {
-        return relative_leg(context_.setup.machine, target, body.mover,
-                            stretch(leg, 0.0, fraction));
+        const Leg part = stretch(leg, 0.0, fraction);
+        return pair.fixture ? leg_against(context_.setup.machine,
+                                          context_.setup.fixtures[*pair.fixture], body, part)
+                            : context_.against_stock(body, part);
     };
     const auto reached = [&](double fraction) {
         const RelativeLeg moved = until(fraction);

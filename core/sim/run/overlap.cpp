@@ -121,7 +121,9 @@ private:
     bool add_pieces(const Leg& leg, const LegStock& stock, int halvings) {
         constexpr double sharp = 0.01; // mm, error of a turning body
         const RelativeLeg relative =
-            relative_leg(query_.setup.machine, target(), body_->mover, leg);
+            pair_.fixture ? leg_against(query_.setup.machine, query_.setup.fixtures[*pair_.fixture],
+                                        *body_, leg)
+                          : relative_leg(query_.setup.machine, target(), body_->mover, leg);
         const bool is_vague = relative.turns && relative.error > sharp;
         if (is_vague && halvings > 0 && leg.positions.size() == 2)
             return add_pieces(stretch(leg, 0.0, 0.5), stock, halvings - 1)
