@@ -81,8 +81,9 @@ struct BodyPairDistance {
     double distance = 0.0; // between the closest scan points
     double lower = 0.0;    // lower <= true distance <= upper
     double upper = 0.0;
-    core::Vec3 on_a, on_b; // witness of `upper`, in A's frame
-    double at = 0.0;       // position of the witness in the sweep, 0..1
+    double deviation = 0.0; // of meshes of CAD files, included in the bounds
+    core::Vec3 on_a, on_b;  // witness of `upper`, in A's frame
+    double at = 0.0;        // position of the witness in the sweep, 0..1
     size_t points_a = 0, points_b = 0;
     uint64_t node_tests = 0; // pairs tested: spheres in the paper's engine, else boxes
     uint64_t point_tests = 0;

@@ -62,7 +62,10 @@ core::Result<std::string> answer(const DistanceOptions& options) {
                measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine));
     const double deviation = a.deviation + b.deviation;
     found.lower = std::max(0.0, found.lower - deviation);
-    if (found.upper > 0.0) found.upper += deviation;
+    if (found.upper > 0.0) {
+        found.upper += deviation;
+        found.deviation = deviation;
+    }
     for (const NamedBody* body : {&a, &b})
         for (const std::string& repair : body->repairs)
             print_note(fmt::format("{}: {}\n", body->name, repair));

@@ -23,7 +23,7 @@ namespace {
 thread_local const CadReadObserver* current_observer = nullptr;
 
 constexpr size_t largest_cad_file = size_t{1} << 30U; // bytes
-constexpr size_t most_triangles = 20'000'000;         // of a file; 1.5 GB
+constexpr size_t most_triangles = 3'000'000;          // of a file: ten seconds of meshing
 
 } // namespace
 

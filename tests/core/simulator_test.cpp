@@ -168,6 +168,42 @@ TEST(Simulator, MeasuresAFixtureToRounding) {
     }
 }
 
+TEST(Simulator, WidensBoundsByTheDeviationOfAFixture) {
+    for (const bool on_arc : {false, true}) {
+        core::Setup setup = plain_setup();
+        setup.fixtures.push_back({"stud", convex(Aabb{{120, 40, -30}, {130, 60, 40}})});
+        const auto clearance = [&](double deviation) {
+            setup.fixtures[0].deviation = deviation;
+            Shift run(setup);
+            run.rapid({110, 50, 50});
+            run.rapid({110, 50, 20});
+            const BlockResult result =
+                on_arc ? run.circle({100, 50, 0}, {110, 50, 20}) : run.rapid({110, 50, 15});
+            return *pair_of(result, PartKind::flutes, 0);
+        };
+        const PairClearance exact = clearance(0.0), wide = clearance(0.25);
+        EXPECT_NEAR(exact.upper, 5.0, 2e-3);
+        EXPECT_LE(wide.lower, exact.lower - 0.25 + 1e-9);
+        EXPECT_GE(wide.lower, exact.lower - 0.25 - 0.01);
+        EXPECT_GE(wide.upper, exact.upper + 0.25 - 2e-3);
+        EXPECT_EQ(wide.verdict, Verdict::clear);
+        EXPECT_EQ(clearance(3.5).verdict, Verdict::undecided); // the minimum clearance is 2
+    }
+}
+
+TEST(Simulator, WidensBoundsByTheDeviationOfTheStock) {
+    core::Setup setup = plain_setup();
+    const auto clearance = [&](double deviation) {
+        setup.stock.tolerance = setup.stock_deviation = deviation;
+        Shift run(setup);
+        run.rapid({50, 50, 30});
+        return *pair_of(run.rapid({50, 50, 5}), PartKind::flutes);
+    };
+    const PairClearance exact = clearance(0.0), wide = clearance(0.25);
+    EXPECT_LE(wide.lower, exact.upper - 0.25);
+    EXPECT_NEAR(wide.upper, exact.upper + 0.25, 1e-6);
+}
+
 TEST(Simulator, CoversAWholeCircle) {
     // The post is outside the circle; the closest approach is at neither end of the block.
     core::Setup setup = plain_setup();

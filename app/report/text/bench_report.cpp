@@ -157,6 +157,7 @@ std::string json_distance(const BodyPairDistance& found) {
     json["distance"] = found.distance;
     json["lower"] = found.lower;
     json["upper"] = found.upper;
+    if (found.deviation > 0.0) json["deviation"] = found.deviation;
     json["witness"] = Json::array({json_point(found.on_a), json_point(found.on_b)});
     json["at"] = found.at;
     json["points"] = {found.points_a, found.points_b};
@@ -176,10 +177,9 @@ std::string text_distance(const BodyPairDistance& found, const std::string& a, c
     if (found.upper == 0.0)
         text += "  distance      0: they touch or overlap\n";
     else
-        text +=
-            fmt::format("  distance      {:.6f} mm, guaranteed between {} and {}\n",
-                        std::min(found.upper, glm::distance(found.on_a, found.on_b)),
-                        core::clearance_at_least(found.lower, 9), core::at_most(found.upper, 9));
+        text += fmt::format("  distance      {:.6f} mm, guaranteed between {} and {}\n",
+                            found.upper - found.deviation, core::clearance_at_least(found.lower, 9),
+                            core::at_most(found.upper, 9));
     text += fmt::format("  scan points   closest pair {} mm apart, of {} and {} points\n",
                         core::at_least(found.distance, 6), found.points_a, found.points_b);
     text += fmt::format("  nearest       ({:.4f}, {:.4f}, {:.4f}) and ({:.4f}, {:.4f}, {:.4f})",

@@ -386,9 +386,9 @@ Result<bool> SolidMesher::refine() {
         if (triangle_count() > wish_.most_triangles) break;
     }
     return fail(ErrorCode::unsupported,
-                fmt::format("a mesh within {:g} mm of its surface needs more than {} triangles: "
-                            "allow a larger deviation",
-                            wish_.deviation, wish_.most_triangles));
+                fmt::format("a mesh within {:g} mm of its surface has too many triangles: allow a "
+                            "larger deviation",
+                            wish_.deviation));
 }
 
 /// For each point, the first one at the same place. Around a pole, sides of several triangles are
