@@ -95,8 +95,13 @@ printf 'feeler (%s) stable; urgency=medium\n\n  * Version %s.\n\n -- Feeler <fee
 gzip -9n "$tree"/usr/share/man/man1/*.1
 mkdir -p "$tree/DEBIAN" "$work/debian"
 printf 'Source: feeler\nPackage: feeler\n' >"$work/debian/control"
-depends=$(cd "$work" && dpkg-shlibdeps -O --ignore-missing-info -e "$tree/usr/bin/feeler" 2>/dev/null \
-    | sed -n 's/^shlibs:Depends=//p')
+needs_of() {
+    (cd "$work" && dpkg-shlibdeps -O --ignore-missing-info -e "$1" 2>/dev/null | sed -n 's/^shlibs:Depends=//p')
+}
+depends=$(needs_of "$tree/usr/bin/feeler")
+reader=$tree/usr/lib/feeler/feeler-cad
+for_reader=
+[[ -e $reader ]] && for_reader=", $(needs_of "$reader")"
 cat >"$tree/DEBIAN/control" <<CONTROL
 Package: feeler
 Version: $version
@@ -104,8 +109,8 @@ Architecture: $architecture
 Maintainer: Feeler <feeler@feeler.invalid>
 Installed-Size: $(du -sk --exclude=DEBIAN "$tree" | cut -f1)
 Depends: $depends
-Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1, libegl1, libopengl0, libgl1-mesa-dri
-Suggests: ffmpeg, libocct-data-exchange-7.6, libocct-ocaf-7.6
+Recommends: fonts-inter, fonts-jetbrains-mono, fonts-font-awesome, libgl1, libegl1, libopengl0, libgl1-mesa-dri$for_reader
+Suggests: ffmpeg
 Section: science
 Priority: optional
 Description: find collisions in NC programs before the machine does

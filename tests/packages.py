@@ -65,6 +65,9 @@ def wrong_in_debian_package(tree):
     for package in ("libgl1", "libegl1", "libgl1-mesa-dri"):
         if not re.search(rf"^Recommends:.*\b{package}(,|$)", control, flags=re.M):
             yield f"{package} is not recommended"
+    reader = tree / "usr" / "lib" / "feeler" / "feeler-cad"
+    if reader.is_file() and not re.search(r"^Recommends:.*\blibocct-", control, flags=re.M):
+        yield "the libraries of feeler-cad are not recommended"
 
 
 def mistakes(package):

@@ -90,6 +90,7 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     const core::Transform stock_from_machine = setup.stock_mount.link_from_body.inverse();
     for (const auto& [name, pose] : file.frames)
         sheet.frames.emplace(name, stock_from_machine * pose);
+    sheet.cad_names = file.cad_names;
     sheet.knows_fixtures = file.fixtures_known != Known::missing;
     sheet.has_machine = file.has_axes;
     return sheet;

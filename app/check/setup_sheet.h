@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,8 +14,9 @@
 #include "core/sim/tool_description.h"
 
 namespace core {
+struct CadNames;
 struct Setup;
-}
+} // namespace core
 
 namespace app {
 
@@ -61,6 +63,8 @@ struct SetupSheet {
     std::optional<double> allowance; // the general one; empty: the defaults
     /// Poses of the named frames relative to the stock: "machine", "stock", work offsets, fixtures.
     std::map<std::string, core::Transform> frames;
+    std::shared_ptr<const core::CadNames>
+        cad_names;               // of the solids in STEP and IGES files; or null
     bool knows_fixtures = false; // it describes some, or states that there are none
     bool has_machine = false;    // it describes axes
 

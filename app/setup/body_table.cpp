@@ -24,7 +24,7 @@
 
 namespace app {
 
-MeshSource BodyContext::meshes() { return {folder, file.assumptions}; }
+MeshSource BodyContext::meshes() { return {folder, file.assumptions, &file.cad_names}; }
 
 namespace {
 
@@ -405,8 +405,12 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
     };
     const auto file = core::read_cad(source.folder / name, wanted);
     if (!file) return refuse(key, file.error().message);
+    if (source.cad_names) {
+        if (!*source.cad_names) *source.cad_names = std::make_shared<core::CadNames>();
+        (*source.cad_names)->by_file[name] = core::names_of(**file);
+    }
     auto body = core::body_of(**file, solid);
-    if (!body) return refuse("solid", body.error().message);
+    if (!body) return refuse(solid.empty() ? key : "solid", body.error().message);
     for (const std::string& note : (*file)->notes)
         source.assumptions.push_back(fmt::format("{}: {}", name, note));
     source.assumptions.push_back(deviation_text(name, solid, *body));
@@ -548,7 +552,12 @@ void read_part(TableReader& table, BodyContext& context) {
         table.refuse("tolerance", fmt::format("must be above {}, by which the mesh of the part may "
                                               "deviate from it",
                                               table.shown(read.deviation)));
-    part.tolerance -= read.deviation; // so that a gouge is found in any case
+    part.deviation = read.deviation;
+    if (read.deviation > 0.0)
+        context.file.assumptions.push_back(
+            fmt::format("deviations from the part count from {} mm on, because its mesh may be off "
+                        "by {} mm",
+                        core::at_least(part.limit(), 4), core::at_most(read.deviation, 4)));
     table.finish();
     if (read.mesh.triangles.empty()) return;
     part.solid = kept_solid(std::move(read.mesh));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "core/base/vec.h"
 #include "core/distance/body_distance.h"
 #include "core/sim/setup.h"
+
+namespace core {
+struct CadNames;
+}
 
 namespace app {
 
@@ -39,6 +44,7 @@ struct NamedFrames {
 struct MeshSource {
     std::filesystem::path folder; // for relative paths
     std::vector<std::string>& assumptions;
+    std::shared_ptr<core::CadNames>* cad_names = nullptr; // receives those of CAD files
 };
 
 /// Context shared by the readers of bodies.

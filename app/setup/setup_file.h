@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -12,6 +13,10 @@
 #include "core/base/result.h"
 #include "core/sim/setup.h"
 #include "gcode/language/environment.h"
+
+namespace core {
+struct CadNames;
+}
 
 namespace gcode {
 struct ControlPreset;
@@ -94,6 +99,7 @@ struct SetupFile {
     std::string start_assumption;  // of a start position that nothing states; or empty
     std::string not_judged;        // why motions are not checked; empty if they are
     std::vector<std::string> assumptions; // facts that the file does not state, and mesh repairs
+    std::shared_ptr<core::CadNames> cad_names; // of the solids in STEP and IGES files; or null
 };
 
 /// Reads a set-up (TOML) and every file that it names; relative paths are relative to the file.

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <deque>
 #include <mutex>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -149,6 +150,9 @@ bool Intake::take(const cad::Message& message) {
     case Kind::note:
         read_.notes.emplace_back(message.text);
         return true;
+    case Kind::left_out:
+        read_.left_out.emplace_back(message.text);
+        return true;
     case Kind::error:
         error_ = message.text;
         return true;
@@ -249,13 +253,24 @@ std::shared_ptr<const CadFile> find_kept(const KeptFile& wanted) {
     return kept.files.front().file;
 }
 
+size_t triangle_bytes(const CadFile& file) {
+    size_t bytes = 0;
+    for (const CadSolid& solid : file.solids)
+        bytes += solid.mesh.triangles.size() * sizeof(Mesh::Corners)
+                 + solid.mesh.vertices.size() * sizeof(Vec3);
+    return bytes;
+}
+
 void keep(KeptFile file) {
-    constexpr size_t most_files = 8, most_bytes = size_t{64} << 20U;
-    if (file.bytes.size() > most_bytes) return;
+    constexpr size_t most_files = 8, most_bytes = size_t{512} << 20U; // with triangles
     KeptFiles& kept = kept_files();
     const std::lock_guard lock(kept.mutex);
     kept.files.push_front(std::move(file));
-    if (kept.files.size() > most_files) kept.files.pop_back();
+    size_t count = 0, bytes = 0;
+    std::erase_if(kept.files, [&](const KeptFile& one) {
+        bytes += one.bytes.size() + triangle_bytes(*one.file);
+        return ++count > most_files || bytes > most_bytes;
+    });
 }
 
 Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path& path,
@@ -264,6 +279,9 @@ Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&
     KeptFile wanted{std::move(bytes), is_step(path), deviation, {}};
     if (auto file = find_kept(wanted)) return file;
     FEELER_TRY(CadFile file, read_fresh(path, deviation, wanted.bytes.size()));
+    // The reader opened the file once more.
+    if (file_bytes(path, largest_cad_file) != wanted.bytes)
+        return fail(ErrorCode::io, "it changed while it was read: try again");
     wanted.file = std::make_shared<const CadFile>(std::move(file));
     keep(wanted);
     return wanted.file;
@@ -298,10 +316,8 @@ Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&
 Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& path,
                                                 double deviation) {
     assert(deviation >= least_cad_deviation && deviation <= largest_cad_deviation);
-    return read_or_kept(path, deviation).map_error([&](Error error) {
-        error.message = fmt::format("{}: {}", path.generic_string(), error.message);
-        error.file = path.generic_string();
-        return error;
+    return read_or_kept(path, deviation).map_error([&](const Error& error) {
+        return in_file(error, path.generic_string());
     });
 }
 
@@ -312,13 +328,11 @@ bool has_name(const CadSolid& solid, const std::string& name) {
            || std::find(solid.names.begin(), solid.names.end(), name) != solid.names.end();
 }
 
-/// The names of a file, in its order, each once and not more than fit in a message.
+/// The names of a file, not more than fit in a message.
 std::string names_text(const CadFile& file) {
     constexpr size_t most = 30;
     std::vector<std::string> names;
-    for (const CadSolid& solid : file.solids)
-        for (const std::string& name : solid.names)
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    for (CadName& each : names_of(file)) names.push_back(std::move(each.name));
     const size_t count = names.size();
     names.resize(std::min(count, most));
     return fmt::format("\"{}\"{}", fmt::join(names, "\", \""),
@@ -334,7 +348,26 @@ void append(Mesh& mesh, const Mesh& other) {
 
 } // namespace
 
+std::vector<CadName> names_of(const CadFile& file) {
+    std::vector<CadName> names;
+    std::unordered_map<std::string_view, size_t> at;
+    for (const CadSolid& solid : file.solids)
+        for (const std::string& name : solid.names) {
+            const auto [found, is_new] = at.emplace(name, names.size());
+            if (is_new) names.push_back({name, {}});
+            if (&name == &solid.names.back()) names[found->second].colour = solid.colour;
+        }
+    return names;
+}
+
 Result<CadBody> body_of(const CadFile& file, const std::string& name) {
+    if (name.empty() && !file.left_out.empty())
+        return fail(
+            ErrorCode::invalid_value,
+            fmt::format("beside solids it has surfaces that enclose none, and could be part "
+                        "of the body: {}. Close them in the CAD system; or name the solids "
+                        "or the assembly that make up the body: {}",
+                        fmt::join(file.left_out, "; "), names_text(file)));
     CadBody body;
     for (const CadSolid& solid : file.solids) {
         if (!has_name(solid, name)) continue;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,7 +41,8 @@ struct CadSolid {
 /// The solids of a CAD file, in its order.
 struct CadFile {
     std::vector<CadSolid> solids;
-    std::vector<std::string> notes; // what was left out or repaired, one sentence each
+    std::vector<std::string> notes;    // what was repaired, and curves that were left out
+    std::vector<std::string> left_out; // surfaces that enclose no solid: which, a sentence each
 };
 
 /// The reader of CAD files that this program has, such as "Open CASCADE 7.6.3"; empty if it was
@@ -56,19 +58,33 @@ bool is_cad_file(const std::filesystem::path& path);
 /// Result:  all solids, each meshed within `deviation` (mm) of its surface. Where the file itself
 ///          has larger gaps between its faces, `CadSolid::deviation` is larger. The last files are
 ///          kept, so reading one of them again costs no more than comparing its bytes.
-/// Errors:  name the file: built without Open CASCADE, damaged, without solids, an open surface, a
+/// Errors:  of the file: built without Open CASCADE, damaged, without solids, an open surface, a
 ///          face that cannot be meshed, stopped by a `CadReadObserver`. A file is never read in
-///          part, except that `notes` say which curves and open surfaces beside solids are left
-///          out.
+///          part, except that curves, and open surfaces beside solids, are left out and named.
 /// Cost:    about what Open CASCADE itself takes to read and mesh the file. It runs in a process of
 ///          its own, because damaged files can make it crash.
 Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& path,
                                                 double deviation = default_cad_deviation);
 
+/// A name of solids of a CAD file, and their colour if they have one.
+struct CadName {
+    std::string name;
+    std::optional<Colour> colour; // of a solid that has it as its own name
+};
+
+/// The names by which `body_of` finds solids, each once: assemblies before what is in them.
+std::vector<CadName> names_of(const CadFile& file);
+
+/// The names in the CAD files that a set-up names, by the path as it is written there.
+struct CadNames {
+    std::map<std::string, std::vector<CadName>> by_file;
+};
+
 /// Those solids of a file that have this name, or are in an assembly of this name, as one mesh;
 /// with an empty name, all. A mesh of several solids may overlap itself (checked_solid).
 ///
-/// Errors:  no solid has the name; the message lists the names there are.
+/// Errors:  no solid has the name; the message lists the names there are. Without a name: the file
+///          also has surfaces that enclose no solid, which would be missing from the body.
 struct CadBody {
     Mesh mesh;
     double deviation = 0.0; // the greatest of its solids, mm

@@ -11,7 +11,7 @@ namespace core::cad {
 
 // What the program that reads CAD files writes to its standard output.
 
-enum class MessageKind : uint8_t { progress = 1, note, error, solid, end };
+enum class MessageKind : uint8_t { progress = 1, note, left_out, error, solid, end };
 
 /// A message in the output.
 struct Message {

@@ -204,6 +204,7 @@ Transform shifted_pose(const Machine& machine, const Mount& target, const Mount&
 RelativeLeg without_turning(const Machine& machine, const Mount& target, const Mover& mover,
                             const Leg& leg) {
     RelativeLeg relative;
+    relative.lasting_error = mover.form_error;
     relative.error = leg.path_error + mover.form_error;
     for (const AxisValues& position : leg.positions) {
         const Transform pose = machine.has_rotary()
@@ -339,6 +340,7 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     const double tilt = mover.is_revolved
                             ? tilt_of_axis(machine, axes, leg, middle, mover_pose.rotation, turn)
                             : turn;
+    relative.lasting_error = mover.form_error;
     relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
     relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
     return relative;
@@ -348,7 +350,9 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
 
 void add_play_as_error(RelativeLeg& leg, const Play& play) {
     for (Vec3& position : leg.positions) position += 0.5 * (play.from + play.to);
-    leg.error += 0.5 * glm::distance(play.from, play.to);
+    const double half = 0.5 * glm::distance(play.from, play.to);
+    leg.error += half;
+    leg.lasting_error += half;
 }
 
 void add_play(RelativeLeg& leg, const Play& play) {

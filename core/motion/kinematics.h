@@ -50,6 +50,7 @@ struct RelativeLeg {
     Mat3 orientation = Mat3(1.0);
     std::vector<Vec3> positions; // of the mover's origin
     double error = 0.0;          // of the path and of rotation, mm; infinite beyond half a radian
+    double lasting_error = 0.0;  // the part of `error` that is the same for any part of the leg
     double travel = 0.0;         // upper bound of the travel of any point, mm
     bool turns = false;          // the orientation is that of the middle of the leg
 };

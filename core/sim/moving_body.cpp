@@ -94,6 +94,7 @@ RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const Mo
                         const Leg& leg) {
     RelativeLeg relative = relative_leg(machine, fixture.mount, body.mover, leg);
     relative.error += fixture.deviation;
+    relative.lasting_error += fixture.deviation;
     return relative;
 }
 

@@ -165,7 +165,7 @@ void Comparison::measure_within(const Triangle& whole, double spacing, SurfaceTr
 void Comparison::measure_part_at(const Vec3& position, SurfaceTracker& tracker) {
     ++result_.samples;
     const NearestSurface nearest = tracker.at(position);
-    if (nearest.distance <= part_.tolerance || holds(stock_solid_, position)) return;
+    if (nearest.distance <= part_.limit() || holds(stock_solid_, position)) return;
     // Between scan lines the mesh of the stock deviates from the true surface; the cuts are exact.
     if (has_matter_near(position)) return;
     worst(Deviation::gouge)[nearest.triangle / 2].offer(nearest.distance, position);
@@ -181,8 +181,8 @@ bool Comparison::has_matter_near(const Vec3& position) const {
     };
     for (const double x : {0.0, -0.6, 0.6})
         for (const double y : {0.0, -0.6, 0.6}) {
-            const double up = part_.tolerance * std::sqrt(1.0 - x * x - y * y);
-            const Vec3 at = position + part_.tolerance * Vec3(x, y, 0.0);
+            const double up = part_.limit() * std::sqrt(1.0 - x * x - y * y);
+            const Vec3 at = position + part_.limit() * Vec3(x, y, 0.0);
             for (const Interval& matter : fresh_line(stock_, cell(at, 0), cell(at, 1), at.x, at.y))
                 if (matter.lower <= at.z + up && matter.upper >= at.z - up) return true;
         }
@@ -203,7 +203,7 @@ double Comparison::area(size_t sample) const {
 void Comparison::add_regions(Deviation kind) {
     UnionFind groups(surface_.mesh.vertices.size());
     const auto is_off = [&](size_t k) {
-        return worst(kind)[k].amount > part_.tolerance + resolution;
+        return worst(kind)[k].amount > part_.limit() + resolution;
     };
     double& largest = kind == Deviation::gouge ? result_.largest_gouge : result_.largest_excess;
     for (size_t k = 0; k < surface_.samples.size(); ++k) {

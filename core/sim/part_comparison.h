@@ -18,7 +18,7 @@ enum class Deviation : uint8_t { gouge, excess };
 
 const char* name_of(Deviation deviation);
 
-/// A connected region of the surface that deviates from the part by more than the tolerance.
+/// A connected region of the surface that deviates from the part by more than Part::limit.
 struct DeviationRegion {
     Deviation kind = Deviation::gouge;
     double amount = 0.0;           // largest deviation in the region, mm

@@ -37,7 +37,12 @@ constexpr double default_part_tolerance = 0.1;
 /// The design shape of the finished workpiece. Frame: that of the stock.
 struct Part {
     SolidMesh solid;
-    double tolerance = default_part_tolerance; // mm, either way, less the deviation of `solid`
+    double tolerance = default_part_tolerance; // mm, either way
+    double deviation = 0.0;                    // of `solid` from the true part, less than that
+
+    /// Deviations from `solid` that count: what deviates from the true part by the tolerance may
+    /// deviate from `solid` by less.
+    double limit() const { return tolerance - deviation; }
 };
 
 /// Minimum clearance of a pair of bodies, from the set-up. A name is that of a body or one of:

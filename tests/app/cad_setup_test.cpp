@@ -108,7 +108,8 @@ TEST_F(CadBodies, AreStockAndPartOnTheSafeSide) {
     const double deviation = file->setup.stock_deviation;
     EXPECT_GT(deviation, 0.0);
     EXPECT_DOUBLE_EQ(file->setup.stock.tolerance, 0.5 + deviation);
-    EXPECT_DOUBLE_EQ(file->setup.part->tolerance, 0.05 - deviation);
+    EXPECT_EQ(file->setup.part->tolerance, 0.05);
+    EXPECT_DOUBLE_EQ(file->setup.part->limit(), 0.05 - deviation);
     EXPECT_THAT(error_of("[offsets]\nG54 = { Z = -300 }\n[stock]\nmesh = \"vise.step\"\n"
                          "[part]\nmesh = \"vise.step\"\ntolerance = 0.001\nframe = \"G54\"\n"),
                 HasSubstr("may deviate"));

@@ -49,7 +49,7 @@ protected:
     std::string error_of(const std::string& name) const {
         const auto file = read_cad(path(name));
         if (file) return "it was read";
-        EXPECT_THAT(file.error().message, HasSubstr(name)); // every error names its file
+        EXPECT_EQ(file.error().file, path(name).generic_string());
         return file.error().message;
     }
 
@@ -129,12 +129,17 @@ TEST_F(CadFileTest, CanBeIgesWithSolidsOrFaces) {
     }
 }
 
-TEST_F(CadFileTest, SaysWhatItLeavesOut) {
+TEST_F(CadFileTest, LeavesOpenSurfacesOutOnlyOfSolidsThatAreNamed) {
     const TopoDS_Shape box = cad_box(Vec3(0), Vec3(10)), far = cad_moved(box, Vec3(30, 0, 0));
     write_step(path("mixed.step"), cad_compound({box, cad_open_shell(far, 2)}));
     const auto file = read("mixed.step");
     EXPECT_EQ(file->solids.size(), 1u);
-    EXPECT_THAT(file->notes, Contains(HasSubstr("no solid")));
+    EXPECT_THAT(file->left_out, ElementsAre(HasSubstr("4 surfaces that enclose no solid")));
+    const auto all = body_of(*file, "");
+    ASSERT_FALSE(all);
+    EXPECT_THAT(all.error().message, AllOf(HasSubstr("enclose none"), HasSubstr("name the solids"),
+                                           HasSubstr(file->solids[0].name())));
+    EXPECT_TRUE(body_of(*file, file->solids[0].name()));
 }
 
 TEST_F(CadFileTest, WithoutASolidIsAClearError) {

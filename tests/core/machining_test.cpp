@@ -22,6 +22,12 @@ TEST_P(Machining, KeepsTheTruthBetweenLowerAndUpper) {
 
 INSTANTIATE_TEST_SUITE_P(Random, Machining, testing::Range(0U, 8U));
 
+TEST(MachiningWithDeviatingBodies, KeepsTheTruthBetweenLowerAndUpper) {
+    using test_support::KnownBodies;
+    expect_sound(test_support::judged_programs(4000, 30, 25, false, KnownBodies::deviating));
+    expect_sound(test_support::judged_programs(5000, 4, 4, true, KnownBodies::deviating));
+}
+
 TEST(MachiningOnATrunnion, KeepsTheTruthBetweenLowerAndUpper) {
     expect_sound(test_support::judged_programs(7, 4, 4, true));
 }

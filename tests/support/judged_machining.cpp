@@ -12,10 +12,11 @@ namespace {
 /// A run of random blocks, each compared with the true geometry.
 class JudgedMachining {
 public:
-    JudgedMachining(unsigned seed, bool turning, MachiningTally& tally)
+    JudgedMachining(unsigned seed, bool turning, KnownBodies bodies, MachiningTally& tally)
         : dice_{std::mt19937(seed)},
           turning_(turning),
-          known_(random_setup(dice_, turning_)),
+          bodies_(bodies),
+          known_(setup_of(dice_, turning_, bodies)),
           machinist_(dice_, known_),
           seed_(seed),
           tally_(tally) {
@@ -43,6 +44,12 @@ public:
     }
 
 private:
+    static KnownSetup setup_of(Dice& dice, bool turning, KnownBodies bodies) {
+        KnownSetup known = random_setup(dice, turning);
+        if (bodies == KnownBodies::deviating) deviate(dice, known);
+        return known;
+    }
+
     core::AxisPosition start() const {
         core::AxisPosition position;
         for (size_t i = 0; i < core::axis_count; ++i)
@@ -193,11 +200,13 @@ private:
         const bool on_base = !pair.mount(known_.world).on_table;
         if (on_base && turning_) return; // it moves relative to the stock
         ++tally_.witnesses;
-        constexpr double slack = 1e-4;
+        const double deviation = pair.fixture ? known_.setup.fixtures[*pair.fixture].deviation
+                                              : known_.setup.stock_deviation;
+        const double slack = 1e-4 + deviation;
         const core::Vec3 p = in_body(claim.on_body, pair);
         Removal until{block.size(), 0.0};
         if (pair.fixture) {
-            if (nearest_of(pair.solid(known_.world), p).distance > 1e-6)
+            if (nearest_of(pair.solid(known_.world), p).distance > 1e-6 + deviation)
                 fail("the witness is on the fixture", describe(claim, {p, {}}));
         } else {
             if (!known_.world.may_be_there(p, slack))
@@ -208,6 +217,7 @@ private:
         constexpr double rounding = 1e-6;
         if (near.distance > claim.upper + rounding)
             fail("the witness is as near as upper says", describe(claim, {p, near}));
+        if (bodies_ == KnownBodies::deviating) return;
         if (claim.verdict == core::Verdict::collision && near.distance > 1e-6)
             fail("what collides overlaps", describe(claim, {p, near}));
     }
@@ -252,7 +262,7 @@ private:
         goal.threshold = goal.finest = 1e-3;
         const double lower = core::separation(point, state_->stock, goal).separation.lower;
         ++tally_.standing;
-        if (lower > 1e-8)
+        if (lower > known_.setup.stock_deviation + 1e-8)
             fail("all material is in a column",
                  fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }
@@ -289,6 +299,7 @@ private:
 
     Dice dice_;
     bool turning_;
+    KnownBodies bodies_;
     KnownSetup known_;
     RandomMachining machinist_;
     unsigned seed_;
@@ -314,10 +325,11 @@ std::string MachiningTally::report() const {
         cut_fixtures);
 }
 
-MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning) {
+MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning,
+                               KnownBodies bodies) {
     MachiningTally tally;
     for (unsigned i = 0; i < programs; ++i)
-        JudgedMachining(first_seed + i, turning, tally).execute_motion(blocks);
+        JudgedMachining(first_seed + i, turning, bodies, tally).execute_motion(blocks);
     return tally;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,11 @@ struct MachiningTally {
     std::string report() const;
 };
 
+/// How the bodies of a set-up are known: as they are, or as others that deviate from them.
+enum class KnownBodies : uint8_t { exact, deviating };
+
 /// The results of a number of programs with `blocks` blocks each, every one on its own set-up.
-MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning);
+MachiningTally judged_programs(unsigned first_seed, unsigned programs, int blocks, bool turning,
+                               KnownBodies bodies = KnownBodies::exact);
 
 } // namespace test_support

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -39,7 +40,8 @@ struct KnownSetup {
     core::Setup setup;
     TrueMachining world;
     std::map<core::ToolNumber, TrueTool> tools;
-    core::Aabb box; // of the stock, in its frame
+    core::Aabb box;                           // of the stock, in its frame
+    std::optional<core::ProfileElement> nose; // the only machine body; frame: the gauge line
 };
 
 inline core::ToolDescription random_description(Dice& dice, core::ToolNumber number) {
@@ -137,6 +139,7 @@ inline void add_tools(Dice& dice, KnownSetup& known) {
     std::optional<core::ProfileElement> nose; // frame: the gauge line
     if (dice.chance(0.25)) {
         nose = core::ProfileElement{dice.between(-10, 5), 30.0, 40.0, 45.0, 0.0};
+        known.nose = nose;
         core::MachineBody body;
         body.name = "nose";
         body.body = core::convex(*nose);
@@ -199,6 +202,43 @@ inline KnownSetup random_setup(Dice& dice, bool turning) {
     add_tools(dice, known);
     add_allowances(dice, known);
     return known;
+}
+
+/// A shape whose surface is nowhere farther than `deviation` from that of the true one, and the
+/// other way round.
+inline TrueSolid deviated(Dice& dice, const TrueSolid& solid, double deviation) {
+    const double most = 0.57 * deviation; // of each side, so that corners keep it, too
+    const auto off = [&] { return dice.between(-most, most); };
+    if (const auto* box = std::get_if<core::Aabb>(&solid))
+        return core::Aabb{box->min + core::Vec3(off(), off(), off()),
+                          box->max + core::Vec3(off(), off(), off())};
+    core::ProfileElement cone = std::get<core::ProfileElement>(solid);
+    cone.z0 += off(), cone.z1 += off();
+    cone.r0 = std::max(0.0, cone.r0 + off());
+    cone.r1 = std::max(0.0, cone.r1 + off());
+    return cone;
+}
+
+/// Replaces the bodies of a random set-up by others that deviate from the true ones, as meshes of
+/// CAD files do, and states by how much.
+inline void deviate(Dice& dice, KnownSetup& known) {
+    for (size_t i = 0; i < known.world.fixtures.size(); ++i) {
+        core::Fixture& fixture = known.setup.fixtures[i];
+        fixture.deviation = dice.between(0.01, 1.0);
+        const TrueSolid other = deviated(dice, known.world.fixtures[i].solid, fixture.deviation);
+        fixture.body = exact_body(other, dice.chance(0.5));
+    }
+    for (core::MachineBody& body : known.setup.machine.bodies) {
+        body.deviation = dice.between(0.01, 1.0);
+        body.body = exact_body(deviated(dice, *known.nose, body.deviation), false);
+    }
+    const auto* box = std::get_if<core::Aabb>(&known.world.stock);
+    if (!box) return;
+    const double deviation = dice.between(0.01, 0.4);
+    const core::Aabb other = std::get<core::Aabb>(deviated(dice, *box, deviation));
+    if (glm::any(glm::lessThan(other.size(), core::Vec3(0.05)))) return;
+    known.setup.stock = {core::solid_mesh(box_mesh(other.min, other.max)), deviation};
+    known.setup.stock_deviation = deviation;
 }
 
 } // namespace test_support

@@ -250,9 +250,9 @@ void Collector::add_part(const TDF_Label& label, const Context& context) {
             "{}: its surfaces are no solid and were joined, across gaps of up to {:g} mm", name,
             sewing_));
     if (found.open_edges == 0 && !found.solids.empty()) return;
-    left_out_[name] = fmt::format("{}: {} that {} no solid {} left out", name,
-                                  faces == 1 ? "a surface" : "surfaces",
-                                  faces == 1 ? "encloses" : "enclose", faces == 1 ? "is" : "are");
+    left_out_[name] = fmt::format("{} has {} that {} no solid", name,
+                                  faces == 1 ? "a surface" : fmt::format("{} surfaces", faces),
+                                  faces == 1 ? "encloses" : "enclose");
     if (!open_part_.empty()) return;
     open_part_ = name;
     open_edge_ = found.open_edge;
@@ -304,7 +304,7 @@ Result<Document> Collector::collect() {
     if (is_too_deep_)
         return fail(ErrorCode::invalid_value, "its assemblies are nested more than 100 deep");
     if (document_.solids.empty()) return nothing();
-    for (const auto& [part, why] : left_out_) document_.notes.push_back(why);
+    for (const auto& [part, why] : left_out_) document_.left_out.push_back(why);
     if (curves_ > 0)
         document_.notes.push_back(
             fmt::format("{} {} left out", curves_, curves_ == 1 ? "curve is" : "curves are"));

@@ -25,7 +25,7 @@ struct PlacedSolid {
 /// The solids of a file.
 struct Document {
     std::vector<PlacedSolid> solids;
-    std::vector<std::string> notes;
+    std::vector<std::string> notes, left_out; // as in CadFile
 };
 
 enum class CadFormat : uint8_t { step, iges };

@@ -167,6 +167,8 @@ Result<bool> run(const Arguments& arguments, const Output& output) {
                              indicator->Start()));
     for (const std::string& note : document.notes)
         output.write(text_message(MessageKind::note, note));
+    for (const std::string& surfaces : document.left_out)
+        output.write(text_message(MessageKind::left_out, surfaces));
     return write_solids(document, arguments.wish, output);
 }
 

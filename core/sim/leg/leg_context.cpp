@@ -51,11 +51,13 @@ double LegContext::finest_error(const MovingBody& body) const {
 }
 
 bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
-    return relative.error <= std::max(finest_error(body), sharp_fraction * lower);
+    return relative.error - relative.lasting_error
+           <= std::max(finest_error(body), sharp_fraction * lower);
 }
 
 bool LegContext::is_too_vague(const RelativeLeg& relative) const {
-    return relative.turns && relative.error > sharp_fraction * setup.search_limit;
+    return relative.turns
+           && relative.error - relative.lasting_error > sharp_fraction * setup.search_limit;
 }
 
 bool LegContext::turns_too_far(const Leg& leg) const {
@@ -63,7 +65,8 @@ bool LegContext::turns_too_far(const Leg& leg) const {
     for (const MovingBody& body : bodies) {
         if (body.body) continue;
         const RelativeLeg relative = against_stock(body, leg);
-        if (relative.turns && relative.error > finest_error(body)) return true;
+        if (relative.turns && relative.error - relative.lasting_error > finest_error(body))
+            return true;
     }
     return false;
 }

@@ -124,7 +124,7 @@ private:
             pair_.fixture ? leg_against(query_.setup.machine, query_.setup.fixtures[*pair_.fixture],
                                         *body_, leg)
                           : relative_leg(query_.setup.machine, target(), body_->mover, leg);
-        const bool is_vague = relative.turns && relative.error > sharp;
+        const bool is_vague = relative.turns && relative.error - relative.lasting_error > sharp;
         if (is_vague && halvings > 0 && leg.positions.size() == 2)
             return add_pieces(stretch(leg, 0.0, 0.5), stock, halvings - 1)
                    && add_pieces(stretch(leg, 0.5, 1.0), stock, halvings - 1);
