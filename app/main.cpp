@@ -27,15 +27,18 @@ namespace {
 /// The version, and what this build can do.
 std::string version_text() {
     const bool has_view = !app::view_bundle().empty();
-    const std::string_view cad = core::cad_library();
+    const std::string_view library = core::cad_library();
+    const bool reads_cad = core::has_cad_reader();
     return fmt::format("feeler {}\nwith     window and pictures (OpenGL), database of results "
                        "(SQLite {}), line editing ({}){}{}{}{}",
                        app::version, sqlite3_libversion(), app::line_editor(),
                        has_view ? ", 3D view in HTML reports" : "",
-                       cad.empty() ? "" : fmt::format(", STEP and IGES files ({})", cad),
+                       reads_cad ? fmt::format(", STEP and IGES files ({})", library) : "",
                        has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing",
-                       cad.empty() ? "\nwithout  STEP and IGES files: Open CASCADE was missing"
-                                   : "");
+                       reads_cad ? ""
+                       : library.empty()
+                           ? "\nwithout  STEP and IGES files: Open CASCADE was missing"
+                           : "\nwithout  STEP and IGES files: feeler-cad is missing");
 }
 
 /// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.

@@ -412,14 +412,20 @@ void check_part(const CheckInput& input, CheckRecord& record, CheckReport& repor
         add_findings(input, record, *report.comparison, kind);
 }
 
-std::string facts_of(const core::PartComparison& comparison, double tolerance) {
+std::string facts_of(const core::PartComparison& comparison, const core::Part& part) {
+    const auto up_to = [&](double amount) {
+        return core::at_most(amount > 0.0 ? amount + part.deviation : 0.0);
+    };
     return fmt::format(
-        "gouges up to {} mm, excess up to {} mm; {} beyond {} mm; "
-        "sampled every {} mm",
-        core::at_most(comparison.largest_gouge), core::at_most(comparison.largest_excess),
+        "gouges up to {} mm, excess up to {} mm; {} beyond {} mm; sampled every {} "
+        "mm{}",
+        up_to(comparison.largest_gouge), up_to(comparison.largest_excess),
         comparison.regions.size() == 1 ? "1 region"
                                        : fmt::format("{} regions", comparison.regions.size()),
-        tolerance, core::at_most_figures(comparison.between_samples, 2));
+        core::number_text(part.limit(), 4), core::at_most_figures(comparison.between_samples, 2),
+        part.deviation > 0.0
+            ? fmt::format("; the part's mesh within {} mm", core::at_most(part.deviation, 4))
+            : "");
 }
 
 core::Result<std::string> comparison_file(const CheckRun& run, const std::string& path) {

@@ -8,6 +8,7 @@
 #include "core/sim/finding.h"
 
 namespace core {
+struct Part;
 struct PartComparison;
 struct Setup;
 struct SimulatorState;
@@ -61,7 +62,7 @@ void check_both_switch_positions(const CheckInput& input, CheckRecord& record,
 void check_part(const CheckInput& input, CheckRecord& record, CheckReport& report);
 
 /// The result of the comparison as one line of text.
-std::string facts_of(const core::PartComparison& comparison, double tolerance);
+std::string facts_of(const core::PartComparison& comparison, const core::Part& part);
 
 /// The surface of the remaining stock as a PLY file, coloured by its deviation from the part. The
 /// header explains the colours.

@@ -48,7 +48,7 @@ void add_standing_assumptions(const core::Setup& setup, CheckInput& run) {
     for (const std::string& note : timing_notes(setup.machine)) run.assumptions.push_back(note);
     run.assumptions.push_back(fmt::format(
         "clearances are compared with the minimum to within {:g} mm", core::resolution));
-    if (setup.stock.tolerance <= setup.stock_deviation)
+    if (setup.stock.tolerance <= setup.stock.deviation)
         run.assumptions.push_back("the raw stock has exactly the size in the set-up");
     if (setup.machine.rapid == core::RapidStyle::dogleg)
         run.assumptions.push_back("rapids run as dog-legs, each axis at its own speed");

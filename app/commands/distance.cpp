@@ -182,10 +182,11 @@ struct CadArgument {
 
 std::optional<CadArgument> cad_argument(const std::string& argument) {
     if (core::is_cad_file(argument)) return CadArgument{argument, {}};
-    const size_t hash = argument.rfind('#');
-    if (hash == std::string::npos || !core::is_cad_file(argument.substr(0, hash)))
-        return std::nullopt;
-    return CadArgument{argument.substr(0, hash), argument.substr(hash + 1)};
+    for (size_t hash = argument.find('#'); hash != std::string::npos;
+         hash = argument.find('#', hash + 1))
+        if (const std::string file = argument.substr(0, hash); core::is_cad_file(file))
+            return CadArgument{file, argument.substr(hash + 1)};
+    return std::nullopt;
 }
 
 core::Result<NamedBody> cad_body(const std::string& argument, const CadArgument& cad,
@@ -195,6 +196,8 @@ core::Result<NamedBody> cad_body(const std::string& argument, const CadArgument&
     if (!body) return tl::unexpected(core::in_file(body.error(), cad.file));
     NamedBody named{argument, core::solid_mesh(std::move(body->mesh)), file->notes,
                     body->deviation};
+    for (const core::CadSurfaces& surfaces : file->left_out)
+        named.repairs.push_back(fmt::format("{}; they are left out", surfaces.what));
     named.repairs.push_back(
         fmt::format("meshed within {} mm of its surface ({})", core::at_most(body->deviation, 4),
                     body->is_proven ? "proven" : "in part measured, and doubled"));

@@ -182,7 +182,6 @@ BodyMesh read_polyhedron(TableReader& table, const MeshSource& source, const std
     return read;
 }
 
-/// Also notes its deviation in the set-up.
 core::Solid stock_solid(TableReader& table, BodyContext& context, const std::string& shape,
                         const core::Transform& frame_from_body) {
     const bool rotated = frame_from_body.rotation != core::Mat3(1.0);
@@ -197,8 +196,7 @@ core::Solid stock_solid(TableReader& table, BodyContext& context, const std::str
         return {core::SolidBox{{box.min + at, box.max + at}}, 0.0};
     }
     BodyMesh read = read_polyhedron(table, context.meshes(), shape, frame_from_body);
-    context.file.setup.stock_deviation = read.deviation;
-    return {kept_solid(std::move(read.mesh)), 0.0};
+    return {.shape = kept_solid(std::move(read.mesh)), .deviation = read.deviation};
 }
 
 /// A cylinder along one of its body's axes, with its base centre at the body's origin.
@@ -395,7 +393,7 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
     }
     if (!(wanted >= core::least_cad_deviation && wanted <= core::largest_cad_deviation)) {
         table.refuse("mesh_deviation", fmt::format("must lie between {} and {}",
-                                                   table.shown(core::least_cad_deviation),
+                                                   table.shown(core::least_cad_deviation, 7),
                                                    table.shown(core::largest_cad_deviation)));
         return std::nullopt;
     }
@@ -411,9 +409,15 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
     }
     auto body = core::body_of(**file, solid);
     if (!body) return refuse(solid.empty() ? key : "solid", body.error().message);
-    for (const std::string& note : (*file)->notes)
-        source.assumptions.push_back(fmt::format("{}: {}", name, note));
-    source.assumptions.push_back(deviation_text(name, solid, *body));
+    const auto note = [&](std::string text) { // once for all bodies of the file
+        auto& known = source.assumptions;
+        if (std::find(known.begin(), known.end(), text) == known.end())
+            known.push_back(std::move(text));
+    };
+    for (const std::string& repair : (*file)->notes) note(fmt::format("{}: {}", name, repair));
+    for (const core::CadSurfaces& surfaces : (*file)->left_out)
+        note(fmt::format("{}: {}; they are left out", name, surfaces.what));
+    note(deviation_text(name, solid, *body));
     return BodyMesh{std::move(body->mesh), body->deviation};
 }
 
@@ -525,7 +529,7 @@ void read_stock(TableReader& table, BodyContext& context) {
     setup.stock = stock_solid(table, context, *shape, placement.frame_from_body);
     setup.stock.tolerance = table.number_or("tolerance", Measure::length, 0.0);
     if (setup.stock.tolerance < 0.0) table.refuse("tolerance", "must not be negative");
-    setup.stock.tolerance += setup.stock_deviation;
+    setup.stock.tolerance += setup.stock.deviation;
     context.frames.machine_from["stock"] = placement.machine_from_body();
     table.finish();
 }

@@ -14,6 +14,7 @@
 #include "app/setup/stated_setup.h"
 #include "app/setup/toml_file.h"
 #include "app/setup/tools/found_tool.h"
+#include "core/base/text.h"
 #include "core/cad/cad_file.h"
 #include "core/dbm/solid.h"
 #include "core/sim/clearance.h"
@@ -271,6 +272,14 @@ Result<std::string> with_preset_value(const std::string& text, const BodyPath& b
     const bool is_length = preset->parameter(key)->measure == PresetMeasure::length;
     return toml_with_value(
         text, path, is_length ? setup_length(*value, unit_of_setup(text)) : setup_number(*value));
+}
+
+Result<std::string> with_mesh_deviation(const std::string& text, const BodyPath& body,
+                                        double deviation) {
+    constexpr int decimals = 7; // the least deviation in inches has six
+    return toml_with_value(
+        text, body / "mesh_deviation",
+        core::number_text(gcode::from_mm(deviation, unit_of_setup(text)), decimals));
 }
 
 Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,

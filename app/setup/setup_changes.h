@@ -67,6 +67,10 @@ core::Result<std::string> with_preset_value(const std::string& text, const BodyP
 core::Result<std::string> with_mesh_unit(const std::string& text, const BodyPath& body,
                                          gcode::LengthUnit unit);
 
+/// States how far the mesh of a CAD file may be from its surface, mm.
+core::Result<std::string> with_mesh_deviation(const std::string& text, const BodyPath& body,
+                                              double deviation);
+
 /// Sets `at` and `rotate_deg` of a body. Keys of the value 0 that are not there stay away.
 core::Result<std::string> with_pose(const std::string& text, const BodyPath& body,
                                     const core::Vec3& at, const core::Vec3& rotate_deg);

@@ -97,6 +97,7 @@ StatedBody StatedNumbers::body(const toml::table& table) const {
     read.cylinder = cylinder(table.get("cylinder"));
     read.mesh = table["mesh"].value_or(std::string());
     read.solid = table["solid"].value_or(std::string());
+    read.mesh_deviation = length(table.get("mesh_deviation"));
     if (table["mesh_unit"].value<std::string>() == "inch") read.mesh_unit = gcode::LengthUnit::inch;
     read.model = table["model"].value_or(std::string());
     read.preset = table["preset"].value_or(std::string());

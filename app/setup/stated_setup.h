@@ -32,6 +32,7 @@ struct StatedBody {
     std::string preset;                                  // its name, known or not
     PresetValues preset_values;                          // those that are stated, mm or counts
     std::string solid;                                   // of a CAD file; empty: all
+    std::optional<double> mesh_deviation;                // of a CAD file, mm
     gcode::LengthUnit mesh_unit = gcode::LengthUnit::mm; // of the mesh file
     core::Vec3 at = core::Vec3(0.0), rotate_deg = core::Vec3(0.0);
     std::string frame = "G54";

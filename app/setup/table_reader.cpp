@@ -35,9 +35,9 @@ gcode::LengthUnit TableReader::read_unit() {
     return unit_;
 }
 
-std::string TableReader::shown(double mm) const {
+std::string TableReader::shown(double mm, int decimals) const {
     const bool is_inch = unit_ == gcode::LengthUnit::inch;
-    return core::number_text(gcode::from_mm(mm, unit_), 3) + (is_inch ? " in" : " mm");
+    return core::number_text(gcode::from_mm(mm, unit_), decimals) + (is_inch ? " in" : " mm");
 }
 
 /// The value of a number, in mm if it is a length; empty for all that is not a finite number.

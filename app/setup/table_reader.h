@@ -48,7 +48,7 @@ public:
     gcode::LengthUnit read_unit();
 
     /// A length in the unit of the file, for messages: "1000 mm", "39.37 in".
-    std::string shown(double mm) const;
+    std::string shown(double mm, int decimals = 3) const;
 
     bool has(const char* key) const { return table_.contains(key); }
     bool is_list(const char* key) const { return table_.get(key) && table_.get(key)->is_array(); }

@@ -113,7 +113,10 @@ Result<std::string> cad_bytes(const std::filesystem::path& path) {
 }
 
 /// Seconds that the reader may take: far more than an intact file needs.
-unsigned seconds_for(size_t bytes) { return 60 + static_cast<unsigned>(bytes >> 14U); }
+unsigned seconds_for(size_t bytes, double deviation) {
+    const double finer = std::max(1.0, default_cad_deviation / deviation);
+    return 60 + static_cast<unsigned>(bytes >> 14U) + static_cast<unsigned>(30.0 * (finer - 1.0));
+}
 
 /// Takes the messages of the reader apart.
 class Intake {
@@ -151,8 +154,11 @@ bool Intake::take(const cad::Message& message) {
         read_.notes.emplace_back(message.text);
         return true;
     case Kind::left_out:
-        read_.left_out.emplace_back(message.text);
-        return true;
+        if (auto surfaces = cad::left_out_of(message.text)) {
+            read_.left_out.push_back(*std::move(surfaces));
+            return true;
+        }
+        return false;
     case Kind::error:
         error_ = message.text;
         return true;
@@ -185,10 +191,12 @@ Result<CadFile> Intake::result(cad::ReaderEnd end, unsigned seconds) && {
                     "the libraries of Open CASCADE are not installed: install the packages "
                     "libocct-data-exchange-7.6 and libocct-ocaf-7.6, or export the body as STL");
     if (end == End::out_of_time)
-        return fail(ErrorCode::unsupported,
-                    fmt::format("Open CASCADE did not read it within {} s of processor time: it is "
-                                "damaged, or too large; export the body as STL",
-                                seconds));
+        return fail(
+            ErrorCode::unsupported,
+            fmt::format("it was not read within {} s of processor time: it is damaged, or "
+                        "too large for this deviation; allow a larger one (mesh_deviation), "
+                        "or export the body as STL",
+                        seconds));
     return fail(ErrorCode::invalid_value,
                 "Open CASCADE crashes when it reads it: it is damaged, or "
                 "needs a repair in the CAD system");
@@ -211,7 +219,7 @@ Result<CadFile> checked(CadFile file) {
 
 Result<CadFile> read_fresh(const std::filesystem::path& path, double deviation, size_t size) {
     const std::string name = path.generic_string();
-    const unsigned seconds = seconds_for(size);
+    const unsigned seconds = seconds_for(size, deviation);
     Intake intake(name);
     const cad::ReaderEnd end =
         cad::run_reader({reader_path().string(), path.string(), is_step(path) ? "step" : "iges",
@@ -289,6 +297,8 @@ Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&
 
 } // namespace
 
+bool has_cad_reader() { return platform::facts_of(reader_path()).has_value(); }
+
 void set_cad_reader(const std::filesystem::path& program) {
     const std::lock_guard lock(reader_program().mutex);
     reader_program().path = program;
@@ -297,6 +307,8 @@ void set_cad_reader(const std::filesystem::path& program) {
 #else
 
 std::string_view cad_library() { return {}; }
+
+bool has_cad_reader() { return false; }
 
 void set_cad_reader(const std::filesystem::path&) {}
 
@@ -323,9 +335,13 @@ Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& pat
 
 namespace {
 
-bool has_name(const CadSolid& solid, const std::string& name) {
-    return name.empty()
-           || std::find(solid.names.begin(), solid.names.end(), name) != solid.names.end();
+bool is_in(const std::vector<std::string>& names, const std::string& name) {
+    return name.empty() || std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_own_name(const CadFile& file, const std::string& name) {
+    return std::any_of(file.solids.begin(), file.solids.end(),
+                       [&](const CadSolid& solid) { return solid.name() == name; });
 }
 
 /// The names of a file, not more than fit in a message.
@@ -361,16 +377,19 @@ std::vector<CadName> names_of(const CadFile& file) {
 }
 
 Result<CadBody> body_of(const CadFile& file, const std::string& name) {
-    if (name.empty() && !file.left_out.empty())
-        return fail(
-            ErrorCode::invalid_value,
-            fmt::format("beside solids it has surfaces that enclose none, and could be part "
-                        "of the body: {}. Close them in the CAD system; or name the solids "
-                        "or the assembly that make up the body: {}",
-                        fmt::join(file.left_out, "; "), names_text(file)));
+    std::vector<std::string> missing;
+    for (const CadSurfaces& surfaces : file.left_out)
+        if (!is_own_name(file, name) && is_in(surfaces.names, name))
+            missing.push_back(surfaces.what);
+    if (!missing.empty())
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("beside solids it has surfaces that enclose none, and could be "
+                                "part of the body: {}. Close them in the CAD system; or name each "
+                                "solid of the body: {}",
+                                fmt::join(missing, "; "), names_text(file)));
     CadBody body;
     for (const CadSolid& solid : file.solids) {
-        if (!has_name(solid, name)) continue;
+        if (!is_in(solid.names, name)) continue;
         append(body.mesh, solid.mesh);
         body.deviation = std::max(body.deviation, solid.deviation);
         body.gap = std::max(body.gap, solid.gap);

@@ -38,16 +38,25 @@ struct CadSolid {
     const std::string& name() const { return names.back(); }
 };
 
+/// Surfaces of a part that enclose no solid.
+struct CadSurfaces {
+    std::vector<std::string> names; // of the part, after those of the assemblies that contain it
+    std::string what;               // a sentence: "jaw has 5 surfaces that enclose no solid"
+};
+
 /// The solids of a CAD file, in its order.
 struct CadFile {
     std::vector<CadSolid> solids;
     std::vector<std::string> notes;    // what was repaired, and curves that were left out
-    std::vector<std::string> left_out; // surfaces that enclose no solid: which, a sentence each
+    std::vector<CadSurfaces> left_out; // what could be part of a body
 };
 
 /// The reader of CAD files that this program has, such as "Open CASCADE 7.6.3"; empty if it was
 /// built without one.
 std::string_view cad_library();
+
+/// Whether the program is there that reads CAD files for this one.
+bool has_cad_reader();
 
 /// Whether the extension of a path is that of a STEP or IGES file.
 bool is_cad_file(const std::filesystem::path& path);
@@ -83,8 +92,9 @@ struct CadNames {
 /// Those solids of a file that have this name, or are in an assembly of this name, as one mesh;
 /// with an empty name, all. A mesh of several solids may overlap itself (checked_solid).
 ///
-/// Errors:  no solid has the name; the message lists the names there are. Without a name: the file
-///          also has surfaces that enclose no solid, which would be missing from the body.
+/// Errors:  no solid has the name; the message lists the names there are. The file or the named
+///          assembly also has surfaces that enclose no solid, which would be missing from the body;
+///          they are left out only if the name is a solid's own.
 struct CadBody {
     Mesh mesh;
     double deviation = 0.0; // the greatest of its solids, mm

@@ -86,6 +86,14 @@ std::string progress_message(std::string_view step, double fraction) {
     return text_message(MessageKind::progress, writer.bytes);
 }
 
+std::string left_out_message(const CadSurfaces& surfaces) {
+    Writer writer;
+    writer.put_text(surfaces.what);
+    writer.put(uint64_t{surfaces.names.size()});
+    for (const std::string& name : surfaces.names) writer.put_text(name);
+    return text_message(MessageKind::left_out, writer.bytes);
+}
+
 std::string end_message() { return text_message(MessageKind::end, {}); }
 
 std::string solid_message(const CadSolid& solid) {
@@ -121,6 +129,16 @@ std::optional<CadProgress> progress_of(std::string_view text) {
     progress.fraction = reader.take<double>();
     if (!reader.ok || !reader.is_at_end()) return std::nullopt;
     return progress;
+}
+
+std::optional<CadSurfaces> left_out_of(std::string_view text) {
+    Reader reader(text);
+    CadSurfaces surfaces;
+    surfaces.what = reader.take_text();
+    const auto names = reader.take<uint64_t>();
+    for (uint64_t i = 0; reader.ok && i < names; ++i) surfaces.names.push_back(reader.take_text());
+    if (!reader.ok || !reader.is_at_end()) return std::nullopt;
+    return surfaces;
 }
 
 std::optional<CadSolid> solid_of(std::string_view text) {

@@ -22,6 +22,7 @@ struct Message {
 std::string progress_message(std::string_view step, double fraction);
 std::string text_message(MessageKind kind, std::string_view text);
 std::string solid_message(const CadSolid& solid);
+std::string left_out_message(const CadSurfaces& surfaces);
 std::string end_message();
 
 /// The first message of the output; empty if it is not complete yet. Takes it off.
@@ -30,5 +31,6 @@ std::optional<Message> take_message(std::string_view& output);
 /// The contents of messages; empty for bytes that are no such contents.
 std::optional<CadProgress> progress_of(std::string_view text);
 std::optional<CadSolid> solid_of(std::string_view text);
+std::optional<CadSurfaces> left_out_of(std::string_view text);
 
 } // namespace core::cad

@@ -58,6 +58,9 @@ ReaderEnd end_of(pid_t process) {
         if (errno != EINTR) return ReaderEnd::crashed;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return ReaderEnd::done;
     if (WIFEXITED(status) && WEXITSTATUS(status) == loader_failed) return ReaderEnd::no_library;
+    const bool was_ended =
+        WIFSIGNALED(status) && (WTERMSIG(status) == SIGTERM || WTERMSIG(status) == SIGINT);
+    if (was_ended) return ReaderEnd::stopped;
     const bool was_too_slow =
         WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
     return was_too_slow ? ReaderEnd::out_of_time : ReaderEnd::crashed;

@@ -30,6 +30,7 @@ struct Solid {
     std::variant<SolidBox, SolidCylinder, SolidMesh> shape;
     double tolerance = 0.0; // the real stock may be larger by this on all sides, mm
     Play play = {};         // the real stock may stand anywhere on this segment
+    double deviation = 0.0; // of the mesh of a CAD file, mm: it may also be smaller by this
 };
 
 /// A closed square of the XY plane.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view magic = "feeler stock 1\n";
 
-enum class ShapeTag : uint8_t { box, cylinder, mesh };
+enum class ShapeTag : uint8_t { box, cylinder, mesh, deviating_mesh };
 
 /// Properties that a move shares with the previous one, which are therefore not written.
 enum SameAsBefore : uint8_t { goes_on = 1, same_cutter = 2, same_attitude = 4, same_block = 8 };
@@ -107,7 +107,8 @@ void put_solid(Writer& out, const Solid& solid) {
         out.put(cylinder->height);
         out.put(static_cast<uint8_t>(cylinder->axis));
     } else {
-        out.put(ShapeTag::mesh);
+        out.put(solid.deviation > 0.0 ? ShapeTag::deviating_mesh : ShapeTag::mesh);
+        if (solid.deviation > 0.0) out.put(solid.deviation);
         put_mesh(out, *std::get<SolidMesh>(solid.shape).mesh);
     }
 }
@@ -140,7 +141,9 @@ Solid get_solid(Reader& in) {
         in.ok = in.ok && cylinder.radius > 0.0 && cylinder.height > 0.0 && cylinder.axis < 3;
         solid.shape = cylinder;
     } else {
-        in.ok = in.ok && tag == ShapeTag::mesh;
+        in.ok = in.ok && (tag == ShapeTag::mesh || tag == ShapeTag::deviating_mesh);
+        if (tag == ShapeTag::deviating_mesh) solid.deviation = in.number();
+        in.ok = in.ok && solid.deviation >= 0.0 && solid.deviation <= solid.tolerance;
         Mesh mesh = get_mesh(in);
         if (in.ok) solid.shape = solid_mesh(std::move(mesh));
     }
@@ -232,7 +235,7 @@ std::optional<std::pair<int, bool>> along_axis(const Vec3& direction) {
 }
 
 Result<Solid> moved(const Solid& solid, const Transform& by) {
-    Solid result{.tolerance = solid.tolerance};
+    Solid result{.tolerance = solid.tolerance, .deviation = solid.deviation};
     if (const auto* cylinder = std::get_if<SolidCylinder>(&solid.shape)) {
         Vec3 up(0.0);
         up[cylinder->axis] = 1.0;

@@ -23,6 +23,7 @@ struct ProfileElement {
 struct RevolvedProfile {
     std::vector<ProfileElement> elements;
     double form_error = 0.0; // maximum distance of the true surface from the pieces, mm
+    double deviation = 0.0;  // the part of it that is the deviation of a CAD file
 
     bool empty() const { return elements.empty(); }
     bool operator==(const RevolvedProfile&) const = default;

@@ -205,6 +205,7 @@ RelativeLeg without_turning(const Machine& machine, const Mount& target, const M
                             const Leg& leg) {
     RelativeLeg relative;
     relative.lasting_error = mover.form_error;
+    relative.deviation = mover.deviation;
     relative.error = leg.path_error + mover.form_error;
     for (const AxisValues& position : leg.positions) {
         const Transform pose = machine.has_rotary()
@@ -341,6 +342,7 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
                             ? tilt_of_axis(machine, axes, leg, middle, mover_pose.rotation, turn)
                             : turn;
     relative.lasting_error = mover.form_error;
+    relative.deviation = mover.deviation;
     relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
     relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
     return relative;

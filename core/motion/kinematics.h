@@ -51,6 +51,7 @@ struct RelativeLeg {
     std::vector<Vec3> positions; // of the mover's origin
     double error = 0.0;          // of the path and of rotation, mm; infinite beyond half a radian
     double lasting_error = 0.0;  // the part of `error` that is the same for any part of the leg
+    double deviation = 0.0;      // the part of that by which bodies of CAD files deviate
     double travel = 0.0;         // upper bound of the travel of any point, mm
     bool turns = false;          // the orientation is that of the middle of the leg
 };
@@ -61,6 +62,7 @@ struct Mover {
     Vec3 centre = Vec3(0.0);
     double reach = 0.0;
     double form_error = 0.0; // of its shape; added to the errors of its legs
+    double deviation = 0.0;  // the part of it that is the deviation of a CAD file
     Play play = {};          // in its own frame
     // A body of revolution about the Z axis of its frame, on which `centre` is: turning about this
     // axis does not change it.

@@ -30,8 +30,9 @@ MovingBody moving_part(const Setup& setup, const ToolAssembly& tool, const ToolP
             .profile = &part.profile,
             .mover = {{setup.machine.spindle, translation({0.0, 0.0, -tool.length})},
                       centre,
-                      reach,
+                      reach + part.profile.deviation,
                       part.profile.form_error,
+                      part.profile.deviation,
                       play_of(part.kind, tool),
                       true}};
 }
@@ -49,6 +50,7 @@ MovingBody moving_machine_body(const Setup& setup, const ToolAssembly& tool, siz
             .mover = {{body.link, place},
                       box.center(),
                       0.5 * glm::length(box.size()) + body.deviation,
+                      body.deviation,
                       body.deviation,
                       setup.body_play.empty() ? tool.holder_play : setup.body_play[index]}};
 }
@@ -95,6 +97,7 @@ RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const Mo
     RelativeLeg relative = relative_leg(machine, fixture.mount, body.mover, leg);
     relative.error += fixture.deviation;
     relative.lasting_error += fixture.deviation;
+    relative.deviation += fixture.deviation;
     return relative;
 }
 
@@ -133,6 +136,18 @@ std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg
     std::vector<ConvexShape> shapes;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         shapes.push_back(moved(convex(mesh.triangle(i)), leg));
+    return shapes;
+}
+
+std::vector<ConvexShape> certain_shapes(std::span<const InnerBall> balls, const RelativeLeg& leg) {
+    std::vector<ConvexShape> shapes;
+    for (const InnerBall& ball : balls) {
+        const double radius = ball.radius - (leg.error - leg.deviation);
+        if (!(radius > 0.0)) continue;
+        RelativeLeg way = leg;
+        for (Vec3& position : way.positions) position += leg.orientation * ball.centre;
+        shapes.push_back(moved(convex_sphere(radius), way));
+    }
     return shapes;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/distance/body_distance.h"
@@ -42,6 +43,11 @@ std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const Relativ
 
 /// Convex shapes, swept along a leg, that contain the swept surface of a machine body.
 std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg);
+
+/// Balls inside a machine body, less the error of the leg and swept along it: a ball that meets
+/// something proves that the body does. Deviations do not count: bodies collide that overlap as
+/// they are in the set-up.
+std::vector<ConvexShape> certain_shapes(std::span<const InnerBall> balls, const RelativeLeg& leg);
 
 /// Distance from the body to a fixture over a leg, without the leg's error, mm.
 Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,

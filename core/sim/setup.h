@@ -68,9 +68,8 @@ struct Setup {
     std::optional<double> allowance; // overrides the defaults for fixtures and holder
     std::vector<AllowanceRule> allowances;
     Machine machine;
-    Mount stock_mount;            // link of the stock and its frame in that link
-    Solid stock;                  // in the stock's frame; its tolerance includes its deviation
-    double stock_deviation = 0.0; // of the mesh of the stock from the true one, mm
+    Mount stock_mount; // link of the stock and its frame in that link
+    Solid stock;       // in the stock's frame; its tolerance includes its deviation
     std::shared_ptr<const std::vector<CutterSweep>> earlier_cuts; // of earlier programs, in order
     std::optional<Part> part;                                     // the design shape
     std::vector<Fixture> fixtures;

@@ -517,6 +517,7 @@ Result<ToolAssembly> assemble(const ToolDescription& description) {
     tool.parts.push_back({PartKind::flutes, std::move(head.flutes)});
     if (!shank.empty()) tool.parts.push_back({PartKind::shank, std::move(shank)});
     holder.form_error += description.holder_deviation;
+    holder.deviation = description.holder_deviation;
     if (!holder.empty()) tool.parts.push_back({PartKind::holder, std::move(holder)});
     tool.length = holder.empty() ? description.gauge_length.value_or(z) : z;
     if (description.touched_off) {

@@ -105,7 +105,7 @@ TEST_F(CadBodies, AreStockAndPartOnTheSafeSide) {
         read("[offsets]\nG54 = { Z = -300 }\n[stock]\nmesh = \"vise.step\"\ntolerance = 0.5\n"
              "[part]\nmesh = \"vise.step\"\ntolerance = 0.05\nframe = \"G54\"\n");
     ASSERT_TRUE(file) << file.error().message;
-    const double deviation = file->setup.stock_deviation;
+    const double deviation = file->setup.stock.deviation;
     EXPECT_GT(deviation, 0.0);
     EXPECT_DOUBLE_EQ(file->setup.stock.tolerance, 0.5 + deviation);
     EXPECT_EQ(file->setup.part->tolerance, 0.05);

@@ -134,10 +134,11 @@ TEST_F(CadFileTest, LeavesOpenSurfacesOutOnlyOfSolidsThatAreNamed) {
     write_step(path("mixed.step"), cad_compound({box, cad_open_shell(far, 2)}));
     const auto file = read("mixed.step");
     EXPECT_EQ(file->solids.size(), 1u);
-    EXPECT_THAT(file->left_out, ElementsAre(HasSubstr("4 surfaces that enclose no solid")));
+    ASSERT_EQ(file->left_out.size(), 1u);
+    EXPECT_THAT(file->left_out[0].what, HasSubstr("surfaces that enclose no solid"));
     const auto all = body_of(*file, "");
     ASSERT_FALSE(all);
-    EXPECT_THAT(all.error().message, AllOf(HasSubstr("enclose none"), HasSubstr("name the solids"),
+    EXPECT_THAT(all.error().message, AllOf(HasSubstr("enclose none"), HasSubstr("name each"),
                                            HasSubstr(file->solids[0].name())));
     EXPECT_TRUE(body_of(*file, file->solids[0].name()));
 }
@@ -168,6 +169,67 @@ TEST_F(CadFileTest, ThatIsDamagedIsAClearError) {
     EXPECT_THAT(error_of(write("hole.step", whole.substr(0, whole.find('\n', whole.size() / 2) + 1)
                                                 + "ENDSEC;\nEND-ISO-10303-21;\n")),
                 ::testing::Not(HasSubstr("it was read")));
+}
+
+/// Of a file without one entity: an error, or the same bodies.
+TEST_F(CadFileTest, ThatLacksAnEntityIsNeverReadInPart) {
+    const CadPart bolt{"bolt", cad_cylinder(3, 20), {1, 2, 3}, 30};
+    const CadPart jaw{"jaw", cad_box(Vec3(0), Vec3(5, 40, 10)), {100, 0, 0}, 90};
+    write_step(path("vise.step"), CadPart{"vise", {}, {}, 0, {bolt, jaw}});
+    const auto file = read("vise.step");
+    const std::string whole = bytes_of(path("vise.step"));
+    size_t errors = 0, entities = 0;
+    for (size_t at = whole.find("\n#"); at != std::string::npos; at = whole.find("\n#", at + 1)) {
+        if (++entities % 4 != 0) continue; // of some 500
+        const std::string part = whole.substr(0, at) + whole.substr(whole.find(";\n", at) + 1);
+        const auto found = read_cad(path(write("part.step", part)));
+        errors += !found;
+        if (!found) continue;
+        ASSERT_EQ((*found)->solids.size(), 2u) << whole.substr(at, 80);
+        for (size_t i = 0; i < 2; ++i) {
+            const Aabb box = file->solids[i].mesh.bounds();
+            const Aabb other = (*found)->solids[i].mesh.bounds();
+            EXPECT_LT(glm::distance(box.min, other.min), 0.02) << whole.substr(at, 80);
+            EXPECT_LT(glm::distance(box.max, other.max), 0.02) << whole.substr(at, 80);
+        }
+    }
+    EXPECT_GT(errors, 50u);
+}
+
+TEST_F(CadFileTest, WithoutAUnitIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    std::string text = bytes_of(path("box.step"));
+    const std::string unit = "SI_UNIT(.MILLI.,.METRE.)";
+    const size_t at = text.find(unit);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, unit.size(), "SI_UNIT(.MILLI.,.SECOND.)");
+    EXPECT_THAT(error_of(write("unit.step", text)), ::testing::Not(HasSubstr("it was read")));
+}
+
+TEST_F(CadFileTest, ThatRefersToOthersIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    std::string text = bytes_of(path("box.step"));
+    const size_t product = text.rfind('#', text.find("=PRODUCT_DEFINITION(") == std::string::npos
+                                               ? text.find("= PRODUCT_DEFINITION(")
+                                               : text.find("=PRODUCT_DEFINITION("));
+    const std::string id = text.substr(product, text.find_first_of(" =", product) - product);
+    text.insert(text.rfind("ENDSEC;"),
+                "#9001=DOCUMENT_TYPE('');\n"
+                "#9002=DOCUMENT_FILE('jaw.stp','',$,#9001,'',$);\n"
+                "#9003=(APPLIED_DOCUMENT_REFERENCE(());DOCUMENT_REFERENCE(#9002,''));\n");
+    text.replace(text.find("#9003=("), text.find('\n', text.find("#9003=(")) - text.find("#9003=("),
+                 "#9003=APPLIED_DOCUMENT_REFERENCE(#9002,'',(" + id + "));");
+    const std::string error = error_of(write("parts.step", text));
+    EXPECT_THAT(error, HasSubstr("other files"));
+}
+
+TEST_F(CadFileTest, OfIgesKeepsFacesThatAreWholeBodies) {
+    const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(12).Shape();
+    write_iges(path("two.igs"), cad_compound({cad_box(Vec3(20), Vec3(30)), ball}), false);
+    EXPECT_EQ(read("two.igs")->solids.size(), 2u);
+    // Its cylinders are revolved lines.
+    write_iges(path("round.igs"), cad_cylinder(20, 300), false);
+    EXPECT_LT(read("round.igs")->solids.at(0).mesh.triangles.size(), 1500u);
 }
 
 TEST_F(CadFileTest, WithoutAReaderIsAClearError) {

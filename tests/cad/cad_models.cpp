@@ -241,6 +241,19 @@ TopoDS_Shape bored_cone() {
     return BRepAlgoAPI_Cut(cone(10, 2, 15), cad_moved(bore, Vec3(1, 20, 6))).Shape();
 }
 
+/// What two copies of a shape have in common that are moved by this to either side.
+TopoDS_Shape lens(const TopoDS_Shape& shape, double aside) {
+    return BRepAlgoAPI_Common(cad_moved(shape, Vec3(aside, 0, 0)),
+                              cad_moved(shape, Vec3(-aside, 0, 0)))
+        .Shape();
+}
+
+TopoDS_Shape blade_on_block() {
+    return BRepAlgoAPI_Fuse(cad_box(Vec3(-3, -6, -5), Vec3(3, 6, 2)),
+                            lens(cad_cylinder(20, 15), 19.9))
+        .Shape();
+}
+
 TopoDS_Shape common_of_spheres() {
     const TopoDS_Shape other = cad_moved(BRepPrimAPI_MakeSphere(9).Shape(), Vec3(8, 3, 2));
     return BRepAlgoAPI_Common(BRepPrimAPI_MakeSphere(12).Shape(), other).Shape();
@@ -287,6 +300,9 @@ std::vector<CadModel> cad_models() {
         {"mirrored block", [] { return mirrored(bored_block()); }},
         {"far vase", [] { return cad_moved(vase(), Vec3(20000, -3000, 500)); }},
         {"common of spheres", common_of_spheres},
+        {"thin lens", [] { return lens(BRepPrimAPI_MakeSphere(20).Shape(), 19.9); }},
+        {"thin blade", [] { return lens(cad_cylinder(20, 15), 19.9); }},
+        {"blade on a block", blade_on_block},
     };
 }
 

@@ -191,10 +191,34 @@ TEST(Simulator, WidensBoundsByTheDeviationOfAFixture) {
     }
 }
 
+TEST(Simulator, FindsThatAMachineBodyCollidesInSpiteOfDeviations) {
+    for (const double of_body : {0.0, 0.1})
+        for (const double of_fixture : {0.0, 0.1}) {
+            core::Setup setup = plain_setup();
+            const double gauge = setup.tools.at(ToolNumber{1}).length;
+            MachineBody head{.name = "head",
+                             .body = convex(Aabb{{-40, -40, 0}, {40, 40, 60}}),
+                             .deviation = of_body};
+            head.link = setup.machine.spindle;
+            setup.machine.bodies.push_back(head);
+            setup.fixtures.push_back({"post", convex(Aabb{{120, 40, -30}, {130, 60, gauge + 3}})});
+            setup.fixtures[0].deviation = of_fixture;
+            const auto verdict_at = [&](const Vec3& tip, std::optional<size_t> fixture) {
+                Shift run(setup);
+                run.rapid({110, 50, 50});
+                return pair_of(run.rapid(tip), PartKind::machine, fixture)->verdict;
+            };
+            EXPECT_EQ(verdict_at({110, 50, 1}, 0), Verdict::collision) << of_body << of_fixture;
+            EXPECT_EQ(verdict_at({110, 50, 2.95}, 0), Verdict::collision);
+            EXPECT_NE(verdict_at({110, 50, 3.05}, 0), Verdict::collision);
+            EXPECT_EQ(verdict_at({50, 50, -gauge - 2}, {}), Verdict::collision) << of_body;
+        }
+}
+
 TEST(Simulator, WidensBoundsByTheDeviationOfTheStock) {
     core::Setup setup = plain_setup();
     const auto clearance = [&](double deviation) {
-        setup.stock.tolerance = setup.stock_deviation = deviation;
+        setup.stock.tolerance = setup.stock.deviation = deviation;
         Shift run(setup);
         run.rapid({50, 50, 30});
         return *pair_of(run.rapid({50, 50, 5}), PartKind::flutes);

@@ -201,7 +201,7 @@ private:
         if (on_base && turning_) return; // it moves relative to the stock
         ++tally_.witnesses;
         const double deviation = pair.fixture ? known_.setup.fixtures[*pair.fixture].deviation
-                                              : known_.setup.stock_deviation;
+                                              : known_.setup.stock.deviation;
         const double slack = 1e-4 + deviation;
         const core::Vec3 p = in_body(claim.on_body, pair);
         Removal until{block.size(), 0.0};
@@ -217,7 +217,7 @@ private:
         constexpr double rounding = 1e-6;
         if (near.distance > claim.upper + rounding)
             fail("the witness is as near as upper says", describe(claim, {p, near}));
-        if (bodies_ == KnownBodies::deviating) return;
+        if (bodies_ == KnownBodies::deviating) return; // the bodies as they are known overlap
         if (claim.verdict == core::Verdict::collision && near.distance > 1e-6)
             fail("what collides overlaps", describe(claim, {p, near}));
     }
@@ -262,7 +262,7 @@ private:
         goal.threshold = goal.finest = 1e-3;
         const double lower = core::separation(point, state_->stock, goal).separation.lower;
         ++tally_.standing;
-        if (lower > known_.setup.stock_deviation + 1e-8)
+        if (lower > known_.setup.stock.deviation + 1e-8)
             fail("all material is in a column",
                  fmt::format("({:.9g}, {:.9g}, {:.9g}): lower {:.3g}", p.x, p.y, p.z, lower));
     }

@@ -238,7 +238,7 @@ inline void deviate(Dice& dice, KnownSetup& known) {
     const core::Aabb other = std::get<core::Aabb>(deviated(dice, *box, deviation));
     if (glm::any(glm::lessThan(other.size(), core::Vec3(0.05)))) return;
     known.setup.stock = {core::solid_mesh(box_mesh(other.min, other.max)), deviation};
-    known.setup.stock_deviation = deviation;
+    known.setup.stock.deviation = deviation;
 }
 
 } // namespace test_support

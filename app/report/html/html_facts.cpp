@@ -91,7 +91,7 @@ std::string html_summary(const CheckRun& run) {
                                                      : "the default of each pair of bodies");
     rows += row("dialect", std::string(gcode::dialect(run.dialect).name));
     rows += row("engine", name_of(run.engine));
-    if (run.comparison) rows += row("part", facts_of(*run.comparison, run.setup.part->tolerance));
+    if (run.comparison) rows += row("part", facts_of(*run.comparison, *run.setup.part));
     rows += row("model", fmt::format("{} scan lines, {} points, {:.0f} MB; checked in {:.2f} s",
                                      run.lines, run.points, std::ceil(1e-6 * run.memory),
                                      run.times.read + run.times.model + run.times.check));

@@ -164,6 +164,7 @@ Json part_json(const CheckRun& run) {
     const core::PartComparison& comparison = *run.comparison;
     Json json;
     json["tolerance"] = run.setup.part->tolerance;
+    if (run.setup.part->deviation > 0.0) json["deviation"] = run.setup.part->deviation;
     json["largest_gouge"] = comparison.largest_gouge;
     json["largest_excess"] = comparison.largest_excess;
     json["between_samples"] = comparison.between_samples;

@@ -264,7 +264,8 @@ std::string kind_of(const core::Fixture& fixture, const StatedSetup& stated) {
     if (body && !body->preset.empty())
         kind += body->preset;
     else if (body && !body->mesh.empty())
-        kind += "mesh " + body->mesh.substr(body->mesh.find_last_of('/') + 1);
+        kind += (body->solid.empty() ? "mesh " : body->solid + " of ")
+                + body->mesh.substr(body->mesh.find_last_of('/') + 1);
     else if (body && !body->model.empty())
         kind += "model " + body->model.substr(body->model.find_last_of('/') + 1);
     else if (body && body->cylinder)

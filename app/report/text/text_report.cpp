@@ -203,8 +203,7 @@ std::string summary_text(const CheckRun& run, const TextOptions& options) {
                     run.setup.mesh_size, run.lines, run.points, std::ceil(1e-6 * run.memory),
                     run.times.read + run.times.model + run.times.check);
     if (run.comparison)
-        text +=
-            fmt::format("  part       {}\n", facts_of(*run.comparison, run.setup.part->tolerance));
+        text += fmt::format("  part       {}\n", facts_of(*run.comparison, *run.setup.part));
     if (run.saved_stock) text += fmt::format("  saved      {}\n", facts_of(*run.saved_stock));
     if (run.tolerances) text += tolerances_text(*run.tolerances, options);
     return text + assumptions_text(run.all_assumptions(), options);

@@ -223,7 +223,7 @@ FileEndings endings_for(FileWish wish) {
     case FileWish::mesh:
     case FileWish::stock:
     case FileWish::part:
-        return {"Meshes", {"stl", "obj", "ply", "off"}};
+        return {"Meshes, STEP, IGES", {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs"}};
     case FileWish::tools:
         return {"Tool libraries", {"tools", "json", "hsmlib", "fctl", "fctb", "tbl"}};
     case FileWish::machine:
@@ -278,7 +278,7 @@ const char* name_of(FileFilter filter) {
     case FileFilter::machines:
         return "Machines";
     case FileFilter::meshes:
-        return "Meshes (STL, OBJ, PLY, OFF)";
+        return "Meshes, STEP, IGES";
     case FileFilter::tools:
         return "Tool libraries";
     case FileFilter::pages:

@@ -89,6 +89,7 @@ void merge(SessionUpdate& news, SessionUpdate later) {
     take(news.refusal, later.refusal);
     take(news.setup_error, later.setup_error);
     take(news.stopped, later.stopped);
+    news.reading = std::move(later.reading);
     news.fraction = later.fraction;
     news.verdict = later.verdict;
     news.is_recorded = later.is_recorded;

@@ -147,6 +147,7 @@ struct SessionUpdate {
     // It could not be opened again with another set-up: the session before it goes on.
     std::optional<core::Error> setup_error;
     bool is_again = false;              // the program is the one opened before, with another set-up
+    std::string reading;                // a CAD file being read: "vise.step: meshing, 40 %"
     std::optional<std::string> refusal; // why a request was refused, as a sentence
     std::optional<core::Error> stopped; // the program could not be run to its end
     double fraction = 0.0;              // of the program, checked so far

@@ -11,6 +11,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/check/block_events.h"
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
@@ -31,6 +33,14 @@ namespace {
 constexpr double slice = 0.01;
 constexpr auto walk_slice = std::chrono::milliseconds(30);
 constexpr auto publish_interval = std::chrono::milliseconds(60);
+constexpr auto cad_interval = std::chrono::milliseconds(250); // most files take less
+
+/// "vise.step: meshing, 40 %".
+std::string reading_text(const core::CadProgress& progress) {
+    return fmt::format("{}: {}, {:.0f} %",
+                       std::filesystem::path(progress.file).filename().generic_string(),
+                       progress.step, 100.0 * progress.fraction);
+}
 
 /// The tool that a block moves: the new one if the block changes tools.
 std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
@@ -91,8 +101,15 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     const core::FileAccessObserver listening([&read](const core::FileAccess& access) {
         if (access.question == core::FileAccessKind::content) read.insert(access.path);
     });
-    const core::CadReadObserver stopping(
-        [&](const core::CadProgress&) { return !is_superseded(); });
+    const core::CadReadObserver observer([&](const core::CadProgress& progress) {
+        if (Clock::now() - last_publish_ < cad_interval) return !is_superseded();
+        last_publish_ = Clock::now();
+        news_.reading = reading_text(progress);
+        news_.has_news = news_.is_busy = true;
+        publish();
+        return !is_superseded();
+    });
+    last_publish_ = Clock::now();
     auto check = read_check(job);
     if (is_superseded()) return;
     news_.files.assign(read.begin(), read.end());

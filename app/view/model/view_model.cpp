@@ -258,6 +258,7 @@ void take_in(ViewModel& model, SessionUpdate news, double now) {
     }
     if (news.failure) model.failure = news.failure;
     if (news.stopped) model.stopped = news.stopped;
+    model.reading_text = std::move(news.reading);
     model.fraction = news.fraction;
     model.program_verdict = news.verdict;
     model.is_recorded = news.is_recorded;

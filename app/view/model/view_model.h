@@ -170,7 +170,8 @@ struct ViewModel {
     double fraction = 0.0;
     core::Verdict program_verdict = core::Verdict::clear; // so far
     bool is_recorded = false, is_busy = false;
-    uint64_t reading = 0; // the request to open the program that has no answer yet; 0: none
+    uint64_t reading = 0;     // the request to open the program that has no answer yet; 0: none
+    std::string reading_text; // the CAD file that is being read for it, and how far it is
     DeviceModel device;
     ToleranceModel tolerances;
 

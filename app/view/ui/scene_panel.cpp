@@ -508,6 +508,7 @@ void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render
     if (frame.now < model.message_until) words = model.message;
     if (model.is_busy && !model.block_state)
         words = model.has_rows() ? "Modelling the stock \xE2\x80\xA6" : "Reading \xE2\x80\xA6";
+    if (!model.reading_text.empty()) words = model.reading_text;
     if (!words.empty())
         draw_pill(frame, list, {free.x + frame.px(14), free.y + free.height - frame.px(44)}, words);
     list.PopClipRect();

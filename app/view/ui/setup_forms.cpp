@@ -335,13 +335,22 @@ void SetupForms::draw_shape(Frame& frame, const StatedBody& body, const BodyPath
             if (ImGui::Button("Browse \xE2\x80\xA6")) browse(model, wish);
         }
         if (body.mesh.empty()) return;
-        if (core::is_cad_file(body.mesh))
-            return draw_solids(frame, body, [&](const std::string& solid) {
+        if (core::is_cad_file(body.mesh)) {
+            draw_solids(frame, body, [&](const std::string& solid) {
                 change([&](const std::string& t) {
                     return solid.empty() ? toml_without(t, path / "solid")
                                          : toml_with_value(t, path / "solid", toml_text(solid));
                 });
             });
+            field_name(frame, "Deviation");
+            const auto typed = fields_.size(
+                frame, "##deviation", body.mesh_deviation.value_or(core::default_cad_deviation));
+            tip(frame, "How far the triangles may be from the surface of the file");
+            if (typed)
+                change([&](const std::string& t) { return with_mesh_deviation(t, path, *typed); });
+            source_mark(frame, body.mesh_deviation ? SetupSource::stated : SetupSource::usual);
+            return;
+        }
         field_name(frame, "Its unit");
         ImGui::SetNextItemWidth(frame.px(84));
         using gcode::LengthUnit;

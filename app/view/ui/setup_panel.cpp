@@ -236,7 +236,8 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
     if (ImGui::BeginPopup("add")) {
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere(); // Enter chooses the first
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
-        if (ImGui::MenuItem("Fixture: mesh file \xE2\x80\xA6")) browse(model, FileWish::mesh);
+        if (ImGui::MenuItem("Fixture: mesh or STEP file \xE2\x80\xA6"))
+            browse(model, FileWish::mesh);
         for (const PresetKind kind : preset_kinds) {
             if (!ImGui::BeginMenu(std::string(title_of(kind)).c_str())) continue;
             for (const Preset& preset : presets()) {
@@ -249,7 +250,8 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
             }
             ImGui::EndMenu();
         }
-        if (ImGui::MenuItem("Finished part: mesh file \xE2\x80\xA6")) browse(model, FileWish::part);
+        if (ImGui::MenuItem("Finished part: mesh or STEP file \xE2\x80\xA6"))
+            browse(model, FileWish::part);
         if (ImGui::MenuItem("Tool")) add_tool(model);
         if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
         if (ImGui::MenuItem("Tools and stock: FreeCAD job \xE2\x80\xA6"))

@@ -26,6 +26,7 @@
 #include <Geom_Parabola.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <TColStd_Array1OfReal.hxx>
+#include <gp_Lin.hxx>
 
 #include "core/base/math.h"
 
@@ -220,7 +221,12 @@ Handle(Kind) as(const Base& geometry) {
 std::unique_ptr<CurveModel> model_of(const Handle(Geom_Curve) & curve) {
     if (const auto trimmed = as<Geom_TrimmedCurve>(curve); !trimmed.IsNull())
         return model_of(trimmed->BasisCurve());
-    if (!as<Geom_Line>(curve).IsNull()) return std::make_unique<RoundModel>(1.0, 0.0);
+    if (const auto l = as<Geom_Line>(curve); !l.IsNull()) {
+        const gp_Dir along = l->Lin().Direction();
+        DerivativeBounds bounds;
+        bounds.first.include(Vec3(along.X(), along.Y(), along.Z()));
+        return std::make_unique<RoundModel>(bounds);
+    }
     if (const auto c = as<Geom_Circle>(curve); !c.IsNull())
         return std::make_unique<RoundModel>(c->Radius(), c->Radius());
     if (const auto e = as<Geom_Ellipse>(curve); !e.IsNull())

@@ -12,13 +12,10 @@
 #include <BRep_Tool.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESCAFControl_Reader.hxx>
-#include <Interface_InterfaceModel.hxx>
 #include <Interface_Static.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
-#include <StepShape_SolidModel.hxx>
 #include <TCollection_AsciiString.hxx>
-#include <TCollection_HAsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
@@ -29,52 +26,27 @@
 #include <TopoDS_Edge.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
-#include <TransferBRep.hxx>
-#include <Transfer_TransientProcess.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
-#include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
+
+#include "core/cad/reader/completeness.h"
 
 namespace core::cad {
 
 namespace {
-
-/// A name of a file as one line of UTF-8.
-std::string plain_name(std::string_view text) {
-    constexpr size_t longest = 200;
-    std::string line;
-    for (const char c : text) {
-        const bool is_printed = static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
-        line += is_printed ? c : ' ';
-    }
-    const size_t first = std::min(line.find_first_not_of(' '), line.size());
-    line = line.substr(first, line.find_last_not_of(' ') + 1 - first);
-    size_t end = std::min(line.size(), longest);
-    const auto is_inside_character = [&](size_t at) {
-        return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xc0U) == 0x80U;
-    };
-    while (is_inside_character(end)) --end;
-    return line.substr(0, end);
-}
 
 /// The name of a label; empty if it has none.
 std::string name_of(const TDF_Label& label) {
     Handle(TDataStd_Name) name;
     if (label.IsNull() || !label.FindAttribute(TDataStd_Name::GetID(), name)) return {};
     const TCollection_AsciiString text(name->Get());
-    return plain_name({text.ToCString(), static_cast<size_t>(text.Length())});
+    std::string own = plain_name({text.ToCString(), static_cast<size_t>(text.Length())});
+    return own.starts_with("=>[") ? std::string() : own; // which Open CASCADE invents
 }
-
-/// The names of the solids themselves, not of the parts that consist of them.
-struct SolidName {
-    TopoDS_Shape solid;
-    std::string name;
-};
-using SolidNames = std::vector<SolidName>;
 
 /// The number of shapes of a kind outside of shapes of another kind.
 size_t count_outside(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind, TopAbs_ShapeEnum outside) {
@@ -93,9 +65,18 @@ std::string place_of_edge(const TopoDS_Edge& edge) {
 /// Faces that belong to no solid, joined.
 struct Sewn {
     std::vector<TopoDS_Shape> solids;
+    size_t open_pieces = 0; // that enclose nothing
     size_t open_edges = 0;
     std::string open_edge; // where one of them is
 };
+
+TopoDS_Shell shell_of(const TopoDS_Shape& face) {
+    TopoDS_Shell shell;
+    BRep_Builder builder;
+    builder.MakeShell(shell);
+    builder.Add(shell, face);
+    return shell;
+}
 
 TopoDS_Shape solid_of(const TopoDS_Shell& shell) {
     TopoDS_Solid solid;
@@ -113,9 +94,17 @@ Sewn sewn(const TopoDS_Shape& shape, double tolerance) {
     Sewn result;
     result.open_edges = static_cast<size_t>(sewing.NbFreeEdges());
     if (result.open_edges > 0) result.open_edge = place_of_edge(sewing.FreeEdge(1));
-    for (TopExp_Explorer e(sewing.SewedShape(), TopAbs_SHELL); e.More(); e.Next())
-        if (BRep_Tool::IsClosed(e.Current()))
-            result.solids.push_back(solid_of(TopoDS::Shell(e.Current())));
+    const auto add = [&](const TopoDS_Shell& shell) {
+        if (BRep_Tool::IsClosed(shell))
+            result.solids.push_back(solid_of(shell));
+        else
+            ++result.open_pieces;
+    };
+    const TopoDS_Shape all = sewing.SewedShape();
+    for (TopExp_Explorer e(all, TopAbs_SHELL); e.More(); e.Next()) add(TopoDS::Shell(e.Current()));
+    // A face alone, such as a whole sphere.
+    for (TopExp_Explorer e(all, TopAbs_FACE, TopAbs_SHELL); e.More(); e.Next())
+        add(shell_of(e.Current()));
     return result;
 }
 
@@ -154,8 +143,7 @@ private:
     Handle(XCAFDoc_ColorTool) colours_;
     double sewing_;
     Document document_;
-    std::map<std::string, std::string> left_out_; // by part: why
-    std::string open_part_, open_edge_;           // a part with an open surface
+    std::string open_part_, open_edge_; // a part with an open surface
     size_t open_edges_ = 0;
     size_t curves_ = 0;
     bool is_too_deep_ = false;
@@ -249,10 +237,11 @@ void Collector::add_part(const TDF_Label& label, const Context& context) {
         document_.notes.push_back(fmt::format(
             "{}: its surfaces are no solid and were joined, across gaps of up to {:g} mm", name,
             sewing_));
-    if (found.open_edges == 0 && !found.solids.empty()) return;
-    left_out_[name] = fmt::format("{} has {} that {} no solid", name,
-                                  faces == 1 ? "a surface" : fmt::format("{} surfaces", faces),
-                                  faces == 1 ? "encloses" : "enclose");
+    if (found.open_pieces == 0 && !found.solids.empty()) return;
+    document_.left_out.push_back(
+        {context.names, fmt::format("{} has {} that {} no solid", name,
+                                    faces == 1 ? "a surface" : fmt::format("{} surfaces", faces),
+                                    faces == 1 ? "encloses" : "enclose")});
     if (!open_part_.empty()) return;
     open_part_ = name;
     open_edge_ = found.open_edge;
@@ -304,73 +293,11 @@ Result<Document> Collector::collect() {
     if (is_too_deep_)
         return fail(ErrorCode::invalid_value, "its assemblies are nested more than 100 deep");
     if (document_.solids.empty()) return nothing();
-    for (const auto& [part, why] : left_out_) document_.left_out.push_back(why);
     if (curves_ > 0)
         document_.notes.push_back(
             fmt::format("{} {} left out", curves_, curves_ == 1 ? "curve is" : "curves are"));
     make_names_unique();
     return std::move(document_);
-}
-
-/// The number of an entity in its file, for a message: "#12".
-std::string entity_text(const Handle(Interface_InterfaceModel) & model,
-                        const Handle(Standard_Transient) & entity) {
-    const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
-    return label.IsNull() ? "an entity" : std::string(label->ToCString());
-}
-
-bool has_any(std::string_view text, const std::vector<std::string_view>& parts) {
-    return std::any_of(parts.begin(), parts.end(), [&](std::string_view part) {
-        return text.find(part) != std::string_view::npos;
-    });
-}
-
-/// Whether a body could be missing, out of shape or out of place without an entity of this type.
-///
-/// Files are full of entities that Open CASCADE does not understand, about dimensions, tolerances,
-/// displays and persons. A shape representation with such items is one of them: if a solid were
-/// among the items, `names_of_solids` would find it missing.
-bool is_needed(std::string_view type) {
-    if (type.starts_with("StepGeom_") || type.starts_with("IGESGeom_")
-        || type.starts_with("IGESSolid_") || type.starts_with("IGESBasic_"))
-        return true;
-    if (type.starts_with("StepShape_"))
-        return type != "StepShape_ShapeRepresentation"
-               && !has_any(type, {"Dimension", "Tolerance", "Limits"});
-    if (type.starts_with("StepRepr_"))
-        return has_any(type, {"Transformation", "AssemblyUsage", "MappedItem", "RepresentationMap",
-                              "Relationship", "UnitAssigned", "ProductDefinitionShape"});
-    return type.starts_with("StepBasic_") && has_any(type, {"Unit", "ProductDefinition"});
-}
-
-/// Refuses a file with a needed entity that could not be read.
-Result<bool> check_entities(const Handle(Interface_InterfaceModel) & model) {
-    for (int i = 1; i <= model->NbEntities(); ++i)
-        if (model->IsErrorEntity(i) && is_needed(model->Value(i)->DynamicType()->Name()))
-            return fail(ErrorCode::syntax, fmt::format("it is damaged: {} cannot be read",
-                                                       entity_text(model, model->Value(i))));
-    return true;
-}
-
-/// The names of the solids; errors if Open CASCADE could not make one of them.
-Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session) {
-    const Handle(Interface_InterfaceModel) model = session->Model();
-    const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
-    SolidNames names;
-    for (int i = 1; i <= model->NbEntities(); ++i) {
-        const auto entity = Handle(StepShape_SolidModel)::DownCast(model->Value(i));
-        if (entity.IsNull()) continue;
-        const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
-        if (solid.IsNull())
-            return fail(ErrorCode::invalid_value,
-                        fmt::format("Open CASCADE cannot make the solid {}: repair it in the CAD "
-                                    "system, or export the body as STL",
-                                    entity_text(model, entity)));
-        const Handle(TCollection_HAsciiString) text = entity->Name();
-        const std::string name = text.IsNull() ? "" : plain_name(text->ToCString());
-        if (!name.empty()) names.push_back({solid, name});
-    }
-    return names;
 }
 
 tl::unexpected<Error> fail_reading(IFSelect_ReturnStatus status, const char* format) {
@@ -392,7 +319,7 @@ Result<SolidNames> read_step(const std::string& path, Handle(TDocStd_Document) &
     const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
     if (status != IFSelect_RetDone) return fail_reading(status, "STEP");
     const Handle(XSControl_WorkSession) session = reader.Reader().WS();
-    FEELER_TRY([[maybe_unused]] const bool is_whole, check_entities(session->Model()));
+    FEELER_TRY([[maybe_unused]] const bool is_whole, check_step(session));
     if (!reader.Transfer(document, progress))
         return fail(ErrorCode::invalid_value, "it has no bodies that Open CASCADE can read");
     return names_of_solids(session);
@@ -410,6 +337,7 @@ Result<SolidNames> read_iges(const std::string& path, Handle(TDocStd_Document) &
     FEELER_TRY([[maybe_unused]] const bool is_whole, check_entities(reader.WS()->Model()));
     if (!reader.Transfer(document, progress))
         return fail(ErrorCode::invalid_value, "it has no bodies that Open CASCADE can read");
+    FEELER_TRY([[maybe_unused]] const bool all, check_transferred_iges(reader.WS()));
     return SolidNames{};
 }
 

@@ -10,6 +10,7 @@
 #include <gp_Trsf.hxx>
 
 #include "core/base/result.h"
+#include "core/cad/cad_file.h"
 #include "core/geom/mesh.h"
 
 namespace core::cad {
@@ -25,7 +26,8 @@ struct PlacedSolid {
 /// The solids of a file.
 struct Document {
     std::vector<PlacedSolid> solids;
-    std::vector<std::string> notes, left_out; // as in CadFile
+    std::vector<std::string> notes; // as in CadFile
+    std::vector<CadSurfaces> left_out;
 };
 
 enum class CadFormat : uint8_t { step, iges };

@@ -232,8 +232,13 @@ FaceMesh::Judged FaceMesh::judge_measured(const std::array<uint32_t, 3>& triangl
             const double x = static_cast<double>(i) / steps, y = static_cast<double>(k) / steps;
             judged.deviation = std::max(judged.deviation, measured_factor * off(x, y, 1 - x - y));
         }
-    const std::array<double, 3> sides = {off(0.5, 0.5, 0.0), off(0.0, 0.5, 0.5),
-                                         off(0.5, 0.0, 0.5)};
+    // An S has no deviation in its middle.
+    const auto along = [&](const auto& at) {
+        return std::max({at(1.0 / 3.0), at(0.5), at(2.0 / 3.0)});
+    };
+    const std::array<double, 3> sides = {along([&](double x) { return off(x, 1.0 - x, 0.0); }),
+                                         along([&](double x) { return off(0.0, x, 1.0 - x); }),
+                                         along([&](double x) { return off(x, 0.0, 1.0 - x); })};
     const size_t worst =
         static_cast<size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
     judged.worst = side_of(triangle[worst], triangle[(worst + 1) % 3]);
@@ -310,8 +315,31 @@ double FaceMesh::sliver_measured(const BorderPiece& piece) const {
     return measured_factor * most;
 }
 
+// A pole of a file is a point only within its tolerance.
+double FaceMesh::extent_of_pole(const BorderPiece& piece) {
+    const Border& border = borders[piece.border];
+    const gp_Pnt2d p = border.curve->Value(piece.from), q = border.curve->Value(piece.to);
+    if (border.model && model) {
+        const DerivativeBounds curve =
+            border.model->over(std::min(piece.from, piece.to), std::max(piece.from, piece.to));
+        const Vec3 way = std::abs(piece.to - piece.from) * curve.first.each;
+        const SurfaceDerivativeBounds bounds =
+            model->over({std::min(p.X(), q.X()) - way.x, std::max(p.X(), q.X()) + way.x,
+                         std::min(p.Y(), q.Y()) - way.y, std::max(p.Y(), q.Y()) + way.y});
+        if (curve.known && bounds.known) return bounds.u * way.x + bounds.v * way.y;
+    }
+    is_proven = false;
+    constexpr int steps = 16;
+    double most = 0.0;
+    for (int i = 1; i <= steps; ++i) {
+        const gp_Pnt2d at = border.curve->Value(
+            piece.from + static_cast<double>(i) / steps * (piece.to - piece.from));
+        most = std::max(most, glm::distance(point_at(p.X(), p.Y()), point_at(at.X(), at.Y())));
+    }
+    return measured_factor * most;
+}
+
 double FaceMesh::sliver(const BorderPiece& piece) {
-    if (borders[piece.border].is_degenerate) return 0.0;
     if (const auto proven = sliver_proven(piece)) return *proven;
     is_proven = false;
     return sliver_measured(piece);
@@ -322,8 +350,12 @@ void FaceMesh::judge_all(const std::vector<Vec3>& points) {
     judged_.resize(triangles.size());
     for (size_t i = 0; i < triangles.size(); ++i)
         if (judged_[i].deviation < 0.0) judged_[i] = judge(triangles[i], points);
-    for (const auto& [side, piece] : pieces)
-        if (!slivers_.contains(side)) slivers_[side] = sliver(piece);
+    for (const auto& [side, piece] : pieces) {
+        if (slivers_.contains(side)) continue;
+        const bool is_pole = borders[piece.border].is_degenerate;
+        slivers_[side] = is_pole ? 0.0 : sliver(piece);
+        if (is_pole) poles_[side] = extent_of_pole(piece);
+    }
     for (; gap_nodes_ < nodes.size(); ++gap_nodes_) {
         const FaceNode& node = nodes[gap_nodes_];
         gap_ = std::max(gap_, glm::distance(points[node.point], point_at(node.u, node.v)));
@@ -341,6 +373,7 @@ FaceDeviation FaceMesh::measured_by(const std::vector<Vec3>& points) {
     double tolerance = 0.0;
     for (const Border& border : borders) tolerance = std::max(tolerance, border.tolerance);
     deviation.gap += tolerance;
+    for (const auto& [side, extent] : poles_) deviation.gap += extent;
     return deviation;
 }
 
@@ -365,8 +398,12 @@ bool FaceMesh::flip(uint32_t first, uint32_t second, const Side& side,
         if (singular_at(node) != Singular::none) return false;
     const std::array<uint32_t, 3> low = {a, b, d}, high = {a, d, c};
     const double area = area_of(t);
-    if (a == d || !(area * area_of(s) > 0.0) || !(area * area_of(low) > 0.0)
-        || !(area * area_of(high) > 0.0))
+    // Else a side would be put back that was just divided.
+    constexpr double least_part = 1e-3;
+    const double least = least_part * (std::abs(area) + std::abs(area_of(s)));
+    const double sign = area > 0.0 ? 1.0 : -1.0;
+    if (a == d || !(sign * area_of(s) > 0.0) || !(sign * area_of(low) > least)
+        || !(sign * area_of(high) > least))
         return false;
     const Judged of_low = judge(low, points), of_high = judge(high, points);
     const double before = std::max(judged_[first].deviation, judged_[second].deviation);
@@ -442,6 +479,26 @@ bool FaceMesh::mark(const std::vector<Vec3>& points, double wanted, std::set<siz
     return any;
 }
 
+void FaceMesh::mark_triangle(size_t triangle, const std::vector<Vec3>& points,
+                             std::set<size_t>& segments) {
+    std::optional<Side> longest;
+    double length = -1.0;
+    for (size_t k = 0; k < 3; ++k) {
+        const uint32_t a = triangles[triangle][k], b = triangles[triangle][(k + 1) % 3];
+        const double own = glm::distance(points[nodes[a].point], points[nodes[b].point]);
+        if (pieces.contains(side_of(a, b)) || own <= length) continue;
+        length = own;
+        longest = side_of(a, b);
+    }
+    if (longest)
+        marked_.insert(*longest);
+    else
+        for (size_t k = 0; k < 3; ++k)
+            segments.insert(
+                pieces.at(side_of(triangles[triangle][k], triangles[triangle][(k + 1) % 3]))
+                    .segment);
+}
+
 uint32_t FaceMesh::divide_piece(const BorderPiece& piece, const SegmentHalves& halves) {
     const double middle = 0.5 * (piece.from + piece.to);
     const gp_Pnt2d p = borders[piece.border].curve->Value(middle);
@@ -480,6 +537,7 @@ void FaceMesh::divide(std::vector<Vec3>& points, const std::map<size_t, SegmentH
     for (const auto& [side, piece] : divided) {
         pieces.erase(side);
         slivers_.erase(side);
+        poles_.erase(side);
         middles[side] = divide_piece(piece, halves.at(piece.segment));
     }
     for (const Side& side : marked_) middles[side] = divide_side(side, points);

@@ -94,6 +94,11 @@ struct FaceMesh {
     /// Marks the sides to divide until the deviation can be `wanted`; false if there are none.
     bool mark(const std::vector<Vec3>& points, double wanted, std::set<size_t>& segments);
 
+    /// Also marks a side of a triangle: the longest one inside of the face, or else all of its
+    /// segments.
+    void mark_triangle(size_t triangle, const std::vector<Vec3>& points,
+                       std::set<size_t>& segments);
+
     /// Divides the marked sides, and those on the segments that are divided.
     void divide(std::vector<Vec3>& points, const std::map<size_t, SegmentHalves>& halves);
 
@@ -118,6 +123,7 @@ private:
     double bow_on_cone(const FaceNode& a, const FaceNode& b) const;
     Judged judge_measured(const std::array<uint32_t, 3>& triangle,
                           const std::vector<Vec3>& points) const;
+    double extent_of_pole(const BorderPiece& piece);
     double sliver(const BorderPiece& piece);
     std::optional<double> sliver_proven(const BorderPiece& piece) const;
     double sliver_measured(const BorderPiece& piece) const;
@@ -136,6 +142,7 @@ private:
     std::optional<GeomAdaptor_Surface> adaptor_;
     std::vector<Judged> judged_;
     std::map<Side, double> slivers_;
+    std::map<Side, double> poles_; // lengths on the surface of the pieces that are poles, mm
     std::set<Side> marked_;
     double gap_ = 0.0;
     size_t gap_nodes_ = 0; // nodes whose gap is in `gap_`

@@ -141,7 +141,9 @@ Result<bool> write_solids(const Document& document, MeshWish wish, const Output&
     const double count = static_cast<double>(document.solids.size());
     for (size_t i = 0; i < document.solids.size(); ++i) {
         const PlacedSolid& at = document.solids[i];
-        output.write(progress_message("meshing", static_cast<double>(i) / count));
+        output.write(
+            progress_message(fmt::format("meshing solid {} of {}", i + 1, document.solids.size()),
+                             static_cast<double>(i) / count));
         const auto number = static_cast<size_t>(parts.Add(at.shape));
         if (number > meshed.size()) {
             auto mesh = mesh_solid(at.shape, wish);
@@ -149,10 +151,16 @@ Result<bool> write_solids(const Document& document, MeshWish wish, const Output&
             meshed.push_back(*std::move(mesh));
         }
         const MeshedSolid& solid = meshed[number - 1];
+        constexpr double largest_gap = 0.05; // of the size of a solid: it has no shape any more
+        if (solid.gap > largest_gap * glm::length(solid.mesh.bounds().size()))
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("{}: gaps of {:.3g} mm are between its faces: repair it in the "
+                                    "CAD system",
+                                    at.names.back(), solid.gap));
         if (solid.mesh.triangles.size() > wish.most_triangles)
             return fail(ErrorCode::unsupported,
                         fmt::format("its solids have too many triangles within {:g} mm of their "
-                                    "surfaces: allow a larger deviation",
+                                    "surfaces: allow a larger deviation (mesh_deviation)",
                                     wish.deviation));
         wish.most_triangles -= solid.mesh.triangles.size();
         output.write(solid_message(placed(solid, at)));
@@ -167,8 +175,7 @@ Result<bool> run(const Arguments& arguments, const Output& output) {
                              indicator->Start()));
     for (const std::string& note : document.notes)
         output.write(text_message(MessageKind::note, note));
-    for (const std::string& surfaces : document.left_out)
-        output.write(text_message(MessageKind::left_out, surfaces));
+    for (const CadSurfaces& surfaces : document.left_out) output.write(left_out_message(surfaces));
     return write_solids(document, arguments.wish, output);
 }
 

@@ -145,6 +145,8 @@ private:
     void unite_points();
     Vec3 middle_of(const Segment& segment) const;
     std::map<size_t, SegmentHalves> divided(const std::set<size_t>& segments);
+    bool mark_folds(std::set<size_t>& segments);
+    void divide(const std::set<size_t>& segments);
     size_t triangle_count() const;
 
     MeshWish wish_;
@@ -374,20 +376,26 @@ std::map<size_t, SegmentHalves> SolidMesher::divided(const std::set<size_t>& seg
     return halves;
 }
 
+void SolidMesher::divide(const std::set<size_t>& segments) {
+    const std::map<size_t, SegmentHalves> halves = divided(segments);
+    for (FaceMesh& mesh : meshes_) mesh.divide(points_, halves);
+}
+
 Result<bool> SolidMesher::refine() {
     constexpr int most_rounds = 200; // near a pole, few sides are divided in each
+    constexpr int most_openings = 6;
+    int openings = 0;
     for (int round = 0; round < most_rounds; ++round) {
         std::set<size_t> segments;
         bool any = false;
         for (FaceMesh& mesh : meshes_) any = mesh.mark(points_, wish_.deviation, segments) || any;
-        if (!any) return true;
-        const std::map<size_t, SegmentHalves> halves = divided(segments);
-        for (FaceMesh& mesh : meshes_) mesh.divide(points_, halves);
+        if (!any && (openings++ == most_openings || !mark_folds(segments))) return true;
+        divide(segments);
         if (triangle_count() > wish_.most_triangles) break;
     }
     return fail(ErrorCode::unsupported,
                 fmt::format("a mesh within {:g} mm of its surface has too many triangles: allow a "
-                            "larger deviation",
+                            "larger deviation (mesh_deviation)",
                             wish_.deviation));
 }
 
@@ -409,8 +417,8 @@ std::vector<uint32_t> first_at_place(const std::vector<Vec3>& points) {
     return first;
 }
 
-/// Removes pairs of triangles with the same corners that face each other: folds without thickness.
-void remove_folds(std::vector<Mesh::Corners>& triangles) {
+/// Pairs of triangles with the same corners that face each other: folds without thickness.
+std::vector<std::pair<uint32_t, uint32_t>> folds_of(const std::vector<Mesh::Corners>& triangles) {
     const auto sorted = [](Mesh::Corners corners) {
         std::sort(corners.begin(), corners.end());
         return corners;
@@ -425,15 +433,77 @@ void remove_folds(std::vector<Mesh::Corners>& triangles) {
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
     });
-    std::vector<bool> removed(triangles.size(), false);
+    std::vector<std::pair<uint32_t, uint32_t>> folds;
     for (size_t i = 0; i + 1 < order.size(); ++i) {
         const uint32_t a = order[i], b = order[i + 1];
-        if (removed[a] || keys[a] != keys[b] || turns(triangles[a]) == turns(triangles[b]))
-            continue;
-        removed[a] = removed[b] = true;
+        if (keys[a] != keys[b] || turns(triangles[a]) == turns(triangles[b])) continue;
+        folds.emplace_back(a, b);
+        ++i;
+    }
+    return folds;
+}
+
+/// Removes folds. No point of them is farther from what remains than the result, mm.
+double without_folds(Mesh& mesh) {
+    const auto folds = folds_of(mesh.triangles);
+    std::vector<bool> removed(mesh.triangles.size(), false);
+    for (const auto& [a, b] : folds) removed[a] = removed[b] = true;
+    std::vector<bool> remains(mesh.vertices.size(), false);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        if (!removed[i])
+            for (const uint32_t corner : mesh.triangles[i]) remains[corner] = true;
+    double most = 0.0;
+    for (const auto& [fold, other] : folds) {
+        const Triangle t = mesh.triangle(fold);
+        const double size =
+            std::max({glm::distance(t.a, t.b), glm::distance(t.b, t.c), glm::distance(t.c, t.a)});
+        double away = infinity; // of the first corner
+        for (size_t i = 0; i < mesh.vertices.size(); ++i)
+            if (remains[i]) away = std::min(away, glm::distance(t.a, mesh.vertices[i]));
+        most = std::max(most, away + size);
     }
     size_t i = 0;
-    std::erase_if(triangles, [&](const Mesh::Corners&) { return removed[i++]; });
+    std::erase_if(mesh.triangles, [&](const Mesh::Corners&) { return removed[i++]; });
+    return most;
+}
+
+/// The points of a triangle of a face, facing outwards.
+Mesh::Corners corners_of(const FaceMesh& face, const std::array<uint32_t, 3>& triangle,
+                         const std::vector<uint32_t>& first) {
+    const auto& [a, b, c] = triangle;
+    Mesh::Corners corners = {first[face.nodes[a].point], first[face.nodes[b].point],
+                             first[face.nodes[c].point]};
+    if (face.faces_back) std::swap(corners[1], corners[2]);
+    return corners;
+}
+
+bool has_area(const Mesh::Corners& corners) {
+    const auto& [p, q, r] = corners;
+    return p != q && q != r && r != p;
+}
+
+/// Marks sides of the triangles of two faces that lie on each other: where the solid is thin, they
+/// would cancel out. False if there are none.
+bool SolidMesher::mark_folds(std::set<size_t>& segments) {
+    struct Place {
+        size_t face, triangle;
+    };
+    std::vector<Place> places;
+    std::vector<Mesh::Corners> all;
+    const std::vector<uint32_t> first = first_at_place(points_);
+    for (size_t face = 0; face < meshes_.size(); ++face)
+        for (size_t i = 0; i < meshes_[face].triangles.size(); ++i) {
+            const Mesh::Corners corners =
+                corners_of(meshes_[face], meshes_[face].triangles[i], first);
+            if (!has_area(corners)) continue;
+            places.push_back({face, i});
+            all.push_back(corners);
+        }
+    const auto folds = folds_of(all);
+    for (const auto& [a, b] : folds)
+        for (const Place& at : {places[a], places[b]})
+            meshes_[at.face].mark_triangle(at.triangle, points_, segments);
+    return !folds.empty();
 }
 
 MeshedSolid SolidMesher::result() {
@@ -446,18 +516,13 @@ MeshedSolid SolidMesher::result() {
         solid.deviation = std::max(solid.deviation, of_face.total());
         solid.gap = std::max(solid.gap, of_face.gap);
         solid.is_proven = solid.is_proven && face.is_proven;
-        for (const auto& [a, b, c] : face.triangles) {
-            Mesh::Corners corners = {first[face.nodes[a].point], first[face.nodes[b].point],
-                                     first[face.nodes[c].point]};
-            if (face.faces_back) std::swap(corners[1], corners[2]);
-            const auto& [p, q, r] = corners;
-            if (p != q && q != r && r != p) solid.mesh.triangles.push_back(corners);
-        }
+        for (const auto& triangle : face.triangles)
+            if (const Mesh::Corners corners = corners_of(face, triangle, first); has_area(corners))
+                solid.mesh.triangles.push_back(corners);
     }
-    remove_folds(solid.mesh.triangles);
-    constexpr double rounding = 1e-12; // of a coordinate: thousands of operations
-    solid.deviation += rounding * reach;
     solid.mesh.vertices = std::move(points_);
+    constexpr double rounding = 1e-12; // of a coordinate: thousands of operations
+    solid.deviation += without_folds(solid.mesh) + rounding * reach;
     return solid;
 }
 

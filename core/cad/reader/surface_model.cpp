@@ -94,26 +94,26 @@ private:
 /// middle of the range, and as the curve is long from there.
 class RevolutionModel : public SurfaceModel {
 public:
-    RevolutionModel(const Handle(Geom_SurfaceOfRevolution) & surface,
-                    std::unique_ptr<CurveModel> curve)
-        : basis_(surface->BasisCurve()), axis_(surface->Axis()), curve_(std::move(curve)) {}
+    RevolutionModel(Handle(Geom_Curve) basis, std::unique_ptr<CurveModel> curve)
+        : basis_(std::move(basis)), curve_(std::move(curve)) {}
 
     SurfaceDerivativeBounds over(const ParameterBox& box) const override {
         const DerivativeBounds c = curve_->over(box.v0, box.v1);
-        const double r = gp_Lin(axis_).Distance(basis_->Value(0.5 * (box.v0 + box.v1)))
-                         + 0.5 * (box.v1 - box.v0) * c.first.length;
+        // Along the axis, it goes nowhere.
+        const double away = std::min(c.first.length, core::hypot(c.first.each.x, c.first.each.y));
+        const gp_Pnt middle = basis_->Value(0.5 * (box.v0 + box.v1));
+        const double r = core::hypot(middle.X(), middle.Y()) + 0.5 * (box.v1 - box.v0) * away;
         return {.u = r,
                 .v = c.first.length,
                 .uu = r,
-                .uv = c.first.length,
+                .uv = away,
                 .vv = c.second.length,
                 .kink_v = c.kink.length,
                 .known = c.known};
     }
 
 private:
-    Handle(Geom_Curve) basis_;
-    gp_Ax1 axis_;
+    Handle(Geom_Curve) basis_; // in a frame whose Z is the axis
     std::unique_ptr<CurveModel> curve_;
 };
 
@@ -328,8 +328,12 @@ std::unique_ptr<SurfaceModel> swept_model(const Handle(Geom_Surface) & surface) 
         if (curve) return std::make_unique<ExtrusionModel>(std::move(curve));
     }
     if (const auto r = kind_of<Geom_SurfaceOfRevolution>(surface); !r.IsNull()) {
-        auto curve = model_of(r->BasisCurve());
-        if (curve) return std::make_unique<RevolutionModel>(r, std::move(curve));
+        const gp_Ax1 axis = r->Axis();
+        gp_Trsf to_axis;
+        to_axis.SetTransformation(gp_Ax3(axis.Location(), axis.Direction()));
+        const auto basis = Handle(Geom_Curve)::DownCast(r->BasisCurve()->Transformed(to_axis));
+        auto curve = model_of(basis);
+        if (curve) return std::make_unique<RevolutionModel>(basis, std::move(curve));
     }
     return {};
 }

@@ -37,6 +37,8 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     const bool may_touch = allowance.distance <= resolution && now.lower <= 0.0;
     if (seen.upper > 0.0 && !may_touch) return now;
     if (!body.profile) {
+        if (seen.upper == 0.0 && relative.error > 0.0 && surely_meets(body, relative, fixture))
+            now.upper = 0.0;
         if (may_touch || now.upper == 0.0)
             now.verdict = judge_contact(allowance, now.lower, now.upper);
         return now;
@@ -56,6 +58,19 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     const Separation shrunk = widened(inner, relative);
     now.verdict = judge_contact(allowance, shrunk.lower, collides ? 0.0 : shrunk.upper);
     return now;
+}
+
+/// Whether a machine body that overlaps a fixture does so in spite of the leg's error.
+bool FixtureCheck::surely_meets(const MovingBody& body, const RelativeLeg& leg,
+                                const Fixture& fixture) {
+    if (leg.error <= leg.deviation) return true;
+    const Aabb box = bounds(fixture.body);
+    for (const ConvexShape& ball : certain_shapes(context_.inner_balls(body), leg)) {
+        if (!overlaps(bounds(ball), box)) continue;
+        ++context_.statistics.shape_tests;
+        if (separation(ball, fixture.body, {.limit = resolution}).upper == 0.0) return true;
+    }
+    return false;
 }
 
 bool FixtureCheck::is_settled(const PairClearance& now, const PairClearance& known) const {

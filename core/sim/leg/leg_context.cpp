@@ -44,6 +44,12 @@ RelativeLeg LegContext::against_stock(const MovingBody& body, const Leg& leg) co
     return relative_leg(setup.machine, setup.stock_mount, body.mover, leg);
 }
 
+const std::vector<InnerBall>& LegContext::inner_balls(const MovingBody& body) const {
+    const auto [known, is_new] = memory.inner_balls.try_emplace(body.body);
+    if (is_new) known->second = core::inner_balls(*body.body);
+    return known->second;
+}
+
 double LegContext::finest_error(const MovingBody& body) const {
     const double cut = std::clamp(setup.mesh_size / 50.0, 0.002, 0.01);
     if (body.kind == PartKind::flutes) return cut;

@@ -38,7 +38,8 @@ bool is_far(TrackedPair& known, double apart, double search_limit);
 Separation widened(Separation found, const RelativeLeg& leg);
 
 /// The part shrunk by the leg's error: the real part certainly sweeps everything that this one
-/// sweeps. Empty if the body turns on the leg or nothing is left.
+/// sweeps, apart from deviations (see certain_shapes). Empty if the body turns on the leg or
+/// nothing is left.
 RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg);
 
 /// Greatest distance that any point of a body moves over a leg relative to any other body, mm;

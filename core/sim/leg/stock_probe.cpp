@@ -26,10 +26,15 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     // Most machine bodies are far away and have many triangles.
     if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
         return {.lower = goal.limit};
-    const std::vector<ConvexShape> shapes =
-        !body.profile  ? shapes_of(*body.body, leg)
-        : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
-                       : shapes_of(*body.profile, leg);
+    return to_stock(body,
+                    !body.profile  ? shapes_of(*body.body, leg)
+                    : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
+                                   : shapes_of(*body.profile, leg),
+                    stock, goal);
+}
+
+Separation StockProbe::to_stock(const MovingBody& body, std::span<const ConvexShape> shapes,
+                                const CutModel& stock, StockGoal goal) {
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
@@ -160,13 +165,18 @@ void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const
     const bool has_way = leg.positions.size() > 1;
     if ((relative.turns || !body.profile) && near && has_way)
         observe_half_way(seen, body, leg, stock, nearest);
-    if (!overlaps || !body.profile) return;
-    const RevolvedProfile sure = certain_sweep(*body.profile, relative);
+    if (!overlaps) return;
+    if (relative.error <= relative.deviation) {
+        seen.plain.upper = 0.0;
+        if (overlaps_shrunk) seen.shrunk.upper = 0.0;
+        return;
+    }
+    const std::vector<ConvexShape> sure =
+        body.profile ? shapes_of(certain_sweep(*body.profile, relative), relative)
+                     : certain_shapes(context_.inner_balls(body), relative);
     if (sure.empty()) return;
-    MovingBody inner = body;
-    inner.profile = &sure;
     Separation found =
-        to_stock(inner, relative, stock, {.limit = resolution, .bound = StockBound::upper});
+        to_stock(body, sure, stock, {.limit = resolution, .bound = StockBound::upper});
     if (found.upper > 0.0) return;
     found.lower = 0.0;
     seen.plain = found;

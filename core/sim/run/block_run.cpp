@@ -294,7 +294,7 @@ void BlockRun::conclude() {
         const bool is_doubtful = pair.verdict == Verdict::clear && state.corners.of_cuts > 0.0;
         widen(pair, off_path, off_path_rapids, state.corners,
               follows || (is_doubtful && only_touches_raw_stock(pair)));
-        widen_by_stock(pair, setup.stock_deviation);
+        widen_by_stock(pair, setup.stock.deviation);
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {
         result.deciding = static_cast<size_t>(worst - pairs.data());

@@ -103,7 +103,11 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
     if (move.turns)
         return "Turn the rotary axes farther away or in shorter blocks, or increase the clearance.";
     if (pair.pair.fixture) return "Increase the clearance.";
-    const double tolerance = setup.stock.tolerance;
+    const double tolerance = setup.stock.tolerance - setup.stock.deviation;
+    if (setup.stock.deviation > std::max(tolerance, setup.mesh_size))
+        return "Use a smaller `mesh_deviation` of [stock]; if that does not decide it, increase "
+               "the "
+               "clearance.";
     if (tolerance <= 0.0)
         return "Use a smaller mesh size; if that does not decide it, increase the clearance.";
     return fmt::format("The raw stock may be {:g} mm larger than stated: measure it and reduce "

@@ -1,0 +1,351 @@
+#include "core/cad/reader/completeness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <IGESGeom_BoundedSurface.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_ManifoldSolid.hxx>
+#include <IGESSolid_Shell.hxx>
+#include <Interface_Check.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <StepBasic_ProductDefinition.hxx>
+#include <StepBasic_SiUnitAndLengthUnit.hxx>
+#include <StepData_UndefinedEntity.hxx>
+#include <StepGeom_CartesianTransformationOperator3d.hxx>
+#include <StepGeom_Direction.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepGeom_Point.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepRepr_MappedItem.hxx>
+#include <StepRepr_NextAssemblyUsageOccurrence.hxx>
+#include <StepRepr_ProductDefinitionShape.hxx>
+#include <StepRepr_RepresentedDefinition.hxx>
+#include <StepShape_ContextDependentShapeRepresentation.hxx>
+#include <StepShape_FaceBasedSurfaceModel.hxx>
+#include <StepShape_ShapeDefinitionRepresentation.hxx>
+#include <StepShape_ShellBasedSurfaceModel.hxx>
+#include <StepShape_SolidModel.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <fmt/format.h>
+
+#include "core/base/vec.h"
+
+namespace core::cad {
+
+/// A name of a file as one line of UTF-8.
+std::string plain_name(std::string_view text) {
+    constexpr size_t longest = 200;
+    std::string line;
+    for (const char c : text) {
+        const bool is_printed = static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
+        line += is_printed ? c : ' ';
+    }
+    const size_t first = std::min(line.find_first_not_of(' '), line.size());
+    line = line.substr(first, line.find_last_not_of(' ') + 1 - first);
+    size_t end = std::min(line.size(), longest);
+    const auto is_inside_character = [&](size_t at) {
+        return at < line.size() && (static_cast<unsigned char>(line[at]) & 0xc0U) == 0x80U;
+    };
+    while (is_inside_character(end)) --end;
+    return line.substr(0, end);
+}
+
+namespace {
+
+/// The number of an entity in its file, for a message: "#12".
+std::string entity_text(const Handle(Interface_InterfaceModel) & model,
+                        const Handle(Standard_Transient) & entity) {
+    const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+    return label.IsNull() ? "an entity" : std::string(label->ToCString());
+}
+
+bool has_any(std::string_view text, const std::vector<std::string_view>& parts) {
+    return std::any_of(parts.begin(), parts.end(), [&](std::string_view part) {
+        return text.find(part) != std::string_view::npos;
+    });
+}
+
+/// Whether a body could be missing, out of shape or out of place without an entity of this type.
+///
+/// Files are full of entities that Open CASCADE does not understand, about dimensions, tolerances,
+/// displays and persons. What only links shapes to products and to each other is none of them:
+/// without it, `names_of_solids` finds that a shape was not made.
+bool is_needed(std::string_view type) {
+    if (type.starts_with("StepGeom_") || type.starts_with("IGESGeom_")
+        || type.starts_with("IGESSolid_") || type.starts_with("IGESBasic_"))
+        return true;
+    if (type.starts_with("StepShape_"))
+        return type != "StepShape_ShapeRepresentation"
+               && type != "StepShape_ShapeDefinitionRepresentation"
+               && !has_any(type, {"Dimension", "Tolerance", "Limits"});
+    if (type.starts_with("StepRepr_"))
+        return has_any(type, {"Transformation", "AssemblyUsage", "MappedItem", "RepresentationMap",
+                              "UnitAssigned", "ProductDefinitionShape"});
+    return type.starts_with("StepBasic_") && has_any(type, {"Unit", "ProductDefinition"});
+}
+
+/// "#12 is missing" of a message like "Unresolved Reference, Ent.Id.#3 Param.n0 2 (Id.#12)".
+std::string missing_text(const std::string& message) {
+    const size_t at = message.find("(Id.");
+    const size_t end = message.find(')', at == std::string::npos ? 0 : at);
+    if (at == std::string::npos || end == std::string::npos) return plain_name(message);
+    return message.substr(at + 4, end - at - 4) + " is missing";
+}
+
+/// Refuses a file whose bodies are in other files.
+Result<bool> check_references(const Handle(XSControl_WorkSession) & session) {
+    STEPConstruct_ExternRefs references(session);
+    references.LoadExternRefs();
+    if (references.NbExternRefs() == 0) return true;
+    const char* const file = references.FileName(1);
+    return fail(ErrorCode::unsupported,
+                fmt::format("it refers to other files{}: export the assembly as one file",
+                            file ? fmt::format(", such as {}", plain_name(file)) : ""));
+}
+
+/// Refuses bodies of kinds that Open CASCADE does not know. Tessellated ones are usually there
+/// beside exact ones, in a representation of their own.
+Result<bool> check_kinds(const Handle(Interface_InterfaceModel) & model) {
+    bool has_strange_items = false; // in representations for exact bodies
+    for (int i = 1; i <= model->NbEntities(); ++i)
+        has_strange_items |= model->IsErrorEntity(i)
+                             && model->Value(i)->DynamicType()->Name()
+                                    == std::string_view("StepShape_ShapeRepresentation");
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto entity = Handle(StepData_UndefinedEntity)::DownCast(model->Value(i));
+        const std::string_view type = entity.IsNull() ? "" : entity->StepType();
+        const bool is_body =
+            type.ends_with("SOLID") || type.ends_with("BREP") || type.ends_with("SURFACE_MODEL")
+            || type == "BLOCK" || type == "SPHERE" || type == "TORUS"
+            || type.starts_with("RIGHT_CIRCULAR_") || type.starts_with("RIGHT_ANGULAR_");
+        if (is_body && (has_strange_items || !type.starts_with("TESSELLATED_")))
+            return fail(ErrorCode::unsupported,
+                        fmt::format("Open CASCADE cannot read {}, which is a {}: export it as a "
+                                    "solid with faces, or as STL",
+                                    entity_text(model, entity), type));
+    }
+    return true;
+}
+
+Vec3 vector_of(const Handle(StepGeom_Direction) & direction) {
+    Vec3 v(0.0);
+    for (int i = 0; i < std::min(3, direction->NbDirectionRatios()); ++i)
+        v[i] = direction->DirectionRatiosValue(i + 1);
+    return v;
+}
+
+bool is_mirror(const Handle(StepGeom_CartesianTransformationOperator3d) & map) {
+    if (!map->HasAxis1() || !map->HasAxis2() || !map->HasAxis3()) return false;
+    return glm::dot(glm::cross(vector_of(map->Axis1()), vector_of(map->Axis2())),
+                    vector_of(map->Axis3()))
+           < 0.0;
+}
+
+/// Refuses transformations that Open CASCADE takes for others: scaled, mirrored, to a mere point.
+Result<bool> check_transformations(const Handle(Interface_InterfaceModel) & model) {
+    const auto refused = [&](const Handle(Standard_Transient) & entity) {
+        return fail(ErrorCode::unsupported,
+                    fmt::format("Open CASCADE cannot scale, mirror or place a part as {} says: "
+                                "export the part in its final place",
+                                entity_text(model, entity)));
+    };
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const Handle(Standard_Transient) entity = model->Value(i);
+        const auto map = Handle(StepGeom_CartesianTransformationOperator3d)::DownCast(entity);
+        constexpr double rounding = 1e-9;
+        if (!map.IsNull()
+            && ((map->HasScale() && std::abs(map->Scale() - 1.0) > rounding) || is_mirror(map)))
+            return refused(entity);
+        const auto item = Handle(StepRepr_MappedItem)::DownCast(entity);
+        if (!item.IsNull() && !item->MappingTarget().IsNull()
+            && item->MappingTarget()->IsKind(STANDARD_TYPE(StepGeom_Point)))
+            return refused(entity);
+    }
+    return true;
+}
+
+/// Refuses coordinates without a unit.
+template <typename Context>
+Result<bool> check_unit(const Handle(Interface_InterfaceModel) & model,
+                        const Handle(Standard_Transient) & entity) {
+    const auto context = Handle(Context)::DownCast(entity);
+    if (context.IsNull()) return true;
+    STEPConstruct_UnitContext units;
+    units.ComputeFactors(context->GlobalUnitAssignedContext());
+    if (units.LengthDone()) return true;
+    return fail(ErrorCode::invalid_value,
+                fmt::format("{} states no unit of length: export the file again",
+                            entity_text(model, entity)));
+}
+
+Result<bool> check_units(const Handle(Interface_InterfaceModel) & model) {
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto unit = Handle(StepBasic_SiUnitAndLengthUnit)::DownCast(model->Value(i));
+        if (!unit.IsNull() && unit->Name() != StepBasic_sunMetre)
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("{} is no unit of length: export the file again",
+                                    entity_text(model, unit)));
+    }
+    using WithUncertainty = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
+    using Without = StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        FEELER_TRY([[maybe_unused]] const bool a,
+                   check_unit<WithUncertainty>(model, model->Value(i)));
+        FEELER_TRY([[maybe_unused]] const bool b, check_unit<Without>(model, model->Value(i)));
+    }
+    return true;
+}
+
+/// What the structure of an assembly consists of.
+struct Structure {
+    std::vector<Handle(StepRepr_NextAssemblyUsageOccurrence)> uses;
+    std::set<const Standard_Transient*> placed;      // uses whose place is stated
+    std::set<const Standard_Transient*> with_bodies; // products that have a shape or parts
+    bool has_mapped_items = false;                   // places of another kind
+};
+
+Structure structure_of(const Handle(Interface_InterfaceModel) & model) {
+    Structure found;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const Handle(Standard_Transient) entity = model->Value(i);
+        found.has_mapped_items |= entity->IsKind(STANDARD_TYPE(StepRepr_MappedItem));
+        if (const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(entity);
+            !use.IsNull()) {
+            found.uses.push_back(use);
+            found.with_bodies.insert(use->RelatingProductDefinition().get());
+        }
+        const auto place = Handle(StepShape_ContextDependentShapeRepresentation)::DownCast(entity);
+        if (!place.IsNull() && !place->RepresentedProductRelation().IsNull())
+            found.placed.insert(place->RepresentedProductRelation()
+                                    ->Definition()
+                                    .ProductDefinitionRelationship()
+                                    .get());
+        const auto shape = Handle(StepShape_ShapeDefinitionRepresentation)::DownCast(entity);
+        if (!shape.IsNull() && !shape->Definition().PropertyDefinition().IsNull())
+            found.with_bodies.insert(
+                shape->Definition().PropertyDefinition()->Definition().ProductDefinition().get());
+    }
+    return found;
+}
+
+/// Refuses an assembly in which a part has no place: Open CASCADE leaves it out.
+Result<bool> check_places(const Handle(Interface_InterfaceModel) & model) {
+    const Structure structure = structure_of(model);
+    if (structure.has_mapped_items) return true;
+    for (const auto& use : structure.uses)
+        if (!structure.placed.contains(use.get())
+            && structure.with_bodies.contains(use->RelatedProductDefinition().get()))
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("{} puts a part into an assembly without stating its place: "
+                                    "export the file again",
+                                    entity_text(model, use)));
+    return true;
+}
+
+size_t faces_of(const Handle(IGESSolid_Shell) & shell) {
+    return shell.IsNull() ? 0 : static_cast<size_t>(shell->NbFaces());
+}
+
+size_t faces_of(const Handle(IGESSolid_ManifoldSolid) & solid) {
+    size_t count = faces_of(solid->Shell());
+    for (int i = 1; i <= solid->NbVoidShells(); ++i) count += faces_of(solid->VoidShell(i));
+    return count;
+}
+
+size_t faces_of(const TopoDS_Shape& shape) {
+    size_t count = 0;
+    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) ++count;
+    return count;
+}
+
+bool is_surface_model(const Handle(Standard_Transient) & entity) {
+    return entity->IsKind(STANDARD_TYPE(StepShape_ShellBasedSurfaceModel))
+           || entity->IsKind(STANDARD_TYPE(StepShape_FaceBasedSurfaceModel));
+}
+
+tl::unexpected<Error> fail_to_make(const char* what, const Handle(Interface_InterfaceModel) & model,
+                                   const Handle(Standard_Transient) & entity) {
+    return fail(ErrorCode::invalid_value,
+                fmt::format("Open CASCADE cannot make the {} {}: repair it in the CAD system, or "
+                            "export the body as STL",
+                            what, entity_text(model, entity)));
+}
+
+} // namespace
+
+Result<bool> check_entities(const Handle(Interface_InterfaceModel) & model) {
+    for (int i = 1; i <= model->NbEntities(); ++i)
+        if (model->IsErrorEntity(i) && is_needed(model->Value(i)->DynamicType()->Name()))
+            return fail(ErrorCode::syntax, fmt::format("it is damaged: {} cannot be read",
+                                                       entity_text(model, model->Value(i))));
+    // References to entities that are not in the file are no fault of the entity that has them.
+    const Handle(Interface_Check) whole = model->GlobalCheck();
+    if (!whole.IsNull() && whole->HasFailed())
+        return fail(ErrorCode::syntax, "it is damaged: " + missing_text(whole->CFail(1)));
+    return true;
+}
+
+Result<bool> check_step(const Handle(XSControl_WorkSession) & session) {
+    const Handle(Interface_InterfaceModel) model = session->Model();
+    FEELER_TRY([[maybe_unused]] const bool whole, check_entities(model));
+    FEELER_TRY([[maybe_unused]] const bool alone, check_references(session));
+    FEELER_TRY([[maybe_unused]] const bool known, check_kinds(model));
+    FEELER_TRY([[maybe_unused]] const bool rigid, check_transformations(model));
+    FEELER_TRY([[maybe_unused]] const bool measured, check_units(model));
+    return check_places(model);
+}
+
+Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session) {
+    const Handle(Interface_InterfaceModel) model = session->Model();
+    const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
+    SolidNames names;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        if (is_surface_model(model->Value(i))
+            && TransferBRep::ShapeResult(made, model->Value(i)).IsNull())
+            return fail_to_make("surfaces", model, model->Value(i));
+        const auto entity = Handle(StepShape_SolidModel)::DownCast(model->Value(i));
+        if (entity.IsNull()) continue;
+        const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
+        if (solid.IsNull()) return fail_to_make("solid", model, entity);
+        const Handle(TCollection_HAsciiString) text = entity->Name();
+        const std::string name = text.IsNull() ? "" : plain_name(text->ToCString());
+        if (!name.empty()) names.push_back({solid, name});
+    }
+    return names;
+}
+
+Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & session) {
+    const Handle(Interface_InterfaceModel) model = session->Model();
+    const auto& global = Handle(IGESData_IGESModel)::DownCast(model)->GlobalSection();
+    if (global.Scale() != 1.0)
+        return fail(ErrorCode::unsupported,
+                    fmt::format("its model space has the scale {:g}: export it at full size",
+                                global.Scale()));
+    if (global.UnitFlag() < 1 || global.UnitFlag() > 11)
+        return fail(ErrorCode::invalid_value, "it states no unit of length: export it again");
+    const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const Handle(Standard_Transient) entity = model->Value(i);
+        const auto solid = Handle(IGESSolid_ManifoldSolid)::DownCast(entity);
+        const bool is_surface = entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface))
+                                || entity->IsKind(STANDARD_TYPE(IGESGeom_BoundedSurface));
+        if (solid.IsNull() && !is_surface) continue;
+        const TopoDS_Shape shape = TransferBRep::ShapeResult(made, entity);
+        if (shape.IsNull()) return fail_to_make(is_surface ? "surface" : "solid", model, entity);
+        if (!solid.IsNull() && faces_of(shape) < faces_of(solid))
+            return fail_to_make("faces of the solid", model, entity);
+    }
+    return true;
+}
+
+} // namespace core::cad
