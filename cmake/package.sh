@@ -148,6 +148,10 @@ system=$(dpkg-architecture -qDEB_HOST_MULTIARCH)
 system=/lib/$system:/usr/lib/$system:/lib64:/usr/lib64:/usr/lib
 # shellcheck disable=SC2016
 patchelf --set-rpath '$ORIGIN/../lib/feeler:'"$system"':$ORIGIN/../lib/feeler/fallback' "$tree/bin/feeler"
+if [[ -e $own/feeler-cad ]]; then
+    # shellcheck disable=SC2016
+    patchelf --set-rpath '$ORIGIN:'"$system"':$ORIGIN/fallback' "$own/feeler-cad"
+fi
 for library in "$own"/*.so*; do
     # shellcheck disable=SC2016
     patchelf --set-rpath '$ORIGIN:'"$system"':$ORIGIN/fallback' "$library"
