@@ -380,8 +380,8 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     return relative;
 }
 
-std::optional<AxisValues> point_tool(const Machine& machine, const AxisValues& values,
-                                     const Vec3& tool_axis) {
+std::vector<AxisValues> ways_to_point_tool(const Machine& machine, const AxisValues& values,
+                                           const Vec3& tool_axis) {
     const Vec3 wanted = glm::normalize(tool_axis);
     const std::vector<DirectionJoint> joints = direction_joints(machine);
     std::vector<AxisValues> ways = {values};
@@ -396,20 +396,53 @@ std::optional<AxisValues> point_tool(const Machine& machine, const AxisValues& v
         for (size_t j = i + 1; j < joints.size(); ++j)
             add_two_turns(machine, values, joints[i], joints[j], wanted, ways);
     }
-    std::optional<AxisValues> best;
-    double least = infinity;
+    const auto turning = [&](const AxisValues& way) {
+        double sum = 0.0;
+        for (const DirectionJoint& moved : joints)
+            sum += std::abs(way[moved.axis] - values[moved.axis]);
+        return sum;
+    };
+    std::erase_if(ways, [&](const AxisValues& way) {
+        return glm::distance(tool_axis_at(machine, way), wanted) >= 1e-9
+               || std::any_of(joints.begin(), joints.end(), [&](const DirectionJoint& moved) {
+                      return !within_limits(machine.axes[moved.axis], way[moved.axis]);
+                  });
+    });
+    std::stable_sort(ways.begin(), ways.end(), [&](const AxisValues& a, const AxisValues& b) {
+        return turning(a) < turning(b);
+    });
+    std::vector<AxisValues> different;
+    const auto tilt = tilting_axis(machine);
     for (const AxisValues& way : ways) {
-        double turning = 0.0;
-        bool possible = glm::distance(tool_axis_at(machine, way), wanted) < 1e-9;
-        for (const DirectionJoint& moved : joints) {
-            turning += std::abs(way[moved.axis] - values[moved.axis]);
-            possible = possible && within_limits(machine.axes[moved.axis], way[moved.axis]);
-        }
-        if (!possible || turning >= least) continue;
-        least = turning;
-        best = way;
+        constexpr double same = 1e-6; // degrees
+        const auto is_known = [&](const AxisValues& other) {
+            return !tilt || std::abs(other[*tilt] - way[*tilt]) < same;
+        };
+        if (std::none_of(different.begin(), different.end(), is_known)) different.push_back(way);
     }
-    return best;
+    return different;
+}
+
+std::optional<AxisValues> point_tool(const Machine& machine, const AxisValues& values,
+                                     const Vec3& tool_axis) {
+    const std::vector<AxisValues> ways = ways_to_point_tool(machine, values, tool_axis);
+    return ways.empty() ? std::nullopt : std::optional(ways.front());
+}
+
+std::optional<size_t> tilting_axis(const Machine& machine) {
+    const auto tilts = [&](size_t axis) {
+        return std::abs(machine.axes[axis].direction.z) < 1.0 - 1e-9;
+    };
+    for (const size_t axis : rotary_chain(machine, machine.table))
+        if (tilts(axis)) return axis;
+    const std::vector<size_t> head = rotary_chain(machine, machine.spindle);
+    const auto found = std::find_if(head.rbegin(), head.rend(), tilts);
+    return found == head.rend() ? std::nullopt : std::optional(*found);
+}
+
+Mat3 tool_frame(const Machine& machine, const AxisValues& values) {
+    return glm::transpose(machine_from_link(machine, machine.table, values).rotation)
+           * machine_from_link(machine, machine.spindle, values).rotation;
 }
 
 } // namespace core

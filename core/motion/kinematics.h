@@ -90,4 +90,18 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
 std::optional<AxisValues> point_tool(const Machine& machine, const AxisValues& values,
                                      const Vec3& tool_axis);
 
+/// All solutions of point_tool within the limits, that with the least rotation first. Whole turns,
+/// and turns about the tool itself, make no others.
+std::vector<AxisValues> ways_to_point_tool(const Machine& machine, const AxisValues& values,
+                                           const Vec3& tool_axis);
+
+/// The rotary axis that tilts the tool or the work out of Z: of several, that of the table which is
+/// nearest to the base, or else that of the spindle which is nearest to the tool. Empty if no axis
+/// does.
+std::optional<size_t> tilting_axis(const Machine& machine);
+
+/// The axes of the tool, as columns, in the frame of the table link: X and Y are those of the
+/// machine, turned with the head.
+Mat3 tool_frame(const Machine& machine, const AxisValues& values);
+
 } // namespace core

@@ -310,15 +310,9 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     return turned_about(2, angles[0]) * turned_about(0, angles[1]) * turned_about(2, angles[2]);
 }
 
-/// Difference between the machine's and the program's value of a rotary axis.
-double rotary_offset(const Offsets& offsets, size_t axis) {
-    return offsets.work.origin[axis] + offsets.local[axis] + offsets.axis[axis].value_or(0.0)
-           + offsets.tool[axis];
-}
-
-/// Machine axis values that point the tool in a direction of the program coordinates.
-core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
-                                 const core::Vec3& direction) {
+/// The machine axis values now; errors if the position of a rotary axis is unknown.
+core::Result<AxisValues> values_now(const Execution& execution, core::SourceSpan where,
+                                    const std::string& what) {
     const Offsets& offsets = execution.modal().offsets;
     const Position position = machine_from_program(offsets, execution.modal().position);
     AxisValues values{};
@@ -328,15 +322,27 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
                 ErrorCode::missing_value,
                 fmt::format("{}: this tilts the tool, but the position of axis {} is unknown: set "
                             "[program] start or the machine's home in the set-up",
-                            written(word), axis_letters[axis]),
-                word.span);
+                            what, axis_letters[axis]),
+                where);
         values[axis] = position[axis].value_or(0.0);
     }
+    return values;
+}
+
+/// A direction of the program coordinates in the frame of the table.
+core::Vec3 in_table(const Offsets& offsets, const core::Vec3& direction) {
     const core::Vec3 in_work =
         turned_about(2, offsets.work.rotation_deg) * (offsets.frame.linear * direction);
-    const core::Vec3 in_table =
-        table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
-    if (const auto found = core::point_tool(*offsets.machine, values, in_table)) return *found;
+    return table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
+}
+
+/// Machine axis values that point the tool in a direction of the program coordinates.
+core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
+                                 const core::Vec3& direction) {
+    const Offsets& offsets = execution.modal().offsets;
+    FEELER_TRY(const AxisValues values, values_now(execution, word.span, written(word)));
+    if (const auto found = core::point_tool(*offsets.machine, values, in_table(offsets, direction)))
+        return *found;
     return core::fail(
         ErrorCode::invalid_value,
         fmt::format(
@@ -370,6 +376,12 @@ core::Result<void> set_tilted_plane(Execution& execution) {
 core::Result<void> turn_tool_to_plane(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
         if (entry.code->number != g_code(53, 1)) continue;
+        if (const Word* word = execution.statement.word('P'); word && word->value != 0.0)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{}: which position of the rotary axes P chooses is not "
+                                          "supported yet: program G53.1 without it",
+                                          written(*word)),
+                              word->span);
         if (!execution.modal().transforms.tilt)
             return core::fail(ErrorCode::invalid_value,
                               "G53.1 needs a tilted plane, but none is set: program G68.2 first",
@@ -381,6 +393,35 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
                            "the set-up these moves are not followed");
     }
     return {};
+}
+
+double rotary_offset(const Offsets& offsets, size_t axis) {
+    return offsets.work.origin[axis] + offsets.local[axis] + offsets.axis[axis].value_or(0.0)
+           + offsets.tool[axis];
+}
+
+core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
+                                      const std::string& what, int sign) {
+    const Offsets& offsets = execution.modal().offsets;
+    FEELER_TRY(const AxisValues values, values_now(execution, where, what));
+    const auto tilt = core::tilting_axis(*offsets.machine);
+    auto ways = core::ways_to_point_tool(*offsets.machine, values,
+                                         in_table(offsets, core::Vec3(0.0, 0.0, 1.0)));
+    std::erase_if(ways, [&](const AxisValues& way) { return tilt && sign * way[*tilt] < 0.0; });
+    if (ways.empty())
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the rotary axes of this machine cannot tilt the tool "
+                                      "that way within their limits",
+                                      what),
+                          where);
+    if (ways.size() > 1)
+        execution.warn(where,
+                       fmt::format("{}: of the positions of the rotary axes that tilt the tool "
+                                   "that way, the control is assumed to take the nearest: {} at "
+                                   "{:.4g}, not {:.4g} degrees",
+                                   what, axis_letters[*tilt], ways[0][*tilt], ways[1][*tilt]),
+                       Severity::note);
+    return ways.front();
 }
 
 core::Result<void> point_by_vector(const Execution& execution, Position& target) {

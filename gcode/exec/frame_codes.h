@@ -33,6 +33,18 @@ core::Result<void> set_tilted_plane(Execution& execution);
 ///         limits.
 core::Result<void> turn_tool_to_plane(Execution& execution);
 
+/// Difference between the machine's and the program's value of a rotary axis.
+double rotary_offset(const Offsets& offsets, size_t axis);
+
+/// The machine axis values at which the tool is along Z of the program coordinates; linear axes as
+/// they are. `sign` is that of the tilting axis (core::tilting_axis), 0 if any will do: then the
+/// least rotation counts, and a note says so if there are several solutions. Only with a machine.
+///
+/// Errors: `what`, the words of the statement, that the position of a rotary axis is unknown, or
+///         that none of the positions within the limits will do.
+core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
+                                      const std::string& what, int sign);
+
 /// With G43.5, sets the rotary axes of a target from the tool direction in I, J and K.
 ///
 /// Errors: as turn_tool_to_plane; a zero direction.

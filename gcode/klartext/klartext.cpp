@@ -132,10 +132,8 @@ core::Result<void> run_statement(Execution& execution) {
     case note:
     case modes:
         return {};
-    case level:
-        if (!is_work_turned(execution.modal())) return {};
-        return refuse_statement(execution, "turning back a tilted plane is not supported yet: turn "
-                                           "the rotary axes to 0 first");
+    case plane:
+        return set_plane(execution);
     case rounding:
     case chamfer:
         return make_corner(execution);
@@ -428,6 +426,8 @@ void add(Digest& digest, const Transforms& transforms) {
     for (const bool mirrored : transforms.mirrored) digest.add(uint64_t{mirrored});
     digest.add(transforms.turn_deg);
     digest.add(transforms.scale);
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) digest.add(transforms.plane[column][row]);
 }
 
 } // namespace

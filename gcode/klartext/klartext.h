@@ -26,8 +26,20 @@ core::Result<void> define_klartext_tool(Execution& execution); // TOOL DEF
 core::Result<void> read_system_datum(Execution& execution);    // FN 18
 core::Result<void> define_cycle(Execution& execution);         // CYCL DEF
 core::Result<void> change_coordinates(Execution& execution);   // CYCL DEF 7, 8, 10, 11, 19
+core::Result<void> set_plane(Execution& execution);            // PLANE
 core::Result<void> call_defined_cycle(Execution& execution);   // M99, M89, CYCL CALL
 core::Result<void> run_pattern(Execution& execution);          // CYCL DEF 220 and 221
+
+/// Makes a tilted plane the last of the transformations, or removes it.
+///
+/// Errors: others came after it.
+core::Result<void> use_plane(Execution& execution, const std::optional<core::Mat3>& axes);
+
+/// The rotation by spatial angles about the fixed axes X, then Y, then Z, in degrees.
+core::Mat3 spatial_rotation(const core::Vec3& angles);
+
+/// Stores the positions that tilt the tool into the plane in Q120 to Q122, if they are known.
+core::Result<void> calculate_plane(Execution& execution);
 
 /// The end of a motion, shortened if a rounding or chamfer follows, which is then stored.
 ///

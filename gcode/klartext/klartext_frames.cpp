@@ -32,6 +32,7 @@ core::Mat3 turned(double angle_deg, const PlaneAxes& axes) {
 
 core::Mat3 linear_of(const Transforms& transforms, Kind kind, const PlaneAxes& axes) {
     if (kind == Kind::turn) return turned(transforms.turn_deg, axes);
+    if (kind == Kind::tilt) return transforms.plane;
     core::Mat3 linear(1.0);
     for (int axis = 0; axis < 3; ++axis) {
         if (kind == Kind::scale) linear[axis][axis] = transforms.scale;
@@ -58,6 +59,9 @@ void use_transforms(Execution& execution) {
         shift_alone = false;
         frame.linear = frame.linear * linear_of(transforms, kind, axes);
     }
+    const auto tilt = std::find(transforms.order.begin(), transforms.order.end(), Kind::tilt);
+    offsets.tilted_plane = tilt != transforms.order.end();
+    frame.tilts_tool = offsets.tilted_plane && transforms.plane[2] != core::Vec3(0.0, 0.0, 1.0);
     offsets.local = transforms.shift;
     offsets.has_frame = !shift_alone;
     offsets.frame = shift_alone ? ProgramFrame{} : frame;
@@ -106,15 +110,46 @@ core::Result<void> scale(Execution& execution, Transforms& transforms) {
     return {};
 }
 
+/// Cycle 19, by spatial angles. Without angles, or with zeros, it is off.
 core::Result<void> tilt(Execution& execution) {
-    for (const char letter : {'A', 'B', 'C'})
-        if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
-            return core::fail(core::ErrorCode::unsupported,
-                              written(*word) + ": tilted planes are not supported yet", word->span);
-    return {};
+    if (klartext_of(execution.block).part == 0) return {};
+    core::Vec3 angles(0.0);
+    bool is_on = false;
+    for (int axis = 0; axis < 3; ++axis)
+        if (const Word* word = execution.statement.word("ABC"[axis])) {
+            angles[axis] = word->value;
+            is_on |= word->value != 0.0;
+        }
+    if (is_on)
+        execution.warn(klartext_of(execution.block).span,
+                       "CYCL DEF 19: the angles are taken for spatial angles; a machine can be "
+                       "configured to take them for positions of its rotary axes",
+                       Severity::note);
+    if (auto done =
+            use_plane(execution, is_on ? std::optional(spatial_rotation(angles)) : std::nullopt);
+        !done)
+        return done;
+    return calculate_plane(execution);
 }
 
 } // namespace
+
+core::Result<void> use_plane(Execution& execution, const std::optional<core::Mat3>& axes) {
+    Transforms transforms = klartext_of(execution.state).transforms;
+    const auto& order = transforms.order;
+    const auto known = std::find(order.begin(), order.end(), Kind::tilt);
+    if (known != order.end() && known + 1 != order.end() && *(known + 1) != Kind::none)
+        return refuse_statement(execution,
+                                "changing a tilted plane while a datum shift, a mirror image, a "
+                                "rotation or a scaling that came after it is on is not supported "
+                                "yet: cancel it first");
+    transforms.plane = axes.value_or(core::Mat3(1.0));
+    keep_order(transforms, Kind::tilt, axes.has_value());
+    if (transforms == klartext_of(execution.state).transforms) return {};
+    writable_klartext(execution.state).transforms = transforms;
+    use_transforms(execution);
+    return {};
+}
 
 /// The first line of such a cycle names it; for mirror images it also cancels the previous one.
 core::Result<void> change_coordinates(Execution& execution) {

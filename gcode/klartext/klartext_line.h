@@ -26,10 +26,17 @@ enum class CommandKind : uint8_t {
     cycle_call,       // CYCL CALL, CYCL CALL POS
     read_system,      // FN 18
     program_error,    // FN 14
-    level,            // PLANE RESET MOVE and TURN
+    plane,            // PLANE
     note,             // read, but has no effect here
     modes,            // a line with M words only
 };
+
+/// How PLANE defines a plane.
+enum class PlaneForm : uint8_t { reset, spatial, euler, vector, points, relative, axial };
+
+/// What PLANE does with the rotary axes: leaves them to the program; turns them while the tip stays
+/// on the work; turns them alone.
+enum class PlaneMove : uint8_t { stay, move, turn };
 
 /// A statement that begins with a keyword. Its values are stored as words of the block: a radius as
 /// R, polar coordinates as P and H, others depending on the kind.
@@ -39,6 +46,11 @@ struct KlartextLine {
     std::string_view tool_name{}; // TOOL CALL "NAME"
     int number = 0, part = 0;     // CYCL DEF 7.1: 7 and 1
     int turn = 0;                 // DR+: 1, DR-: -1
+    PlaneForm plane{};
+    PlaneMove plane_move{};
+    int solution = 0;             // SEQ+: 1, SEQ-: -1
+    bool turns_table = false;     // TABLE ROT
+    bool retracts = false;        // MB
     bool rapid = false;           // FMAX
     bool calls_cycle = false;     // M99, or CYCL CALL
     bool feed_of_call = false;    // Q206=FAUTO: the feed of TOOL CALL

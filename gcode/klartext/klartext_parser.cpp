@@ -68,14 +68,96 @@ core::Result<void> read_begin(KlartextReader& reader) {
     return {};
 }
 
-/// Tilted planes: PLANE RESET is accepted, all others are an error.
+/// A form of PLANE and its values, which are stored as the words I J K, L N O, P Q R.
+struct PlaneWords {
+    std::string_view spelling;
+    PlaneForm form;
+    std::array<std::string_view, 9> values;
+};
+
+constexpr PlaneWords plane_forms[] = {
+    {"RESET", PlaneForm::reset, {}},
+    {"SPATIAL", PlaneForm::spatial, {"SPA", "SPB", "SPC"}},
+    {"EULER", PlaneForm::euler, {"EULPR", "EULNU", "EULROT"}},
+    {"VECTOR", PlaneForm::vector, {"BX", "BY", "BZ", "NX", "NY", "NZ"}},
+    {"POINTS", PlaneForm::points, {"P1X", "P1Y", "P1Z", "P2X", "P2Y", "P2Z", "P3X", "P3Y", "P3Z"}},
+    {"RELATIV", PlaneForm::relative, {"SPA", "SPB", "SPC"}},
+    {"RELATIVE", PlaneForm::relative, {"SPA", "SPB", "SPC"}},
+    {"AXIAL", PlaneForm::axial, {"A", "B", "C"}}};
+
+/// Consumes a name with digits, such as P1X.
+bool accept_name(KlartextReader& reader, std::string_view name) {
+    reader.next();
+    const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
+    const bool is_next = !name.empty() && rest.size() >= name.size()
+                         && std::equal(name.begin(), name.end(), rest.begin(),
+                                       [](char a, char b) { return a == upper(b); });
+    if (is_next) reader.lexer.at += name.size();
+    return is_next;
+}
+
+/// SEQ+, SEQ-, and SYM, which is the same.
+core::Result<void> read_solution(KlartextReader& reader) {
+    const char sign = reader.next();
+    if (sign != '+' && sign != '-') return reader.stray();
+    ++reader.lexer.at;
+    reader.command.solution = sign == '+' ? 1 : -1;
+    return {};
+}
+
+/// MB MAX, or MB and a length.
+core::Result<void> read_retraction(KlartextReader& reader, size_t from) {
+    reader.command.retracts = true;
+    if (reader.accept("MAX")) return {};
+    return reader.word('H', from);
+}
+
+/// What follows the values of PLANE.
+core::Result<void> read_plane_option(KlartextReader& reader) {
+    KlartextLine& command = reader.command;
+    const size_t from = reader.lexer.at;
+    if (reader.accept("STAY")) return {};
+    if (reader.accept("MOVE") || reader.accept("TURN")) {
+        command.plane_move =
+            upper(reader.lexer.line[from]) == 'M' ? PlaneMove::move : PlaneMove::turn;
+        return {};
+    }
+    if (reader.accept("COORD")) return reader.accept("ROT") ? core::Result<void>{} : reader.stray();
+    if (reader.accept("TABLE")) {
+        command.turns_table = true;
+        return reader.accept("ROT") ? core::Result<void>{} : reader.stray();
+    }
+    if (reader.accept("SEQ") || reader.accept("SYM")) return read_solution(reader);
+    if (reader.accept("DIST")) return reader.word('D', from);
+    if (reader.accept("MB")) return read_retraction(reader, from);
+    return upper(reader.next()) == 'F' ? read_contour_word(reader) : reader.stray();
+}
+
+/// `PLANE SPATIAL SPA+0 SPB+45 SPC+0 MOVE DIST50 F1000 SEQ-`.
 core::Result<void> read_plane(KlartextReader& reader) {
-    if (!reader.accept("RESET"))
-        return reader.refuse("PLANE: tilted planes are not supported yet", reader.begin,
-                             ErrorCode::unsupported);
-    const bool stays = reader.accept("STAY") || reader.next() == '\0';
-    reader.lexer.at = reader.lexer.line.size();
-    reader.command.kind = stays ? CommandKind::note : CommandKind::level;
+    const auto form =
+        std::find_if(std::begin(plane_forms), std::end(plane_forms),
+                     [&](const PlaneWords& each) { return reader.accept(each.spelling); });
+    if (form == std::end(plane_forms))
+        return reader.refuse(reader.letters() == "PROJECTED"
+                                 ? "PLANE PROJECTED is not supported yet: use PLANE SPATIAL"
+                                 : "'PLANE' must be followed by RESET, SPATIAL, EULER, VECTOR, "
+                                   "POINTS, RELATIV or AXIAL",
+                             reader.begin, ErrorCode::unsupported);
+    reader.command.kind = CommandKind::plane;
+    reader.command.plane = form->form;
+    while (const char c = reader.next()) {
+        if (!is_letter(c)) return reader.stray();
+        const size_t from = reader.lexer.at;
+        const auto value =
+            std::find_if(form->values.begin(), form->values.end(),
+                         [&](std::string_view name) { return accept_name(reader, name); });
+        const auto number = static_cast<size_t>(value - form->values.begin());
+        auto done = value == form->values.end() ? read_plane_option(reader)
+                                                : reader.word("IJKLNOPQR"[number], from);
+        if (!done) return done;
+    }
+    reader.command.span = reader.span_from(reader.begin);
     return {};
 }
 

@@ -58,13 +58,14 @@ struct Corner {
 /// The coordinate transformations of a program. The most recent one is applied to the programmed
 /// coordinates first.
 struct Transforms {
-    enum class Kind : uint8_t { none, shift, mirror, turn, scale };
+    enum class Kind : uint8_t { none, shift, mirror, turn, scale, tilt };
 
-    std::array<Kind, 4> order{};
+    std::array<Kind, 5> order{};
     AxisValues shift{};
     std::array<bool, 3> mirrored{};
     double turn_deg = 0.0;
     double scale = 1.0;
+    core::Mat3 plane = core::Mat3(1.0); // PLANE, cycle 19: axis directions as columns
 
     bool operator==(const Transforms&) const = default;
 };

@@ -779,6 +779,10 @@ void add(Digest& digest, const SiemensState& siemens) {
                          + 8 * int(siemens.compresses) + 16 * int(siemens.edge_is_assumed)
                          + 32 * int(siemens.length_follows_plane)
                          + 64 * int(siemens.length_axis_is_settled)));
+    digest.add(uint64_t{siemens.swivels});
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) digest.add(siemens.swivel.linear[column][row]);
+    for (int axis = 0; axis < 3; ++axis) digest.add(siemens.swivel.shift[axis]);
     digest.add(number_of(siemens.path_code));
     digest.add(number_of(siemens.corner_code));
     for (const double value : {siemens.feed_rounding, siemens.rapid_rounding,

@@ -29,7 +29,11 @@ core::Result<void> select_siemens_offset(Execution& execution); // G54 G500 G505
 core::Result<void> set_siemens_radius(Execution& execution);    // G40 G41 G42
 core::Result<void> change_siemens_frame(Execution& execution);  // TRANS ROT SCALE MIRROR
 void delete_siemens_frame(Execution& execution);                // as TRANS alone
-core::Result<void> set_pole(Execution& execution);              // G110 G111 G112
+/// CYCLE800.
+core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use);
+/// The plane of CYCLE800, before the frame of the program. Not on: level.
+void use_swivelled_plane(Execution& execution, const ProgramFrame& plane, bool is_on);
+core::Result<void> set_pole(Execution& execution);             // G110 G111 G112
 core::Result<void> move_in_siemens(Execution& execution);      // G0 to G3, CIP, CT, polar positions
 core::Result<void> go_to_fixed_position(Execution& execution); // G74 G75
 core::Result<void> run_siemens_cycle(Execution& execution, const SiemensKeywordUse& use);

@@ -64,9 +64,15 @@ core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction act
 }
 
 /// Activates the frame. A shift alone becomes the local offset and needs no frame.
-void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues& others) {
-    writable_siemens(execution.state).frame = frame;
+void use_frame(Execution& execution, const ProgramFrame& own, const AxisValues& others) {
+    SiemensState& siemens = writable_siemens(execution.state);
+    siemens.frame = own;
+    ProgramFrame frame{siemens.swivel.linear * own.linear,
+                       siemens.swivel.shift + siemens.swivel.linear * own.shift};
+    const core::Vec3& tool_axis = frame.linear[2];
+    frame.tilts_tool = std::abs(tool_axis.x) > 1e-12 || std::abs(tool_axis.y) > 1e-12;
     Offsets offsets = execution.modal().offsets;
+    offsets.tilted_plane = siemens.swivels;
     offsets.local = others;
     const bool shifts_alone = frame.linear == core::Mat3(1.0);
     offsets.has_frame = !shifts_alone;
@@ -82,6 +88,13 @@ void use_frame(Execution& execution, const ProgramFrame& frame, const AxisValues
 } // namespace
 
 void delete_siemens_frame(Execution& execution) { use_frame(execution, {}, {}); }
+
+void use_swivelled_plane(Execution& execution, const ProgramFrame& plane, bool is_on) {
+    SiemensState& siemens = writable_siemens(execution.state);
+    siemens.swivel = plane;
+    siemens.swivels = is_on;
+    use_frame(execution, siemens_of(execution.state).frame, execution.modal().offsets.local);
+}
 
 core::Result<void> change_siemens_frame(Execution& execution) {
     for (const SiemensKeywordUse& use : siemens_of(execution.block).keywords) {
@@ -107,8 +120,6 @@ core::Result<void> change_siemens_frame(Execution& execution) {
         ProgramFrame frame = adds ? siemens_of(execution.state).frame : ProgramFrame{};
         frame.shift += frame.linear * step.shift;
         frame.linear = frame.linear * step.linear;
-        const core::Vec3& tool_axis = frame.linear[2];
-        frame.tilts_tool = std::abs(tool_axis.x) > 1e-12 || std::abs(tool_axis.y) > 1e-12;
         use_frame(execution, frame, others);
     }
     return {};

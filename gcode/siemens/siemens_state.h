@@ -52,6 +52,8 @@ struct SiemensState {
     std::optional<SiemensDrilling> modal_cycle; // MCALL
     std::optional<Frame> modal_call;            // MCALL of a program
     ProgramFrame frame;                         // TRANS, ROT, SCALE, MIRROR
+    ProgramFrame swivel;                        // CYCLE800, before `frame`
+    bool swivels = false;                       // the plane of CYCLE800 is on
     int edge = 1;                               // D; 0: none
     bool edge_is_assumed = false;               // selected by a tool change without D
     bool length_follows_plane = false;          // SD42940 is 0

@@ -118,51 +118,6 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
-/// Whether CYCLE800 replaces the programmed frame: without parameters, or with a new plane.
-///
-/// Source: SINUMERIK 840D sl, Programming Manual Job Planning, CYCLE800: units digit of ST.
-bool deletes_frames(const std::vector<std::optional<double>>& values) {
-    constexpr size_t st = 2;
-    if (values.size() <= st) return true;
-    return std::fmod(std::floor(std::abs(values[st].value_or(0.0))), 10.0) == 0.0;
-}
-
-/// CYCLE800 is accepted if it leaves the plane unchanged; tilted planes are an error.
-core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
-    FEELER_TRY(const auto values, cycle_values(execution, use));
-    // FR, TC, ST, MODE, X0 Y0 Z0, A B C, X1 Y1 Z1, DIR, FR_I, DMODE; the name in TC is not a
-    // number.
-    for (size_t i = 4; i < std::min<size_t>(values.size(), 13); ++i)
-        if (values[i].value_or(0.0) != 0.0)
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("CYCLE800: parameter {} is {:.12g}: shifting or tilting the plane with "
-                            "this cycle is not supported yet: use TRANS and ROT",
-                            i + 1, *values[i]),
-                use.span);
-    if (is_work_turned(execution.modal()))
-        return core::fail(ErrorCode::unsupported,
-                          "CYCLE800 while a rotary axis is away from 0 is not supported yet: turn "
-                          "it to 0 first",
-                          use.span);
-    if (deletes_frames(values)) {
-        if (execution.modal().compensation != Side::none)
-            return core::fail(ErrorCode::unsupported,
-                              "CYCLE800 between G41 or G42 and G40 is not supported yet: cancel "
-                              "cutter radius compensation first",
-                              use.span);
-        execution.column = use.span.column;
-        delete_siemens_frame(execution);
-    }
-    if (!values.empty() && values[0].value_or(0.0) != 0.0)
-        lose_positions(execution, use.span,
-                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
-                       "move is not checked, nor are later ones until X, Y and Z have been "
-                       "programmed again",
-                       "Retract before the cycle, and call it with 0 as its first parameter.");
-    return {};
-}
-
 } // namespace
 
 core::Result<void> use_siemens_words(Execution& execution) {

@@ -4,85 +4,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/motion/kinematics.h"
-#include "core/motion/machine.h"
-#include "gcode/lower/lowering.h"
-#include "tests/gcode/klartext_programs.h"
+#include "tests/gcode/driven_machine.h"
 
 namespace gcode {
 namespace {
 
 using core::Vec3;
 using testing::HasSubstr;
-
-constexpr double tool_length = 83.5;
-
-/// A trunnion: C turns on A, which tilts about X; their axes do not meet.
-core::Machine trunnion() {
-    core::Machine machine;
-    machine.axes[3] = {.direction = {1, 0, 0}, .side = core::Side::table, .point = {-3, 7, -401}};
-    machine.axes[5] = {.direction = {0, 0, 1},
-                       .side = core::Side::table,
-                       .point = {-5, 4, 0},
-                       .carrier = core::link_of(3)};
-    machine.table = core::link_of(5);
-    return machine;
-}
-
-/// A head that swivels about Y on a fork that turns about Z.
-core::Machine fork_head() {
-    core::Machine machine;
-    machine.axes[5] = {
-        .direction = {0, 0, 1}, .side = core::Side::tool, .carrier = core::link_of(2)};
-    machine.axes[4] = {.direction = {0, 1, 0},
-                       .side = core::Side::tool,
-                       .point = {0, 0, 180},
-                       .carrier = core::link_of(5)};
-    machine.spindle = core::link_of(4);
-    return machine;
-}
-
-Environment environment_of(const core::Machine& machine, DialectId dialect) {
-    Environment environment = known_environment(dialect);
-    environment.machine = std::make_shared<const core::Machine>(machine);
-    environment.work_offsets[0] = {-12.0, 31.0, -380.0};
-    environment.tool_lengths[core::ToolNumber(1)] = tool_length;
-    return environment;
-}
-
-/// The motions of a program on a machine.
-struct Driven {
-    std::vector<core::Motion> motions;
-    std::string warnings;
-    std::vector<core::PathCertainty> paths; // of the blocks with motions
-};
-
-Driven driven(const std::string& text, const Environment& environment) {
-    const Ran ran = run_text(text, environment);
-    EXPECT_FALSE(ran.run.error) << ran.run.error->message;
-    Driven found;
-    Lowering lowering = initial_lowering(environment);
-    for (const BlockCommands& block : ran.run.blocks) {
-        const size_t before = found.motions.size();
-        for (const core::Event& event : lower(block, lowering))
-            if (const auto* motion = std::get_if<core::Motion>(&event))
-                found.motions.push_back(*motion);
-        if (found.motions.size() > before) found.paths.push_back(block.path);
-        for (const Warning& warning : block.warnings) found.warnings += warning.message + "\n";
-    }
-    return found;
-}
-
-Driven driven_klartext(const std::string& lines, const core::Machine& machine) {
-    return driven(klartext_program("TOOL CALL 1 Z S5000\n" + lines),
-                  environment_of(machine, DialectId::heidenhain));
-}
-
-core::AxisValues values_of(const core::AxisPosition& position) {
-    core::AxisValues values{};
-    for (size_t axis = 0; axis < values.size(); ++axis) values[axis] = position[axis].value_or(0.0);
-    return values;
-}
 
 struct Target {
     Vec3 tip;

@@ -243,8 +243,7 @@ TEST(MotionKept, BesideEveryWordOfKlartext) {
                 dropping.push_back(word);
     Reasons reasons = {{"BLK", "the words are corners of the raw stock"},
                        {"END", "the words are the name of the program"},
-                       {"FUNCTION", "the words are parameters of TCPM"},
-                       {"PLANE", "the words are parameters of PLANE RESET"}};
+                       {"FUNCTION", "the words are parameters of TCPM"}};
     for (const std::string& word : dropping)
         if (word.starts_with("CYCL DEF")) reasons[word] = "the words are of the cycle or its name";
     expect_reasons(dropping, reasons);

@@ -1,0 +1,235 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
+#include "gcode/exec/following.h"
+#include "gcode/exec/frame_codes.h"
+#include "gcode/klartext/klartext.h"
+#include "gcode/text/source.h"
+
+namespace gcode {
+namespace {
+
+constexpr double rounding = 1e-9;
+
+double value_of(const Execution& execution, char letter) {
+    const Word* word = execution.statement.word(letter);
+    return word ? word->value : 0.0;
+}
+
+core::Vec3 vector_of(const Execution& execution, const char* letters) {
+    return {value_of(execution, letters[0]), value_of(execution, letters[1]),
+            value_of(execution, letters[2])};
+}
+
+/// The axes with this normal, and X as near as possible to a direction.
+core::Result<core::Mat3> axes_with(const Execution& execution, const core::Vec3& normal,
+                                   const core::Vec3& along, const char* parallel) {
+    const core::Vec3 y = glm::cross(normal, along);
+    if (!(glm::length(y) > rounding * glm::length(normal) * glm::length(along)))
+        return refuse_statement(execution, parallel);
+    const core::Vec3 z = glm::normalize(normal), across = glm::normalize(y);
+    return core::Mat3(glm::cross(across, z), across, z);
+}
+
+/// The plane at positions of the rotary axes.
+core::Result<core::Mat3> axial_plane(const Execution& execution) {
+    const Offsets& offsets = execution.modal().offsets;
+    if (!offsets.machine)
+        return refuse_statement(execution, "this needs the rotary axes of the machine: describe "
+                                           "them in a set-up as [[machine.axis]]");
+    AxisValues values{};
+    const Position now = machine_from_program(offsets, execution.modal().position);
+    for (size_t axis = 3; axis < 6; ++axis) {
+        const Word* word = execution.statement.word("IJK"[axis - 3]);
+        if (word && !offsets.machine->axes[axis].present)
+            return refuse_statement(execution,
+                                    fmt::format("this machine has no axis {}", axis_letters[axis]));
+        values[axis] = word ? word->value : now[axis].value_or(0.0);
+    }
+    return turned_about(2, -offsets.work.rotation_deg) * core::tool_frame(*offsets.machine, values);
+}
+
+/// The directions of the axes of the plane, as columns, in the coordinates in which it is defined.
+///
+/// Source: Heidenhain TNC 640 user's manual Klartext programming, "The PLANE function".
+core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
+    const core::Vec3 first = vector_of(execution, "IJK"), second = vector_of(execution, "LNO");
+    switch (klartext_of(execution.block).plane) {
+    case PlaneForm::spatial:
+        return spatial_rotation(first);
+    case PlaneForm::relative:
+        return klartext_of(execution.state).transforms.plane * spatial_rotation(first);
+    case PlaneForm::euler:
+        return turned_about(2, first[0]) * turned_about(0, first[1]) * turned_about(2, first[2]);
+    case PlaneForm::vector:
+        return axes_with(execution, second, first,
+                         "the normal vector is 0, or parallel to the base vector");
+    case PlaneForm::points:
+        return axes_with(execution, glm::cross(second - first, vector_of(execution, "PQR") - first),
+                         second - first, "the three points are on a line");
+    case PlaneForm::axial:
+        return axial_plane(execution);
+    case PlaneForm::reset:
+        break;
+    }
+    return core::Mat3(1.0);
+}
+
+std::string words_of(const Execution& execution) {
+    const core::SourceSpan where = klartext_of(execution.block).span;
+    const std::string_view text = execution.block.text;
+    const std::string_view words =
+        text.substr(std::min<size_t>(where.column - 1, text.size()), where.length);
+    return std::string(words.substr(0, words.find_first_of(";~\r\n")));
+}
+
+/// Where the rotary axes have to be for the plane that is on; linear axes as they are.
+core::Result<AxisValues> axes_for_plane(Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    const Offsets& offsets = execution.modal().offsets;
+    const Position now = machine_from_program(offsets, execution.modal().position);
+    if (command.kind == CommandKind::plane
+        && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset)) {
+        AxisValues values{};
+        for (size_t axis = 0; axis < axis_count; ++axis) {
+            const bool turns = axis >= 3 && axis < 6 && offsets.machine->axes[axis].present;
+            const Word* word = turns ? execution.statement.word("IJK"[axis - 3]) : nullptr;
+            const bool returns = turns && command.plane == PlaneForm::reset;
+            values[axis] = word ? word->value : returns ? 0.0 : now[axis].value_or(0.0);
+        }
+        return values;
+    }
+    return axes_along_z(execution, command.span, words_of(execution), command.solution);
+}
+
+bool is_upright(const core::Machine& machine, const Position& position) {
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
+    const core::Vec3 up(0.0, 0.0, 1.0);
+    const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation * up;
+    return glm::distance(tool, up) < rounding;
+}
+
+/// MB: along the tool, before the rotary axes turn. To the limit of Z if that is known.
+void retract(Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    if (!command.retracts) return;
+    const Offsets& offsets = execution.modal().offsets;
+    Position end = execution.modal().position;
+    if (execution.statement.word('H') && end[2]) {
+        *end[2] += length_of(execution, *execution.statement.word('H'));
+        return execution.traverse(end);
+    }
+    Position machine = machine_from_program(offsets, execution.modal().position);
+    const auto limit = offsets.machine ? offsets.machine->axes[2].max : std::optional<double>();
+    if (limit && is_upright(*offsets.machine, machine)) {
+        machine[2] = *limit;
+        return execution.traverse(program_from_machine(offsets, machine));
+    }
+    lose_positions(execution, command.span,
+                   fmt::format("{}: how far MB MAX retracts is not known. This block and later "
+                               "ones are not checked until X, Y and Z have been programmed again",
+                               words_of(execution)),
+                   "State the limits of the axes in the set-up, or retract in a block before it.");
+}
+
+void go(Execution& execution, const Position& end) {
+    const std::optional<double> feed = execution.modal().feed;
+    if (klartext_of(execution.block).rapid || !feed || !(*feed > 0.0))
+        execution.traverse(end);
+    else
+        execution.feed(end, *feed);
+}
+
+/// Turns the rotary axes while a point on the axis of the tool stays on the work: the tip, or a
+/// point below it by DIST.
+void turn_about_tip(Execution& execution, const AxisValues& values) {
+    const Offsets kept = execution.modal().offsets;
+    const auto use = [&](const Offsets& offsets) {
+        change_offsets(execution, offsets);
+        execution.emit(SetOffset{offsets});
+    };
+    Offsets about_tip = kept;
+    about_tip.follows_tip = true;
+    if (const Word* word = execution.statement.word('D'))
+        about_tip.tool[2] += length_of(execution, *word);
+    use(about_tip);
+    Position end = execution.modal().position;
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (kept.machine->axes[axis].present)
+            end[axis] = values[axis] - rotary_offset(about_tip, axis);
+    go(execution, end);
+    use(kept);
+}
+
+/// Turns the rotary axes alone.
+void turn_in_place(Execution& execution, const AxisValues& values) {
+    const Offsets& offsets = execution.modal().offsets;
+    Position machine = machine_from_program(offsets, execution.modal().position);
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (offsets.machine->axes[axis].present) machine[axis] = values[axis];
+    go(execution, program_from_machine(offsets, machine));
+}
+
+/// Q120 to Q122.
+void store_angles(Execution& execution, const AxisValues& values) {
+    for (int axis = 3; axis < 6; ++axis) {
+        const int number = 120 + axis - 3;
+        execution.state.parameters.write().set_numbered(number, values[static_cast<size_t>(axis)]);
+        note_written(execution.state, key_of(number));
+    }
+}
+
+/// Pure rotations about the tool turn the coordinates, not the table.
+core::Result<void> check_table_rotation(const Execution& execution) {
+    const core::Mat3& plane = klartext_of(execution.state).transforms.plane;
+    const bool is_level = glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) < rounding;
+    const bool turns = glm::distance(plane[0], core::Vec3(1.0, 0.0, 0.0)) > rounding;
+    if (klartext_of(execution.block).turns_table && is_level && turns)
+        return refuse_statement(execution, "TABLE ROT of a plane that is only turned about the "
+                                           "tool is not supported yet: use COORD ROT");
+    return {};
+}
+
+} // namespace
+
+core::Mat3 spatial_rotation(const core::Vec3& angles) {
+    return turned_about(2, angles.z) * turned_about(1, angles.y) * turned_about(0, angles.x);
+}
+
+core::Result<void> calculate_plane(Execution& execution) {
+    const Offsets& offsets = execution.modal().offsets;
+    if (!offsets.machine) return {};
+    FEELER_TRY(const AxisValues values, axes_for_plane(execution));
+    store_angles(execution, values);
+    return {};
+}
+
+core::Result<void> set_plane(Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    FEELER_TRY(const core::Mat3 axes, axes_of_plane(execution));
+    const bool is_on = command.plane != PlaneForm::reset;
+    retract(execution);
+    if (auto done = use_plane(execution, is_on ? std::optional(axes) : std::nullopt); !done)
+        return done;
+    if (auto done = check_table_rotation(execution); !done) return done;
+    const bool stays = command.plane_move == PlaneMove::stay;
+    if (!execution.modal().offsets.machine) {
+        if (!stays) execution.modal().following.rotary_unknown = is_on;
+        return {};
+    }
+    FEELER_TRY(const AxisValues values, axes_for_plane(execution));
+    store_angles(execution, values);
+    if (stays) return {};
+    if (command.plane_move == PlaneMove::move)
+        turn_about_tip(execution, values);
+    else
+        turn_in_place(execution, values);
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,162 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/motion/kinematics.h"
+#include "core/motion/machine.h"
+#include "gcode/exec/following.h"
+#include "gcode/exec/frame_codes.h"
+#include "gcode/siemens/siemens.h"
+
+namespace gcode {
+namespace {
+
+using core::ErrorCode;
+
+/// The parameters of CYCLE800; those that are left out are 0.
+struct Swivel {
+    int retract = 0;          // _FR
+    int state = 0;            // _ST
+    int mode = 57;            // _MODE
+    core::Vec3 before, after; // X0 Y0 Z0 and X1 Y1 Z1, mm
+    core::Vec3 angles;        // in the order of the mode
+    int direction = 0;        // _DIR
+    size_t given = 0;         // parameters
+
+    bool adds() const { return std::abs(state) % 10 == 1; }
+    bool keeps_tip() const { return std::abs(state) / 10 % 10 == 1; }
+};
+
+Swivel swivel_of(const Execution& execution, const std::vector<std::optional<double>>& values) {
+    const auto value = [&](size_t i) { return i < values.size() ? values[i].value_or(0.0) : 0.0; };
+    const auto whole = [&](size_t i) { return static_cast<int>(std::clamp(value(i), -1e9, 1e9)); };
+    const auto lengths = [&](size_t i) {
+        const LengthUnit unit = execution.modal().unit;
+        return core::Vec3(to_mm(value(i), unit), to_mm(value(i + 1), unit),
+                          to_mm(value(i + 2), unit));
+    };
+    Swivel swivel{.retract = whole(0),
+                  .state = whole(2),
+                  .before = lengths(4),
+                  .after = lengths(10),
+                  .angles = {value(7), value(8), value(9)},
+                  .direction = whole(13),
+                  .given = values.size()};
+    if (values.size() > 3 && values[3]) swivel.mode = whole(3);
+    return swivel;
+}
+
+/// The rotation of the plane.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Job Planning, CYCLE800: _MODE. Bits 7 and 6: how
+///         the angles are given; axis by axis, two bits for each axis, in the order of rotation.
+core::Result<core::Mat3> rotation_of(const Swivel& swivel, core::SourceSpan where) {
+    const int form = (swivel.mode >> 6) & 3;
+    if (form == 1) // solid angle: about Z, then about the new Y
+        return turned_about(2, swivel.angles[0]) * turned_about(1, swivel.angles[1]);
+    if (form != 0)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("CYCLE800: mode {} (by {}) is not supported yet: give the "
+                                      "angles axis by axis, mode 57",
+                                      swivel.mode, form == 2 ? "projection angles" : "rotary axes"),
+                          where);
+    core::Mat3 rotation(1.0);
+    for (int i = 0; i < 3; ++i)
+        if (const int axis = (swivel.mode >> (2 * i)) & 3; axis != 0)
+            rotation = rotation * turned_about(axis - 1, swivel.angles[i]);
+        else if (swivel.angles[i] != 0.0)
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("CYCLE800: mode {} names no axis for its angle {}", swivel.mode, i + 1),
+                where);
+    return rotation;
+}
+
+/// A plane that is level is reached with the axis that turns the work about the tool anywhere:
+/// what the control does with it is set at the machine.
+core::Result<void> check_free_axis(const Execution& execution, const core::Mat3& rotation,
+                                   core::SourceSpan where) {
+    constexpr double rounding = 1e-9;
+    const ModalState& modal = execution.modal();
+    if (glm::distance(rotation[2], core::Vec3(0.0, 0.0, 1.0)) > rounding) return {};
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 3; axis < 6; ++axis) {
+        const core::MachineAxis& own = modal.offsets.machine->axes[axis];
+        const bool is_free = own.present && std::abs(own.direction.z) > 1.0 - rounding;
+        const bool turns = glm::distance(rotation[0], core::Vec3(1.0, 0.0, 0.0)) > rounding
+                           || is_away_from_zero(axis, machine[axis].value_or(0.0));
+        if (is_free && turns)
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("CYCLE800 to a level plane that is turned, or with axis {} away from "
+                            "0, is not supported yet: turn it to 0 first, and use ROT",
+                            axis_letters[axis]),
+                where);
+    }
+    return {};
+}
+
+/// Turns the rotary axes to the plane.
+core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
+                                 core::SourceSpan where) {
+    FEELER_TRY(const AxisValues values,
+               axes_along_z(execution, where, "CYCLE800", swivel.direction > 0 ? 1 : -1));
+    const Offsets kept = execution.modal().offsets;
+    if (swivel.keeps_tip()) {
+        Offsets about_tip = kept;
+        about_tip.follows_tip = true;
+        change_offsets(execution, about_tip);
+        execution.emit(SetOffset{about_tip});
+        Position end = execution.modal().position;
+        for (size_t axis = 3; axis < 6; ++axis)
+            if (kept.machine->axes[axis].present)
+                end[axis] = values[axis] - rotary_offset(about_tip, axis);
+        execution.traverse(end);
+        change_offsets(execution, kept);
+        execution.emit(SetOffset{kept});
+        return {};
+    }
+    Position machine = machine_from_program(kept, execution.modal().position);
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (kept.machine->axes[axis].present) machine[axis] = values[axis];
+    execution.traverse(program_from_machine(kept, machine));
+    return {};
+}
+
+} // namespace
+
+core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
+    FEELER_TRY(const auto values, cycle_values(execution, use));
+    const Swivel swivel = swivel_of(execution, values);
+    FEELER_TRY(const core::Mat3 rotation, rotation_of(swivel, use.span));
+    if (execution.modal().compensation != Side::none)
+        return core::fail(ErrorCode::unsupported,
+                          "CYCLE800 between G41 or G42 and G40 is not supported yet: cancel "
+                          "cutter radius compensation first",
+                          use.span);
+    execution.column = use.span.column;
+    if (swivel.retract != 0)
+        lose_positions(execution, use.span,
+                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
+                       "move is not checked, nor are later ones until X, Y and Z have been "
+                       "programmed again",
+                       "Retract before the cycle, and call it with 0 as its first parameter.");
+    const bool deletes = !swivel.adds();
+    if (deletes) delete_siemens_frame(execution);
+    const ProgramFrame before = deletes ? ProgramFrame{} : siemens_of(execution.state).swivel;
+    const ProgramFrame step{rotation, swivel.before + rotation * swivel.after};
+    const ProgramFrame plane{before.linear * step.linear,
+                             before.shift + before.linear * step.shift};
+    const bool is_level = plane.linear == core::Mat3(1.0);
+    const bool has_machine = execution.modal().offsets.machine != nullptr;
+    const bool turns = swivel.given > 0 && swivel.direction != 0;
+    if (turns && has_machine)
+        if (auto done = check_free_axis(execution, plane.linear, use.span); !done) return done;
+    use_swivelled_plane(execution, plane, !is_level);
+    if (!turns) return {};
+    if (has_machine) return turn_to_plane(execution, swivel, use.span);
+    execution.modal().following.rotary_unknown = !is_level;
+    return {};
+}
+
+} // namespace gcode

@@ -1,0 +1,139 @@
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/gcode/driven_machine.h"
+
+namespace gcode {
+namespace {
+
+using core::Vec3;
+using testing::HasSubstr;
+
+Driven driven_siemens(const std::string& lines, const core::Machine& machine) {
+    Environment environment = environment_of(machine, DialectId::siemens);
+    return driven("T1 M6 D1\nG17 G90 G54 G710\n" + lines + "M30\n", environment);
+}
+
+Vec3 tip_at_end(const Driven& found, const core::Machine& machine) {
+    return core::tip_position(machine, values_of(found.motions.back().to), tool_length);
+}
+
+using Turn = Vec3 (*)(const Vec3&, double);
+
+/// A mode of CYCLE800, and its rotations in their order; each is about the axes turned before.
+struct Mode {
+    int number;
+    std::array<Turn, 3> turns;
+};
+
+constexpr Mode modes[] = {{57, {about_x, about_y, about_z}}, {54, {about_y, about_x, about_z}},
+                          {39, {about_z, about_x, about_y}}, {27, {about_z, about_y, about_x}},
+                          {45, {about_x, about_z, about_y}}, {30, {about_y, about_z, about_x}}};
+
+TEST(SiemensSwivel, IsWhereTheManualPutsIt) {
+    std::mt19937 random(800);
+    std::uniform_real_distribution<double> angle(-50.0, 50.0), place(-40.0, 40.0);
+    for (int i = 0; i < 1000; ++i) {
+        const Mode& mode = modes[static_cast<size_t>(i) % std::size(modes)];
+        const Vec3 a(angle(random), angle(random), angle(random));
+        const Vec3 before(place(random), place(random), place(random));
+        const Vec3 after(place(random), place(random), place(random));
+        const core::Machine machine = i % 2 ? trunnion() : fork_head();
+        const Driven found = driven_siemens(
+            fmt::format(
+                "G0 X5 Y6 Z80\nCYCLE800(0,\"T\",200000,{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},"
+                "{:.9f},{:.9f},{:.9f},{:.9f},-1,100,1)\nG0 X20 Y-15 Z33\n",
+                mode.number, before.x, before.y, before.z, a[0], a[1], a[2], after.x, after.y,
+                after.z),
+            machine);
+        ASSERT_FALSE(found.motions.empty());
+        const auto turned = [&](Vec3 p) {
+            for (size_t k = 3; k-- > 0;) p = mode.turns[k](p, a[static_cast<int>(k)]);
+            return p;
+        };
+        ASSERT_LT(glm::distance(tip_at_end(found, machine),
+                                datum + before + turned(after + Vec3(20, -15, 33))),
+                  1e-6)
+            << mode.number;
+        const core::AxisValues end = values_of(found.motions.back().to);
+        const Vec3 above = core::tip_position(machine, end, tool_length - 10.0);
+        ASSERT_LT(glm::distance(above - tip_at_end(found, machine), turned({0, 0, 10})), 1e-6);
+        for (const core::PathCertainty path : found.paths) EXPECT_EQ(path, core::PathCertainty{});
+    }
+}
+
+TEST(SiemensSwivel, BySolidAngleAndAddedToAnother) {
+    const core::Machine machine = trunnion();
+    const Driven solid = driven_siemens("CYCLE800(0,\"T\",0,64,0,0,0,30,20,0,0,0,0,-1,100,1)\n"
+                                        "G0 X20 Y-15 Z33\n",
+                                        machine);
+    EXPECT_LT(
+        glm::distance(tip_at_end(solid, machine), datum + about_z(about_y({20, -15, 33}, 20), 30)),
+        1e-9);
+    const Driven added =
+        driven_siemens("CYCLE800(0,\"T\",0,57,10,0,0,30,0,0,0,0,0,0,100,1)\n"
+                       "CYCLE800(0,\"T\",1,57,0,5,0,0,20,0,0,0,0,-1,100,1)\nTRANS X3\n"
+                       "G0 X20 Y-15 Z33\n",
+                       machine);
+    EXPECT_LT(glm::distance(tip_at_end(added, machine),
+                            datum + Vec3(10, 0, 0)
+                                + about_x(Vec3(0, 5, 0) + about_y({23, -15, 33}, 20), 30)),
+              1e-9);
+}
+
+TEST(SiemensSwivel, ChoosesTheSideAndGoesBack) {
+    const core::Machine machine = trunnion();
+    for (const int direction : {-1, 1}) {
+        const Driven found = driven_siemens(
+            fmt::format("CYCLE800(0,\"T\",0,57,0,0,0,30,0,0,0,0,0,{},100,1)\n", direction),
+            machine);
+        EXPECT_EQ(values_of(found.motions.back().to)[3] > 0.0, direction > 0);
+    }
+    const Driven back = driven_siemens(
+        "CYCLE800(0,\"T\",0,57,0,0,0,30,0,0,0,0,0,1,100,1)\nG0 X1 Y2 Z3\n"
+        "CYCLE800(0,\"T\",0,57,0,0,0,0,0,0,0,0,0,1,100,1)\nCYCLE800()\nG0 X1 Y2 Z3\n",
+        machine);
+    EXPECT_EQ(values_of(back.motions.back().to)[3], 0.0);
+    EXPECT_LT(glm::distance(tip_at_end(back, machine), datum + Vec3(1, 2, 3)), 1e-9);
+}
+
+TEST(SiemensSwivel, KeepsTheTipIfItIsTracked) {
+    const core::Machine machine = trunnion();
+    const Driven found = driven_siemens(
+        "G0 X30 Y-20 Z15\nCYCLE800(0,\"T\",10,57,0,0,0,40,0,0,0,0,0,-1,100,1)\n", machine);
+    ASSERT_EQ(found.motions.size(), 2u);
+    const auto tip = [&](size_t i) {
+        return core::tip_position(machine, values_of(found.motions[i].to), tool_length);
+    };
+    EXPECT_LT(glm::distance(tip(0), tip(1)), 1e-9);
+}
+
+TEST(SiemensSwivel, IsUndecidedWithoutTheRotaryAxes) {
+    const Driven bare =
+        driven("G17 G90 G710\nG0 X1 Y1 Z50\nCYCLE800(0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\n"
+               "G0 X1 Y1 Z1\nM30\n",
+               known_environment(DialectId::siemens));
+    EXPECT_EQ(bare.paths.front(), core::PathCertainty{});
+    EXPECT_EQ(bare.paths.back(), core::PathCertainty::unknown);
+}
+
+TEST(SiemensSwivel, RefusesWhatTheMachineDecides) {
+    const auto error_of_cycle = [](const std::string& parameters) {
+        const Ran ran = run_text("G710\nCYCLE800(" + parameters + ")\n",
+                                 environment_of(trunnion(), DialectId::siemens));
+        return ran.run.error ? ran.run.error->message : "";
+    };
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,128,0,0,0,30,0,0,0,0,0,-1,100,1"),
+                HasSubstr("projection angles"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,192,0,0,0,30,0,0,0,0,0,-1,100,1"),
+                HasSubstr("rotary axes"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,0,0,25,0,0,0,-1,100,1"),
+                HasSubstr("level plane"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,9,0,0,0,0,0,25,0,0,0,-1,100,1"), HasSubstr("no axis"));
+}
+
+} // namespace
+} // namespace gcode
