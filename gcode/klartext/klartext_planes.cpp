@@ -213,6 +213,9 @@ core::Result<void> set_plane(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     FEELER_TRY(const core::Mat3 axes, axes_of_plane(execution));
     const bool is_on = command.plane != PlaneForm::reset;
+    if (execution.modal().offsets.follows_tip && command.plane_move != PlaneMove::stay)
+        return refuse_statement(execution, "turning the rotary axes to a plane while M128 is on is "
+                                           "not supported yet: program M129 before it");
     retract(execution);
     if (auto done = use_plane(execution, is_on ? std::optional(axes) : std::nullopt); !done)
         return done;

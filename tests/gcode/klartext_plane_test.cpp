@@ -211,6 +211,8 @@ TEST(KlartextPlane, RefusesWhatCannotBe) {
     EXPECT_THAT(error_of("POINTS P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+0 P2Z+0 P3X+2 P3Y+0 P3Z+0 STAY"),
                 HasSubstr("on a line"));
     EXPECT_THAT(error_of("AXIAL B+10 TURN FMAX"), HasSubstr("no axis B"));
+    EXPECT_THAT(error_of("RESET STAY\nM128\nPLANE SPATIAL SPA+10 SPB+0 SPC+0 TURN FMAX"),
+                HasSubstr("M129 before it"));
     EXPECT_THAT(error_of("SPATIAL SPA+10 SPB+0 SPC+0 TABLE FMAX"), Not(testing::IsEmpty()));
     EXPECT_THAT(error_of("PROJECTED PROPR+10 PROMIN+0 ROT+0 STAY"), HasSubstr("not supported"));
 }
