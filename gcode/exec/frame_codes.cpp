@@ -7,6 +7,7 @@
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/control.h"
@@ -401,13 +402,15 @@ double rotary_offset(const Offsets& offsets, size_t axis) {
 }
 
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
-                                      const std::string& what, int sign) {
+                                      const std::string& what, int sign, bool may_be_other) {
     const Offsets& offsets = execution.modal().offsets;
     FEELER_TRY(const AxisValues values, values_now(execution, where, what));
     const auto tilt = core::tilting_axis(*offsets.machine);
     auto ways = core::ways_to_point_tool(*offsets.machine, values,
                                          in_table(offsets, core::Vec3(0.0, 0.0, 1.0)));
-    std::erase_if(ways, [&](const AxisValues& way) { return tilt && sign * way[*tilt] < 0.0; });
+    const auto is_other = [&](const AxisValues& way) { return tilt && sign * way[*tilt] < 0.0; };
+    if (!may_be_other || !std::all_of(ways.begin(), ways.end(), is_other))
+        std::erase_if(ways, is_other);
     if (ways.empty())
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: the rotary axes of this machine cannot tilt the tool "
@@ -422,6 +425,29 @@ core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan whe
                                    what, axis_letters[*tilt], ways[0][*tilt], ways[1][*tilt]),
                        Severity::note);
     return ways.front();
+}
+
+core::Result<void> check_free_axis(const Execution& execution, const core::Mat3& plane,
+                                   core::SourceSpan where, const std::string& what,
+                                   bool also_turned) {
+    constexpr double rounding = 1e-9;
+    const ModalState& modal = execution.modal();
+    if (glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) > rounding) return {};
+    const bool is_turned = glm::distance(plane[0], core::Vec3(1.0, 0.0, 0.0)) > rounding;
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 3; axis < 6; ++axis) {
+        const core::MachineAxis& own = modal.offsets.machine->axes[axis];
+        const bool is_free = own.present && std::abs(own.direction.z) > 1.0 - rounding;
+        if (is_free
+            && ((also_turned && is_turned) || is_away_from_zero(axis, machine[axis].value_or(0.0))))
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("{}: a level plane that is turned, or with axis {} away from 0, is not "
+                            "supported yet, because controls differ: turn {} to 0 first",
+                            what, axis_letters[axis], axis_letters[axis]),
+                where);
+    }
+    return {};
 }
 
 core::Result<void> point_by_vector(const Execution& execution, Position& target) {

@@ -41,9 +41,17 @@ double rotary_offset(const Offsets& offsets, size_t axis);
 /// least rotation counts, and a note says so if there are several solutions. Only with a machine.
 ///
 /// Errors: `what`, the words of the statement, that the position of a rotary axis is unknown, or
-///         that none of the positions within the limits will do.
+///         that none of the positions within the limits will do; another sign will if
+///         `may_be_other`.
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
-                                      const std::string& what, int sign);
+                                      const std::string& what, int sign, bool may_be_other = false);
+
+/// Controls differ in what they do with an axis that turns the work about the tool when a plane is
+/// level. Errors: unsupported if such an axis is away from 0, or (`also_turned`) the plane is
+/// turned about the tool.
+core::Result<void> check_free_axis(const Execution& execution, const core::Mat3& plane,
+                                   core::SourceSpan where, const std::string& what,
+                                   bool also_turned);
 
 /// With G43.5, sets the rotary axes of a target from the tool direction in I, J and K.
 ///

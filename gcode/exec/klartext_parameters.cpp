@@ -10,7 +10,8 @@ constexpr int tool_length = 114;
 
 Knowledge knowledge_of_preassigned(int number) {
     if (number == coolant || number == unit_of_program) return Knowledge::known;
-    if (number == tool_radius || number == tool_axis || number == tool_length)
+    const bool is_plane_angle = number >= 120 && number <= 122; // of PLANE and cycle 19
+    if (number == tool_radius || number == tool_axis || number == tool_length || is_plane_angle)
         return Knowledge::unknown_until_set;
     return Knowledge::unknown;
 }

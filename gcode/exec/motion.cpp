@@ -244,6 +244,34 @@ core::Result<std::optional<double>> machine_target(const Execution& execution, s
 
 } // namespace
 
+namespace {
+
+/// In a tilted plane without tool centre point control, X, Y and Z stay where they are on the
+/// machine when a rotary axis turns: their program coordinates change.
+void leave_linear_axes(const Execution& execution, Position& target) {
+    const ModalState& modal = execution.modal();
+    const Offsets& offsets = modal.offsets;
+    if (!offsets.machine || !offsets.tilted_plane || offsets.follows_tip) return;
+    const Position there = machine_from_program(offsets, target);
+    Position machine = machine_from_program(offsets, modal.position);
+    bool turns = false;
+    for (size_t axis = 3; axis < 6; ++axis) {
+        turns |= there[axis] != machine[axis];
+        machine[axis] = there[axis];
+    }
+    if (!turns) return;
+    const Position kept = program_from_machine(offsets, machine);
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const Word* word = execution.statement.word(axis_letters[axis]);
+        if (!word)
+            target[axis] = kept[axis];
+        else if (is_incremental(execution, *word) && target[axis] && kept[axis])
+            *target[axis] += *kept[axis] - modal.position[axis].value_or(0.0);
+    }
+}
+
+} // namespace
+
 core::Result<Position> target_of(const Execution& execution) {
     const ModalState& modal = execution.modal();
     Position target = modal.position;
@@ -287,6 +315,7 @@ core::Result<Position> target_of(const Execution& execution) {
     }
     if (auto pointed = point_by_vector(execution, target); !pointed)
         return tl::unexpected(std::move(pointed).error());
+    leave_linear_axes(execution, target);
     if (auto placed = place_by_angle(execution, target); !placed)
         return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))

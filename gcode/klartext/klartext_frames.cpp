@@ -110,6 +110,14 @@ core::Result<void> scale(Execution& execution, Transforms& transforms) {
     return {};
 }
 
+/// The transformation of a cycle: 7, 8, 10, 11.
+Kind kind_of(int cycle) {
+    return cycle == 7    ? Kind::shift
+           : cycle == 8  ? Kind::mirror
+           : cycle == 10 ? Kind::turn
+                         : Kind::scale;
+}
+
 /// Cycle 19, by spatial angles. Without angles, or with zeros, it is off.
 core::Result<void> tilt(Execution& execution) {
     if (klartext_of(execution.block).part == 0) return {};
@@ -171,7 +179,14 @@ core::Result<void> change_coordinates(Execution& execution) {
         if (auto done = scale(execution, transforms); !done) return done;
         break;
     }
-    if (transforms == klartext_of(execution.state).transforms) return {};
+    const Transforms& before = klartext_of(execution.state).transforms;
+    if (transforms == before) return {};
+    const auto tilt = std::find(before.order.begin(), before.order.end(), Kind::tilt);
+    if (tilt != before.order.end()
+        && std::find(before.order.begin(), tilt, kind_of(command.number)) != tilt)
+        return refuse_statement(execution, "changing a transformation that came before the tilted "
+                                           "plane is not supported yet: program PLANE RESET before "
+                                           "it");
     writable_klartext(execution.state).transforms = transforms;
     use_transforms(execution);
     return {};

@@ -92,8 +92,10 @@ bool accept_name(KlartextReader& reader, std::string_view name) {
     const bool is_next = !name.empty() && rest.size() >= name.size()
                          && std::equal(name.begin(), name.end(), rest.begin(),
                                        [](char a, char b) { return a == upper(b); });
-    if (is_next) reader.lexer.at += name.size();
-    return is_next;
+    const char after = is_next && rest.size() > name.size() ? upper(rest[name.size()]) : ' ';
+    if (!is_next || (is_letter(after) && after != 'Q')) return false; // COORD after C
+    reader.lexer.at += name.size();
+    return true;
 }
 
 /// SEQ+, SEQ-, and SYM, which is the same.

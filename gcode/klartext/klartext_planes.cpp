@@ -38,6 +38,11 @@ core::Result<core::Mat3> axes_with(const Execution& execution, const core::Vec3&
 /// The plane at positions of the rotary axes.
 core::Result<core::Mat3> axial_plane(const Execution& execution) {
     const Offsets& offsets = execution.modal().offsets;
+    using Kind = Transforms::Kind;
+    for (const Kind kind : klartext_of(execution.state).transforms.order)
+        if (kind == Kind::turn || kind == Kind::mirror)
+            return refuse_statement(execution, "PLANE AXIAL while a rotation or a mirror image is "
+                                               "on is not supported yet: use PLANE SPATIAL");
     if (!offsets.machine)
         return refuse_statement(execution, "this needs the rotary axes of the machine: describe "
                                            "them in a set-up as [[machine.axis]]");
@@ -195,6 +200,28 @@ core::Result<void> check_table_rotation(const Execution& execution) {
     return {};
 }
 
+/// Whether the positions of the rotary axes for the plane are certain.
+core::Result<void> check_positions(const Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    const Offsets& offsets = execution.modal().offsets;
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (offsets.machine->axes[axis].present && rotary_offset(offsets, axis) != 0.0)
+            return refuse_statement(
+                execution,
+                fmt::format("a tilted plane while axis {} has an offset is not supported "
+                            "yet: set its offset to 0",
+                            axis_letters[axis]));
+    const bool is_stated =
+        command.kind == CommandKind::plane
+        && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset);
+    if (is_stated) return {};
+    const auto& order = klartext_of(execution.state).transforms.order;
+    const bool is_on = std::find(order.begin(), order.end(), Transforms::Kind::tilt) != order.end();
+    if (!is_on) return {};
+    return check_free_axis(execution, klartext_of(execution.state).transforms.plane, command.span,
+                           words_of(execution), false);
+}
+
 } // namespace
 
 core::Mat3 spatial_rotation(const core::Vec3& angles) {
@@ -204,6 +231,7 @@ core::Mat3 spatial_rotation(const core::Vec3& angles) {
 core::Result<void> calculate_plane(Execution& execution) {
     const Offsets& offsets = execution.modal().offsets;
     if (!offsets.machine) return {};
+    if (auto done = check_positions(execution); !done) return done;
     FEELER_TRY(const AxisValues values, axes_for_plane(execution));
     store_angles(execution, values);
     return {};
@@ -225,6 +253,7 @@ core::Result<void> set_plane(Execution& execution) {
         if (!stays) execution.modal().following.rotary_unknown = is_on;
         return {};
     }
+    if (auto done = check_positions(execution); !done) return done;
     FEELER_TRY(const AxisValues values, axes_for_plane(execution));
     store_angles(execution, values);
     if (stays) return {};

@@ -22,6 +22,7 @@ struct Swivel {
     core::Vec3 angles;        // in the order of the mode
     int direction = 0;        // _DIR
     size_t given = 0;         // parameters
+    bool deselects = false;   // _TC is "0": no swivel data
 
     bool adds() const { return std::abs(state) % 10 == 1; }
     bool keeps_tip() const { return std::abs(state) / 10 % 10 == 1; }
@@ -72,35 +73,18 @@ core::Result<core::Mat3> rotation_of(const Swivel& swivel, core::SourceSpan wher
     return rotation;
 }
 
-/// A plane that is level is reached with the axis that turns the work about the tool anywhere:
-/// what the control does with it is set at the machine.
-core::Result<void> check_free_axis(const Execution& execution, const core::Mat3& rotation,
-                                   core::SourceSpan where) {
-    constexpr double rounding = 1e-9;
-    const ModalState& modal = execution.modal();
-    if (glm::distance(rotation[2], core::Vec3(0.0, 0.0, 1.0)) > rounding) return {};
-    const Position machine = machine_from_program(modal.offsets, modal.position);
-    for (size_t axis = 3; axis < 6; ++axis) {
-        const core::MachineAxis& own = modal.offsets.machine->axes[axis];
-        const bool is_free = own.present && std::abs(own.direction.z) > 1.0 - rounding;
-        const bool turns = glm::distance(rotation[0], core::Vec3(1.0, 0.0, 0.0)) > rounding
-                           || is_away_from_zero(axis, machine[axis].value_or(0.0));
-        if (is_free && turns)
-            return core::fail(
-                ErrorCode::unsupported,
-                fmt::format("CYCLE800 to a level plane that is turned, or with axis {} away from "
-                            "0, is not supported yet: turn it to 0 first, and use ROT",
-                            axis_letters[axis]),
-                where);
-    }
-    return {};
-}
-
 /// Turns the rotary axes to the plane.
 core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
                                  core::SourceSpan where) {
     FEELER_TRY(const AxisValues values,
-               axes_along_z(execution, where, "CYCLE800", swivel.direction > 0 ? 1 : -1));
+               axes_along_z(execution, where, "CYCLE800", swivel.direction > 0 ? 1 : -1, true));
+    if (const auto tilt = core::tilting_axis(*execution.modal().offsets.machine))
+        execution.warn(
+            where,
+            fmt::format("CYCLE800: its direction is taken for the sign of axis {}; which "
+                        "axis it refers to is set at the machine",
+                        axis_letters[*tilt]),
+            Severity::note);
     const Offsets kept = execution.modal().offsets;
     if (swivel.keeps_tip()) {
         Offsets about_tip = kept;
@@ -127,7 +111,11 @@ core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
 
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
-    const Swivel swivel = swivel_of(execution, values);
+    Swivel swivel = swivel_of(execution, values);
+    if (execution.block.text.find(",\"0\"") != std::string_view::npos) {
+        swivel = {.retract = swivel.retract};
+        swivel.deselects = true;
+    }
     FEELER_TRY(const core::Mat3 rotation, rotation_of(swivel, use.span));
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::unsupported,
@@ -141,7 +129,12 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                        "move is not checked, nor are later ones until X, Y and Z have been "
                        "programmed again",
                        "Retract before the cycle, and call it with 0 as its first parameter.");
-    const bool deletes = !swivel.adds();
+    const bool deletes = swivel.deselects || !swivel.adds();
+    if (!deletes && siemens_of(execution.state).frame != ProgramFrame{})
+        return core::fail(ErrorCode::unsupported,
+                          "CYCLE800 that adds a plane while TRANS, ROT, SCALE or MIRROR is on is "
+                          "not supported yet: give the whole plane in one call",
+                          use.span);
     if (deletes) delete_siemens_frame(execution);
     const ProgramFrame before = deletes ? ProgramFrame{} : siemens_of(execution.state).swivel;
     const ProgramFrame step{rotation, swivel.before + rotation * swivel.after};
@@ -150,8 +143,15 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     const bool is_level = plane.linear == core::Mat3(1.0);
     const bool has_machine = execution.modal().offsets.machine != nullptr;
     const bool turns = swivel.given > 0 && swivel.direction != 0;
+    if (!turns && !is_level && has_machine)
+        return core::fail(
+            ErrorCode::unsupported,
+            "CYCLE800 that leaves the rotary axes to the program (direction 0) is not "
+            "supported yet: give the direction -1 or 1",
+            use.span);
     if (turns && has_machine)
-        if (auto done = check_free_axis(execution, plane.linear, use.span); !done) return done;
+        if (auto done = check_free_axis(execution, plane.linear, use.span, "CYCLE800", true); !done)
+            return done;
     use_swivelled_plane(execution, plane, !is_level);
     if (!turns) return {};
     if (has_machine) return turn_to_plane(execution, swivel, use.span);

@@ -5,6 +5,7 @@
 
 #include "core/base/math.h"
 #include "core/base/rule_table.h"
+#include "core/motion/machine.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/readings.h"
 #include "gcode/siemens/siemens.h"
@@ -120,7 +121,25 @@ core::Result<void> set_siemens_speed(Execution& execution) {
 
 } // namespace
 
+/// The plane of CYCLE800 does not turn with an axis that the program turns afterwards.
+core::Result<void> check_swivelled_axes(const Execution& execution) {
+    const Offsets& offsets = execution.modal().offsets;
+    if (!siemens_of(execution.state).swivels || !offsets.machine) return {};
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]);
+            word && offsets.machine->axes[axis].present)
+            return core::fail(
+                ErrorCode::unsupported,
+                fmt::format("{}: turning a rotary axis while a plane of CYCLE800 is on "
+                            "is not supported yet: turn it with the cycle, or program "
+                            "CYCLE800() before it",
+                            written(*word)),
+                word->span);
+    return {};
+}
+
 core::Result<void> use_siemens_words(Execution& execution) {
+    if (auto done = check_swivelled_axes(execution); !done) return done;
     warn_of_unknown_m_codes(execution);
     warn_of_unused(execution);
     if (auto done = set_feed_mode(execution); !done) return done;

@@ -104,6 +104,21 @@ TEST(KlartextPlane, MayLeaveTheRotaryAxesToTheProgram) {
     EXPECT_NEAR(std::abs(end[3]), 30.0, 1e-9);
 }
 
+TEST(KlartextPlane, LeavesXYAndZWhenTheProgramTurnsARotaryAxis) {
+    const core::Machine machine = trunnion();
+    for (const char* plane : {"PLANE SPATIAL SPA+30 SPB+0 SPC+0 STAY\n",
+                              "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+30 B+0 C+0\n"}) {
+        const Driven found = driven_klartext(std::string("L X+5 Y-8 Z+60 R0 FMAX\n") + plane
+                                                 + "L A+Q120 C+Q122 R0 FMAX\nL Z+100 A+20 FMAX\n",
+                                             machine);
+        ASSERT_EQ(found.motions.size(), 3u);
+        for (size_t axis = 0; axis < 3; ++axis)
+            EXPECT_NEAR(*found.motions[1].to[axis], *found.motions[0].to[axis], 1e-9);
+        for (size_t axis = 0; axis < 2; ++axis) // of a block with Z, X and Y follow the plane
+            EXPECT_TRUE(found.motions[2].to[axis].has_value());
+    }
+}
+
 TEST(KlartextPlane, ChoosesTheSolutionThatIsAskedFor) {
     for (const char* sign : {"+", "-"}) {
         const Driven found = driven_klartext(
@@ -211,6 +226,18 @@ TEST(KlartextPlane, RefusesWhatCannotBe) {
     EXPECT_THAT(error_of("POINTS P1X+0 P1Y+0 P1Z+0 P2X+1 P2Y+0 P2Z+0 P3X+2 P3Y+0 P3Z+0 STAY"),
                 HasSubstr("on a line"));
     EXPECT_THAT(error_of("AXIAL B+10 TURN FMAX"), HasSubstr("no axis B"));
+    EXPECT_EQ(error_of("AXIAL A+10 TURN FMAX COORD ROT"), "");
+    EXPECT_THAT(error_of("SPATIAL SPA+10 SPB+0 SPC+0 TURN FMAX\nL C+90 FMAX\nPLANE SPATIAL SPA+0 "
+                         "SPB+0 SPC+0 TURN FMAX"),
+                HasSubstr("away from 0"));
+    EXPECT_THAT(
+        error_of("RESET STAY\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+20\nPLANE SPATIAL "
+                 "SPA+10 SPB+0 SPC+0 TURN FMAX\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30"),
+        HasSubstr("came before the tilted plane"));
+    EXPECT_THAT(
+        error_of("RESET STAY\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+20\nPLANE AXIAL A+10 "
+                 "TURN FMAX"),
+        HasSubstr("PLANE AXIAL while"));
     EXPECT_THAT(error_of("RESET STAY\nM128\nPLANE SPATIAL SPA+10 SPB+0 SPC+0 TURN FMAX"),
                 HasSubstr("M129 before it"));
     EXPECT_THAT(error_of("SPATIAL SPA+10 SPB+0 SPC+0 TABLE FMAX"), Not(testing::IsEmpty()));

@@ -74,7 +74,7 @@ TEST(SiemensSwivel, BySolidAngleAndAddedToAnother) {
         glm::distance(tip_at_end(solid, machine), datum + about_z(about_y({20, -15, 33}, 20), 30)),
         1e-9);
     const Driven added =
-        driven_siemens("CYCLE800(0,\"T\",0,57,10,0,0,30,0,0,0,0,0,0,100,1)\n"
+        driven_siemens("CYCLE800(0,\"T\",0,57,10,0,0,30,0,0,0,0,0,-1,100,1)\n"
                        "CYCLE800(0,\"T\",1,57,0,5,0,0,20,0,0,0,0,-1,100,1)\nTRANS X3\n"
                        "G0 X20 Y-15 Z33\n",
                        machine);
@@ -132,6 +132,15 @@ TEST(SiemensSwivel, RefusesWhatTheMachineDecides) {
                 HasSubstr("rotary axes"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,0,0,25,0,0,0,-1,100,1"),
                 HasSubstr("level plane"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,0,100,1"), HasSubstr("direction"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nG0 A10\nCYCLE800("),
+                HasSubstr("turn it with the cycle"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nTRANS X5\n"
+                               "CYCLE800(0,\"T\",1,57,0,0,0,30,0,0,0,0,0,-1,100,1"),
+                HasSubstr("adds a plane"));
+    EXPECT_EQ(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nCYCLE800(0,\"0\",0,57,0,0,"
+                             "0,50,0,0,0,0,0,-1,100,1"),
+              "");
     EXPECT_THAT(error_of_cycle("0,\"T\",0,9,0,0,0,0,0,25,0,0,0,-1,100,1"), HasSubstr("no axis"));
 }
 
