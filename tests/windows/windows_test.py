@@ -451,8 +451,13 @@ class Shares(Case):
 
 class FileManager(Case):
     def windows_on_screen(self):
-        return subprocess.run(["xwininfo", "-root", "-tree"], env=wine.env, capture_output=True, text=True,
-                              check=True).stdout
+        for _ in range(5):  # it fails when a window closes while it lists them
+            listed = subprocess.run(["xwininfo", "-root", "-tree"], env=wine.env, capture_output=True, text=True,
+                                    check=False)
+            if listed.returncode == 0:
+                return listed.stdout
+        listed.check_returncode()
+        return listed.stdout
 
     def test_opens_the_window_and_closes_the_console(self):
         for file in ([], [windows_path(SOURCE / JOBS[0][0])]):
