@@ -48,13 +48,6 @@ std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
     return chain;
 }
 
-/// Direction of the tool axis, from the tip up, in the frame of the table.
-Vec3 tool_axis_at(const Machine& machine, const AxisValues& values) {
-    const Transform table = machine_from_link(machine, machine.table, values);
-    const Transform spindle = machine_from_link(machine, machine.spindle, values);
-    return glm::transpose(table.rotation) * (spindle.rotation * Vec3(0, 0, 1));
-}
-
 /// The angle plus whole turns that is closest to `from`, within the limits if possible.
 double nearest_turn(const MachineAxis& axis, double from, double angle_deg) {
     double best = angle_deg + 360.0 * core::round((from - angle_deg) / 360.0);
@@ -403,7 +396,7 @@ std::vector<AxisValues> ways_to_point_tool(const Machine& machine, const AxisVal
         return sum;
     };
     std::erase_if(ways, [&](const AxisValues& way) {
-        return glm::distance(tool_axis_at(machine, way), wanted) >= 1e-9
+        return glm::distance(tool_frame(machine, way)[2], wanted) >= 1e-9
                || std::any_of(joints.begin(), joints.end(), [&](const DirectionJoint& moved) {
                       return !within_limits(machine.axes[moved.axis], way[moved.axis]);
                   });

@@ -76,7 +76,9 @@ uint8_t placed_axes(const Execution& execution) {
     return !mixes_axes(execution.modal().offsets) || placed == all_linear ? placed : uint8_t{0};
 }
 
+/// Not by words that are angles of a plane or offsets.
 bool places_rotary_axes(const Execution& execution) {
+    if (!moves(execution)) return false;
     int placed = 0;
     for (size_t axis = 3; axis < 6; ++axis) placed += places(execution, axis) ? 1 : 0;
     return placed >= 2;

@@ -1,5 +1,6 @@
 #include "gcode/exec/frame_codes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -337,6 +338,15 @@ core::Vec3 in_table(const Offsets& offsets, const core::Vec3& direction) {
     return table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
 }
 
+tl::unexpected<core::Error> fail_to_tilt(const std::string& what, core::SourceSpan where) {
+    return core::fail(
+        ErrorCode::invalid_value,
+        fmt::format(
+            "{}: the rotary axes of this machine cannot tilt the tool that way within their limits",
+            what),
+        where);
+}
+
 /// Machine axis values that point the tool in a direction of the program coordinates.
 core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
                                  const core::Vec3& direction) {
@@ -344,21 +354,13 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
     FEELER_TRY(const AxisValues values, values_now(execution, word.span, written(word)));
     if (const auto found = core::point_tool(*offsets.machine, values, in_table(offsets, direction)))
         return *found;
-    return core::fail(
-        ErrorCode::invalid_value,
-        fmt::format(
-            "{}: the rotary axes of this machine cannot tilt the tool that way within their limits",
-            written(word)),
-        word.span);
+    return fail_to_tilt(written(word), word.span);
 }
 
 core::Result<void> turn_rotary_axes(Execution& execution, const Word& word) {
-    const Offsets& offsets = execution.modal().offsets;
+    const ModalState& modal = execution.modal();
     FEELER_TRY(const AxisValues values, pointed(execution, word, core::Vec3(0.0, 0.0, 1.0)));
-    Position machine = machine_from_program(offsets, execution.modal().position);
-    for (size_t axis = 0; axis < axis_count; ++axis)
-        if (is_rotary(axis) && offsets.machine->axes[axis].present) machine[axis] = values[axis];
-    execution.traverse(program_from_machine(offsets, machine));
+    execution.traverse(turned_in_place(modal.offsets, modal.position, values));
     return {};
 }
 
@@ -401,6 +403,38 @@ double rotary_offset(const Offsets& offsets, size_t axis) {
            + offsets.tool[axis];
 }
 
+Position turned_in_place(const Offsets& offsets, const Position& program, const AxisValues& to) {
+    Position there;
+    std::copy(to.begin(), to.end(), there.begin());
+    return turned_in_place(offsets, program, there);
+}
+
+Position turned_in_place(const Offsets& offsets, const Position& program, const Position& to) {
+    Position machine = machine_from_program(offsets, program);
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis) && offsets.machine->axes[axis].present) machine[axis] = to[axis];
+    return program_from_machine(offsets, machine);
+}
+
+void turn_about_tip(Execution& execution, const AxisValues& to, double below,
+                    const std::function<void(const Position&)>& go) {
+    const Offsets kept = execution.modal().offsets;
+    const auto use = [&](const Offsets& offsets) {
+        change_offsets(execution, offsets);
+        execution.emit(SetOffset{offsets});
+    };
+    Offsets about_tip = kept;
+    about_tip.follows_tip = true;
+    about_tip.tool[2] += below;
+    use(about_tip);
+    Position end = execution.modal().position;
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (is_rotary(axis) && kept.machine->axes[axis].present)
+            end[axis] = to[axis] - rotary_offset(about_tip, axis);
+    go(end);
+    use(kept);
+}
+
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
                                       const std::string& what, int sign, bool may_be_other) {
     const Offsets& offsets = execution.modal().offsets;
@@ -411,12 +445,7 @@ core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan whe
     const auto is_other = [&](const AxisValues& way) { return tilt && sign * way[*tilt] < 0.0; };
     if (!may_be_other || !std::all_of(ways.begin(), ways.end(), is_other))
         std::erase_if(ways, is_other);
-    if (ways.empty())
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: the rotary axes of this machine cannot tilt the tool "
-                                      "that way within their limits",
-                                      what),
-                          where);
+    if (ways.empty()) return fail_to_tilt(what, where);
     if (ways.size() > 1)
         execution.warn(where,
                        fmt::format("{}: of the positions of the rotary axes that tilt the tool "

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include "core/base/result.h"
 #include "gcode/exec/execution.h"
 
@@ -35,6 +38,16 @@ core::Result<void> turn_tool_to_plane(Execution& execution);
 
 /// Difference between the machine's and the program's value of a rotary axis.
 double rotary_offset(const Offsets& offsets, size_t axis);
+
+/// The program position after the rotary axes have turned to these machine values while X, Y and Z
+/// stay where they are on the machine.
+Position turned_in_place(const Offsets& offsets, const Position& program, const AxisValues& to);
+Position turned_in_place(const Offsets& offsets, const Position& program, const Position& to);
+
+/// Turns the rotary axes to machine values by one motion, which `go` makes to a program position,
+/// while a point on the axis of the tool stays on the work: that `below` the tip, mm.
+void turn_about_tip(Execution& execution, const AxisValues& to, double below,
+                    const std::function<void(const Position&)>& go);
 
 /// The machine axis values at which the tool is along Z of the program coordinates; linear axes as
 /// they are. `sign` is that of the tilting axis (core::tilting_axis), 0 if any will do: then the

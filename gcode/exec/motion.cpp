@@ -242,25 +242,15 @@ core::Result<std::optional<double>> machine_target(const Execution& execution, s
     return rolled_over(execution, axis, value, from) + (is_tips ? length : 0.0);
 }
 
-} // namespace
-
-namespace {
-
 /// In a tilted plane without tool centre point control, X, Y and Z stay where they are on the
 /// machine when a rotary axis turns: their program coordinates change.
 void leave_linear_axes(const Execution& execution, Position& target) {
     const ModalState& modal = execution.modal();
     const Offsets& offsets = modal.offsets;
     if (!offsets.machine || !offsets.tilted_plane || offsets.follows_tip) return;
-    const Position there = machine_from_program(offsets, target);
-    Position machine = machine_from_program(offsets, modal.position);
-    bool turns = false;
-    for (size_t axis = 3; axis < 6; ++axis) {
-        turns |= there[axis] != machine[axis];
-        machine[axis] = there[axis];
-    }
-    if (!turns) return;
-    const Position kept = program_from_machine(offsets, machine);
+    if (std::equal(target.begin() + 3, target.begin() + 6, modal.position.begin() + 3)) return;
+    const Position kept =
+        turned_in_place(offsets, modal.position, machine_from_program(offsets, target));
     for (size_t axis = 0; axis < 3; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (!word)

@@ -228,14 +228,17 @@ core::Result<void> run_klartext(Execution& execution, const ModalState& before) 
     return {};
 }
 
-tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why) {
+std::string words_of(const Execution& execution) {
     const core::SourceSpan where = klartext_of(execution.block).span;
     const std::string_view text = execution.block.text;
     const size_t begin = std::min<size_t>(where.column - 1, text.size());
     const std::string_view words = text.substr(begin, where.length);
-    return core::fail(ErrorCode::invalid_value,
-                      fmt::format("{}: {}", words.substr(0, words.find_first_of(";~\r\n")), why),
-                      where);
+    return std::string(words.substr(0, words.find_first_of(";~\r\n")));
+}
+
+tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why) {
+    return core::fail(ErrorCode::invalid_value, fmt::format("{}: {}", words_of(execution), why),
+                      klartext_of(execution.block).span);
 }
 
 core::Result<double> klartext_feed(const Execution& execution) {

@@ -38,8 +38,9 @@ core::Result<void> use_plane(Execution& execution, const std::optional<core::Mat
 /// The rotation by spatial angles about the fixed axes X, then Y, then Z, in degrees.
 core::Mat3 spatial_rotation(const core::Vec3& angles);
 
-/// Stores the positions that tilt the tool into the plane in Q120 to Q122, if they are known.
-core::Result<void> calculate_plane(Execution& execution);
+/// The positions of the rotary axes that tilt the tool into the plane; stores them in Q120 to Q122.
+/// Only with a machine.
+core::Result<AxisValues> calculate_plane(Execution& execution);
 
 /// The end of a motion, shortened if a rounding or chamfer follows, which is then stored.
 ///
@@ -50,6 +51,9 @@ core::Result<Position> end_before_corner(Execution& execution, const Position& e
 
 /// LBL, CALL LBL, CALL PGM, IF..GOTO LBL, END PGM.
 core::Result<void> run_klartext_flow(const FlowStep& step);
+
+/// The words of the statement, without comments.
+std::string words_of(const Execution& execution);
 
 /// An error about the statement; its message starts with the words of the statement.
 tl::unexpected<core::Error> refuse_statement(const Execution& execution, std::string_view why);

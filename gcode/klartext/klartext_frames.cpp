@@ -137,7 +137,10 @@ core::Result<void> tilt(Execution& execution) {
             use_plane(execution, is_on ? std::optional(spatial_rotation(angles)) : std::nullopt);
         !done)
         return done;
-    return calculate_plane(execution);
+    if (!execution.modal().offsets.machine) return {};
+    if (auto positions = calculate_plane(execution); !positions)
+        return tl::unexpected(std::move(positions).error());
+    return {};
 }
 
 } // namespace

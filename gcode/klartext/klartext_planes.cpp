@@ -84,12 +84,10 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     return core::Mat3(1.0);
 }
 
-std::string words_of(const Execution& execution) {
-    const core::SourceSpan where = klartext_of(execution.block).span;
-    const std::string_view text = execution.block.text;
-    const std::string_view words =
-        text.substr(std::min<size_t>(where.column - 1, text.size()), where.length);
-    return std::string(words.substr(0, words.find_first_of(";~\r\n")));
+/// Whether the statement itself says where the rotary axes have to be.
+bool states_positions(const KlartextLine& command) {
+    return command.kind == CommandKind::plane
+           && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset);
 }
 
 /// Where the rotary axes have to be for the plane that is on; linear axes as they are.
@@ -97,8 +95,7 @@ core::Result<AxisValues> axes_for_plane(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     const Offsets& offsets = execution.modal().offsets;
     const Position now = machine_from_program(offsets, execution.modal().position);
-    if (command.kind == CommandKind::plane
-        && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset)) {
+    if (states_positions(command)) {
         AxisValues values{};
         for (size_t axis = 0; axis < axis_count; ++axis) {
             const bool turns = axis >= 3 && axis < 6 && offsets.machine->axes[axis].present;
@@ -150,45 +147,6 @@ void go(Execution& execution, const Position& end) {
         execution.feed(end, *feed);
 }
 
-/// Turns the rotary axes while a point on the axis of the tool stays on the work: the tip, or a
-/// point below it by DIST.
-void turn_about_tip(Execution& execution, const AxisValues& values) {
-    const Offsets kept = execution.modal().offsets;
-    const auto use = [&](const Offsets& offsets) {
-        change_offsets(execution, offsets);
-        execution.emit(SetOffset{offsets});
-    };
-    Offsets about_tip = kept;
-    about_tip.follows_tip = true;
-    if (const Word* word = execution.statement.word('D'))
-        about_tip.tool[2] += length_of(execution, *word);
-    use(about_tip);
-    Position end = execution.modal().position;
-    for (size_t axis = 3; axis < 6; ++axis)
-        if (kept.machine->axes[axis].present)
-            end[axis] = values[axis] - rotary_offset(about_tip, axis);
-    go(execution, end);
-    use(kept);
-}
-
-/// Turns the rotary axes alone.
-void turn_in_place(Execution& execution, const AxisValues& values) {
-    const Offsets& offsets = execution.modal().offsets;
-    Position machine = machine_from_program(offsets, execution.modal().position);
-    for (size_t axis = 3; axis < 6; ++axis)
-        if (offsets.machine->axes[axis].present) machine[axis] = values[axis];
-    go(execution, program_from_machine(offsets, machine));
-}
-
-/// Q120 to Q122.
-void store_angles(Execution& execution, const AxisValues& values) {
-    for (int axis = 3; axis < 6; ++axis) {
-        const int number = 120 + axis - 3;
-        execution.state.parameters.write().set_numbered(number, values[static_cast<size_t>(axis)]);
-        note_written(execution.state, key_of(number));
-    }
-}
-
 /// Pure rotations about the tool turn the coordinates, not the table.
 core::Result<void> check_table_rotation(const Execution& execution) {
     const core::Mat3& plane = klartext_of(execution.state).transforms.plane;
@@ -211,10 +169,7 @@ core::Result<void> check_positions(const Execution& execution) {
                 fmt::format("a tilted plane while axis {} has an offset is not supported "
                             "yet: set its offset to 0",
                             axis_letters[axis]));
-    const bool is_stated =
-        command.kind == CommandKind::plane
-        && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset);
-    if (is_stated) return {};
+    if (states_positions(command)) return {};
     const auto& order = klartext_of(execution.state).transforms.order;
     const bool is_on = std::find(order.begin(), order.end(), Transforms::Kind::tilt) != order.end();
     if (!is_on) return {};
@@ -228,13 +183,16 @@ core::Mat3 spatial_rotation(const core::Vec3& angles) {
     return turned_about(2, angles.z) * turned_about(1, angles.y) * turned_about(0, angles.x);
 }
 
-core::Result<void> calculate_plane(Execution& execution) {
-    const Offsets& offsets = execution.modal().offsets;
-    if (!offsets.machine) return {};
-    if (auto done = check_positions(execution); !done) return done;
+core::Result<AxisValues> calculate_plane(Execution& execution) {
+    if (auto done = check_positions(execution); !done)
+        return tl::unexpected(std::move(done).error());
     FEELER_TRY(const AxisValues values, axes_for_plane(execution));
-    store_angles(execution, values);
-    return {};
+    for (size_t axis = 3; axis < 6; ++axis) {
+        const int number = 120 + static_cast<int>(axis) - 3;
+        execution.state.parameters.write().set_numbered(number, values[axis]);
+        note_written(execution.state, key_of(number));
+    }
+    return values;
 }
 
 core::Result<void> set_plane(Execution& execution) {
@@ -253,14 +211,15 @@ core::Result<void> set_plane(Execution& execution) {
         if (!stays) execution.modal().following.rotary_unknown = is_on;
         return {};
     }
-    if (auto done = check_positions(execution); !done) return done;
-    FEELER_TRY(const AxisValues values, axes_for_plane(execution));
-    store_angles(execution, values);
+    FEELER_TRY(const AxisValues values, calculate_plane(execution));
     if (stays) return {};
+    const Word* distance = execution.statement.word('D');
     if (command.plane_move == PlaneMove::move)
-        turn_about_tip(execution, values);
+        turn_about_tip(execution, values, distance ? length_of(execution, *distance) : 0.0,
+                       [&](const Position& end) { go(execution, end); });
     else
-        turn_in_place(execution, values);
+        go(execution,
+           turned_in_place(execution.modal().offsets, execution.modal().position, values));
     return {};
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -22,7 +23,6 @@ struct Swivel {
     core::Vec3 angles;        // in the order of the mode
     int direction = 0;        // _DIR
     size_t given = 0;         // parameters
-    bool deselects = false;   // _TC is "0": no swivel data
 
     bool adds() const { return std::abs(state) % 10 == 1; }
     bool keeps_tip() const { return std::abs(state) / 10 % 10 == 1; }
@@ -85,25 +85,11 @@ core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
                         "axis it refers to is set at the machine",
                         axis_letters[*tilt]),
             Severity::note);
-    const Offsets kept = execution.modal().offsets;
-    if (swivel.keeps_tip()) {
-        Offsets about_tip = kept;
-        about_tip.follows_tip = true;
-        change_offsets(execution, about_tip);
-        execution.emit(SetOffset{about_tip});
-        Position end = execution.modal().position;
-        for (size_t axis = 3; axis < 6; ++axis)
-            if (kept.machine->axes[axis].present)
-                end[axis] = values[axis] - rotary_offset(about_tip, axis);
-        execution.traverse(end);
-        change_offsets(execution, kept);
-        execution.emit(SetOffset{kept});
-        return {};
-    }
-    Position machine = machine_from_program(kept, execution.modal().position);
-    for (size_t axis = 3; axis < 6; ++axis)
-        if (kept.machine->axes[axis].present) machine[axis] = values[axis];
-    execution.traverse(program_from_machine(kept, machine));
+    const auto go = [&](const Position& end) { execution.traverse(end); };
+    if (swivel.keeps_tip())
+        turn_about_tip(execution, values, 0.0, go);
+    else
+        go(turned_in_place(execution.modal().offsets, execution.modal().position, values));
     return {};
 }
 
@@ -112,10 +98,9 @@ core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
     Swivel swivel = swivel_of(execution, values);
-    if (execution.block.text.find(",\"0\"") != std::string_view::npos) {
+    const auto& arguments = siemens_of(execution.block).arguments;
+    if (arguments.size() > 1 && arguments[1].text == "0") // _TC: no swivel data
         swivel = {.retract = swivel.retract};
-        swivel.deselects = true;
-    }
     FEELER_TRY(const core::Mat3 rotation, rotation_of(swivel, use.span));
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::unsupported,
@@ -129,7 +114,7 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                        "move is not checked, nor are later ones until X, Y and Z have been "
                        "programmed again",
                        "Retract before the cycle, and call it with 0 as its first parameter.");
-    const bool deletes = swivel.deselects || !swivel.adds();
+    const bool deletes = !swivel.adds();
     if (!deletes && siemens_of(execution.state).frame != ProgramFrame{})
         return core::fail(ErrorCode::unsupported,
                           "CYCLE800 that adds a plane while TRANS, ROT, SCALE or MIRROR is on is "

@@ -119,8 +119,6 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
-} // namespace
-
 /// The plane of CYCLE800 does not turn with an axis that the program turns afterwards.
 core::Result<void> check_swivelled_axes(const Execution& execution) {
     const Offsets& offsets = execution.modal().offsets;
@@ -137,6 +135,8 @@ core::Result<void> check_swivelled_axes(const Execution& execution) {
                 word->span);
     return {};
 }
+
+} // namespace
 
 core::Result<void> use_siemens_words(Execution& execution) {
     if (auto done = check_swivelled_axes(execution); !done) return done;

@@ -216,6 +216,18 @@ TEST(KlartextPlane, IsUndecidedWithoutTheRotaryAxes) {
     EXPECT_THAT(bare.warnings, HasSubstr("needs the rotary axes"));
 }
 
+TEST(KlartextPlane, OfCycle19DoesNotSayWhereTheRotaryAxesAre) {
+    const Driven bare =
+        driven(klartext_program(
+                   "TOOL CALL 1 Z S5000\nPLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX\n"
+                   "PLANE RESET STAY\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+0 C+0\n"
+                   "L X+1 Y+1 Z+1 FMAX\nL A+0 B+0 C+0 FMAX\nL X+1 Y+1 Z+50 FMAX\nL X+3 FMAX\n"),
+               known_environment(DialectId::heidenhain));
+    ASSERT_EQ(bare.paths.size(), 4u);
+    EXPECT_EQ(bare.paths[0], core::PathCertainty::unknown);
+    EXPECT_EQ(bare.paths[3], core::PathCertainty{});
+}
+
 TEST(KlartextPlane, RefusesWhatCannotBe) {
     const auto error_of = [](const std::string& words) {
         const Ran ran = run_text(klartext_program("TOOL CALL 1 Z S5000\nPLANE " + words + "\n"),

@@ -100,6 +100,22 @@ TEST(SiemensSwivel, ChoosesTheSideAndGoesBack) {
     EXPECT_LT(glm::distance(tip_at_end(back, machine), datum + Vec3(1, 2, 3)), 1e-9);
 }
 
+TEST(SiemensSwivel, OfNoSwivelDataIsOff) {
+    const core::Machine machine = trunnion();
+    for (const char* name : {"\"0\"", " \"0\"", "\"0\" "}) {
+        const Driven found = driven_siemens(
+            fmt::format("TRANS X10\nCYCLE800(0,{},0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nG0 X1 Y2 Z3\n",
+                        name),
+            machine);
+        ASSERT_EQ(found.motions.size(), 1u) << name;
+        EXPECT_LT(glm::distance(tip_at_end(found, machine), datum + Vec3(1, 2, 3)), 1e-9);
+    }
+    // A text of another statement in the block is none.
+    const Driven other = driven_siemens(
+        "CYCLE800(0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1) ; was CYCLE800(0,\"0\")\n", machine);
+    EXPECT_EQ(other.motions.size(), 1u);
+}
+
 TEST(SiemensSwivel, KeepsTheTipIfItIsTracked) {
     const core::Machine machine = trunnion();
     const Driven found = driven_siemens(
