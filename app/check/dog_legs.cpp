@@ -28,18 +28,16 @@ bool comes_near(const core::Setup& setup, const core::MovingBody& body, const co
                 const core::Aabb& stock) {
     constexpr double slack = 1.0; // mm
     core::Pair pair{body.kind, {}, body.carried};
-    const auto is_near = [&](const core::RelativeLeg& way, const core::Aabb& box) {
-        const double margin = core::allowance_of(setup, pair).distance + slack + way.error;
+    const auto is_near = [&](const core::Aabb& box) {
+        const core::RelativeLeg way = core::leg_against(setup, pair.fixture, body, leg);
+        const double margin = core::allowance_of(setup, pair).distance + slack;
         return core::overlaps(core::bounds(body, way).grown(margin), box);
     };
-    if (is_near(core::relative_leg(setup.machine, setup.stock_mount, body.mover, leg), stock))
-        return true;
+    if (is_near(stock)) return true;
     for (size_t i = 0; i < setup.fixtures.size(); ++i) {
         const core::Fixture& fixture = setup.fixtures[i];
         pair.fixture = i;
-        if (!core::is_exempt(setup.machine, body, fixture)
-            && is_near(core::leg_against(setup.machine, fixture, body, leg),
-                       core::bounds(fixture.body)))
+        if (!core::is_exempt(setup.machine, body, fixture) && is_near(core::bounds(fixture.body)))
             return true;
     }
     return false;

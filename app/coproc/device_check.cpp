@@ -337,7 +337,7 @@ bool CoprocessorCheck::is_too_vague(const core::Leg& leg, const At& at) const {
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const auto is_vague = [&](std::optional<size_t> fixture, const core::ExactBody& other) {
             const Question q = question(body, fixture, leg, at);
-            if (!q.way.turns || q.way.error <= fine) return false;
+            if (!q.way.turns || q.way.reducible_error() <= fine) return false;
             const double keep = q.allowance.distance + q.off_path + 2.0 * setup_->mesh_size
                                 + models_.excess(body, q.way.orientation) + q.way.error;
             size_t tests = 0;
@@ -406,9 +406,7 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
     // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
     const bool may_touch = allowance.distance <= core::resolution
                            && (off <= contact_depth(allowance) || (!fixture && at.follows));
-    const core::RelativeLeg way =
-        fixture ? leg_against(setup_->machine, setup_->fixtures[*fixture], body, leg)
-                : relative_leg(setup_->machine, setup_->stock_mount, body.mover, leg);
+    const core::RelativeLeg way = leg_against(*setup_, fixture, body, leg);
     return {body, pair, way, allowance, off, may_touch};
 }
 

@@ -2,7 +2,6 @@
 
 #include <span>
 #include <variant>
-#include <vector>
 
 #include "core/geom/gjk.h"
 #include "core/geom/mesh.h"
@@ -24,17 +23,5 @@ Separation separation(const ConvexShape& shape, const ExactBody& body,
 /// The least distance between two bodies while B moves straight from its pose by `sweep`.
 Separation separation(const ExactBody& a, const ExactBody& b, const Transform& a_from_b,
                       const Vec3& sweep, const SeparationGoal& goal = {});
-
-/// A ball inside a body, in its frame.
-struct InnerBall {
-    Vec3 centre = Vec3(0.0);
-    double radius = 0.0;
-};
-
-/// Balls inside a body, around the points of a grid, each as large as `inner_depth` allows. They do
-/// not fill it: of what overlaps the body by a hundredth of its size, they meet most.
-///
-/// Cost: some thousand calls of inner_depth.
-std::vector<InnerBall> inner_balls(const ExactBody& body);
 
 } // namespace core

@@ -189,44 +189,6 @@ double inner_depth(const ExactBody& body, const Vec3& point) {
     return depth_in_mesh(std::get<SolidMesh>(body), point);
 }
 
-namespace {
-
-/// The points of a grid over a box, in each direction.
-std::array<int, 3> grid_counts(const Vec3& size) {
-    constexpr double about = 800.0; // points
-    const double longest = std::max({size.x, size.y, size.z});
-    std::array<int, 3> counts{};
-    for (int along = 3; along <= static_cast<int>(0.5 * about); ++along) {
-        double all = 1.0;
-        for (int axis = 0; axis < 3; ++axis) {
-            int& count = counts[static_cast<size_t>(axis)];
-            count = std::max(3, static_cast<int>(along * size[axis] / longest));
-            all *= count;
-        }
-        if (all >= about) break;
-    }
-    return counts;
-}
-
-} // namespace
-
-std::vector<InnerBall> inner_balls(const ExactBody& body) {
-    const Aabb box = bounds(body);
-    const Vec3 size = box.size();
-    std::vector<InnerBall> balls;
-    if (!(std::min({size.x, size.y, size.z}) > 0.0)) return balls;
-    const auto [n, m, l] = grid_counts(size);
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < m; ++j)
-            for (int k = 0; k < l; ++k) {
-                const Vec3 part((i + 0.5) / n, (j + 0.5) / m, (k + 0.5) / l);
-                const Vec3 centre = box.min + part * size;
-                if (const double depth = inner_depth(body, centre); depth > 0.0)
-                    balls.push_back({centre, depth});
-            }
-    return balls;
-}
-
 double inner_depth(const RevolvedProfile& profile, const Vec3& point) {
     double depth = -infinity;
     for (const ProfileElement& element : profile.elements)

@@ -54,6 +54,11 @@ struct RelativeLeg {
     double deviation = 0.0;      // the part of that by which bodies of CAD files deviate
     double travel = 0.0;         // upper bound of the travel of any point, mm
     bool turns = false;          // the orientation is that of the middle of the leg
+
+    /// What shorter legs reduce, mm.
+    double reducible_error() const { return error - lasting_error; }
+    /// What is due to the motion and not to the bodies of CAD files, mm.
+    double error_without_deviation() const { return error - deviation; }
 };
 
 /// A mounted body. No point of it is farther from `centre` (in its own frame) than `reach`.

@@ -92,12 +92,13 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
     return bodies;
 }
 
-RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const MovingBody& body,
+RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const MovingBody& body,
                         const Leg& leg) {
-    RelativeLeg relative = relative_leg(machine, fixture.mount, body.mover, leg);
-    relative.error += fixture.deviation;
-    relative.lasting_error += fixture.deviation;
-    relative.deviation += fixture.deviation;
+    if (!fixture) return relative_leg(setup.machine, setup.stock_mount, body.mover, leg);
+    const Fixture& target = setup.fixtures[*fixture];
+    RelativeLeg relative = relative_leg(setup.machine, target.mount, body.mover, leg);
+    for (double* error : {&relative.error, &relative.lasting_error, &relative.deviation})
+        *error += target.deviation;
     return relative;
 }
 
@@ -136,18 +137,6 @@ std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg
     std::vector<ConvexShape> shapes;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         shapes.push_back(moved(convex(mesh.triangle(i)), leg));
-    return shapes;
-}
-
-std::vector<ConvexShape> certain_shapes(std::span<const InnerBall> balls, const RelativeLeg& leg) {
-    std::vector<ConvexShape> shapes;
-    for (const InnerBall& ball : balls) {
-        const double radius = ball.radius - (leg.error - leg.deviation);
-        if (!(radius > 0.0)) continue;
-        RelativeLeg way = leg;
-        for (Vec3& position : way.positions) position += leg.orientation * ball.centre;
-        shapes.push_back(moved(convex_sphere(radius), way));
-    }
     return shapes;
 }
 

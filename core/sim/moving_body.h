@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "core/distance/body_distance.h"
@@ -26,8 +26,9 @@ struct MovingBody {
 /// result refers to the set-up and the tool.
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
 
-/// The leg as seen from a fixture, without its play. Its deviation counts as an error of the leg.
-RelativeLeg leg_against(const Machine& machine, const Fixture& fixture, const MovingBody& body,
+/// The leg as seen from a fixture, without its play, or from the stock. The deviation of a fixture
+/// counts as an error of the leg; that of the stock is in its tolerance.
+RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const MovingBody& body,
                         const Leg& leg);
 
 /// Whether two bodies are never checked against each other: they are fixed to each other, or are
@@ -43,11 +44,6 @@ std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const Relativ
 
 /// Convex shapes, swept along a leg, that contain the swept surface of a machine body.
 std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg);
-
-/// Balls inside a machine body, less the error of the leg and swept along it: a ball that meets
-/// something proves that the body does. Deviations do not count: bodies collide that overlap as
-/// they are in the set-up.
-std::vector<ConvexShape> certain_shapes(std::span<const InnerBall> balls, const RelativeLeg& leg);
 
 /// Distance from the body to a fixture over a leg, without the leg's error, mm.
 Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,

@@ -212,6 +212,17 @@ TEST(Simulator, FindsThatAMachineBodyCollidesInSpiteOfDeviations) {
             EXPECT_EQ(verdict_at({110, 50, 2.95}, 0), Verdict::collision);
             EXPECT_NE(verdict_at({110, 50, 3.05}, 0), Verdict::collision);
             EXPECT_EQ(verdict_at({50, 50, -gauge - 2}, {}), Verdict::collision) << of_body;
+            Shift round(setup); // the head meets the post at the far side of the circle
+            round.rapid({240, 50, 50});
+            round.rapid({240, 50, 1});
+            const BlockResult circle = round.circle({190, 50, 0}, {240, 50, 1});
+            EXPECT_EQ(pair_of(circle, PartKind::machine, 0)->verdict, Verdict::collision)
+                << of_body << of_fixture;
+            Shift into_stock(setup);
+            into_stock.rapid({250, 50, 50});
+            into_stock.rapid({250, 50, -gauge - 2});
+            const BlockResult deep = into_stock.circle({170, 50, 0}, {250, 50, -gauge - 2});
+            EXPECT_EQ(pair_of(deep, PartKind::machine)->verdict, Verdict::collision) << of_body;
         }
 }
 

@@ -53,6 +53,24 @@ TEST(StockRecord, KeepsCylindersMeshesAndTolerances) {
     const auto& kept = *std::get<SolidMesh>(solid->solid.shape).mesh;
     EXPECT_EQ(kept.vertices, mesh.vertices);
     EXPECT_EQ(kept.triangles, mesh.triangles);
+    EXPECT_EQ(solid->solid.deviation, 0.0);
+}
+
+TEST(StockRecord, KeepsTheDeviationOfAMeshWhereverItIsMoved) {
+    const Mesh mesh = mesh_of(Aabb{{0, 0, 0}, {1, 2, 3}});
+    const StockRecord record{
+        {.shape = solid_mesh(mesh), .tolerance = 0.3, .deviation = 0.1}, 0.5, {}};
+    const auto again = stock_record(bytes_of(record));
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->solid.deviation, 0.1);
+    EXPECT_EQ(again->solid.tolerance, 0.3);
+    const auto there = moved(*again, translation({5, 0, 0}));
+    ASSERT_TRUE(there);
+    EXPECT_EQ(there->solid.deviation, 0.1);
+    // More than the tolerance is damage.
+    const StockRecord wrong{
+        {.shape = solid_mesh(mesh), .tolerance = 0.1, .deviation = 0.3}, 0.5, {}};
+    EXPECT_FALSE(stock_record(bytes_of(wrong)));
 }
 
 TEST(StockRecord, WritesLittleForContinuedMoves) {

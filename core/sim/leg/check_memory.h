@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/dbm/cut_model.h"
-#include "core/distance/body_distance.h"
 #include "core/sim/clearance.h"
 
 namespace core {
@@ -35,8 +34,6 @@ struct CheckMemory {
     /// Scan line that was nearest to each kind of body in the last search; the next search starts
     /// there.
     std::array<std::optional<LineId>, 5> hints;
-    /// Balls inside machine bodies that were near something.
-    std::map<const ExactBody*, std::vector<InnerBall>> inner_balls;
     /// Prepared cutters, by tool number and path error.
     std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
     /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's

@@ -19,7 +19,7 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     const Fixture& fixture = context_.setup.fixtures[*known.pair.fixture];
     const Allowance& allowance = known.allowance;
     const double limit = std::min(context_.setup.search_limit, known.upper)
-                         + (relative.turns || fixture.deviation > 0.0 ? relative.error : 0.0);
+                         + (relative.turns || relative.deviation > 0.0 ? relative.error : 0.0);
     const Separation seen =
         distance_over(relative, body, fixture.body, limit, context_.statistics.shape_tests);
     const Separation found = widened(seen, relative);
@@ -37,8 +37,7 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     const bool may_touch = allowance.distance <= resolution && now.lower <= 0.0;
     if (seen.upper > 0.0 && !may_touch) return now;
     if (!body.profile) {
-        if (seen.upper == 0.0 && relative.error > 0.0 && surely_meets(body, relative, fixture))
-            now.upper = 0.0;
+        if (seen.upper == 0.0 && relative.error_without_deviation() <= 0.0) now.upper = 0.0;
         if (may_touch || now.upper == 0.0)
             now.verdict = judge_contact(allowance, now.lower, now.upper);
         return now;
@@ -60,28 +59,16 @@ PairClearance FixtureCheck::measure(const Leg& leg, double start, const Relative
     return now;
 }
 
-/// Whether a machine body that overlaps a fixture does so in spite of the leg's error.
-bool FixtureCheck::surely_meets(const MovingBody& body, const RelativeLeg& leg,
-                                const Fixture& fixture) {
-    if (leg.error <= leg.deviation) return true;
-    const Aabb box = bounds(fixture.body);
-    for (const ConvexShape& ball : certain_shapes(context_.inner_balls(body), leg)) {
-        if (!overlaps(bounds(ball), box)) continue;
-        ++context_.statistics.shape_tests;
-        if (separation(ball, fixture.body, {.limit = resolution}).upper == 0.0) return true;
-    }
-    return false;
-}
-
 bool FixtureCheck::is_settled(const PairClearance& now, const PairClearance& known) const {
     constexpr double sharp = 1e-3; // mm
     const double nearest = std::min({known.upper, now.upper, context_.setup.search_limit});
     // Shorter chords do not change the deviations of the shapes.
-    const MovingBody& body = context_.body_of(now.pair);
     const double shapes = context_.setup.fixtures[*now.pair.fixture].deviation
-                          + (body.body ? body.mover.form_error : 0.0);
+                          + context_.body_of(now.pair).mover.deviation;
+    const bool may_collide = shapes > 0.0 && now.lower <= 0.0;
     return now.verdict == Verdict::collision
-           || (now.verdict != Verdict::undecided && now.lower >= nearest - sharp - 2.0 * shapes);
+           || (now.verdict != Verdict::undecided && !may_collide
+               && now.lower >= nearest - sharp - 2.0 * shapes);
 }
 
 void FixtureCheck::check_passage(const Leg& leg, double start, size_t fixture,

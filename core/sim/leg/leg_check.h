@@ -48,7 +48,6 @@ private:
     /// The clearance of a body from a fixture, measured once over the whole leg.
     PairClearance measure(const Leg& leg, double start, const RelativeLeg& relative,
                           const MovingBody& body, const PairClearance& known);
-    bool surely_meets(const MovingBody& body, const RelativeLeg& leg, const Fixture& fixture);
     /// Whether a clearance is exact enough, given what is known of the pair.
     bool is_settled(const PairClearance& now, const PairClearance& known) const;
     void resolve(const Doubt& doubt, PairClearance& known);

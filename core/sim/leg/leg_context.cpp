@@ -31,7 +31,7 @@ std::vector<const MovingBody*> LegContext::likely_first(std::optional<size_t> fi
 RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
                                         const Leg& leg) const {
     const Fixture& target = setup.fixtures[fixture];
-    RelativeLeg relative = leg_against(setup.machine, target, body, leg);
+    RelativeLeg relative = leg_against(setup, fixture, body, leg);
     if (target.play.none()) return relative;
     // As seen from the fixture, the body is displaced the other way.
     const Play play = rotated(-glm::transpose(target.mount.link_from_body.rotation), target.play);
@@ -41,13 +41,7 @@ RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
 }
 
 RelativeLeg LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
-    return relative_leg(setup.machine, setup.stock_mount, body.mover, leg);
-}
-
-const std::vector<InnerBall>& LegContext::inner_balls(const MovingBody& body) const {
-    const auto [known, is_new] = memory.inner_balls.try_emplace(body.body);
-    if (is_new) known->second = core::inner_balls(*body.body);
-    return known->second;
+    return leg_against(setup, {}, body, leg);
 }
 
 double LegContext::finest_error(const MovingBody& body) const {
@@ -57,13 +51,11 @@ double LegContext::finest_error(const MovingBody& body) const {
 }
 
 bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
-    return relative.error - relative.lasting_error
-           <= std::max(finest_error(body), sharp_fraction * lower);
+    return relative.reducible_error() <= std::max(finest_error(body), sharp_fraction * lower);
 }
 
 bool LegContext::is_too_vague(const RelativeLeg& relative) const {
-    return relative.turns
-           && relative.error - relative.lasting_error > sharp_fraction * setup.search_limit;
+    return relative.turns && relative.reducible_error() > sharp_fraction * setup.search_limit;
 }
 
 bool LegContext::turns_too_far(const Leg& leg) const {
@@ -71,8 +63,7 @@ bool LegContext::turns_too_far(const Leg& leg) const {
     for (const MovingBody& body : bodies) {
         if (body.body) continue;
         const RelativeLeg relative = against_stock(body, leg);
-        if (relative.turns && relative.error - relative.lasting_error > finest_error(body))
-            return true;
+        if (relative.turns && relative.reducible_error() > finest_error(body)) return true;
     }
     return false;
 }

@@ -51,9 +51,6 @@ struct LegContext {
     /// The leg of a body in the stock's frame.
     RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
 
-    /// Balls inside a machine body; found once in a run.
-    const std::vector<InnerBall>& inner_balls(const MovingBody& body) const;
-
     /// Error of a turning body that is small enough for any clearance, mm.
     double finest_error(const MovingBody& body) const;
 

@@ -43,7 +43,7 @@ Separation widened(Separation found, const RelativeLeg& leg) {
 }
 
 RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg) {
-    return leg.turns ? RevolvedProfile{} : shrunk_within(part, leg.error - leg.deviation);
+    return leg.turns ? RevolvedProfile{} : shrunk_within(part, leg.error_without_deviation());
 }
 
 double greatest_travel(const Machine& machine, const Leg& leg) {

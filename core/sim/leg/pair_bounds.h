@@ -38,8 +38,8 @@ bool is_far(TrackedPair& known, double apart, double search_limit);
 Separation widened(Separation found, const RelativeLeg& leg);
 
 /// The part shrunk by the leg's error: the real part certainly sweeps everything that this one
-/// sweeps, apart from deviations (see certain_shapes). Empty if the body turns on the leg or
-/// nothing is left.
+/// sweeps. Deviations do not count: bodies collide that overlap as they are in the set-up. Empty if
+/// the body turns on the leg or nothing is left.
 RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg);
 
 /// Greatest distance that any point of a body moves over a leg relative to any other body, mm;

@@ -26,15 +26,10 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     // Most machine bodies are far away and have many triangles.
     if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
         return {.lower = goal.limit};
-    return to_stock(body,
-                    !body.profile  ? shapes_of(*body.body, leg)
-                    : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
-                                   : shapes_of(*body.profile, leg),
-                    stock, goal);
-}
-
-Separation StockProbe::to_stock(const MovingBody& body, std::span<const ConvexShape> shapes,
-                                const CutModel& stock, StockGoal goal) {
+    const std::vector<ConvexShape> shapes =
+        !body.profile  ? shapes_of(*body.body, leg)
+        : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
+                       : shapes_of(*body.profile, leg);
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
@@ -166,17 +161,18 @@ void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const
     if ((relative.turns || !body.profile) && near && has_way)
         observe_half_way(seen, body, leg, stock, nearest);
     if (!overlaps) return;
-    if (relative.error <= relative.deviation) {
+    if (relative.error_without_deviation() <= 0.0) {
         seen.plain.upper = 0.0;
         if (overlaps_shrunk) seen.shrunk.upper = 0.0;
         return;
     }
-    const std::vector<ConvexShape> sure =
-        body.profile ? shapes_of(certain_sweep(*body.profile, relative), relative)
-                     : certain_shapes(context_.inner_balls(body), relative);
+    if (!body.profile) return;
+    const RevolvedProfile sure = certain_sweep(*body.profile, relative);
     if (sure.empty()) return;
+    MovingBody inner = body;
+    inner.profile = &sure;
     Separation found =
-        to_stock(body, sure, stock, {.limit = resolution, .bound = StockBound::upper});
+        to_stock(inner, relative, stock, {.limit = resolution, .bound = StockBound::upper});
     if (found.upper > 0.0) return;
     found.lower = 0.0;
     seen.plain = found;
@@ -251,10 +247,7 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
         && are_close(near.lower, distance, exact_within(near.allowance), stock.lines.grid.spacing);
     double after = 1.0; // the earliest known moment at which the pair is that near
     const auto until = [&](double fraction) {
-        const Leg part = stretch(leg, 0.0, fraction);
-        return pair.fixture ? leg_against(context_.setup.machine,
-                                          context_.setup.fixtures[*pair.fixture], body, part)
-                            : context_.against_stock(body, part);
+        return leg_against(context_.setup, pair.fixture, body, stretch(leg, 0.0, fraction));
     };
     const auto reached = [&](double fraction) {
         const RelativeLeg moved = until(fraction);

@@ -40,9 +40,6 @@ public:
     /// first.
     Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                         StockGoal goal, double shrink = 0.0);
-    /// The same for shapes of the body that are swept already.
-    Separation to_stock(const MovingBody& body, std::span<const ConvexShape> shapes,
-                        const CutModel& stock, StockGoal goal);
 
     /// Lower bound of the distance between a machine body and a box over a leg.
     double distance_to_box(const MovingBody& body, const RelativeLeg& leg, const Aabb& box);

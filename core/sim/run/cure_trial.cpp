@@ -131,7 +131,7 @@ private:
     double upper_bound(const Leg& leg, const Fixture& fixture, double limit) const {
         for (const MovingBody& body : bodies_) {
             if (body.kind != pair_.part || body.carried != pair_.carried) continue;
-            const RelativeLeg relative = leg_against(trial_.setup.machine, fixture, body, leg);
+            const RelativeLeg relative = leg_against(trial_.setup, pair_.fixture, body, leg);
             if (relative.error == infinity) break;
             size_t tests = 0;
             return distance_over(relative, body, fixture.body, limit + relative.error, tests).upper

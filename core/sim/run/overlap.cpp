@@ -120,11 +120,8 @@ private:
 
     bool add_pieces(const Leg& leg, const LegStock& stock, int halvings) {
         constexpr double sharp = 0.01; // mm, error of a turning body
-        const RelativeLeg relative =
-            pair_.fixture ? leg_against(query_.setup.machine, query_.setup.fixtures[*pair_.fixture],
-                                        *body_, leg)
-                          : relative_leg(query_.setup.machine, target(), body_->mover, leg);
-        const bool is_vague = relative.turns && relative.error - relative.lasting_error > sharp;
+        const RelativeLeg relative = leg_against(query_.setup, pair_.fixture, *body_, leg);
+        const bool is_vague = relative.turns && relative.reducible_error() > sharp;
         if (is_vague && halvings > 0 && leg.positions.size() == 2)
             return add_pieces(stretch(leg, 0.0, 0.5), stock, halvings - 1)
                    && add_pieces(stretch(leg, 0.5, 1.0), stock, halvings - 1);
