@@ -16,9 +16,9 @@
 #include "app/commands/read_files.h"
 #include "app/commands/suggestion.h"
 #include "app/report/text/bench_report.h"
+#include "app/setup/body_table.h"
 #include "core/cad/cad_file.h"
 #include "core/geom/mesh_file.h"
-#include "core/sim/verdict.h"
 
 namespace app {
 
@@ -198,9 +198,7 @@ core::Result<NamedBody> cad_body(const std::string& argument, const CadArgument&
                     body->deviation};
     for (const core::CadSurfaces& surfaces : file->left_out)
         named.repairs.push_back(fmt::format("{}; they are left out", surfaces.what));
-    named.repairs.push_back(
-        fmt::format("meshed within {} mm of its surface ({})", core::at_most(body->deviation, 4),
-                    body->is_proven ? "proven" : "in part measured, and doubled"));
+    named.repairs.push_back(meshed_text(*body));
     return named;
 }
 

@@ -367,18 +367,10 @@ void read_model(TableReader& table, BodyContext& context, const Placement& place
     table.finish();
 }
 
-/// "jaw of vise.step: meshed within 0.008 mm of its surface (proven)".
-std::string deviation_text(const std::string& file, const std::string& solid,
-                           const core::CadBody& body) {
-    std::string text =
-        fmt::format("{}{}: meshed within {} mm of its surface ({})",
-                    solid.empty() ? "" : solid + " of ", file, core::at_most(body.deviation, 4),
-                    body.is_proven ? "proven" : "in part measured, and doubled");
-    constexpr double small_gap = 1e-3; // mm
-    if (body.gap > small_gap)
-        text +=
-            fmt::format("; gaps between its faces are {} mm of this", core::at_most(body.gap, 4));
-    return text;
+std::nullopt_t refuse_named(TableReader& table, const char* key, const std::string& name,
+                            const std::string& why) {
+    table.refuse(key, fmt::format("= \"{}\": {}", name, why));
+    return std::nullopt;
 }
 
 /// Reads the CAD file that a key of a table names. Empty after an error.
@@ -397,18 +389,16 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
                                                    table.shown(core::largest_cad_deviation)));
         return std::nullopt;
     }
-    const auto refuse = [&](const char* at, const std::string& why) {
-        table.refuse(at, fmt::format("= \"{}\": {}", at == key ? name : solid, why));
-        return std::nullopt;
-    };
     const auto file = core::read_cad(source.folder / name, wanted);
-    if (!file) return refuse(key, file.error().message);
+    if (!file) return refuse_named(table, key, name, file.error().message);
     if (source.cad_names) {
         if (!*source.cad_names) *source.cad_names = std::make_shared<core::CadNames>();
         (*source.cad_names)->by_file[name] = core::names_of(**file);
     }
     auto body = core::body_of(**file, solid);
-    if (!body) return refuse(solid.empty() ? key : "solid", body.error().message);
+    if (!body)
+        return solid.empty() ? refuse_named(table, key, name, body.error().message)
+                             : refuse_named(table, "solid", solid, body.error().message);
     const auto note = [&](std::string text) { // once for all bodies of the file
         auto& known = source.assumptions;
         if (std::find(known.begin(), known.end(), text) == known.end())
@@ -417,7 +407,7 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
     for (const std::string& repair : (*file)->notes) note(fmt::format("{}: {}", name, repair));
     for (const core::CadSurfaces& surfaces : (*file)->left_out)
         note(fmt::format("{}: {}; they are left out", name, surfaces.what));
-    note(deviation_text(name, solid, *body));
+    note(fmt::format("{}{}: {}", solid.empty() ? "" : solid + " of ", name, meshed_text(*body)));
     return BodyMesh{std::move(body->mesh), body->deviation};
 }
 
@@ -431,12 +421,8 @@ std::optional<core::Mesh> read_plain_mesh(TableReader& table, const char* key,
             table.refuse(of_cad, "applies only to STEP and IGES files");
             return std::nullopt;
         }
-    const auto refuse = [&](const std::string& why) {
-        table.refuse(key, fmt::format("= \"{}\": {}", name, why));
-        return std::nullopt;
-    };
     const auto read = kept_mesh(source.folder / name);
-    if (!read) return refuse(read.error().message);
+    if (!read) return refuse_named(table, key, name, read.error().message);
     for (const std::string& repair : (*read)->repairs)
         source.assumptions.push_back(fmt::format("{}: {}", name, repair));
     core::Mesh mesh = (*read)->mesh;
@@ -447,14 +433,24 @@ std::optional<core::Mesh> read_plain_mesh(TableReader& table, const char* key,
 
 } // namespace
 
+std::string meshed_text(const core::CadBody& body) {
+    std::string text =
+        fmt::format("meshed within {} mm of its surface ({})", core::at_most(body.deviation, 4),
+                    body.is_proven ? "proven" : "in part measured, and doubled");
+    constexpr double small_gap = 1e-3; // mm
+    if (body.gap > small_gap)
+        text +=
+            fmt::format("; gaps between its faces are {} mm of this", core::at_most(body.gap, 4));
+    return text;
+}
+
 std::optional<BodyMesh> read_mesh_file(TableReader& table, const char* key,
                                        const MeshSource& source) {
     const std::string name = table.string(key).value_or("");
-    const auto refuse = [&](const std::string& why) {
-        table.refuse(key, name.empty() ? why : fmt::format("= \"{}\": {}", name, why));
+    if (name.empty()) {
+        table.refuse(key, "must name a file");
         return std::nullopt;
-    };
-    if (name.empty()) return refuse("must name a file");
+    }
     std::optional<BodyMesh> read;
     if (core::is_cad_file(name))
         read = read_cad_file(table, key, name, source);
@@ -465,8 +461,9 @@ std::optional<BodyMesh> read_mesh_file(TableReader& table, const char* key,
     for (const core::Vec3& corner : {box.min, box.max})
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(corner[axis]) > largest_number)
-                return refuse(fmt::format("reaches to {} {:g} mm, beyond {:.0f} mm (1 km)",
-                                          "XYZ"[axis], corner[axis], largest_number));
+                return refuse_named(table, key, name,
+                                    fmt::format("reaches to {} {:g} mm, beyond {:.0f} mm (1 km)",
+                                                "XYZ"[axis], corner[axis], largest_number));
     return read;
 }
 

@@ -13,8 +13,9 @@
 #include "core/sim/setup.h"
 
 namespace core {
+struct CadBody;
 struct CadNames;
-}
+} // namespace core
 
 namespace app {
 
@@ -62,6 +63,9 @@ struct BodyMesh {
     core::Mesh mesh;
     double deviation = 0.0;
 };
+
+/// "meshed within 0.008 mm of its surface (proven)".
+std::string meshed_text(const core::CadBody& body);
 
 /// Reads the mesh file that a key of a table names, in mm. A mesh file has no unit of its own:
 /// `mesh_unit` gives it. Of a CAD file, `solid` and `mesh_deviation` say what is wanted. Relative

@@ -4,71 +4,49 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/base/byte_record.h"
+
 namespace core::cad {
 
 namespace {
 
-/// Appends values as bytes.
-class Writer {
+class Writer : public ByteWriter {
 public:
-    template <typename Value>
-    void put(const Value& value) {
-        static_assert(std::is_trivially_copyable_v<Value>);
-        bytes.append(reinterpret_cast<const char*>(&value), sizeof(Value));
-    }
     void put_text(std::string_view text) {
         put(uint64_t{text.size()});
         bytes.append(text);
     }
     template <typename Value>
     void put_all(const std::vector<Value>& values) {
-        static_assert(std::is_trivially_copyable_v<Value>);
-        put(uint64_t{values.size()});
-        bytes.append(reinterpret_cast<const char*>(values.data()), sizeof(Value) * values.size());
+        put_text({reinterpret_cast<const char*>(values.data()), sizeof(Value) * values.size()});
     }
-
-    std::string bytes;
 };
 
-/// Takes the values off again. `ok` becomes false at the end of the bytes.
-class Reader {
+class Reader : public ByteReader {
 public:
-    explicit Reader(std::string_view bytes) : rest_(bytes) {}
+    using ByteReader::ByteReader;
 
-    template <typename Value>
-    Value take() {
-        Value value{};
-        if (const auto bytes = take_bytes(sizeof(Value)))
-            std::memcpy(&value, bytes->data(), sizeof(Value));
-        return value;
-    }
-    std::string take_text() { return std::string(take_bytes(take<uint64_t>()).value_or("")); }
+    std::string take_text() { return std::string(take_bytes(take<uint64_t>())); }
     template <typename Value>
     std::vector<Value> take_all() {
-        const auto count = take<uint64_t>();
-        std::vector<Value> values;
-        ok = ok && count <= rest_.size() / sizeof(Value);
-        if (!ok) return values;
-        values.resize(count);
-        const auto bytes = take_bytes(count * sizeof(Value));
-        if (count > 0) std::memcpy(values.data(), bytes->data(), bytes->size());
+        static_assert(std::is_trivially_copyable_v<Value>);
+        const std::string_view bytes = take_bytes(take<uint64_t>());
+        ok = ok && bytes.size() % sizeof(Value) == 0;
+        std::vector<Value> values(ok ? bytes.size() / sizeof(Value) : 0);
+        if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
         return values;
     }
-    bool is_at_end() const { return rest_.empty(); }
-
-    bool ok = true;
-
-private:
-    std::optional<std::string_view> take_bytes(uint64_t count) {
-        ok = ok && count <= rest_.size();
-        if (!ok) return std::nullopt;
-        const std::string_view bytes = rest_.substr(0, count);
-        rest_.remove_prefix(count);
-        return bytes;
+    std::vector<std::string> take_texts() {
+        std::vector<std::string> texts(take_count(sizeof(uint64_t)));
+        for (std::string& text : texts) text = take_text();
+        return texts;
     }
-
-    std::string_view rest_;
 };
+
+void put_texts(Writer& writer, const std::vector<std::string>& texts) {
+    writer.put(uint64_t{texts.size()});
+    for (const std::string& text : texts) writer.put_text(text);
+}
 
 } // namespace
 
@@ -89,8 +67,7 @@ std::string progress_message(std::string_view step, double fraction) {
 std::string left_out_message(const CadSurfaces& surfaces) {
     Writer writer;
     writer.put_text(surfaces.what);
-    writer.put(uint64_t{surfaces.names.size()});
-    for (const std::string& name : surfaces.names) writer.put_text(name);
+    put_texts(writer, surfaces.names);
     return text_message(MessageKind::left_out, writer.bytes);
 }
 
@@ -98,8 +75,7 @@ std::string end_message() { return text_message(MessageKind::end, {}); }
 
 std::string solid_message(const CadSolid& solid) {
     Writer writer;
-    writer.put(uint64_t{solid.names.size()});
-    for (const std::string& name : solid.names) writer.put_text(name);
+    put_texts(writer, solid.names);
     writer.put(uint8_t{solid.colour.has_value()});
     writer.put(solid.colour.value_or(Colour{}));
     writer.put(solid.deviation);
@@ -135,8 +111,7 @@ std::optional<CadSurfaces> left_out_of(std::string_view text) {
     Reader reader(text);
     CadSurfaces surfaces;
     surfaces.what = reader.take_text();
-    const auto names = reader.take<uint64_t>();
-    for (uint64_t i = 0; reader.ok && i < names; ++i) surfaces.names.push_back(reader.take_text());
+    surfaces.names = reader.take_texts();
     if (!reader.ok || !reader.is_at_end()) return std::nullopt;
     return surfaces;
 }
@@ -144,8 +119,7 @@ std::optional<CadSurfaces> left_out_of(std::string_view text) {
 std::optional<CadSolid> solid_of(std::string_view text) {
     Reader reader(text);
     CadSolid solid;
-    const auto names = reader.take<uint64_t>();
-    for (uint64_t i = 0; reader.ok && i < names; ++i) solid.names.push_back(reader.take_text());
+    solid.names = reader.take_texts();
     const bool has_colour = reader.take<uint8_t>() != 0;
     const auto colour = reader.take<Colour>();
     if (has_colour) solid.colour = colour;

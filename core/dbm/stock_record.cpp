@@ -1,9 +1,9 @@
 #include "core/dbm/stock_record.h"
 
-#include <bit>
-#include <cstring>
+#include <cmath>
 #include <map>
 
+#include "core/base/byte_record.h"
 #include "core/dbm/cut_model.h"
 #include "core/geom/mesh.h"
 
@@ -24,45 +24,12 @@ uint64_t digest_of(std::string_view bytes) {
     return digest;
 }
 
-class Writer {
+class Reader : public ByteReader {
 public:
-    std::string bytes = std::string(magic);
+    using ByteReader::ByteReader;
 
-    template <typename T>
-    void put(T value) {
-        static_assert(std::endian::native == std::endian::little);
-        char raw[sizeof(T)];
-        std::memcpy(raw, &value, sizeof(T));
-        bytes.append(raw, sizeof(T));
-    }
-    void put(const Vec3& v) {
-        for (int i = 0; i < 3; ++i) put(v[i]);
-    }
-    void put(const Mat3& m) {
-        for (int i = 0; i < 3; ++i) put(m[i]);
-    }
-};
-
-/// Reads numbers; at the end of the bytes it returns zeros and sets `ok` to false.
-class Reader {
-public:
-    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-
-    bool ok = true;
-
-    template <typename T>
-    T get() {
-        T value{};
-        if (bytes_.size() < sizeof(T)) {
-            ok = false;
-            return value;
-        }
-        std::memcpy(&value, bytes_.data(), sizeof(T));
-        bytes_.remove_prefix(sizeof(T));
-        return value;
-    }
     double number() {
-        const auto value = get<double>();
+        const auto value = take<double>();
         ok = ok && std::isfinite(value);
         return value;
     }
@@ -74,19 +41,9 @@ public:
         const Vec3 x = vector(), y = vector(), z = vector();
         return {x, y, z};
     }
-    /// The number of items of this size that follow; more than fit into the bytes means damage.
-    size_t count(size_t least_bytes) {
-        const auto n = get<uint64_t>();
-        if (n > bytes_.size() / least_bytes) ok = false;
-        return ok ? static_cast<size_t>(n) : 0;
-    }
-    bool at_end() const { return bytes_.empty(); }
-
-private:
-    std::string_view bytes_;
 };
 
-void put_mesh(Writer& out, const Mesh& mesh) {
+void put_mesh(ByteWriter& out, const Mesh& mesh) {
     out.put(uint64_t{mesh.vertices.size()});
     for (const Vec3& v : mesh.vertices) out.put(v);
     out.put(uint64_t{mesh.triangles.size()});
@@ -94,7 +51,7 @@ void put_mesh(Writer& out, const Mesh& mesh) {
         for (const uint32_t corner : corners) out.put(corner);
 }
 
-void put_solid(Writer& out, const Solid& solid) {
+void put_solid(ByteWriter& out, const Solid& solid) {
     out.put(solid.tolerance);
     if (const auto* box = std::get_if<SolidBox>(&solid.shape)) {
         out.put(ShapeTag::box);
@@ -115,12 +72,12 @@ void put_solid(Writer& out, const Solid& solid) {
 
 Mesh get_mesh(Reader& in) {
     Mesh mesh;
-    mesh.vertices.resize(in.count(24));
+    mesh.vertices.resize(in.take_count(24));
     for (Vec3& v : mesh.vertices) v = in.vector();
-    mesh.triangles.resize(in.count(12));
+    mesh.triangles.resize(in.take_count(12));
     for (Mesh::Corners& corners : mesh.triangles)
         for (uint32_t& corner : corners) {
-            corner = in.get<uint32_t>();
+            corner = in.take<uint32_t>();
             in.ok = in.ok && corner < mesh.vertices.size();
         }
     in.ok = in.ok && !mesh.triangles.empty();
@@ -131,13 +88,13 @@ Solid get_solid(Reader& in) {
     Solid solid;
     solid.tolerance = in.number();
     in.ok = in.ok && solid.tolerance >= 0.0;
-    const auto tag = in.get<ShapeTag>();
+    const auto tag = in.take<ShapeTag>();
     if (tag == ShapeTag::box) {
         const Vec3 min = in.vector(), max = in.vector();
         in.ok = in.ok && min.x < max.x && min.y < max.y && min.z < max.z;
         solid.shape = SolidBox{{min, max}};
     } else if (tag == ShapeTag::cylinder) {
-        SolidCylinder cylinder{in.vector(), in.number(), in.number(), in.get<uint8_t>()};
+        SolidCylinder cylinder{in.vector(), in.number(), in.number(), in.take<uint8_t>()};
         in.ok = in.ok && cylinder.radius > 0.0 && cylinder.height > 0.0 && cylinder.axis < 3;
         solid.shape = cylinder;
     } else {
@@ -150,7 +107,7 @@ Solid get_solid(Reader& in) {
     return solid;
 }
 
-void put_cutter(Writer& out, const Cutter& cutter) {
+void put_cutter(ByteWriter& out, const Cutter& cutter) {
     out.put(cutter.path_error);
     out.put(uint64_t{cutter.flutes.elements.size()});
     for (const ProfileElement& e : cutter.flutes.elements)
@@ -160,7 +117,7 @@ void put_cutter(Writer& out, const Cutter& cutter) {
 std::shared_ptr<const Cutter> get_cutter(Reader& in) {
     const double error = in.number();
     RevolvedProfile flutes;
-    flutes.elements.resize(in.count(40));
+    flutes.elements.resize(in.take_count(40));
     for (ProfileElement& e : flutes.elements) {
         e = {in.number(), in.number(), in.number(), in.number(), in.number()};
         in.ok = in.ok && e.z0 <= e.z1 && e.r0 >= 0.0 && e.r1 >= 0.0 && e.margin >= 0.0
@@ -182,7 +139,7 @@ struct CutterTable {
     }
 };
 
-void put_sweeps(Writer& out, const std::vector<CutterSweep>& sweeps) {
+void put_sweeps(ByteWriter& out, const std::vector<CutterSweep>& sweeps) {
     const CutterTable table(sweeps);
     out.put(uint64_t{table.cutters.size()});
     for (const Cutter* cutter : table.cutters) put_cutter(out, *cutter);
@@ -204,15 +161,15 @@ void put_sweeps(Writer& out, const std::vector<CutterSweep>& sweeps) {
 }
 
 std::vector<CutterSweep> get_sweeps(Reader& in) {
-    std::vector<std::shared_ptr<const Cutter>> cutters(in.count(16));
+    std::vector<std::shared_ptr<const Cutter>> cutters(in.take_count(16));
     for (auto& cutter : cutters) cutter = get_cutter(in);
-    std::vector<CutterSweep> sweeps(in.count(25));
+    std::vector<CutterSweep> sweeps(in.take_count(25));
     CutterSweep last;
     for (CutterSweep& sweep : sweeps) {
-        const auto same = in.get<uint8_t>();
+        const auto same = in.take<uint8_t>();
         sweep = {last.cutter, last.to, last.to, last.orientation, earlier_block};
         if (!(same & same_cutter)) {
-            const auto number = in.get<uint32_t>();
+            const auto number = in.take<uint32_t>();
             in.ok = in.ok && number < cutters.size();
             if (in.ok) sweep.cutter = cutters[number];
         }
@@ -272,7 +229,7 @@ StockRecord record_of(const CutModel& stock) {
 }
 
 std::string bytes_of(const StockRecord& record) {
-    Writer out;
+    ByteWriter out(magic);
     out.put(record.spacing);
     put_solid(out, record.solid);
     put_sweeps(out, record.sweeps);
@@ -289,14 +246,14 @@ Result<StockRecord> stock_record(const std::string& bytes) {
         ErrorCode::syntax, {}, "is damaged: truncated or changed since it was saved"};
     if (all.size() < magic.size() + tail) return tl::unexpected(damaged);
     Reader end(all.substr(all.size() - tail));
-    if (end.get<uint64_t>() != digest_of(all.substr(0, all.size() - tail)))
+    if (end.take<uint64_t>() != digest_of(all.substr(0, all.size() - tail)))
         return tl::unexpected(damaged);
     Reader in(all.substr(magic.size(), all.size() - magic.size() - tail));
     StockRecord record;
     record.spacing = in.number();
     record.solid = get_solid(in);
     if (in.ok) record.sweeps = get_sweeps(in);
-    if (!in.ok || !in.at_end() || !(record.spacing > 0.0)) return tl::unexpected(damaged);
+    if (!in.ok || !in.is_at_end() || !(record.spacing > 0.0)) return tl::unexpected(damaged);
     return record;
 }
 

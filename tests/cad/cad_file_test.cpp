@@ -206,6 +206,40 @@ TEST_F(CadFileTest, WithoutAUnitIsAClearError) {
     EXPECT_THAT(error_of(write("unit.step", text)), ::testing::Not(HasSubstr("it was read")));
 }
 
+/// A file that scales a part, mirrors it, or has a body of a kind without faces.
+TEST_F(CadFileTest, ThatWouldBeReadInPartIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    const std::string whole = bytes_of(path("box.step"));
+    const auto error_with = [&](const std::string& entity) {
+        std::string text = whole;
+        return error_of(write("more.step", text.insert(text.rfind("ENDSEC;"), entity)));
+    };
+    const std::string axes = "#9001=CARTESIAN_POINT('',(0.,0.,0.));\n"
+                             "#9002=DIRECTION('',(1.,0.,0.));\n#9003=DIRECTION('',(0.,1.,0.));\n"
+                             "#9004=DIRECTION('',(0.,0.,1.));\n#9005=DIRECTION('',(0.,0.,-1.));\n";
+    const std::string map =
+        axes + "#9006=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',#9002,#9003,#9001,";
+    EXPECT_EQ(error_with(map + "1.,#9004);\n"), "it was read");
+    EXPECT_THAT(error_with(map + "2.,#9004);\n"), HasSubstr("#9006"));
+    EXPECT_THAT(error_with(map + "1.,#9005);\n"), HasSubstr("mirror"));
+    EXPECT_THAT(error_with("#9001=SWEPT_DISK_SOLID('',$,1.,$,0.,1.);\n"),
+                HasSubstr("SWEPT_DISK_SOLID"));
+    EXPECT_EQ(error_with("#9001=TESSELLATED_SOLID('',(),$);\n"), "it was read")
+        << "beside an exact body";
+}
+
+TEST_F(CadFileTest, OfIgesAtAnotherScaleIsAClearError) {
+    write_iges(path("whole.igs"), cad_box(Vec3(0), Vec3(10)), true);
+    std::string text = bytes_of(path("whole.igs"));
+    // The scale is between the name of the receiver and the flag of the unit, millimetres.
+    const size_t unit = text.find(",2,2HMM,");
+    ASSERT_NE(unit, std::string::npos);
+    const size_t scale = text.rfind(',', unit - 1) + 1;
+    ASSERT_EQ(text.substr(scale, unit - scale), "1.");
+    text[scale] = '2';
+    EXPECT_THAT(error_of(write("scaled.igs", text)), HasSubstr("scale 2"));
+}
+
 TEST_F(CadFileTest, ThatRefersToOthersIsAClearError) {
     write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
     std::string text = bytes_of(path("box.step"));

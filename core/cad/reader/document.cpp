@@ -133,8 +133,8 @@ private:
     void add_solids(const TDF_Label& label, const Context& context,
                     const std::vector<TopoDS_Shape>& solids, bool is_sewn);
     void take_names(const TDF_Label& label, Context& context) const;
-    std::optional<Colour> colour_of(const TDF_Label& label) const;
-    std::optional<Colour> colour_of(const TopoDS_Shape& shape) const;
+    template <typename Coloured> // a label or a shape
+    std::optional<Colour> colour_of(const Coloured& coloured) const;
     void make_names_unique();
     Result<Document> nothing() const;
 
@@ -158,17 +158,11 @@ Colour bytes_of(const Quantity_Color& colour) {
     return {byte(red), byte(green), byte(blue)};
 }
 
-std::optional<Colour> Collector::colour_of(const TDF_Label& label) const {
+template <typename Coloured>
+std::optional<Colour> Collector::colour_of(const Coloured& coloured) const {
     Quantity_Color colour;
     for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
-        if (colours_->GetColor(label, type, colour)) return bytes_of(colour);
-    return std::nullopt;
-}
-
-std::optional<Colour> Collector::colour_of(const TopoDS_Shape& shape) const {
-    Quantity_Color colour;
-    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
-        if (colours_->GetColor(shape, type, colour)) return bytes_of(colour);
+        if (colours_->GetColor(coloured, type, colour)) return bytes_of(colour);
     return std::nullopt;
 }
 
