@@ -77,13 +77,19 @@ bool is_step(const std::filesystem::path& path) {
 
 /// What can be said about the bytes of a STEP file before it is read.
 Result<bool> check_step(std::string_view bytes) {
-    constexpr size_t head = 4096, tail = 4096;
+    constexpr size_t head = 4096;
     if (bytes.substr(0, head).find("ISO-10303-21") == std::string_view::npos)
         return fail(ErrorCode::syntax, "it is no STEP file: ISO-10303-21 is not at its start");
-    const std::string_view end = bytes.substr(bytes.size() - std::min(bytes.size(), tail));
-    if (end.find("END-ISO-10303-21") == std::string_view::npos)
+    constexpr std::string_view last_word = "END-ISO-10303-21";
+    const size_t first_end = bytes.find(last_word);
+    if (first_end == std::string_view::npos)
         return fail(ErrorCode::syntax,
                     "it is not complete: END-ISO-10303-21 is missing at its end");
+    // What follows, such as signatures, is no part of the bodies.
+    if (bytes.find("ISO-10303-21;", first_end + last_word.size() + 1) != std::string_view::npos)
+        return fail(ErrorCode::syntax,
+                    "it is several STEP files in one, of which only the first would be read: "
+                    "separate them");
     return true;
 }
 

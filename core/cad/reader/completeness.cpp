@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <IGESData_GlobalSection.hxx>
@@ -20,19 +21,30 @@
 #include <StepGeom_Direction.hxx>
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepGeom_Plane.hxx>
 #include <StepGeom_Point.hxx>
+#include <StepGeom_Surface.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_MappedItem.hxx>
 #include <StepRepr_NextAssemblyUsageOccurrence.hxx>
 #include <StepRepr_ProductDefinitionShape.hxx>
+#include <StepRepr_Representation.hxx>
+#include <StepRepr_RepresentationMap.hxx>
 #include <StepRepr_RepresentedDefinition.hxx>
+#include <StepRepr_ShapeRepresentationRelationship.hxx>
+#include <StepShape_ClosedShell.hxx>
+#include <StepShape_ConnectedFaceSet.hxx>
 #include <StepShape_ContextDependentShapeRepresentation.hxx>
 #include <StepShape_FaceBasedSurfaceModel.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <StepShape_ManifoldSolidBrep.hxx>
 #include <StepShape_ShapeDefinitionRepresentation.hxx>
+#include <StepShape_ShapeRepresentation.hxx>
 #include <StepShape_ShellBasedSurfaceModel.hxx>
 #include <StepShape_SolidModel.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopTools_DataMapOfShapeInteger.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
@@ -128,6 +140,16 @@ Result<bool> check_kinds(const Handle(Interface_InterfaceModel) & model) {
             type.ends_with("SOLID") || type.ends_with("BREP") || type.ends_with("SURFACE_MODEL")
             || type == "BLOCK" || type == "SPHERE" || type == "TORUS"
             || type.starts_with("RIGHT_CIRCULAR_") || type.starts_with("RIGHT_ANGULAR_");
+        const std::string_view own = model->Value(i)->DynamicType()->Name();
+        const bool is_primitive =
+            own == "StepShape_Block" || own == "StepShape_Sphere" || own == "StepShape_Torus"
+            || own.starts_with("StepShape_RightCircular")
+            || own.starts_with("StepShape_RightAngular") || own == "StepShape_BooleanResult";
+        if (is_primitive)
+            return fail(ErrorCode::unsupported,
+                        fmt::format("Open CASCADE cannot read {}, which is a body without faces "
+                                    "({}): export it as a solid with faces, or as STL",
+                                    entity_text(model, model->Value(i)), own.substr(10)));
         if (is_body && (has_strange_items || !type.starts_with("TESSELLATED_")))
             return fail(ErrorCode::unsupported,
                         fmt::format("Open CASCADE cannot read {}, which is a {}: export it as a "
@@ -211,14 +233,42 @@ struct Structure {
     std::vector<Handle(StepRepr_NextAssemblyUsageOccurrence)> uses;
     std::set<const Standard_Transient*> placed;      // uses whose place is stated
     std::set<const Standard_Transient*> with_bodies; // products that have a shape or parts
-    bool has_mapped_items = false;                   // places of another kind
+    // Places of another kind: how often a representation is mapped, and the representations of
+    // each product. Some are only related to others that are mapped.
+    std::map<const Standard_Transient*, int> mapped;
+    std::map<const Standard_Transient*, std::set<const Standard_Transient*>> shapes;
+    std::vector<std::pair<const Standard_Transient*, const Standard_Transient*>> related;
+
+    /// How many places mapped items give to a product.
+    int mapped_places(const Standard_Transient* product) const {
+        const auto found = shapes.find(product);
+        if (found == shapes.end()) return 0;
+        std::set<const Standard_Transient*> own = found->second;
+        for (size_t before = 0; before != own.size();) {
+            before = own.size();
+            for (const auto& [one, other] : related) {
+                if (own.contains(one)) own.insert(other);
+                if (own.contains(other)) own.insert(one);
+            }
+        }
+        int count = 0;
+        for (const Standard_Transient* shape : own)
+            if (const auto times = mapped.find(shape); times != mapped.end())
+                count += times->second;
+        return count;
+    }
 };
 
 Structure structure_of(const Handle(Interface_InterfaceModel) & model) {
     Structure found;
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const Handle(Standard_Transient) entity = model->Value(i);
-        found.has_mapped_items |= entity->IsKind(STANDARD_TYPE(StepRepr_MappedItem));
+        const auto item = Handle(StepRepr_MappedItem)::DownCast(entity);
+        if (!item.IsNull() && !item->MappingSource().IsNull())
+            ++found.mapped[item->MappingSource()->MappedRepresentation().get()];
+        const auto relation = Handle(StepRepr_ShapeRepresentationRelationship)::DownCast(entity);
+        if (!relation.IsNull())
+            found.related.emplace_back(relation->Rep1().get(), relation->Rep2().get());
         if (const auto use = Handle(StepRepr_NextAssemblyUsageOccurrence)::DownCast(entity);
             !use.IsNull()) {
             found.uses.push_back(use);
@@ -231,9 +281,11 @@ Structure structure_of(const Handle(Interface_InterfaceModel) & model) {
                                     .ProductDefinitionRelationship()
                                     .get());
         const auto shape = Handle(StepShape_ShapeDefinitionRepresentation)::DownCast(entity);
-        if (!shape.IsNull() && !shape->Definition().PropertyDefinition().IsNull())
-            found.with_bodies.insert(
-                shape->Definition().PropertyDefinition()->Definition().ProductDefinition().get());
+        if (shape.IsNull() || shape->Definition().PropertyDefinition().IsNull()) continue;
+        const auto product =
+            shape->Definition().PropertyDefinition()->Definition().ProductDefinition();
+        found.with_bodies.insert(product.get());
+        found.shapes[product.get()].insert(shape->UsedRepresentation().get());
     }
     return found;
 }
@@ -241,10 +293,12 @@ Structure structure_of(const Handle(Interface_InterfaceModel) & model) {
 /// Refuses an assembly in which a part has no place: Open CASCADE leaves it out.
 Result<bool> check_places(const Handle(Interface_InterfaceModel) & model) {
     const Structure structure = structure_of(model);
-    if (structure.has_mapped_items) return true;
+    std::map<const Standard_Transient*, int> without_place; // uses of a product
     for (const auto& use : structure.uses)
         if (!structure.placed.contains(use.get())
-            && structure.with_bodies.contains(use->RelatedProductDefinition().get()))
+            && structure.with_bodies.contains(use->RelatedProductDefinition().get())
+            && ++without_place[use->RelatedProductDefinition().get()]
+                   > structure.mapped_places(use->RelatedProductDefinition().get()))
             return fail(ErrorCode::invalid_value,
                         fmt::format("{} puts a part into an assembly without stating its place: "
                                     "export the file again",
@@ -279,6 +333,67 @@ tl::unexpected<Error> fail_to_make(const char* what, const Handle(Interface_Inte
                 fmt::format("Open CASCADE cannot make the {} {}: repair it in the CAD system, or "
                             "export the body as STL",
                             what, entity_text(model, entity)));
+}
+
+/// How many faces of a solid that was made have the outside where the file has it, and how many
+/// have it on the other side.
+struct Sides {
+    struct Count {
+        int kept = 0, turned = 0;
+    };
+    Count open, closed; // on planes, cylinders and cones; on spheres, tori and splines
+    bool has_closed = false;
+};
+
+void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
+                 const TopTools_DataMapOfShapeInteger& sides,
+                 const Handle(Transfer_TransientProcess) & made, Sides& count) {
+    if (shell.IsNull()) return;
+    for (int i = 1; i <= shell->NbCfsFaces(); ++i) {
+        const auto face = Handle(StepShape_FaceSurface)::DownCast(shell->CfsFacesValue(i));
+        if (face.IsNull() || face->FaceGeometry().IsNull()) continue;
+        const std::string_view kind = face->FaceGeometry()->DynamicType()->Name();
+        const bool is_open = kind == "StepGeom_Plane" || kind == "StepGeom_CylindricalSurface"
+                             || kind == "StepGeom_ConicalSurface";
+        const bool is_known = is_open || kind == "StepGeom_SphericalSurface"
+                              || kind == "StepGeom_ToroidalSurface"
+                              || kind.find("BSplineSurface") != std::string_view::npos;
+        count.has_closed |= !is_open;
+        TopoDS_Shape shape = TransferBRep::ShapeResult(made, face);
+        if (!is_known || shape.IsNull()) continue;
+        shape.Orientation(TopAbs_FORWARD);
+        shape.Location(TopLoc_Location());
+        if (!sides.IsBound(shape)) continue;
+        Sides::Count& one = is_open ? count.open : count.closed;
+        ++((sides.Find(shape) > 0) == static_cast<bool>(face->SameSense()) ? one.kept : one.turned);
+    }
+}
+
+/// Refuses a solid of which Open CASCADE has taken the wrong side of the border of a face on a
+/// sphere or a torus. It then turns this face, or the whole solid, inside out.
+Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
+                         const Handle(StepShape_ManifoldSolidBrep) & entity,
+                         const TopoDS_Shape& solid,
+                         const Handle(Transfer_TransientProcess) & made) {
+    TopTools_DataMapOfShapeInteger sides;
+    for (TopExp_Explorer e(solid.Oriented(TopAbs_FORWARD), TopAbs_FACE); e.More(); e.Next()) {
+        TopoDS_Shape face = e.Current();
+        const int side = face.Orientation() == TopAbs_FORWARD ? 1 : -1;
+        face.Orientation(TopAbs_FORWARD);
+        face.Location(TopLoc_Location());
+        sides.Bind(face, side);
+    }
+    Sides count;
+    count_sides(entity->Outer(), sides, made, count);
+    const auto& [open, closed, has_closed] = count;
+    const bool is_turned = open.turned + closed.turned > open.kept + closed.kept;
+    const bool is_mixed = is_turned ? closed.kept > 0 : closed.turned > 0;
+    // A file whose faces all look inwards is another fault, which Open CASCADE mends.
+    if (!is_mixed && !(is_turned && has_closed)) return true;
+    return fail(ErrorCode::invalid_value,
+                fmt::format("Open CASCADE reads a round face of the solid {} inside out, as the "
+                            "part that is not there: export the body as IGES or STL",
+                            entity_text(model, entity)));
 }
 
 } // namespace
@@ -317,6 +432,10 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
         if (entity.IsNull()) continue;
         const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
         if (solid.IsNull()) return fail_to_make("solid", model, entity);
+        if (const auto brep = Handle(StepShape_ManifoldSolidBrep)::DownCast(entity);
+            !brep.IsNull()) {
+            FEELER_TRY([[maybe_unused]] const bool whole, check_sides(model, brep, solid, made));
+        }
         const Handle(TCollection_HAsciiString) text = entity->Name();
         const std::string name = text.IsNull() ? "" : plain_name(text->ToCString());
         if (!name.empty()) names.push_back({solid, name});
@@ -337,6 +456,20 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const Handle(Standard_Transient) entity = model->Value(i);
         const auto solid = Handle(IGESSolid_ManifoldSolid)::DownCast(entity);
+        const auto any = Handle(IGESData_IGESEntity)::DownCast(entity);
+        const int type = any.IsNull() ? 0 : any->TypeNumber();
+        constexpr int first_solid = 150, last_solid = 184, manifold = 186, instance = 430;
+        const bool is_primitive = (type >= first_solid && type <= last_solid) || type == instance;
+        if (is_primitive && TransferBRep::ShapeResult(made, entity).IsNull())
+            return fail(ErrorCode::unsupported,
+                        fmt::format("Open CASCADE cannot read {}, a solid without faces (IGES type "
+                                    "{}): export it as a solid with faces, or as STL",
+                                    entity_text(model, entity), type));
+        if (type == manifold && any->HasTransf())
+            return fail(ErrorCode::unsupported,
+                        fmt::format("Open CASCADE does not move {} to its place: export the part "
+                                    "in its final place, or as STEP",
+                                    entity_text(model, entity)));
         const bool is_surface = entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface))
                                 || entity->IsKind(STANDARD_TYPE(IGESGeom_BoundedSurface));
         if (solid.IsNull() && !is_surface) continue;

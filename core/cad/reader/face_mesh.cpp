@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include <Geom2d_Line.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
 #include <Geom_Plane.hxx>
 #include <gp_Pnt.hxx>
 #include <gp_Pnt2d.hxx>
@@ -315,10 +318,39 @@ double FaceMesh::sliver_measured(const BorderPiece& piece) const {
     return measured_factor * most;
 }
 
+namespace {
+
+/// How far points of a curve of a spline surface, at a constant parameter, can be from each other:
+/// the curve is in the hull of its poles. Empty for other surfaces, and for weights that are not
+/// positive.
+std::optional<double> extent_of_poles(const Handle(Geom_Surface) & surface, bool at_constant_u,
+                                      double parameter) {
+    const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+    if (spline.IsNull()) return std::nullopt;
+    const Handle(Geom_Curve) iso =
+        at_constant_u ? spline->UIso(parameter) : spline->VIso(parameter);
+    const auto curve = Handle(Geom_BSplineCurve)::DownCast(iso);
+    if (curve.IsNull()) return std::nullopt;
+    const gp_Pnt first = curve->Pole(1);
+    double farthest = 0.0;
+    for (int i = 1; i <= curve->NbPoles(); ++i) {
+        if (!(curve->Weight(i) > 0.0)) return std::nullopt;
+        farthest = std::max(farthest, first.Distance(curve->Pole(i)));
+    }
+    return 2.0 * farthest; // any two of them
+}
+
+} // namespace
+
 // A pole of a file is a point only within its tolerance.
 double FaceMesh::extent_of_pole(const BorderPiece& piece) {
     const Border& border = borders[piece.border];
     const gp_Pnt2d p = border.curve->Value(piece.from), q = border.curve->Value(piece.to);
+    const bool is_line = !Handle(Geom2d_Line)::DownCast(border.curve).IsNull();
+    if (is_line && (p.X() == q.X() || p.Y() == q.Y()))
+        if (const auto extent =
+                extent_of_poles(surface, p.X() == q.X(), p.X() == q.X() ? p.X() : p.Y()))
+            return *extent;
     if (border.model && model) {
         const DerivativeBounds curve =
             border.model->over(std::min(piece.from, piece.to), std::max(piece.from, piece.to));
