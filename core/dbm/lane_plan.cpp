@@ -167,6 +167,119 @@ bool open_up(CapsuleLanes& c, double reached, double top) {
     return true;
 }
 
+/// The box around what a tilted piece sweeps, aligned with its axis and with its way across it.
+std::array<SlabLanes, 3> slabs_around(const RevolvedProfile& convex, const CutterSweep& sweep,
+                                      int axis) {
+    constexpr double slack = 1e-6, least_part = 1e-9; // mm
+    const Vec3 up = sweep.orientation[2], by = sweep.to - sweep.from;
+    const Vec3 aside = by - glm::dot(by, up) * up;
+    const double way = glm::length(aside);
+    const Vec3 along = way > least_part ? aside / way : sweep.orientation[0];
+    const Aabb body = bounds(convex);
+    const double radius = body.max.x;
+    const std::array<Vec3, 3> normals = {along, glm::cross(up, along), up};
+    std::array<SlabLanes, 3> slabs;
+    for (size_t i = 0; i < slabs.size(); ++i) {
+        const Vec3& n = normals[i];
+        const double from = glm::dot(n, sweep.from), to = glm::dot(n, sweep.to);
+        const bool is_axis = i == 2;
+        slabs[i] = {.normal_u = n[u_axis(axis)],
+                    .normal_v = n[v_axis(axis)],
+                    .per_a = std::abs(n[axis]) > least_part ? 1.0 / n[axis] : 0.0,
+                    .low = std::min(from, to) + (is_axis ? body.min.z : -radius) - slack,
+                    .high = std::max(from, to) + (is_axis ? body.max.z : radius) + slack};
+    }
+    return slabs;
+}
+
+/// The form that is negative inside a cone: x x' + y y' - r r'.
+double form(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y - a.z * b.z; }
+
+/// Prepares a cone for lanes; false if lines lie along its flank or the motion along its faces so
+/// nearly that only `tilted_line_interval` is accurate.
+bool prepare_tilted(const CutterSweep& sweep, int axis, const ProfileElement& e, TiltedLanes& c) {
+    const Mat3 tool_from_stock = glm::transpose(sweep.orientation);
+    Vec3 along(0.0), u(0.0), v(0.0), origin = -sweep.from;
+    along[axis] = u[u_axis(axis)] = v[v_axis(axis)] = 1.0;
+    origin[axis] = 0.0;
+    const Vec3 by = sweep.to - sweep.from;
+    c = {};
+    c.origin = tool_from_stock * origin;
+    c.by_u = tool_from_stock * u;
+    c.by_v = tool_from_stock * v;
+    c.from_a = sweep.from[axis];
+    c.length = glm::length(by);
+    c.d = tool_from_stock * along;
+    c.m = c.length > 0.0 ? tool_from_stock * (by / c.length) : Vec3(0.0);
+    c.z0 = e.z0;
+    c.z1 = e.z1;
+    c.r0 = e.r0;
+    c.r1 = e.r1;
+    c.slope = (e.r1 - e.r0) / (e.z1 - e.z0);
+    // As (x, y, radius); their third components are those of directions.
+    const Vec3 d(c.d.x, c.d.y, c.slope * c.d.z), m(c.m.x, c.m.y, c.slope * c.m.z);
+    c.chord_a = form(d, d);
+    if (!(std::abs(c.chord_a) > 0.01 * glm::dot(d, d))) return false;
+    if (c.length == 0.0) return true;
+
+    constexpr double least_steep = 1e-6;
+    const double steep = std::sqrt(c.d.z * c.d.z + c.m.z * c.m.z);
+    if (steep > 0.0) {
+        if (steep < least_steep) return false;
+        c.face_s = c.d.z / (steep * steep);
+        c.face_t = -c.m.z / (steep * steep);
+        c.face_s_by = c.m.z / steep;
+        c.face_t_by = c.d.z / steep;
+        c.face_e = c.face_s_by * c.d - c.face_t_by * c.m;
+    }
+    const double flat = form(m, m);
+    const Vec3 w = glm::cross(d, m);
+    const double across = glm::length(w);
+    c.has_silhouette = flat > 0.0 && across > 0.0;
+    if (!c.has_silhouette) return true;
+    const Vec3 n = w / across, k = glm::cross(n, m);
+    c.touch_n = n;
+    // -dot(cross(p, m), n) = dot(p, cross(n, m)), and dot(cross(d, p), n) = dot(p, cross(n, d)).
+    c.touch_s_foot = -glm::cross(m, n) / across;
+    c.touch_t_foot = glm::cross(n, d) / across;
+    // The zeros of form(n, n) y^2 + 2 form(n, k) y + form(k, k), with the discriminant `flat`.
+    const double far = -form(n, k) - std::copysign(std::sqrt(flat), form(n, k));
+    const double one = far == 0.0 ? 0.0 : far / form(n, n);
+    const double other = far == 0.0 ? 0.0 : form(k, k) / far;
+    c.touch_y = {one / across, other / across};
+    c.touch_t_by_h = form(n, m) / flat;
+    c.touch_t_by_s = form(d, m) / flat;
+    return true;
+}
+
+/// Plans the piece of a tilted tool: by lanes if it consists of cones, cylinders and balls.
+void plan_tilted(LanePlan& plan) {
+    const CutterSweep& sweep = *plan.sweep;
+    plan.slabs = slabs_around(*plan.piece, sweep, plan.axis);
+    plan.has_slabs = true;
+    for (const ProfileElement& e : plan.piece->elements) {
+        bool fits = false;
+        if (is_ball(e) && plan.balls < LanePlan::most) {
+            // A ball is the same in every orientation.
+            CutterSweep centred = sweep;
+            centred.from += e.z0 * sweep.orientation[2];
+            centred.to += e.z0 * sweep.orientation[2];
+            plan.ball[plan.balls++] =
+                ball_lanes(centred, plan.axis, {0.0, 0.0, 0.0, 0.0, e.margin});
+            fits = true;
+        } else if (e.margin == 0.0 && e.z0 < e.z1) {
+            fits = prepare_tilted(sweep, plan.axis, e, plan.tilted.emplace_back());
+        } else if (e.margin == 0.0) {
+            continue; // no volume
+        }
+        if (fits) continue;
+        plan.balls = 0;
+        plan.tilted.clear();
+        return;
+    }
+    plan.by_lanes = true;
+}
+
 } // namespace
 
 LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int axis, double top) {
@@ -174,7 +287,10 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
     plan.axis = axis;
     plan.piece = &convex;
     plan.sweep = &sweep;
-    if (!is_upright(sweep.orientation)) return plan;
+    if (!is_upright(sweep.orientation)) {
+        plan_tilted(plan);
+        return plan;
+    }
     const auto& all = convex.elements;
     const double lowest = std::min(sweep.from.z, sweep.to.z);
     const double highest = std::max(sweep.from.z, sweep.to.z);
@@ -208,6 +324,8 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
         } else {
             plan.balls = plan.uprights = plan.across = 0;
             plan.elements.clear();
+            plan.slabs = slabs_around(convex, sweep, axis);
+            plan.has_slabs = true;
             return plan;
         }
     }

@@ -52,6 +52,34 @@ struct ElementLanes {
                       // by their height for lines along X and Y
 };
 
+/// A tilted cone along one move. A point s along a line and t along the motion, both in mm, is
+/// p + s d - t m in the frame of the tool; p is linear in the coordinates of the line. What is the
+/// same for all lines is computed once; the names are those of swept_line.cpp.
+struct TiltedLanes {
+    Vec3 origin, by_u, by_v; // p = origin + u by_u + v by_v
+    double from_a;           // where s is 0, along the line
+    Vec3 d, m;
+    double length; // of the motion
+    double z0, z1, r0, r1, slope;
+    double chord_a; // of the quadratic form along d
+    // The line of (s, t) at the height of an end face, which is `rise` above p.
+    double face_s, face_t; // its foot, times rise
+    double face_s_by, face_t_by;
+    Vec3 face_e;
+    // The two points at which a line can touch the envelope of the flank.
+    bool has_silhouette;
+    Vec3 touch_n, touch_s_foot, touch_t_foot; // multiply (x, y, radius) of p
+    std::array<double, 2> touch_y;
+    double touch_t_by_h, touch_t_by_s;
+};
+
+/// A slab of space around what a tilted piece sweeps: normal . point is within low .. high. For a
+/// line, its components across the lines and 1 / that along them; 0 if it hardly has one.
+struct SlabLanes {
+    double normal_u, normal_v, per_a;
+    double low, high;
+};
+
 /// Parameters for intersecting the sweep of a convex piece with the lines of one family, as the
 /// lanes need them.
 struct LanePlan {
@@ -63,6 +91,9 @@ struct LanePlan {
     std::array<CapsuleLanes, most> ball, upright; // upright: cylinders met by lines along Z
     std::array<AcrossLanes, most> sideways;       // cylinders met by lines along X and Y
     std::vector<ElementLanes> elements;           // any number: a form tool has dozens
+    std::vector<TiltedLanes> tilted;              // cones and cylinders of a tilted tool
+    bool has_slabs = false;
+    std::array<SlabLanes, 3> slabs; // of a tilted tool: a box aligned with it and its way
     const RevolvedProfile* piece = nullptr;
     const CutterSweep* sweep = nullptr;
 };

@@ -9,6 +9,7 @@
 #include "core/dbm/lane_cut.h"
 #include "core/dbm/lane_row.h"
 #include "core/dbm/lane_slope.h"
+#include "core/dbm/lane_tilt.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace core {
@@ -126,6 +127,7 @@ HWY_ATTR Swept swept_of(const LanePlan& plan, const double* u, double v, uint32_
     }
     for (size_t i = 0; i < plan.uprights; ++i) add_upright(plan.upright[i], at_u, v, all);
     for (size_t i = 0; i < plan.across; ++i) add_across(plan.sideways[i], at_u, v, all);
+    for (const TiltedLanes& cone : plan.tilted) add_tilted(cone, at_u, v, all);
     add_elements(plan, false, u, at_u, v, all);
     all.ends = {on_lattice(all.ends.lower), on_lattice(all.ends.upper)};
     return all;
@@ -192,13 +194,41 @@ HWY_INLINE Stretch loose_hull(const LanePlan& plan, const double* u, const Row& 
     return {loose.ends.lower - slack, loose.ends.upper + slack};
 }
 
+/// The part of each line within the slabs of the plan.
+struct Within {
+    Stretch range;
+    RowMask met;
+};
+
+HWY_INLINE Within within_slabs(const LanePlan& plan, const Row& u, double v) {
+    Within box{{row_of(-infinity), row_of(infinity)}, at_most(row_of(0.0), row_of(0.0))};
+    for (const SlabLanes& slab : plan.slabs) {
+        const Row across = u * slab.normal_u + row_of(v * slab.normal_v);
+        if (slab.per_a == 0.0) {
+            box.met =
+                box.met & at_most(row_of(slab.low), across) & at_most(across, row_of(slab.high));
+            continue;
+        }
+        const Row one = (row_of(slab.low) - across) * slab.per_a;
+        const Row other = (row_of(slab.high) - across) * slab.per_a;
+        box.range.lower = most(box.range.lower, least(one, other));
+        box.range.upper = least(box.range.upper, most(one, other));
+    }
+    box.met = box.met & below(box.range.lower, box.range.upper);
+    return box;
+}
+
 /// The lines of a chunk on which the plan may sweep material; `holds(test)` runs a test of a
 /// segment over all material.
 template <typename Holds>
 HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, const Holds& holds) {
     const RowMask all = at_most(row_of(0.0), row_of(0.0));
-    if (!plan.by_lanes) return all;
     const Row at_u = load(u);
+    if (plan.has_slabs) {
+        const Within box = within_slabs(plan, at_u, v);
+        return box.met
+               & holds([&](const Stretch& matter) HWY_ATTR { return overlap(box.range, matter); });
+    }
     if (!plan.elements.empty()) {
         const Stretch hull = loose_hull(plan, u, at_u, v);
         return holds([&](const Stretch& matter) HWY_ATTR { return overlap(hull, matter); });

@@ -15,7 +15,7 @@ using namespace core;
 
 /// The results for a chunk of lines compared with line_interval.
 struct Compared {
-    int met = 0, both_missed = 0;
+    int met = 0, both_missed = 0, by_lanes = 0;
     double longest = -infinity, shortest = infinity; // excess of the lanes' interval at an end
 };
 
@@ -37,12 +37,23 @@ CutterSweep random_move(std::mt19937& rng, const std::shared_ptr<const Cutter>& 
     return sweep;
 }
 
-Compared compare(const RevolvedProfile& flutes, unsigned seed) {
+/// A random orientation; some turn about one axis only, some by next to nothing or a right angle.
+Mat3 random_orientation(std::mt19937& rng) {
+    const auto angle = [&] {
+        const double any = std::uniform_real_distribution<double>(-180.0, 180.0)(rng);
+        const auto kind = rng() % 8;
+        return kind == 0 ? 0.0 : kind == 1 ? 90.0 : kind == 2 ? 1e-5 * any : any;
+    };
+    return rotation_xyz_deg({angle(), angle(), angle()});
+}
+
+Compared compare(const RevolvedProfile& flutes, unsigned seed, bool tilted = false) {
     std::mt19937 rng(seed);
     const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, 0.0));
     Compared all;
     for (int round = 0; round < 300; ++round) {
-        const CutterSweep sweep = random_move(rng, cutter);
+        CutterSweep sweep = random_move(rng, cutter);
+        if (tilted) sweep.orientation = random_orientation(rng);
         const int axis = static_cast<int>(rng() % 3);
         const Aabb box = bounds(sweep);
         const int ua = u_axis(axis), va = v_axis(axis);
@@ -56,7 +67,8 @@ Compared compare(const RevolvedProfile& flutes, unsigned seed) {
         CornerStretches found;
         for (const Cutter::Piece& piece : cutter->pieces) {
             const LanePlan plan = lane_plan(piece.around, sweep, axis);
-            EXPECT_TRUE(plan.by_lanes);
+            EXPECT_TRUE(plan.by_lanes || tilted);
+            all.by_lanes += plan.by_lanes;
             lane_cut().stretches(plan, u.data(), v, 0xffffff, found);
             for (size_t i = 0; i < u.size(); ++i) {
                 const auto truth = line_interval(piece.around, sweep, axis, u[i], v);
@@ -78,6 +90,23 @@ Compared compare(const RevolvedProfile& flutes, unsigned seed) {
         }
     }
     return all;
+}
+
+/// Tilted tools: cones, cylinders and balls in lanes, as exact as line by line.
+TEST(TiltedLanes, GiveTheSameAsLineByLine) {
+    const RevolvedProfile cylinder{{{0, 1.5, 4, 1.5, 0}}};
+    const RevolvedProfile cone{{{0, 0.3, 3, 1.8, 0}}},
+        drill{{{0, 0.0, 1, 1.0, 0}, {1, 1.0, 4, 1.0, 0}}};
+    const RevolvedProfile ball{{{1, 0, 1, 0, 1}, {1, 1, 5, 1, 0}}};
+    const RevolvedProfile narrowing{{{0, 1.5, 2, 0.5, 0}}}, disc{{{0, 2, 0.1, 2, 0}}};
+    for (const RevolvedProfile& flutes : {cylinder, cone, drill, ball, narrowing, disc})
+        for (unsigned seed = 1; seed <= 8; ++seed) {
+            const Compared all = compare(flutes, seed, true);
+            EXPECT_GT(all.met, 500);
+            EXPECT_GT(all.by_lanes, 200) << "of 300 moves";
+            EXPECT_LT(all.longest, 1e-8);
+            EXPECT_GT(all.shortest, -1e-6);
+        }
 }
 
 void expect_equal(const RevolvedProfile& flutes, double shorter) {
