@@ -337,7 +337,12 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     relative.lasting_error = mover.form_error;
     relative.deviation = mover.deviation;
     relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
-    relative.travel = turn * (reach + mover.reach) + travel + leg.path_error;
+    // The centre stays within `curve` of its chord, and the body turns about it. While the linear
+    // axes follow the rotary ones, that is far less than what the axes travel.
+    const double chord = glm::distance(relative.positions[0], relative.positions[1]);
+    relative.travel =
+        std::min(turn * (reach + mover.reach) + travel, chord + curve + tilt * mover.reach)
+        + leg.path_error;
     return relative;
 }
 

@@ -52,7 +52,8 @@ struct RelativeLeg {
     double error = 0.0;          // of the path and of rotation, mm; infinite beyond half a radian
     double lasting_error = 0.0;  // the part of `error` that is the same for any part of the leg
     double deviation = 0.0;      // the part of that by which bodies of CAD files deviate
-    double travel = 0.0;         // upper bound of the travel of any point, mm
+    double travel = 0.0;         // no point gets farther from where it starts, mm; of a body of
+                                 // revolution, as a set
     bool turns = false;          // the orientation is that of the middle of the leg
 
     /// What shorter legs reduce, mm.

@@ -6,6 +6,14 @@
 namespace core {
 namespace {
 
+/// Whether shorter legs may decide a pair that is undecided only because of how it turns.
+bool is_open_for_turning(const PairClearance& now, const PairClearance& known,
+                         const RelativeLeg& relative) {
+    constexpr double sharp = 5e-4; // mm: bounds that decide meet within twice that
+    return now.verdict == Verdict::undecided && known.verdict < Verdict::violation
+           && relative.reducible_error() > std::max(sharp, 0.1 * relative.lasting_error);
+}
+
 /// Axis values at a fraction of a leg; at its start if the path is unknown.
 AxisValues values_at(const Leg& leg, double fraction) {
     return leg.straight && leg.positions.size() == 2 ? stretch(leg, 0.0, fraction).positions[1]
@@ -116,7 +124,7 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     TrackedPair& known = bounds_.tracked_pair(pairs, pair);
     if (bounds_.can_skip(known, pairs)) return;
     const RelativeLeg relative = context_.against_fixture(body, fixture, leg);
-    if (relative.turns && bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
+    if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: halve the leg until the body is far away or its error is small enough.
@@ -126,10 +134,19 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     if (context_.setup.needs_only_verdict && known.verdict != Verdict::clear) return;
     if (!context_.is_too_vague(relative)) {
         PairClearance now = measure(leg, start, relative, body, known);
-        if (now.lower >= std::min(known.upper, context_.setup.search_limit)
-            || context_.is_sharp(body, relative, now.lower)
-            || (context_.setup.needs_only_verdict && now.verdict == Verdict::clear))
+        const bool is_open = is_open_for_turning(now, known, relative);
+        if (!is_open
+            && (now.lower >= std::min(known.upper, context_.setup.search_limit)
+                || context_.is_sharp(body, relative, now.lower)
+                || (context_.setup.needs_only_verdict && now.verdict == Verdict::clear)))
             return merge(known, now);
+        if (is_open) {
+            const Leg still = still_half_way(leg);
+            const RelativeLeg here = context_.against_fixture(body, fixture, still);
+            const PairClearance there = measure(still, start, here, body, known);
+            // The halves have the lower bound.
+            if (there.verdict >= Verdict::violation) merge(known, there);
+        }
         if (now.lower <= 0.0) {
             const Leg still = still_half_way(leg);
             const RelativeLeg here = context_.against_fixture(body, fixture, still);

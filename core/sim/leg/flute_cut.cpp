@@ -111,7 +111,7 @@ double FluteCut::along_turning(const Leg& leg, CutModel& stock) {
     const RelativeLeg flutes = context_.against_stock(body, leg);
     const bool far = distance(bounds(body, flutes), stock.outer_box) > flutes.error;
     if (flutes.turns && far) return 0.0;
-    if (!context_.turns_too_far(leg)) return along(leg, stock);
+    if (!context_.turns_too_far(leg, true)) return along(leg, stock);
     const double removed = along_turning(stretch(leg, 0.0, 0.5), stock);
     return removed + along_turning(stretch(leg, 0.5, 1.0), stock);
 }

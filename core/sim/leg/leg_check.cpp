@@ -41,8 +41,18 @@ double LegCheck::run(const Leg& leg, double start, CutModel& stock,
         removed = stock_.check(leg, start, stock, pairs);
     }
     note_search(stock, context_.statistics.box_tests - tests_before);
-    bounds_.end_leg();
+    bounds_.end_leg([&](const Pair& pair) { return travel_of(pair, leg); });
     return removed;
+}
+
+double LegCheck::travel_of(const Pair& pair, const Leg& leg) const {
+    if (!leg.straight) return infinity;
+    for (const MovingBody& body : context_.bodies)
+        if (body.kind == pair.part && body.carried == pair.carried)
+            return (pair.fixture ? context_.against_fixture(body, *pair.fixture, leg)
+                                 : context_.against_stock(body, leg))
+                .travel;
+    return infinity;
 }
 
 void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,

@@ -93,6 +93,21 @@ private:
     /// Only the lower bound is measured if the box of the raw stock is far enough away.
     void check_turning_body(const MovingBody& body, const Leg& leg, double start,
                             const CutModel& stock, std::vector<TrackedPair>& pairs);
+    /// A piece of a leg on which a body is clear of the stock before the cut.
+    struct ClearPiece {
+        Leg leg;
+        StockObservation seen;
+    };
+    /// Adds the pieces of a leg on which rotary axes move and a body is clear of the stock before
+    /// the cut, as long as they are longer than what the cut needs. False if it is not proven
+    /// clear.
+    bool is_clear_before_cut(const MovingBody& body, const Leg& leg, double start,
+                             const CutModel& stock, TrackedPair& known,
+                             std::vector<ClearPiece>& pieces);
+    /// Checks a tool that cuts over a leg on which rotary axes move, and cuts. Shank and holder
+    /// are usually clear of the stock before the cut, and then need far fewer pieces than the cut.
+    double cut_turning(const Leg& leg, double start, CutModel& stock,
+                       std::vector<TrackedPair>& pairs);
     /// Whether the tool stays clear on a leg on which rotary axes move, measured over the whole
     /// leg; if so, adds its clearances.
     bool is_clear_by_bound(const Leg& leg, double start, const CutModel& stock,
@@ -119,7 +134,8 @@ private:
     PairBounds& bounds_;
     StockProbe& probe_;
     FluteCut& flutes_;
-    bool only_tool_ = false; // the machine bodies have been checked already
+    bool only_tool_ = false;   // the machine bodies have been checked already
+    bool only_flutes_ = false; // shank and holder are known to be clear
 };
 
 /// What is known of the contact of flutes.
@@ -195,6 +211,8 @@ public:
     }
 
 private:
+    /// How far any point of a pair's body moves over a leg at most, as seen from the other one, mm.
+    double travel_of(const Pair& pair, const Leg& leg) const;
     /// Checks a leg of which only a hull of the possible paths is known.
     void check_hull(const Leg& leg, double start, const CutModel& stock,
                     std::vector<TrackedPair>& pairs);

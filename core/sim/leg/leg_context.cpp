@@ -40,8 +40,20 @@ RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
     return relative;
 }
 
-RelativeLeg LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
-    return leg_against(setup, {}, body, leg);
+const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
+    last_legs.resize(bodies.size() + 1);
+    // Bodies that are not in the list, such as a shrunk part, share the last place.
+    size_t place = 0;
+    while (place < bodies.size() && &bodies[place] != &body) ++place;
+    auto& [known, relative] = last_legs[place];
+    const bool same = place < bodies.size() && known.positions == leg.positions
+                      && known.path_error == leg.path_error && known.straight == leg.straight;
+    if (same) return relative;
+    relative = leg_against(setup, {}, body, leg);
+    known.positions = leg.positions;
+    known.path_error = leg.path_error;
+    known.straight = leg.straight;
+    return relative;
 }
 
 double LegContext::finest_error(const MovingBody& body) const {
@@ -58,10 +70,10 @@ bool LegContext::is_too_vague(const RelativeLeg& relative) const {
     return relative.turns && relative.reducible_error() > sharp_fraction * setup.search_limit;
 }
 
-bool LegContext::turns_too_far(const Leg& leg) const {
+bool LegContext::turns_too_far(const Leg& leg, bool only_flutes) const {
     if (!setup.machine.has_rotary() || leg.positions.size() != 2) return false;
     for (const MovingBody& body : bodies) {
-        if (body.body) continue;
+        if (body.body || (only_flutes && body.kind != PartKind::flutes)) continue;
         const RelativeLeg relative = against_stock(body, leg);
         if (relative.turns && relative.reducible_error() > finest_error(body)) return true;
     }

@@ -37,6 +37,8 @@ struct LegContext {
     std::vector<MovingBody> bodies;
     CutReplay* replay = nullptr; // makes the cuts of the stock; null: they are not prepared
     unsigned threads = 1;        // for a large cut
+    /// The last leg of each body against the stock, which is asked for several times.
+    mutable std::vector<std::pair<Leg, RelativeLeg>> last_legs = {};
 
     /// The moving body of a pair.
     const MovingBody& body_of(const Pair& pair) const;
@@ -48,8 +50,8 @@ struct LegContext {
     /// The leg of a body in the frame of a fixture, with the fixture's play.
     RelativeLeg against_fixture(const MovingBody& body, size_t fixture, const Leg& leg) const;
 
-    /// The leg of a body in the stock's frame.
-    RelativeLeg against_stock(const MovingBody& body, const Leg& leg) const;
+    /// The leg of a body in the stock's frame. Valid until that of another leg is asked for.
+    const RelativeLeg& against_stock(const MovingBody& body, const Leg& leg) const;
 
     /// Error of a turning body that is small enough for any clearance, mm.
     double finest_error(const MovingBody& body) const;
@@ -60,8 +62,8 @@ struct LegContext {
     /// Whether the error of a leg is too large for any clearance within the search limit.
     bool is_too_vague(const RelativeLeg& relative) const;
 
-    /// Whether the tool turns so far on a leg that the leg must be halved.
-    bool turns_too_far(const Leg& leg) const;
+    /// Whether the tool, or only its flutes, turns so far on a leg that the leg must be halved.
+    bool turns_too_far(const Leg& leg, bool only_flutes = false) const;
 };
 
 } // namespace core

@@ -58,8 +58,13 @@ double greatest_travel(const Machine& machine, const Leg& leg) {
     return glm::length(by);
 }
 
-void PairBounds::end_leg() {
-    for (PairBound& bound : memory_.bounds) bound.apart -= travel_;
+void PairBounds::end_leg(const std::function<double(const Pair&)>& travel_of) {
+    for (PairBound& bound : memory_.bounds) {
+        const bool is_known = travel_ < infinity || !travel_of;
+        const double travel = is_known ? travel_ : travel_of(bound.pair);
+        bound.apart -= travel;
+        bound.drift += travel_ < infinity ? 0.0 : travel;
+    }
     goes_on_ = false;
 }
 

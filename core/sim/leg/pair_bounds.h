@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/geom/gjk.h"
@@ -61,14 +62,16 @@ public:
     }
     /// Halves or doubles the leg.
     void scale_leg(double factor) { travel_ *= factor; }
-    /// Ends the leg: subtracts its travel from the bounds of earlier blocks.
-    void end_leg();
+    /// Ends the leg: subtracts its travel from the bounds of earlier blocks. `travel_of(pair)`:
+    /// that of a pair, while rotary axes move.
+    void end_leg(const std::function<double(const Pair&)>& travel_of = {});
     double travel() const { return travel_; }
 
     /// How far any point of the body moves over a part of the leg at most, mm. While rotary axes
     /// move, there is only a bound for each body.
     double travel(const RelativeLeg& part) const {
-        return travel_ == infinity && goes_on_ && part.turns ? part.travel : travel_;
+        const bool moves = part.turns || part.positions.size() == 2; // not: rests on the way
+        return travel_ == infinity && goes_on_ && moves ? part.travel : travel_;
     }
 
     /// The entry of a pair; a new entry starts with the bound from the last block.

@@ -46,7 +46,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     std::vector<const MovingBody*> later;
     bool settled = true;
     for (const MovingBody* body : context_.likely_first({})) {
-        if (body->kind == PartKind::flutes || (only_tool_ && body->body)) continue;
+        if (body->kind == PartKind::flutes || only_flutes_ || (only_tool_ && body->body)) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
         if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
         if (bounds_.can_probably_skip(known)) {
@@ -194,22 +194,28 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
                                    std::vector<TrackedPair>& pairs) {
     std::vector<PairClearance> seen;
     for (const MovingBody& body : context_.bodies) {
-        if (body.body) continue;
+        if (body.body || (only_flutes_ && body.kind != PartKind::flutes)) continue;
         const RelativeLeg relative = context_.against_stock(body, leg);
         const double apart = distance(bounds(body, relative), stock.outer_box);
         if (context_.is_too_vague(relative) && apart < context_.setup.search_limit) return false;
-        const bool chips = body.kind == PartKind::flutes && context_.use == FluteUse::cutting;
+        if (body.kind == PartKind::flutes && context_.use == FluteUse::cutting) {
+            // They need no clearance: it is enough that they cut nothing.
+            const double apart_by = relative.error + resolution;
+            const StockGoal goal{
+                .limit = apart_by, .bound = StockBound::lower, .coarse_below = apart_by};
+            if (probe_.to_stock(body, relative, stock, goal).lower < apart_by) return false;
+            continue;
+        }
         const PairClearance* known = nullptr;
         for (const TrackedPair& pair : pairs)
             if (pair.pair == pair_of(body)) known = &pair;
-        const double nearest = known && !chips ? known->upper : infinity;
+        const double nearest = known ? known->upper : infinity;
         StockObservation observation{.travel = relative.travel};
         const double limit = std::min(context_.setup.search_limit, nearest) + relative.error;
         observation.plain =
             widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
         const double lower = observation.plain.lower;
         if (lower <= 0.0) return false;
-        if (chips) continue;
         const PairClearance now = probe_.clearance(body, leg, start, observation, observation);
         if (now.verdict != Verdict::clear) return false;
         if (!context_.setup.needs_only_verdict
@@ -225,8 +231,9 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
 void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, double start,
                                     const CutModel& stock, std::vector<TrackedPair>& pairs) {
     if (is_enough(context_.setup, pairs)) return;
-    TrackedPair& known = entry(pairs, pair_of(body), context_.setup);
+    TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
     const RelativeLeg relative = context_.against_stock(body, leg);
+    if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
     const double apart = distance(bounds(body, relative), stock.outer_box);
     if (is_far(known, apart, context_.setup.search_limit)) return;
@@ -251,6 +258,68 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
     check_turning_body(body, stretch(leg, 0.5, 1.0), start, stock, pairs);
 }
 
+bool StockCheck::is_clear_before_cut(const MovingBody& body, const Leg& leg, double start,
+                                     const CutModel& stock, TrackedPair& known,
+                                     std::vector<ClearPiece>& pieces) {
+    const RelativeLeg relative = context_.against_stock(body, leg);
+    if (stays_away(known, leg, relative)) return true;
+    const double apart = distance(bounds(body, relative), stock.outer_box);
+    if (is_far(known, apart, context_.setup.search_limit)) return true;
+    if (!context_.is_too_vague(relative)) {
+        const StockObservation seen = probe_.observe_lower(body, leg, stock, known.upper);
+        const PairClearance now = probe_.clearance(body, leg, start, seen, {});
+        const double lower = now.lower;
+        if (now.verdict == Verdict::clear
+            && (context_.setup.needs_only_verdict || context_.is_sharp(body, relative, lower)
+                || lower >= std::min(known.upper, context_.setup.search_limit))) {
+            merge(known, now);
+            pieces.push_back({leg, seen});
+            return true;
+        }
+        // A sharper bound does not help; the order of events may.
+        if (seen.plain.upper < now.allowance.distance) return false;
+    }
+    if (!relative.turns || relative.reducible_error() <= 2.0 * context_.finest_error(body))
+        return false;
+    return is_clear_before_cut(body, stretch(leg, 0.0, 0.5), start, stock, known, pieces)
+           && is_clear_before_cut(body, stretch(leg, 0.5, 1.0), start, stock, known, pieces);
+}
+
+double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock,
+                               std::vector<TrackedPair>& pairs) {
+    std::vector<const MovingBody*> clear;
+    std::vector<std::vector<ClearPiece>> pieces;
+    for (const MovingBody* body : context_.likely_first({})) {
+        if (body->kind == PartKind::flutes || body->body) continue;
+        TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
+        const RelativeLeg relative = context_.against_stock(*body, leg);
+        if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) continue;
+        const TrackedPair before = known;
+        std::vector<ClearPiece> found;
+        if (!is_clear_before_cut(*body, leg, start, stock, known, found)) {
+            known = before;
+            // All bodies, in the order of events.
+            return check_turning(leg, start, stock, pairs);
+        }
+        clear.push_back(body);
+        pieces.push_back(std::move(found));
+    }
+    only_flutes_ = true;
+    const double removed = check_turning(leg, start, stock, pairs);
+    only_flutes_ = false;
+    for (size_t i = 0; i < clear.size(); ++i) {
+        for (const ClearPiece& piece : pieces[i]) {
+            TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*clear[i]));
+            const BodyCheck check{*clear[i], piece.seen, true, false, known.upper};
+            const double at_end = known.at_end, drift = known.drift;
+            conclude(check, piece.leg, start, stock, true, pairs);
+            known.at_end = at_end;
+            known.drift = drift;
+        }
+    }
+    return removed;
+}
+
 double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
                                  std::vector<TrackedPair>& pairs) {
     if (context_.use == FluteUse::not_cutting && has_crashed(pairs)) {
@@ -266,7 +335,7 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
     if (is_enough(context_.setup, pairs)) return 0.0;
     // Flutes that cut may not be measured at all.
     if (context_.use == FluteUse::cutting) bounds_.carry_bound({PartKind::flutes}, pairs);
-    if (!context_.turns_too_far(leg)) return check_whole(leg, start, stock, pairs);
+    if (!context_.turns_too_far(leg, only_flutes_)) return check_whole(leg, start, stock, pairs);
     if (is_clear_by_bound(leg, start, stock, pairs)) return 0.0;
     const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
     return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
@@ -281,7 +350,9 @@ double StockCheck::check(const Leg& leg, double start, CutModel& stock,
         for (const MovingBody& body : context_.bodies)
             if (body.body) check_turning_body(body, leg, start, stock, pairs);
         only_tool_ = true;
-        const double removed = check_turning(leg, start, stock, pairs);
+        const double removed = context_.use == FluteUse::cutting
+                                   ? cut_turning(leg, start, stock, pairs)
+                                   : check_turning(leg, start, stock, pairs);
         only_tool_ = false;
         return removed;
     }
