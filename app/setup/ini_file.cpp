@@ -13,6 +13,7 @@
 #include "core/base/platform.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
+#include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/language/environment.h"
 
@@ -63,6 +64,17 @@ struct IniReader {
     /// Stores TOOL_CHANGE_POSITION, of which LinuxCNC reads the first 9, 6 or 3 numbers.
     std::string take_change_position(const std::string& value);
 
+    /// Stores REMAP = M428 modalgroup=10 ngc=428remap.
+    void take_remap(const std::string& value);
+
+    /// Stores a setting of which there may be several; whether it is one.
+    bool take_repeated(const std::string& name, const std::string& value);
+
+    /// Reads the files with HAL commands, in the order in which LinuxCNC does.
+    void read_hal();
+
+    std::vector<std::string> hal_files{}, hal_commands{}, late_hal_files{}, panels{};
+
     /// Stores a setting. Returns why its value is invalid; empty if it is valid or irrelevant.
     std::string take(const std::string& key, const std::string& value);
 };
@@ -105,6 +117,14 @@ bool keeps_linear_axes(const std::string& module) {
     return false;
 }
 
+/// Kinematics that follow the tip of the tool: `linuxcnc_kinematics` knows them.
+bool follows_tip(const std::string& module) {
+    for (const char* one : {"xyzac-trt-kins", "xyzbc-trt-kins", "xyzab_tdr_kins", "5axiskins",
+                            "xyzacb_trsrn", "xyzbca_trsrn"})
+        if (module == one) return true;
+    return false;
+}
+
 /// The letter of [AXIS_A], or of [AXIS_3] in older files.
 std::string axis_of_section(const std::string& section) {
     const std::string axis = section.substr(5);
@@ -112,9 +132,62 @@ std::string axis_of_section(const std::string& section) {
     return std::string(1, core::axis_letters[static_cast<size_t>(axis[0] - '0')]);
 }
 
+void IniReader::take_remap(const std::string& value) {
+    std::istringstream stream(value);
+    std::string code, subprogram;
+    bool is_plain = true;
+    stream >> code;
+    for (std::string word; stream >> word;) {
+        const std::string key = core::lower_case(word.substr(0, word.find('=')));
+        if (key == "ngc")
+            subprogram = word.substr(4);
+        else if (key != "modalgroup")
+            is_plain = false; // argspec, prolog, epilog, python
+    }
+    code = core::upper_case(code);
+    if (is_plain && !subprogram.empty())
+        file.remaps.emplace(code, subprogram);
+    else
+        file.other_remaps.push_back(code);
+}
+
+bool IniReader::take_repeated(const std::string& name, const std::string& value) {
+    if (name == "RS274NGC REMAP")
+        take_remap(value);
+    else if (name == "HAL HALCMD")
+        hal_commands.push_back(value);
+    else if (name == "HAL HALFILE")
+        hal_files.push_back(value);
+    else if (name == "HAL POSTGUI_HALFILE")
+        late_hal_files.push_back(value);
+    else if (name == "DISPLAY PYVCP")
+        panels.push_back(value);
+    else
+        return false;
+    return true;
+}
+
+void IniReader::read_hal() {
+    const auto add = [&](const std::vector<std::string>& names) {
+        for (const std::string& name : names) {
+            const std::string word = first_word(name);
+            if (word.starts_with("LIB:")) continue; // of LinuxCNC itself: joints and motors
+            if (word.ends_with(".tcl") || !file.hal.add_file(resolved(word), file.values))
+                file.unread_files.push_back(resolved(word));
+        }
+    };
+    add(hal_files);
+    for (const std::string& command : hal_commands) file.hal.add(command, file.values);
+    for (const std::string& panel : panels)
+        if (!file.hal.add_panel(resolved(first_word(panel))))
+            file.unread_files.push_back(resolved(first_word(panel)));
+    add(late_hal_files);
+}
+
 std::string IniReader::take(const std::string& key, const std::string& value) {
     const std::string name = section + " " + key;
-    if (value.empty() || !read.insert(name).second) return {};
+    if (value.empty()) return {};
+    if (take_repeated(name, value) || !read.insert(name).second) return {};
     note_number(key, value);
     if (name == "TRAJ LINEAR_UNITS") {
         file.machine_unit = unit_named(value);
@@ -133,6 +206,11 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
         file.tool_change_with_spindle_on = is_on(value);
     } else if (name == "KINS KINEMATICS") {
         file.kinematics = first_word(value);
+        file.kinematics_settings = core::stripped(value.substr(file.kinematics.size()));
+    } else if (name == "TRAJ COORDINATES") {
+        for (const char letter : core::upper_case(value))
+            if (core::axis_letters.find(letter) != std::string_view::npos)
+                file.coordinates.push_back(letter);
     } else if (name == "DISPLAY PROGRAM_PREFIX") {
         file.search_path.insert(file.search_path.begin(), resolved(value));
     } else if (name == "RS274NGC SUBROUTINE_PATH") {
@@ -176,7 +254,8 @@ core::Result<IniFile> read_ini(const std::string& path) {
         if (!wrong.empty()) return tl::unexpected(line_error(path, line, wrong));
     }
     const std::string& module = reader.file.kinematics;
-    if (!module.empty() && !keeps_linear_axes(module))
+    reader.read_hal();
+    if (!module.empty() && !keeps_linear_axes(module) && !follows_tip(module))
         return tl::unexpected(core::Error{
             core::ErrorCode::unsupported,
             {},
@@ -204,14 +283,19 @@ gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit
 namespace {
 
 /// The numbers of an ini file for one axis, in mm or degrees.
+///
+/// `joint_first`: limits of joints count more than those of axes, which are then positions of the
+/// tip.
 class AxisNumbers {
 public:
-    AxisNumbers(const gcode::Environment& environment, size_t axis, size_t joint)
+    AxisNumbers(const gcode::Environment& environment, size_t axis, size_t joint,
+                bool joint_first = false)
         : values_(environment.ini_values) {
         const bool inch = environment.machine_unit == gcode::LengthUnit::inch;
         unit_ = inch && !core::is_rotary(axis) ? core::mm_per_inch : 1.0;
         sections_ = {fmt::format("axis_{}", core::lower(core::axis_letters[axis])),
                      fmt::format("axis_{}", axis), fmt::format("joint_{}", joint)};
+        if (joint_first) std::swap(sections_[0], sections_[2]);
     }
 
     /// The number in the first section that has the key.
@@ -249,12 +333,64 @@ bool take_above_zero(std::optional<double>& value, std::optional<double> stated,
 
 } // namespace
 
+namespace {
+
+/// Whether two machines put the tool and the work the same way.
+bool are_same(const core::Machine& a, const core::Machine& b) {
+    constexpr double slack = 1e-6; // mm
+    for (int sample = 0; sample < 4; ++sample) {
+        core::AxisValues values{};
+        for (size_t axis = 3; axis < 6; ++axis)
+            values[axis] = sample == 0 ? 0.0 : 17.0 * sample * static_cast<double>(axis) - 70.0;
+        const core::Mount no_body_a{a.table, {}}, tool_a{a.spindle, {}};
+        const core::Mount no_body_b{b.table, {}}, tool_b{b.spindle, {}};
+        const core::Transform in_a = core::target_from_mover(a, no_body_a, tool_a, values);
+        const core::Transform in_b = core::target_from_mover(b, no_body_b, tool_b, values);
+        for (const core::Vec3& point : {core::Vec3(0.0), core::Vec3(0.0, 0.0, -100.0)})
+            if (glm::length(in_a * point - in_b * point) > slack) return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& environment) {
+    if (!environment.kinematics || !environment.kinematics->machine) return {};
+    const core::Machine& known = *environment.kinematics->machine;
+    const std::string& module = environment.kinematics->module;
+    if (machine.has_rotary()) {
+        if (are_same(machine, known)) return {};
+        return fmt::format("the rotary axes of the set-up are not where {} of the ini file has "
+                           "them: the control is assumed to know those of the set-up",
+                           module);
+    }
+    const auto is_turned = [](core::LinkId link) {
+        return core::is_rotary(static_cast<size_t>(link));
+    };
+    for (size_t axis = 3; axis < 6; ++axis) {
+        if (!known.axes[axis].present) continue;
+        core::MachineAxis& own = machine.axes[axis] = known.axes[axis];
+        // The first of each side is carried by what was the last link of that side.
+        if (!is_turned(own.carrier))
+            own.carrier = own.side == core::Side::table ? machine.table : machine.spindle;
+    }
+    if (is_turned(known.table)) machine.table = known.table;
+    if (is_turned(known.spindle)) machine.spindle = known.spindle;
+    return {};
+}
+
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
                              bool with_positions) {
+    const std::string rotary = take_rotary_axes(machine, environment);
+    const bool has_tip = environment.kinematics.has_value();
     std::string taken, without_position;
     size_t joint = 0;
     for (size_t i = 0; i < core::axis_count; ++i) {
-        const AxisNumbers numbers(environment, i, joint);
+        if (has_tip) {
+            const size_t at = environment.kinematics->coordinates.find(core::axis_letters[i]);
+            joint = at == std::string::npos ? core::axis_count : at;
+        }
+        const AxisNumbers numbers(environment, i, joint, has_tip);
         const bool named = AxisNumbers(environment, i, core::axis_count).is_there();
         core::MachineAxis& axis = machine.axes[i];
         if (!axis.present) {
@@ -271,10 +407,11 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
         if (some) taken += core::axis_letters[i];
         ++joint;
     }
-    std::string note;
+    std::string note = rotary;
     if (!taken.empty())
-        note = fmt::format("{} of {} are from the ini file",
-                           with_positions ? "limits, speeds and homes" : "speeds", taken);
+        note += (note.empty() ? "" : "; ")
+                + fmt::format("{} of {} are from the ini file",
+                              with_positions ? "limits, speeds and homes" : "speeds", taken);
     if (!without_position.empty())
         note += fmt::format("{}the ini file has axis {} but not the position of its rotation axis: "
                             "add it as [[machine.axis]] if the program moves it",

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/setup/hal_settings.h"
 #include "core/base/result.h"
 
 namespace core {
@@ -26,7 +27,14 @@ struct IniFile {
     // machine; TOOL_CHANGE_QUILL_UP, TOOL_CHANGE_AT_G30, TOOL_CHANGE_WITH_SPINDLE_ON
     std::vector<double> tool_change_position;
     bool quill_up = false, tool_change_at_g30 = false, tool_change_with_spindle_on = false;
-    std::string kinematics;       // [KINS] KINEMATICS: the name of the module
+    std::string kinematics;          // [KINS] KINEMATICS: the name of the module
+    std::string kinematics_settings; // what follows it, such as sparm=identityfirst
+    std::string coordinates;         // [TRAJ] COORDINATES: the letter of each joint
+    HalSettings hal;                 // [HAL] HALCMD, HALFILE; [DISPLAY] PYVCP
+    // [RS274NGC] REMAP: codes such as M428 with the subprogram that runs in their place.
+    std::map<std::string, std::string> remaps;
+    std::vector<std::string> other_remaps; // codes that more than a plain subprogram replaces
+    std::vector<std::string> unread_files; // with HAL commands or a panel
     std::string locking_indexers; // letters of axes, or joints, that only turn on their own
     std::optional<gcode::LengthUnit> machine_unit; // [TRAJ] LINEAR_UNITS
     std::string parameters;                        // [RS274NGC] PARAMETER_FILE
@@ -45,9 +53,14 @@ core::Result<IniFile> read_ini(const std::string& path);
 /// What the machine of an ini file does at a tool change.
 gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit machine_unit);
 
-/// Adds limits, speeds, accelerations and homes from a LinuxCNC ini file to axes of a machine that
-/// lack them: from [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a machine whose joints
-/// are its axes, in the order X Y Z A B C U V W.
+/// Adds the rotary axes of the kinematics in an ini file to a machine that has none.
+///
+/// Result: a note for the user if the machine has other ones; else empty.
+std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& environment);
+
+/// take_rotary_axes, and adds limits, speeds, accelerations and homes from a LinuxCNC ini file to
+/// axes of a machine that lack them: from [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a
+/// machine whose joints are its axes, in the order X Y Z A B C U V W.
 ///
 /// `with_positions`: also take limits and homes, which are meaningless if the work offsets are
 /// assumed.

@@ -8,6 +8,7 @@
 
 #include "app/base/text.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/linuxcnc_kinematics.h"
 #include "app/setup/table_reader.h"
 #include "app/setup/tools/tool_file.h"
 #include "core/base/file_reads.h"
@@ -60,6 +61,58 @@ std::string existing(const std::string& path, const ProgramSettings& settings,
     return {};
 }
 
+/// The kinematics of an ini file, and the values of its HAL pins.
+void take_kinematics(const IniFile& ini, const ProgramSettings& settings,
+                     gcode::Environment& environment, std::vector<std::string>& notes) {
+    environment.hal_values = ini.hal.values();
+    for (const auto& [name, value] : settings.named_values)
+        if (value && name.starts_with("_hal[")) environment.hal_values[name] = *value;
+    environment.remaps = ini.remaps;
+    for (const std::string& code : ini.other_remaps)
+        notes.push_back(
+            fmt::format("{}: REMAP of {} is ignored, because it has more than ngc=: the "
+                        "code counts as LinuxCNC's own",
+                        settings.ini, code));
+    auto kinematics = linuxcnc_kinematics(ini.kinematics, ini.kinematics_settings, ini.hal,
+                                          settings.named_values);
+    if (!kinematics) return;
+    if (!ini.coordinates.empty()
+        && ini.kinematics_settings.find("coordinates=") == std::string::npos)
+        kinematics->switches.coordinates = ini.coordinates;
+    environment.kinematics = std::move(kinematics->switches);
+    for (const std::string& file : ini.unread_files)
+        notes.push_back(fmt::format("{}: {} could not be read; what it sets and connects is not "
+                                    "taken into account",
+                                    settings.ini, file));
+    for (const std::string& note : kinematics->notes)
+        notes.push_back(fmt::format("{}: {}", settings.ini, note));
+}
+
+/// The subprograms of remapped codes may be beside the ini file instead of in its folders for
+/// subprograms.
+void add_folder_of_remaps(const IniFile& ini, const std::string& path,
+                          std::vector<std::string>& search_path, std::vector<std::string>& notes) {
+    const std::filesystem::path own = std::filesystem::path(path).parent_path();
+    const auto is_in = [](const std::filesystem::path& folder, const std::string& name) {
+        return core::is_there((folder / (name + ".ngc")).generic_string());
+    };
+    for (const auto& [code, name] : ini.remaps) {
+        const auto has_it = [&](const std::string& folder) { return is_in(folder, name); };
+        if (std::any_of(search_path.begin(), search_path.end(), has_it)) continue;
+        if (is_in(own, name)) {
+            notes.push_back(
+                fmt::format("{}: {}.ngc, which runs in place of {}, is beside this file "
+                            "and not in SUBROUTINE_PATH",
+                            path, name, code));
+            search_path.push_back(own.empty() ? "." : own.generic_string());
+        } else {
+            notes.push_back(fmt::format("{}: {}.ngc, which runs in place of {}, is not in "
+                                        "SUBROUTINE_PATH: what {} does is not known",
+                                        path, name, code, code));
+        }
+    }
+}
+
 /// Completes the settings from their ini file; values that only programs use go to the environment.
 core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environment& environment,
                                        std::vector<std::string>& notes) {
@@ -80,6 +133,8 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
     stated.search_path = ini.search_path;
     environment.startup_code = ini.startup_code;
     environment.wrapped_axes = ini.wrapped_axes;
+    take_kinematics(ini, settings, environment, notes);
+    add_folder_of_remaps(ini, settings.ini, stated.search_path, notes);
     return overlaid(stated, settings);
 }
 

@@ -28,11 +28,12 @@
 
 namespace app {
 
-/// Reads `[machine]` or a machine file. Values that it does not state are unchanged.
+/// Reads `[machine]` or a machine file. Values that it does not state are unchanged. A machine
+/// without rotary axes gets those of the kinematics in the ini file.
 ///
 /// Result: whether it states axes.
 bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source,
-                  bool has_own_axes = false);
+                  const gcode::Environment& environment, bool has_own_axes = false);
 
 namespace {
 
@@ -245,13 +246,14 @@ void answer_rapids(const TableReader& table, SetupFile& file) {
 } // namespace
 
 bool read_machine(TableReader& table, core::Machine& machine, const MeshSource& source,
-                  bool has_own_axes) {
+                  const gcode::Environment& environment, bool has_own_axes) {
     AxisList list;
     const core::Machine before = machine;
     for (TableReader& axis : table.tables("axis", "[[axis]]")) read_axis(axis, machine, list);
     const bool has_axes = !list.order.empty();
     if (has_axes)
         connect(table, machine, has_own_axes ? with_axes_before(before, machine, list) : list);
+    (void)take_rotary_axes(machine, environment);
     for (TableReader& body : table.tables("body", "[[body]]"))
         read_machine_body(body, machine, source);
     if (const auto rapid = table.word("rapid", {"straight", "dogleg"}))
@@ -388,7 +390,8 @@ std::string read_library_machine(const std::string& path, SetupFile& file,
     }
     TableReader table(read->machine, "machine", error);
     file.has_axes = read_machine(table, file.setup.machine,
-                                 {std::filesystem::path(path).parent_path(), file.assumptions});
+                                 {std::filesystem::path(path).parent_path(), file.assumptions},
+                                 file.environment);
     for (const std::string& note : read->notes)
         file.assumptions.push_back(fmt::format("{}: {}", path, note));
     if (error && error->file.empty()) error->file = path;
@@ -406,7 +409,8 @@ void read_machine_file(const std::string& path, SetupFile& file,
         table.read_unit();
         read_control(table, file.control);
         file.has_axes = read_machine(table, file.setup.machine,
-                                     {std::filesystem::path(path).parent_path(), file.assumptions});
+                                     {std::filesystem::path(path).parent_path(), file.assumptions},
+                                     file.environment);
         answer_rapids(table, file);
     }
     if (error && error->file.empty()) error->file = path;
@@ -419,7 +423,8 @@ std::string read_named_machine(TableReader& table, SetupFile& file,
     const auto preset = read_machine_preset(table);
     if (!preset) return {};
     TableReader reader(preset->machine, "machine", error);
-    file.has_axes = read_machine(reader, file.setup.machine, {{}, file.assumptions});
+    file.has_axes =
+        read_machine(reader, file.setup.machine, {{}, file.assumptions}, file.environment);
     file.assumptions.insert(file.assumptions.end(), preset->notes.begin(), preset->notes.end());
     return preset->others;
 }
@@ -437,7 +442,8 @@ void read_machine_table(TableReader& table, BodyContext& context,
             read_machine_file(path, context.file, error);
     }
     const bool leaves_axes_out = table.word("other_axes", {"not described"}).has_value();
-    if (read_machine(table, machine, context.meshes(), context.file.has_axes))
+    if (read_machine(table, machine, context.meshes(), context.file.environment,
+                     context.file.has_axes))
         context.file.has_axes = true;
     answer_rapids(table, context.file);
     const bool lacks_axes = std::any_of(others.begin(), others.end(), [&](char letter) {
@@ -701,6 +707,7 @@ void read_root(TableReader& root, const toml::table& text, BodyContext& context,
     read_control(root, file.control);
     if (!file.dialect && file.control.preset) file.dialect = file.control.preset->dialect;
     const std::string note = complete_machine(setup.machine, file.environment, true);
+    file.has_axes |= file.environment.kinematics && file.environment.kinematics->machine;
     if (!note.empty()) file.assumptions.push_back(note);
     if (auto table = root.table("offsets", "[offsets]")) read_offsets(*table, file);
     file.infers_frame = states_no_work_position(text, file);

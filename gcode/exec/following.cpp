@@ -8,6 +8,7 @@
 #include "core/base/rule_table.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/readings.h"
 #include "gcode/text/source.h"
 
 namespace gcode {
@@ -114,7 +115,14 @@ void report(Execution& execution) {
     std::string cure = "Check this part of the program at the machine, or switch the "
                        "transformation off before it.";
     const bool follows_tip = follows_without_machine(execution.modal());
-    if (following.line == 0 || follows_tip || tilts_without_machine(execution.modal())) {
+    const bool tilts = tilts_without_machine(execution.modal());
+    if (following.line == 0 && following.code[0] != 0 && !follows_tip && !tilts) {
+        why = fmt::format("{} is active from the start: the linear axes follow the rotary ones, "
+                          "and where these are is not known",
+                          following.code.data());
+        cure = "State the values of its pins under [program.values] in the set-up, or describe the "
+               "rotary axes of the machine as [[machine.axis]].";
+    } else if (following.line == 0 || follows_tip || tilts) {
         why = fmt::format("{} needs the rotary axes of the machine, which are not described",
                           follows_tip ? "tool centre point control" : "a tilted plane");
         cure = "Describe the machine in a set-up, with its rotary axes as [[axis]].";
@@ -135,13 +143,39 @@ void report(Execution& execution) {
          core::rule_id("undecided"), std::move(cure)});
 }
 
+/// LinuxCNC: from now on, X, Y and Z are the tip of the tool as seen from the work, or the axes of
+/// the machine.
+void follow_in_world(Execution& execution, bool on) {
+    Offsets offsets = execution.modal().offsets;
+    if (offsets.has_world == on) return;
+    offsets.follows_tip = offsets.has_world = on;
+    change_offsets(execution, offsets);
+    execution.emit(SetOffset{offsets});
+}
+
+/// Executes such a code, in a block without a motion. False if it may be anything else.
+bool switches_as_in_samples(Execution& execution, const Word& word) {
+    if (!is_switch_of_samples(execution, word) || moves(execution)) return false;
+    const bool on = answer_to(execution.state, execution.environment,
+                              ControlQuestion::m428_follows_tip, execution.block.line)
+                    == (word.value == 428.0);
+    follow_in_world(execution, on);
+    return true;
+}
+
 /// Unknown M codes may switch a transformation.
 void note_unknown_codes(Execution& execution) {
     for (const Word* word : execution.statement.unknown_m_codes)
-        switch_following(execution, word->span, written(*word), FollowingSwitch::perhaps);
+        if (!switches_as_in_samples(execution, *word))
+            switch_following(execution, word->span, written(*word), FollowingSwitch::perhaps);
 }
 
 } // namespace
+
+bool is_switch_of_samples(const Execution& execution, const Word& word) {
+    return execution.dialect.id == DialectId::linuxcnc && !execution.environment.kinematics
+           && execution.modal().offsets.machine && (word.value == 428.0 || word.value == 429.0);
+}
 
 bool is_away_from_zero(size_t axis, double value) {
     constexpr double slack = 1e-9;
@@ -184,6 +218,45 @@ bool switch_tip_control(Execution& execution, bool on) {
     execution.emit(UseToolLengthOffset{modal.length_number, offsets.tool, on,
                                        lacks_length(*execution.state.tables, modal.length_number)});
     return true;
+}
+
+core::Result<void> switch_kinematics(Execution& execution, core::SourceSpan where,
+                                     std::string_view code, double number) {
+    const SwitchableKinematics& kinematics = *execution.environment.kinematics;
+    const size_t count = kinematics.types.size();
+    if (!(number >= 0.0 && number < static_cast<double>(count)) || number != std::floor(number))
+        return core::fail(core::ErrorCode::invalid_value,
+                          fmt::format("{}: {} has kinematics 0 to {}, not {:g}", code,
+                                      kinematics.module, count - 1, number),
+                          where);
+    ModalState& modal = execution.modal();
+    const SwitchableKinematics::Type type = kinematics.types[static_cast<size_t>(number)];
+    const bool tip = type == SwitchableKinematics::Type::tip;
+    const bool is_known =
+        type == SwitchableKinematics::Type::axes || (tip && modal.offsets.machine != nullptr);
+    follow_in_world(execution, is_known && tip);
+    modal.kinematics = static_cast<int>(number);
+    if (!is_known)
+        switch_following(execution, where, code, FollowingSwitch::on);
+    else if (modal.following.may_be_on)
+        switch_following(execution, where, code, FollowingSwitch::off);
+    return {};
+}
+
+void begin_kinematics(ModalState& modal, const Environment& environment) {
+    if (!environment.kinematics) return;
+    const SwitchableKinematics& kinematics = *environment.kinematics;
+    const auto first =
+        kinematics.types.empty() ? SwitchableKinematics::Type::axes : kinematics.types.front();
+    if (first == SwitchableKinematics::Type::axes) return;
+    if (first == SwitchableKinematics::Type::tip && modal.offsets.machine) {
+        modal.offsets.follows_tip = modal.offsets.has_world = true;
+        return;
+    }
+    Following& following = modal.following;
+    following.code.fill('\0');
+    kinematics.module.copy(following.code.data(), following.code.size() - 1);
+    following.may_be_on = true;
 }
 
 void check_turn(Execution& execution, const ModalState& before, size_t axis, Addressing way,

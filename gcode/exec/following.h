@@ -9,6 +9,7 @@
 
 namespace gcode {
 
+struct Environment;
 struct Execution;
 struct ModalState;
 
@@ -30,6 +31,19 @@ void switch_following(Execution& execution, core::SourceSpan where, std::string_
 /// False, and nothing changes, if the rotary axes of the machine are not described, or if the
 /// length of the tool does not count along Z.
 bool switch_tip_control(Execution& execution, bool on);
+
+/// M428 or M429 of a LinuxCNC machine with described rotary axes, whose ini file is not given.
+bool is_switch_of_samples(const Execution& execution, const Word& word);
+
+/// Switches to another of the kinematics of a LinuxCNC machine, by number. The machine stays where
+/// it is.
+///
+/// Errors: invalid_value if the environment's kinematics have no such number.
+core::Result<void> switch_kinematics(Execution& execution, core::SourceSpan where,
+                                     std::string_view code, double number);
+
+/// The kinematics with which a LinuxCNC machine starts.
+void begin_kinematics(ModalState& modal, const Environment& environment);
 
 /// Records that a code moved X, Y and Z to places that are not known, with the finding `why`.
 void lose_positions(Execution& execution, core::SourceSpan where, std::string why,

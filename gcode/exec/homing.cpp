@@ -100,12 +100,12 @@ Position home_of(Execution& execution, const CodeWord& entry) {
 /// A rapid to a position in machine coordinates; axes without a value stay.
 void traverse_in_machine(Execution& execution, const Position& to) {
     const ModalState& modal = execution.modal();
-    const Offsets offsets = without_rotary_tool(modal.offsets);
-    Position machine = machine_from_program(modal.offsets, modal.position);
+    const Offsets offsets = counted_offsets(modal.offsets);
+    Position machine = machine_from_program(offsets, modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (to[axis]) machine[axis] = to[axis];
-    const bool turned = mixes_axes(modal.offsets);
-    const Position position = program_from_machine(offsets, machine);
+    const bool turned = mixes_axes(offsets);
+    const Position position = program_from_machine(without_rotary_tool(offsets), machine);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (to[axis] || (turned && axis < 3)) end[axis] = position[axis];
@@ -115,7 +115,7 @@ void traverse_in_machine(Execution& execution, const Position& to) {
 /// Stores the intermediate point for G29. Axes that this block does not name keep theirs.
 void keep_way_home(Execution& execution, bool all) {
     ModalState& modal = execution.modal();
-    const Position machine = machine_from_program(modal.offsets, modal.position);
+    const Position machine = machine_from_program(counted_offsets(modal.offsets), modal.position);
     if (!modal.way_home) modal.way_home = machine;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (all || execution.statement.word(axis_letters[axis]))
@@ -135,7 +135,8 @@ core::Result<void> go_home(Execution& execution) {
     }
     keep_way_home(execution, all);
     const Position home = home_of(execution, entry);
-    Position machine = machine_from_program(modal.offsets, modal.position);
+    const Offsets offsets = counted_offsets(modal.offsets);
+    Position machine = machine_from_program(offsets, modal.position);
     std::array<bool, axis_count> moves{};
     for (size_t axis = 0; axis < axis_count; ++axis) {
         moves[axis] = all || execution.statement.word(axis_letters[axis]);
@@ -143,9 +144,9 @@ core::Result<void> go_home(Execution& execution) {
     }
     // In a rotated frame, a motion of one machine axis changes all three coordinates. With a
     // rotated work offset, LinuxCNC moves along the axes of the program instead.
-    const bool turned = modal.offsets.has_frame || is_fixed_to_work(modal.offsets);
+    const bool turned = offsets.has_frame || is_fixed_to_work(offsets);
     const Position position =
-        program_from_machine(without_rotary_tool(modal.offsets), turned ? machine : home);
+        program_from_machine(without_rotary_tool(offsets), turned ? machine : home);
     Position end = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (moves[axis] || (turned && axis < 3)) end[axis] = position[axis];
@@ -182,7 +183,7 @@ core::Result<void> check_home(Execution& execution) {
     const ModalState& modal = execution.modal();
     FEELER_TRY(const Position end, target_of(execution));
     execution.traverse(end);
-    const Position machine = machine_from_program(modal.offsets, modal.position);
+    const Position machine = machine_from_program(counted_offsets(modal.offsets), modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         const Word* word = execution.statement.word(axis_letters[axis]);
         const std::optional<double>& home = modal.home[axis];
@@ -205,7 +206,7 @@ core::Result<void> return_from_home(Execution& execution) {
             core::ErrorCode::missing_value,
             "G29 returns through the intermediate point of G28, but no G28 came before it",
             entry.word->span);
-    const Position between = program_from_machine(modal.offsets, *modal.way_home);
+    const Position between = program_from_machine(counted_offsets(modal.offsets), *modal.way_home);
     Position over = modal.position;
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (execution.statement.word(axis_letters[axis])) over[axis] = between[axis];
@@ -292,7 +293,7 @@ core::Result<void> store_home(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
     Position& home = entry.code->number == g_code(28, 1) ? modal.home : modal.second_home;
-    const Position machine = machine_from_program(modal.offsets, modal.position);
+    const Position machine = machine_from_program(counted_offsets(modal.offsets), modal.position);
     for (size_t axis = 0; axis < axis_count; ++axis) {
         if (machine[axis])
             home[axis] = machine[axis];

@@ -140,6 +140,7 @@ struct Interpreter::Scratch {
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
+    core::Result<void> become_call();
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, ProgramLine here);
     core::Result<bool> try_next(InterpreterState& state);
@@ -263,7 +264,27 @@ void Interpreter::Scratch::take_back(InterpreterState& state) {
     restore(state, before);
 }
 
+/// A line that is only a code which LinuxCNC's ini file remaps, such as M428: a call of the
+/// subprogram that runs in its place, if there is one.
+core::Result<void> Interpreter::Scratch::become_call() {
+    if (block.words.size() != 1 || block.flow.kind != FlowKind::none) return {};
+    const Word word = block.words.front();
+    const auto remap = environment.remaps.find(written(word));
+    if (remap == environment.remaps.end()) return {};
+    FEELER_TRY(const auto file, library.find({remap->second + ".ngc", remap->second + ".NGC"}));
+    if (!file) return {};
+    block.words.clear();
+    block.flow = {.kind = FlowKind::call,
+                  .span = word.span,
+                  .label_name = static_cast<uint32_t>(block.pool.names.size()),
+                  .has_label = true};
+    block.pool.names.push_back(remap->second);
+    return {};
+}
+
 core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
+    if (!environment.remaps.empty())
+        if (auto done = become_call(); !done) return done;
     ProgramParameters parameters(state, environment);
     const bool is_plain = block.flow.kind == FlowKind::none && block.pool.instructions.empty()
                           && block.assignments.empty();
@@ -498,6 +519,7 @@ InterpreterState initial_state(const Environment& environment) {
     if (environment.machine && environment.machine->has_rotary())
         modal.offsets.machine = environment.machine.get();
     restore_offsets(state, environment);
+    begin_kinematics(modal, environment);
     Position start = environment.start;
     // Axes beyond X, Y and Z without a given position are at zero, or absent.
     for (size_t axis = 3; axis < axis_count; ++axis)

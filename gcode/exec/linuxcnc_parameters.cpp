@@ -206,13 +206,21 @@ std::optional<Value> linuxcnc_parameter(const InterpreterState& state,
         if (found == environment.ini_values.end()) return std::nullopt;
         return Value{found->second};
     }
+    if (name.starts_with("_hal[")) {
+        if (environment.kinematics && name == "_hal[motion.switchkins-type]")
+            return Value{static_cast<double>(state.modal.kinematics)};
+        const auto found = environment.hal_values.find(std::string(name));
+        if (found == environment.hal_values.end()) return std::nullopt;
+        return Value{found->second};
+    }
     if (name.size() == 2 || name.starts_with("_abs_")) {
         const size_t axis = axis_letters.find(upper(name.back()));
         if (axis != std::string_view::npos && (name.size() == 2 || name.size() == 6)) {
             const ModalState& modal = state.modal;
-            const Position position = name.size() == 2
-                                          ? modal.position
-                                          : machine_from_program(modal.offsets, modal.position);
+            const Position position =
+                name.size() == 2
+                    ? modal.position
+                    : machine_from_program(counted_offsets(modal.offsets), modal.position);
             return shown(position[axis].value_or(0.0), axis, modal.unit);
         }
     }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "gcode/exec/execution.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/modes.h"
 #include "gcode/exec/probing.h"
 #include "gcode/exec/program_parameters.h"
@@ -30,6 +31,11 @@ core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
         const Word* word = execution.statement.word('Q');
         value = word ? word->value : -1.0;
     }
+    if (analog && execution.environment.kinematics
+        && execution.environment.kinematics->output == number)
+        if (auto done = switch_kinematics(execution, entry.word->span, written(*entry.word), value);
+            !done)
+            return done;
     const bool with_motion = code == m_code(62) || code == m_code(63) || code == m_code(67);
     execution.emit(SetOutput{number, value, analog, with_motion});
     return {};

@@ -268,13 +268,14 @@ core::Result<Position> target_of(const Execution& execution) {
     if (in_machine_coordinates(execution)) {
         if (auto checked = refuse_polar_words(execution); !checked)
             return tl::unexpected(std::move(checked).error());
-        Position machine = machine_from_program(modal.offsets, modal.position);
+        const Offsets offsets = counted_offsets(modal.offsets);
+        Position machine = machine_from_program(offsets, modal.position);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (const Word* word = execution.statement.word(axis_letters[axis])) {
                 FEELER_TRY(machine[axis], machine_target(execution, axis, *word, machine[axis]));
             }
-        const Position position = program_from_machine(without_rotary_tool(modal.offsets), machine);
-        const bool turned = mixes_axes(modal.offsets);
+        const Position position = program_from_machine(without_rotary_tool(offsets), machine);
+        const bool turned = mixes_axes(offsets);
         for (size_t axis = 0; axis < axis_count; ++axis)
             if (execution.statement.word(axis_letters[axis]) || (turned && axis < 3))
                 target[axis] = position[axis];

@@ -78,13 +78,13 @@ void report_measured(Execution& execution, const core::SourceSpan where, size_t 
 /// position is not known, the origin stays and the axis is lost.
 core::Result<LostAxes> write_origin_here(const Execution& execution, WorkOffset& offset) {
     const ModalState& modal = execution.modal();
-    const Position machine = machine_from_program(modal.offsets, modal.position);
+    Offsets there = counted_offsets(modal.offsets);
+    const Position machine = machine_from_program(there, modal.position);
     if (const Word* word = execution.statement.word('R'))
         return core::fail(
             ErrorCode::syntax,
             fmt::format("{}: G10 L20 does not rotate an offset: use L2", written(*word)),
             word->span);
-    Offsets there = modal.offsets;
     there.work = offset;
     Position read = program_from_machine(there, machine);
     LostAxes lost{};
@@ -205,7 +205,7 @@ void use_written_offset(Execution& execution, const CodeWord& entry) {
     const bool shifted = before.axis[0] != 0.0 || before.axis[1] != 0.0;
     if (!execution.dialect.offset_writes_miss_axis_offset || !turned || !shifted)
         return use(execution, offsets);
-    Offsets plain_before = before, plain = offsets;
+    Offsets plain_before = counted_offsets(before), plain = counted_offsets(offsets);
     plain_before.axis = plain.axis = zero_position;
     modal.position =
         program_from_machine(plain, machine_from_program(plain_before, modal.position));

@@ -132,6 +132,12 @@ core::Result<Value> ProgramParameters::named(std::string_view name, core::Source
     const auto found = all.find(name);
     if (found == all.end() && dialect_.names_are_declared) return undeclared(name, where);
     if (found == all.end() && may_be_left(name)) return Value{0.0};
+    if (found == all.end() && name.starts_with("_hal["))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("#<{0}> is a value of the machine: give its ini file, or "
+                                      "state \"#<{0}>\" under [program.values] in the set-up",
+                                      name),
+                          where);
     if (found == all.end())
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("#<{}> is used before it is set", name), where);

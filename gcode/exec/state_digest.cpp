@@ -22,6 +22,7 @@ void add(Digest& digest, const Offsets& offsets) {
     add_all(digest, offsets.tool);
     digest.add(uint64_t{offsets.tilted_plane});
     digest.add(uint64_t{offsets.follows_tip});
+    digest.add(uint64_t{offsets.has_world});
     digest.add(uint64_t{offsets.has_frame});
     if (!offsets.has_frame) return;
     for (int row = 0; row < 3; ++row) {

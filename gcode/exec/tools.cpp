@@ -7,6 +7,7 @@
 
 #include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/control.h"
@@ -57,12 +58,26 @@ void lose_height(Execution& execution) {
          "State touched_off, or the holder and the stick-out, of each tool in the set-up."});
 }
 
+/// While kinematics of LinuxCNC follow the tip, another length makes the linear axes jump, unless
+/// the rotary ones are at 0.
+void lose_place_of_tip(Execution& execution, const AxisValues& offset) {
+    const ModalState& modal = execution.modal();
+    if (offset == modal.offsets.tool || !is_work_turned(modal)) return;
+    lose_positions(execution, {execution.block.line, execution.column, 0},
+                   "the tool length changes while the control follows the tip and a rotary axis is "
+                   "away from 0: the linear axes jump. This block and later ones are not checked "
+                   "until the positions are certain again",
+                   "Change the length with the rotary axes at 0, or after M429.");
+}
+
 void use_offset(Execution& execution, std::optional<OffsetNumber> number, const AxisValues& offset,
                 bool follows_tip = false) {
     ModalState& modal = execution.modal();
     Offsets offsets = modal.offsets;
     offsets.tool = offset;
+    follows_tip |= offsets.has_world;
     offsets.follows_tip = follows_tip;
+    if (offsets.has_world) lose_place_of_tip(execution, offset);
     const bool is_by_guess =
         number != modal.length_number
         && (is_guess(execution, number) || is_guess(execution, modal.length_number));
@@ -535,8 +550,8 @@ Position shift_of(const LengthOffset& entry) {
 core::Result<void> take_offsets_here(const Execution& execution, bool in_last_offset,
                                      LengthOffset& entry) {
     const ModalState& modal = execution.modal();
-    const Position machine = machine_from_program(modal.offsets, modal.position);
-    const Offsets offsets = reading_offsets(execution, in_last_offset);
+    const Position machine = machine_from_program(counted_offsets(modal.offsets), modal.position);
+    const Offsets offsets = counted_offsets(reading_offsets(execution, in_last_offset));
     Offsets only_turned;
     only_turned.work.rotation_deg = offsets.work.rotation_deg;
     const Position read = program_from_machine(offsets, machine);

@@ -7,6 +7,7 @@
 #include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/following.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/error_rules.h"
 
@@ -105,12 +106,14 @@ std::optional<double> length_word(const Execution& execution, char letter) {
 }
 
 void warn_of_unknown_m_codes(Execution& execution) {
-    for (const Word* word : execution.statement.unknown_m_codes)
+    for (const Word* word : execution.statement.unknown_m_codes) {
+        if (is_switch_of_samples(execution, *word)) continue;
         execution.warn(
             word->span,
             fmt::format(
                 "{}: unknown M code, probably of the machine builder: what it does is not checked",
                 written(*word)));
+    }
 }
 
 namespace {

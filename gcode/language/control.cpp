@@ -247,6 +247,10 @@ constexpr ParameterValue half_turns[] = {
     {0, false, "half a turn of a rotary axis goes in the positive direction"},
     {1, true, "half a turn of a rotary axis goes in the negative direction"},
 };
+constexpr ParameterValue meanings_of_m428[] = {
+    {1, true, "M428 switches to tool centre point control, and M429 back", "TCP"},
+    {0, false, "M428 switches tool centre point control off, and M429 on", "identity"},
+};
 constexpr ParameterRange of_blocks{3.0, 8.0, "blocks"};
 
 constexpr std::string_view program_g90 = "Program G90 before the first move.";
@@ -622,6 +626,8 @@ constexpr ControlParameter parameters[] = {
      follow_all,
      "Fanuc B-63944EN, rotary axis roll-over: the shorter way",
      "Program a position less than half a turn away, or an incremental angle."},
+    {m428_follows_tip, linuxcnc, "M428", "what M428 and M429 switch to", meanings_of_m428,
+     follow_all, "LinuxCNC 2.9, switchable kinematics; the remaps of its sample machines"},
     {one_way_is_modal, fanuc, "5431#0", "parameter 5431#0 (MDL)", one_way, assume,
      "Fanuc B-63950EN, parameters of single direction positioning"},
 };

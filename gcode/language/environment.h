@@ -71,12 +71,14 @@ enum class ControlQuestion : uint8_t {
     rotary_rolls_over,     // positions of rotary axes count within a turn
     rotary_follows_sign,   // if so, the sign of the word is the direction; otherwise the short way
     half_turn_is_negative, // the short way of half a turn is the negative direction
-    increment_is_finer,    // the least increment is 0.0001 mm instead of 0.001 mm
-    increment_is_coarser,  // it is 0.01 mm
-    corner_tolerance,      // how far corners are rounded unless the program states it, mm
-    arc_tolerance,         // allowed difference between the radii of an arc, mm
-    arc_tolerance_inch,    // likewise under G20, inches
-    one_way_is_modal,      // G60 belongs to the group of G0
+    m428_follows_tip,   // LinuxCNC without its ini file: M428 switches to tool centre point control
+                        // and M429 back; otherwise the other way round
+    increment_is_finer, // the least increment is 0.0001 mm instead of 0.001 mm
+    increment_is_coarser, // it is 0.01 mm
+    corner_tolerance,     // how far corners are rounded unless the program states it, mm
+    arc_tolerance,        // allowed difference between the radii of an arc, mm
+    arc_tolerance_inch,   // likewise under G20, inches
+    one_way_is_modal,     // G60 belongs to the group of G0
     // Siemens:
     machine_moves_tip,    // machine coordinates are those of the tip; otherwise of the gauge line
     length_keeps_axis,    // the tool length stays along Z in each plane
@@ -138,6 +140,20 @@ struct ToolChangeMotion {
     bool is_stated = false;             // also that it does nothing
 };
 
+/// The kinematics between which a LinuxCNC machine switches, by number; 0 is active at the start.
+struct SwitchableKinematics {
+    enum class Type : uint8_t {
+        axes,  // X, Y and Z are the axes of the machine
+        tip,   // they are the tip of the tool, as seen from the work
+        other, // not known
+    };
+    std::string module; // such as xyzac-trt-kins
+    std::vector<Type> types;
+    std::optional<int> output;                    // the analogue output of M68 that selects one
+    std::string coordinates;                      // the letter of each joint
+    std::shared_ptr<const core::Machine> machine; // its rotary axes; null: they are not known
+};
+
 /// The state of the control before the program starts. Lengths in mm, positions in machine
 /// coordinates.
 struct Environment {
@@ -172,7 +188,11 @@ struct Environment {
     std::string startup_code{};         // executed before the first block; sets modes and offsets
     std::string wrapped_axes{}; // letters of rotary axes with absolute positions in one turn, whose
                                 // sign is the direction (LinuxCNC's WRAPPED_ROTARY)
-    std::map<std::string, double> ini_values{}; // LinuxCNC's ini file, by names such as _ini[traj]x
+    // LinuxCNC's ini file. Values by names such as _ini[traj]x and _hal[motion.switchkins-type];
+    // subprograms that run in place of codes such as M428.
+    std::map<std::string, double> ini_values{}, hal_values{};
+    std::map<std::string, std::string> remaps{};
+    std::optional<SwitchableKinematics> kinematics{};
     std::vector<std::string> search_path{}; // folders of subprograms; empty: the program's folder
     std::set<int> known_m_codes{};          // of the machine builder; ignored without a warning
     Limits limits{};

@@ -55,12 +55,12 @@ AxisValues shift_of(const ProgramFrame& frame) {
     return {frame.shift.x, frame.shift.y, frame.shift.z};
 }
 
-/// Machine from table coordinates, with the rotary axes at the values stored in the work offset,
-/// for which its X, Y and Z are valid.
+/// Machine from table coordinates, with the rotary axes at the values for which X, Y and Z of the
+/// work offset are valid: those stored in it, or 0.
 core::Transform machine_from_table(const Offsets& offsets) {
     AxisValues rotary{};
     for (size_t axis = 0; axis < axis_count; ++axis)
-        if (is_rotary(axis)) rotary[axis] = offsets.work.origin[axis];
+        if (is_rotary(axis) && !offsets.has_world) rotary[axis] = offsets.work.origin[axis];
     return core::machine_from_link(*offsets.machine, offsets.machine->table, rotary);
 }
 
@@ -173,6 +173,11 @@ Position program_from_machine(const Offsets& offsets, const Position& machine) {
         map(glm::inverse(offsets.frame.linear), position);
     }
     return position;
+}
+
+Offsets counted_offsets(Offsets offsets) {
+    if (offsets.has_world) offsets.follows_tip = offsets.has_world = false;
+    return offsets;
 }
 
 Offsets without_rotary_tool(Offsets offsets) {

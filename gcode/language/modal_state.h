@@ -63,6 +63,9 @@ struct Offsets {
     bool has_frame = false;    // `frame` is not the identity
     bool tilted_plane = false; // G68.2
     bool follows_tip = false;  // G43.4, G43.5: the tip moves straight relative to the work
+    // With `follows_tip`, as LinuxCNC's kinematics do it: machine coordinates are those of the tip
+    // at rotary axes of 0, plus the tool length, and so are the origins of all work offsets.
+    bool has_world = false;
     const core::Machine* machine = nullptr; // set if its rotary axes are known; outlives all states
 
     bool operator==(const Offsets&) const = default;
@@ -78,6 +81,10 @@ inline bool is_fixed_to_work(const Offsets& offsets) {
 inline bool mixes_axes(const Offsets& offsets) {
     return offsets.has_frame || offsets.work.rotation_deg != 0.0 || is_fixed_to_work(offsets);
 }
+
+/// The offsets with which the control counts machine coordinates (G53, G28, G10 L20): of the tip if
+/// it `has_world`, else of the gauge line.
+Offsets counted_offsets(Offsets offsets);
 
 /// The tip position in the frame of the table's link, from coordinates of the work offset, mm.
 core::Vec3 table_from_work(const Offsets& offsets, const core::Vec3& work);
@@ -289,7 +296,8 @@ struct ModalState {
     std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is derived from them
     Following following;
-    uint8_t doubt = 0; // bits: tool_is_in_doubt ...
+    uint8_t doubt = 0;  // bits: tool_is_in_doubt ...
+    int kinematics = 0; // LinuxCNC: the number of the active kinematics, of those it can switch
     // Siemens: how far the position programmed last has moved with the zero offset and the tool
     // length since then. Incremental words may travel it, too.
     AxisValues offset_travel{}, length_travel{};

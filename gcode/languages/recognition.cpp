@@ -311,7 +311,7 @@ bool states_tolerance(const Block& block) {
 void observe(const Block& block, Habits& habits) {
     habits.has_tape_mark |= block.tape_mark;
     bool homes = false, length = false, offset_number = false, moves = false, cancels = false;
-    bool arcs = false, names_axis = false;
+    bool arcs = false, names_axis = false, switches = false;
     const std::string_view refused = dialect(DialectId::grbl).refused_letters;
     for (const Word& word : block.words) {
         const bool g = word.letter == 'G' && !word.expression;
@@ -323,6 +323,8 @@ void observe(const Block& block, Habits& habits) {
         cancels |= g && (word.value == 49.0 || word.value == 80.0);
         habits.has_refused_words |= refused.find(word.letter) != std::string_view::npos;
         offset_number |= word.letter == 'H';
+        switches |=
+            word.letter == 'M' && !word.expression && (word.value == 428.0 || word.value == 429.0);
         habits.changes_tools |= word.letter == 'T' || (word.letter == 'M' && word.value == 6.0);
         for (size_t i = 0; g && i < candidates.size(); ++i) {
             const bool unknown = !find_code('G', word.value, candidates[i]);
@@ -334,6 +336,9 @@ void observe(const Block& block, Habits& habits) {
     remember(habits.first_crowd, homes && moves, block.line);
     if (!habits.linuxcnc && states_tolerance(block))
         habits.linuxcnc = found(DialectId::linuxcnc, block.line, "has G64 with P or Q");
+    if (!habits.linuxcnc && switches)
+        habits.linuxcnc = found(DialectId::linuxcnc, block.line,
+                                "has M428 or M429, which switch kinematics of LinuxCNC");
     habits.has_refused_words |= (moves && cancels) || (arcs && !names_axis);
 }
 

@@ -1,3 +1,6 @@
+#include <filesystem>
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "tests/app/checked.h"
@@ -62,15 +65,60 @@ TEST(FollowingAxes, NothingIsUndecidedWhileTheRotaryAxesAreAtZero) {
 }
 
 TEST(FollowingAxes, AnUnknownMCodeMayDoItTooUnlessTheSetupKnowsIt) {
-    const std::string program = text("G0 G43 H1 Z50.\nM428\nX-40. Y0\nA30.\nX-30.\nA0\nX-20.");
+    const std::string program = text("G0 G43 H1 Z50.\nM477\nX-40. Y0\nA30.\nX-30.\nA0\nX-20.");
     const Checked unknown = check(cube(), program, {"--dialect", "linuxcnc"});
     EXPECT_EQ(unknown.errors(), "undecided 8");
-    EXPECT_NE(unknown.finding("undecided").message.find("M428 in line 6"), std::string::npos);
+    EXPECT_NE(unknown.finding("undecided").message.find("M477 in line 6"), std::string::npos);
     EXPECT_EQ(unknown.at_line(11).verdict, "clear");
-    const Checked known = check(cube().program("machine_codes = [428]\n"
+    const Checked known = check(cube().program("machine_codes = [477]\n"
                                                "start = { X = -350, Y = -200, Z = 0 }\n"),
                                 program, {"--dialect", "linuxcnc"});
     EXPECT_EQ(known.errors(), "");
+}
+
+/// A machine of LinuxCNC with its ini file, whose remap of M428 selects kinematics `m428`: 1
+/// follows the tip, 0 does not. The work tilts about X with its top at Z0.
+Checked check_with_ini(int m428) {
+    const test_support::ScopedFolder folder;
+    std::ofstream(folder / "mill.ini")
+        << "[RS274NGC]\nHAL_PIN_VARS = 1\nSUBROUTINE_PATH = subs\n"
+           "REMAP = M428 modalgroup=10 ngc=428remap\nREMAP = M429 modalgroup=10 ngc=429remap\n"
+           "[KINS]\nKINEMATICS = xyzac-trt-kins sparm=identityfirst\n[TRAJ]\nCOORDINATES = XYZAC\n"
+           "LINEAR_UNITS = mm\n[HAL]\n"
+           "HALCMD = net sel <= motion.analog-out-03 => motion.switchkins-type\n"
+           "HALCMD = net tool motion.tooloffset.z xyzac-trt-kins.tool-offset\n"
+           "HALCMD = setp xyzac-trt-kins.y-offset 20\nHALCMD = setp xyzac-trt-kins.z-offset 10\n";
+    std::filesystem::create_directory(folder.path() / "subs");
+    const auto write_sub = [&](int code, int type) {
+        std::ofstream(folder.path() / "subs" / (std::to_string(code) + "remap.ngc"))
+            << "o<" << code << "remap>sub\n#<kinstype> = " << type
+            << "\no1 if [exists [#<_hal[motion.switchkins-type]>]]\no1 else\nM2\no1 endif\n"
+               "M68 E3 Q#<kinstype>\nM66 E0 L0\n"
+               "o2 if [[#<_task> EQ 1] AND [#<_hal[motion.switchkins-type]> NE #<kinstype>]]\n"
+               "M2\no2 endif\no<"
+            << code << "remap>endsub\n";
+    };
+    write_sub(428, m428);
+    write_sub(429, 0);
+    return check(SetupWriter()
+                     .without_machine()
+                     .offsets("G54 = { X = 0, Y = 0, Z = 0 }")
+                     .program("start = { X = 0, Y = 0, Z = 400 }\n")
+                     .stock("box = [[-20, -20, -40], [20, 20, 0]]"),
+                 text("M428\nG0 G43 H1 Z200\nX0 Y-15\nZ5\nA-30\nA0\nM429\nZ50"),
+                 {"--ini", folder / "mill.ini"});
+}
+
+TEST(FollowingAxes, TheIniFileOfLinuxcncSaysWhatM428Does) {
+    const Checked followed = check_with_ini(1);
+    EXPECT_EQ(followed.errors(), "");
+    EXPECT_EQ(followed.verdict, "clear");
+    // The tip stays 5 mm above the top while the work tilts by 30 degrees: the edge comes nearer.
+    for (const BlockLine& block : followed.blocks) // the subprograms have a line 9, too
+        if (block.text == "A-30") {
+            EXPECT_NEAR(block.pair("flutes stock").lower, 2.5, 0.1);
+        }
+    EXPECT_EQ(check_with_ini(0).verdict, "collision");
 }
 
 TEST(FollowingAxes, WhatAnUndecidedBlockCutsStaysInTheStock) {

@@ -621,6 +621,17 @@ core::Result<SetupFile> bare_setup(const ProgramSettings& given) {
     file.is_inferred = file.is_partial = file.infers_frame = file.needs_stock = true;
     FEELER_TRY(AppliedSettings applied, apply(given, file.environment));
     const ProgramSettings& settings = applied.settings;
+    if (file.environment.kinematics && file.environment.kinematics->machine) {
+        // The rotary axes have their places, so the work cannot be assumed to be anywhere.
+        FEELER_TRY(SetupFile at_zero, read_setup_text({}, {}, given));
+        at_zero.is_inferred = true;
+        at_zero.assumptions.push_back(fmt::format(
+            "no set-up: no fixtures; work offsets are {}",
+            settings.parameters.empty() ? "at machine zero" : "those of the parameter file"));
+        at_zero.assumptions.push_back(
+            "every tool was touched off: the control knows its true length");
+        return at_zero;
+    }
     file.dialect = settings.dialect;
     file.tool_table = settings.tool_table;
     const std::string position = assume_machine_zero(file);

@@ -262,7 +262,8 @@ std::vector<UncutPlunge> uncut_plunges(const gcode::Program& program,
     visit_events(program, environment, [&](const ProgramEvent& event) {
         const auto* motion = std::get_if<core::Motion>(&event.event);
         if (!motion) return;
-        const auto track = tip_track(*motion, size_of(tools.lengths, event.tool));
+        const auto track =
+            tip_track(*motion, size_of(tools.lengths, event.tool), event.offsets.machine);
         if (!track) return;
         const double radius = size_of(tools.radii, event.tool);
         if (motion->kind != core::MotionKind::rapid)

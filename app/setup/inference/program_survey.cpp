@@ -10,6 +10,7 @@
 
 #include "app/setup/tools/program_tools.h"
 #include "core/base/math.h"
+#include "core/motion/kinematics.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/interpreter.h"
@@ -197,7 +198,8 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
         tapping(event, result);
         const auto* motion = std::get_if<Motion>(&event.event);
         if (!motion) return;
-        const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
+        const auto path =
+            tip_track(*motion, size_of(tools.lengths, event.tool), event.offsets.machine);
         const std::set<size_t> displaced = displaced_axes(*motion, event.offsets);
         result.other_axes.insert(displaced.begin(), displaced.end());
         if (event.is_in_work && motion->from != motion->to) {
@@ -222,7 +224,8 @@ ProgramSurvey survey(const gcode::Program& program, const gcode::Environment& en
             if (!motion || !is_cut(*motion)) return;
             if (offset && event.offsets.active != *offset) return;
             if (!displaced_axes(*motion, event.offsets).empty()) return;
-            const auto path = tip_track(*motion, size_of(tools.lengths, event.tool));
+            const auto path =
+                tip_track(*motion, size_of(tools.lengths, event.tool), event.offsets.machine);
             if (!path || (result.retract && path->lowest() >= *result.retract - 0.06)) return;
             note_cut(*path, size_of(tools.radii, event.tool), result);
         });
@@ -287,6 +290,40 @@ void add_arc(const core::ArcPath& arc, const Vec3& from, const Vec3& to,
     }
 }
 
+bool turns(const core::Motion& motion) {
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (motion.from[axis] != motion.to[axis]) return true;
+    return false;
+}
+
+/// Replaces positions of the linear axes along a motion by those of the tip, as seen from the work
+/// with all rotary axes at 0.
+void put_in_work(const core::Motion& motion, double tool_length, const core::Machine* machine,
+                 std::vector<Vec3>& positions) {
+    constexpr int steps = 16; // of a motion that turns
+    if (machine && motion.from != motion.to && positions.size() == 2 && turns(motion)) {
+        const Vec3 first = positions[0], way = positions[1] - first;
+        positions.clear();
+        for (int i = 0; i <= steps; ++i) positions.push_back(first + way * (i / double{steps}));
+    }
+    for (size_t i = 0; i < positions.size(); ++i) {
+        Vec3& p = positions[i];
+        if (!machine) {
+            p.z -= tool_length;
+            continue;
+        }
+        const double fraction =
+            positions.size() > 1 ? double(i) / static_cast<double>(positions.size() - 1) : 1.0;
+        core::AxisValues values{};
+        for (size_t axis = 0; axis < core::axis_count; ++axis) {
+            const double start = motion.from[axis].value_or(0.0);
+            values[axis] = axis < 3 ? p[static_cast<int>(axis)]
+                                    : start + fraction * (motion.to[axis].value_or(0.0) - start);
+        }
+        p = core::tip_position(*machine, values, tool_length);
+    }
+}
+
 } // namespace
 
 double TipTrack::lowest() const {
@@ -302,15 +339,21 @@ double TipTrack::length() const {
     return way;
 }
 
-std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length) {
+std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length,
+                                  const core::Machine* machine) {
     const auto from = known(motion.from), to = known(motion.to);
     if (!from || !to) return std::nullopt;
     TipTrack track;
-    track.positions.push_back(*from);
-    if (motion.arc) add_arc(*motion.arc, *from, *to, track.positions);
-    track.positions.push_back(*to);
+    if (motion.tip) {
+        const Vec3 longer(0.0, 0.0, motion.tip->tool_length - tool_length);
+        track.positions = {motion.tip->from + longer, motion.tip->to + longer};
+    } else {
+        track.positions.push_back(*from);
+        if (motion.arc) add_arc(*motion.arc, *from, *to, track.positions);
+        track.positions.push_back(*to);
+        put_in_work(motion, tool_length, machine, track.positions);
+    }
     for (Vec3& p : track.positions) {
-        p.z -= tool_length;
         track.sideways =
             track.sideways
             || core::hypot(p.x - track.positions[0].x, p.y - track.positions[0].y) > sideways_from;

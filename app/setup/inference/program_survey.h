@@ -17,6 +17,10 @@ struct Environment;
 struct Program;
 } // namespace gcode
 
+namespace core {
+struct Machine;
+}
+
 namespace app {
 
 /// The feeds of a program in the coordinates of one work offset.
@@ -98,8 +102,10 @@ struct TipTrack {
     double length() const;
 };
 
-/// The path of the tip of a tool with the given length; empty if an end point is unknown.
-std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length);
+/// The path of the tip of a tool with the given length, as seen from the work with all rotary axes
+/// at 0; empty if an end point is unknown. `machine`: null without rotary axes.
+std::optional<TipTrack> tip_track(const core::Motion& motion, double tool_length,
+                                  const core::Machine* machine);
 
 /// Why a program is for a lathe, to follow "because": it never moves Y, and it has a code used only
 /// in turning. Empty for any other program.
