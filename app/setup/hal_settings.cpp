@@ -11,9 +11,12 @@ namespace {
 
 constexpr int deepest_sum = 8;
 
-/// A number, or [SECTION]KEY of the ini file.
-std::optional<double> number_of(const std::string& text,
-                                const std::map<std::string, double>& ini_values) {
+/// A number, TRUE or FALSE, or [SECTION]KEY of the ini file; empty for anything else.
+std::optional<double> number_of(std::string text, const std::map<std::string, double>& ini_values) {
+    const auto is_mark = [](char c) { return c == '"' || c == '\'' || c == '(' || c == ')'; };
+    std::erase_if(text, is_mark);
+    if (text == "true") return 1.0;
+    if (text == "false") return 0.0;
     if (!text.starts_with('[')) return number_in(text);
     const auto found = ini_values.find("_ini" + text);
     return found == ini_values.end() ? std::nullopt : std::optional(found->second);
@@ -21,7 +24,7 @@ std::optional<double> number_of(const std::string& text,
 
 /// "5axisgui.pivot_len" of `loadusr -W 5axisgui pivot_len=300`, and the like.
 void take_argument(const std::string& component, const std::string& word,
-                   std::map<std::string, double>& pins) {
+                   std::map<std::string, std::optional<double>>& pins) {
     const size_t equals = word.find('=');
     if (equals == std::string::npos) return;
     if (const auto number = number_in(word.substr(equals + 1)))
@@ -29,7 +32,8 @@ void take_argument(const std::string& component, const std::string& word,
 }
 
 /// The first value of the pin of a scale, spin box or dial of a panel.
-void take_control(const pugi::xml_node& control, std::map<std::string, double>& pins) {
+void take_control(const pugi::xml_node& control,
+                  std::map<std::string, std::optional<double>>& pins) {
     std::string name(core::stripped(control.child_value("halpin")));
     if (name.size() > 2 && name.front() == '"' && name.back() == '"')
         name = name.substr(1, name.size() - 2);
@@ -56,8 +60,11 @@ void HalSettings::add(const std::string& command, const std::map<std::string, do
         const bool signal_first = verb == "linksp";
         signal_of_[words[signal_first ? 2 : 1]] = words[signal_first ? 1 : 2];
     } else if (words.size() > 2 && (verb == "setp" || verb == "sets")) {
-        if (const auto number = number_of(words[2], ini_values))
-            (verb == "setp" ? pins_ : signals_)[words[1]] = *number;
+        (verb == "setp" ? pins_ : signals_)[words[1]] = number_of(words[2], ini_values);
+    } else if (words.size() == 2 && verb.find('.') != std::string::npos) {
+        pins_[verb] = number_of(words[1], ini_values); // pin = value
+    } else if (verb == "source") {
+        note_more_commands();
     } else if (verb == "loadrt" && words[1] == "sum2") {
         if (words.size() == 2) sums_.insert("sum2.0");
         for (size_t i = 2; i < words.size(); ++i) {
@@ -130,7 +137,7 @@ std::optional<double> HalSettings::value(const std::string& pin, const std::stri
         const std::string sum = pin.substr(0, pin.size() - 4);
         const auto gain = [&](const char* name) {
             const auto set = pins_.find(sum + name);
-            return set == pins_.end() ? 1.0 : set->second;
+            return set == pins_.end() ? 1.0 : set->second.value_or(1.0);
         };
         const auto first = value(sum + ".in0", without, depth + 1);
         const auto second = value(sum + ".in1", without, depth + 1);
@@ -141,7 +148,8 @@ std::optional<double> HalSettings::value(const std::string& pin, const std::stri
     const auto signal = signal_of_.find(pin);
     if (signal == signal_of_.end()) {
         const auto set = pins_.find(pin);
-        return set == pins_.end() ? 0.0 : set->second;
+        if (set != pins_.end()) return set->second;
+        return is_whole_ ? std::optional(0.0) : std::nullopt;
     }
     // What drives the signal counts more than a first value from `sets`.
     for (const std::string& other : on_signal(pin)) {
@@ -152,14 +160,15 @@ std::optional<double> HalSettings::value(const std::string& pin, const std::stri
         if (const auto set = pins_.find(other); set != pins_.end()) return set->second;
     }
     const auto first = signals_.find(signal->second);
-    return first == signals_.end() ? std::nullopt : std::optional(first->second);
+    return first == signals_.end() ? std::nullopt : first->second;
 }
 
 std::map<std::string, double> HalSettings::values() const {
     std::map<std::string, double> known;
     for (const auto& [pin, signal] : signal_of_)
         if (const auto number = value(pin)) known["_hal[" + pin + "]"] = *number;
-    for (const auto& [pin, number] : pins_) known.emplace("_hal[" + pin + "]", number);
+    for (const auto& [pin, number] : pins_)
+        if (number) known.emplace("_hal[" + pin + "]", *number);
     return known;
 }
 

@@ -40,15 +40,19 @@ public:
     /// The first pin with this beginning that is on the same signal; empty if there is none.
     std::string joined(const std::string& pin, const std::string& beginning) const;
 
+    /// Commands in files that are not read here may set any pin that is not set otherwise.
+    void note_more_commands() { is_whole_ = false; }
+
 private:
     std::optional<double> value(const std::string& pin, const std::string& without,
                                 int depth) const;
     std::vector<std::string> on_signal(const std::string& pin) const;
 
-    std::map<std::string, double> pins_;           // setp, and values of a panel
-    std::map<std::string, double> signals_;        // sets
+    // setp and values of a panel; sets. Empty: set to something that is not understood.
+    std::map<std::string, std::optional<double>> pins_, signals_;
     std::map<std::string, std::string> signal_of_; // of a pin
     std::set<std::string> sums_;                   // names of sum2 components
+    bool is_whole_ = true;
 };
 
 } // namespace app

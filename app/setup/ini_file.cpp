@@ -74,6 +74,7 @@ struct IniReader {
     void read_hal();
 
     std::vector<std::string> hal_files{}, hal_commands{}, late_hal_files{}, panels{};
+    std::map<std::string, double> numbers{}; // for HAL commands: those with small letters, too
 
     /// Stores a setting. Returns why its value is invalid; empty if it is valid or irrelevant.
     std::string take(const std::string& key, const std::string& value);
@@ -81,6 +82,7 @@ struct IniReader {
 
 void IniReader::note_number(const std::string& key, const std::string& value) {
     const std::string name = "_ini[" + section + "]" + key;
+    if (const auto any = number_in(value)) numbers.insert_or_assign(core::lower_case(name), *any);
     const auto is_small = [](unsigned char letter) { return std::islower(letter) != 0; };
     if (std::any_of(name.begin() + 5, name.end(), is_small)) return;
     const auto number = number_in(value);
@@ -138,9 +140,10 @@ void IniReader::take_remap(const std::string& value) {
     bool is_plain = true;
     stream >> code;
     for (std::string word; stream >> word;) {
-        const std::string key = core::lower_case(word.substr(0, word.find('=')));
-        if (key == "ngc")
-            subprogram = word.substr(4);
+        const size_t equals = std::min(word.find('='), word.size());
+        const std::string key = core::lower_case(word.substr(0, equals));
+        if (key == "ngc" && equals < word.size())
+            subprogram = word.substr(equals + 1);
         else if (key != "modalgroup")
             is_plain = false; // argspec, prolog, epilog, python
     }
@@ -172,12 +175,13 @@ void IniReader::read_hal() {
         for (const std::string& name : names) {
             const std::string word = first_word(name);
             if (word.starts_with("LIB:")) continue; // of LinuxCNC itself: joints and motors
-            if (word.ends_with(".tcl") || !file.hal.add_file(resolved(word), file.values))
+            if (word.ends_with(".tcl")) file.hal.note_more_commands();
+            if (word.ends_with(".tcl") || !file.hal.add_file(resolved(word), numbers))
                 file.unread_files.push_back(resolved(word));
         }
     };
     add(hal_files);
-    for (const std::string& command : hal_commands) file.hal.add(command, file.values);
+    for (const std::string& command : hal_commands) file.hal.add(command, numbers);
     for (const std::string& panel : panels)
         if (!file.hal.add_panel(resolved(first_word(panel))))
             file.unread_files.push_back(resolved(first_word(panel)));

@@ -236,6 +236,7 @@ core::Result<void> switch_kinematics(Execution& execution, core::SourceSpan wher
         type == SwitchableKinematics::Type::axes || (tip && modal.offsets.machine != nullptr);
     follow_in_world(execution, is_known && tip);
     modal.kinematics = static_cast<int>(number);
+    modal.following.awaits_sync = true;
     if (!is_known)
         switch_following(execution, where, code, FollowingSwitch::on);
     else if (modal.following.may_be_on)
@@ -307,6 +308,17 @@ void lose_positions(Execution& execution, core::SourceSpan where, std::string wh
         {Severity::warning, where, std::move(why), core::rule_id("undecided"), std::move(cure)});
 }
 
+void lose_remapped(Execution& execution, const Word& word) {
+    switch_following(execution, word.span, written(word), FollowingSwitch::perhaps);
+    lose_positions(execution, word.span,
+                   fmt::format("the ini file runs a subprogram in place of {}, which is only "
+                               "followed if it is there and {} is alone in its line: what comes "
+                               "after it is not checked until the positions are certain again",
+                               written(word), written(word)),
+                   "Program the code in a line of its own.");
+    execution.result.path = core::PathCertainty::unknown;
+}
+
 bool is_work_turned(const ModalState& modal) {
     return modal.following.rotary_unknown || is_turned(modal.offsets, modal.position);
 }
@@ -322,6 +334,15 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     ModalState& modal = execution.modal();
     Following& following = modal.following;
     check_turns(execution, before);
+    if (following.awaits_sync && moves(execution)) {
+        following.awaits_sync = false;
+        execution.result.path = core::PathCertainty::unknown;
+        lose_positions(execution, place_of(execution),
+                       "the control has read this block before the kinematics changed, so it still "
+                       "counts from the old position: what comes from here on is not checked until "
+                       "the positions are certain again",
+                       "Program M66 E0 L0 after M68, and M68 instead of M67.");
+    }
     if (modal.doubt)
         execution.result.path = std::max(execution.result.path, core::PathCertainty::doubtful);
     const bool follows = may_follow(before) || may_follow(modal);

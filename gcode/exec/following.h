@@ -49,6 +49,10 @@ void begin_kinematics(ModalState& modal, const Environment& environment);
 void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
                     std::string cure);
 
+/// A code in whose place LinuxCNC runs a subprogram that is not followed: where the machine is
+/// after it, and in which kinematics, is not known.
+void lose_remapped(Execution& execution, const Word& word);
+
 /// Whether a rotary axis is away from 0, or its position is unknown.
 bool is_work_turned(const ModalState& modal);
 

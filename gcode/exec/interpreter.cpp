@@ -131,6 +131,7 @@ struct Interpreter::Scratch {
     BeforeBlock before{};
     std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
+    std::optional<Word> remapped{}; // a code of the block whose subprogram is not followed
     std::unique_ptr<Environment> iso_environment{}; // Siemens, after G291
     std::unique_ptr<Scratch> iso{};
 
@@ -140,7 +141,7 @@ struct Interpreter::Scratch {
     bool begins_another_program(const InterpreterState& state) const;
     void remember_words(InterpreterState& state) const;
     core::Result<void> run_block(InterpreterState& state);
-    core::Result<void> become_call();
+    core::Result<void> become_call(const InterpreterState& state);
     void take_back(InterpreterState& state);
     void begin_result(const InterpreterState& state, ProgramLine here);
     core::Result<bool> try_next(InterpreterState& state);
@@ -265,26 +266,37 @@ void Interpreter::Scratch::take_back(InterpreterState& state) {
 }
 
 /// A line that is only a code which LinuxCNC's ini file remaps, such as M428: a call of the
-/// subprogram that runs in its place, if there is one.
-core::Result<void> Interpreter::Scratch::become_call() {
-    if (block.words.size() != 1 || block.flow.kind != FlowKind::none) return {};
-    const Word word = block.words.front();
-    const auto remap = environment.remaps.find(written(word));
-    if (remap == environment.remaps.end()) return {};
-    FEELER_TRY(const auto file, library.find({remap->second + ".ngc", remap->second + ".NGC"}));
-    if (!file) return {};
-    block.words.clear();
-    block.flow = {.kind = FlowKind::call,
-                  .span = word.span,
-                  .label_name = static_cast<uint32_t>(block.pool.names.size()),
-                  .has_label = true};
-    block.pool.names.push_back(remap->second);
+/// subprogram that runs in its place. Elsewhere, the moves of that subprogram are not followed.
+core::Result<void> Interpreter::Scratch::become_call(const InterpreterState& state) {
+    remapped.reset();
+    if (block.flow.kind != FlowKind::none) return {};
+    for (const Word& word : block.words) {
+        if (word.letter != 'M' && word.letter != 'G') continue;
+        const auto remap = environment.remaps.find(written(word));
+        if (remap == environment.remaps.end()) continue;
+        // Within its own subprogram, the code is that of LinuxCNC.
+        const auto runs = [&](const Frame& frame) { return frame.name == remap->second; };
+        if (std::any_of(state.frames.begin(), state.frames.end(), runs)) continue;
+        FEELER_TRY(const auto file, library.find({remap->second + ".ngc", remap->second + ".NGC"}));
+        if (block.words.size() > 1 || !file) {
+            remapped = word;
+            return {};
+        }
+        const core::SourceSpan span = word.span;
+        block.words.clear();
+        block.flow = {.kind = FlowKind::call,
+                      .span = span,
+                      .label_name = static_cast<uint32_t>(block.pool.names.size()),
+                      .has_label = true};
+        block.pool.names.push_back(remap->second);
+        return {};
+    }
     return {};
 }
 
 core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     if (!environment.remaps.empty())
-        if (auto done = become_call(); !done) return done;
+        if (auto done = become_call(state); !done) return done;
     ProgramParameters parameters(state, environment);
     const bool is_plain = block.flow.kind == FlowKind::none && block.pool.instructions.empty()
                           && block.assignments.empty();
@@ -327,6 +339,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     result.in_machine = in_machine_coordinates(execution);
     if (auto done = language.execute(execution, before.modal); !done) return done;
     mark_uncertain_motions(execution, before.modal);
+    if (remapped) lose_remapped(execution, *remapped);
     return {};
 }
 

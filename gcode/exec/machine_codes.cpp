@@ -36,6 +36,10 @@ core::Result<void> set_output(Execution& execution, const CodeWord& entry) {
         if (auto done = switch_kinematics(execution, entry.word->span, written(*entry.word), value);
             !done)
             return done;
+    // What is connected in another way is not known.
+    if (execution.environment.kinematics && !execution.environment.kinematics->output)
+        switch_following(execution, entry.word->span, written(*entry.word),
+                         FollowingSwitch::perhaps);
     const bool with_motion = code == m_code(62) || code == m_code(63) || code == m_code(67);
     execution.emit(SetOutput{number, value, analog, with_motion});
     return {};
@@ -61,6 +65,7 @@ core::Result<void> wait_for_input(Execution& execution, const CodeWord& entry) {
                           analog ? "M66 can wait for digital inputs only: use E with L0"
                                  : "M66 L1 to L4 waits: it needs a Q word, the longest time",
                           entry.word->span);
+    execution.modal().following.awaits_sync = false;
     execution.emit(WaitForInput{number, analog, kind > 0 ? time->value : 0.0});
     execution.state.parameters.write().set_numbered(5399, 0.0);
     ProgramParameters(execution.state, execution.environment).renew(5399);

@@ -155,6 +155,8 @@ bool ProgramParameters::exists(std::string_view name) const {
     identity_.clear();
     const NamedValues& all = named_values(name);
     if (all.find(name) != all.end() || system_parameter(state_, environment_, name)) return true;
+    // A pin of a machine whose ini file is given exists, whether or not its value is known.
+    if (name.starts_with("_hal[") && !environment_.hal_values.empty()) return true;
     const auto& stated = environment_.control.named_values;
     if (!environment_.control.reports_premises || !is_global(name)
         || stated.find(name) != stated.end())

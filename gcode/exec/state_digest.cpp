@@ -144,7 +144,9 @@ void add(Digest& digest, const ModalState& modal) {
     if (modal.way_home) add_all(digest, *modal.way_home);
     add_all(digest, modal.direction);
     digest.add(number_of(int(modal.following.may_be_on) + 2 * modal.following.unknown_axes
-                         + 1024 * int(modal.following.rotary_unknown) + 16 * modal.doubt));
+                         + 1024 * int(modal.following.rotary_unknown)
+                         + 2048 * int(modal.following.awaits_sync) + 16 * modal.doubt));
+    digest.add(number_of(modal.kinematics));
 }
 
 void add(Digest& digest, const UnknownValues& unknown) {

@@ -215,6 +215,7 @@ struct Following {
     bool is_said = false;        // reported for this code
     bool rotary_unknown = false; // G53.1 turned the work by unknown angles
     bool said_turn = false;      // a rotary axis that turns the other way round was reported
+    bool awaits_sync = false;    // LinuxCNC: kinematics were switched, and no M66 came yet
     uint8_t unknown_axes = 0;    // one bit for each of X, Y and Z whose position is unknown
 
     bool operator==(const Following&) const = default;

@@ -176,7 +176,8 @@ TEST(LinuxcncKinematics, MoveTheAxesAsLinuxcncDoes) {
         kinematics.output = 3;
         Control control(example, module);
         control.work = environment.work_offsets[0];
-        std::string program = fmt::format("G21 G90 G94 F500\nT1 M6\nM68 E3 Q{}\n", example.tip);
+        std::string program =
+            fmt::format("G21 G90 G94 F500\nT1 M6\nM68 E3 Q{}\nM66 E0 L0\n", example.tip);
         std::vector<core::AxisValues> expected;
         const std::string axes = example.coordinates.substr(0, 5);
         for (int line = 0; line < 400; ++line) {
@@ -216,7 +217,7 @@ TEST(LinuxcncKinematics, MoveTheAxesAsLinuxcncDoes) {
             } else if (kind < 15.0) {
                 control.follows_tip = !control.follows_tip;
                 const int type = control.follows_tip ? example.tip : 1 - example.tip;
-                program += fmt::format("M68 E3 Q{}\n", type);
+                program += fmt::format("M68 E3 Q{}\nM66 E0 L0\n", type);
             } else if (kind < 16.0) {
                 std::string words;
                 for (const char letter : axes) {
@@ -325,7 +326,9 @@ TEST(HalSettings, AreValuesOfPinsAndTheirSignals) {
          {"# a comment", "setp k.one 1.5 # as measured", "net two k.two other.two", "sets two -3",
           "newsig three float", "linksp three k.three", "setp k.four [KINS]DEEP",
           "net panel k.five pyvcp.depth-f", "net open k.six", "loadrt sum2 names=s,t",
-          "net x k.seven t.out", "setp t.in0 5", "setp t.in1 2", "setp t.gain1 -1"})
+          "net x k.seven t.out", "setp t.in0 5", "setp t.in1 2", "setp t.gain1 -1",
+          "setp k.eight TRUE", "k.nine = 4", "setp k.ten \"10\"", "setp k.eleven [KINS](DEEP)",
+          "setp k.twelve unknown"})
         hal.add(command, ini);
     EXPECT_EQ(hal.value("k.one"), 1.5);
     EXPECT_EQ(hal.value("k.two"), -3.0);
@@ -334,8 +337,15 @@ TEST(HalSettings, AreValuesOfPinsAndTheirSignals) {
     EXPECT_EQ(hal.value("k.five"), std::nullopt);
     EXPECT_EQ(hal.value("k.six"), std::nullopt);
     EXPECT_EQ(hal.value("k.seven"), 3.0);
+    EXPECT_EQ(hal.value("k.eight"), 1.0);
+    EXPECT_EQ(hal.value("k.nine"), 4.0);
+    EXPECT_EQ(hal.value("k.ten"), 10.0);
+    EXPECT_EQ(hal.value("k.eleven"), 12.0);
+    EXPECT_EQ(hal.value("k.twelve"), std::nullopt);
     EXPECT_EQ(hal.value("k.unconnected"), 0.0);
     EXPECT_EQ(hal.values().at("_hal[k.two]"), -3.0);
+    hal.add("source more.hal", {});
+    EXPECT_EQ(hal.value("k.unconnected"), std::nullopt);
 }
 
 } // namespace

@@ -133,7 +133,12 @@ private:
                                       .rotation;
         if (is_apart(piece, Vec3(0.0), Form::shrunk)) return true;
         const bool cuts = stock.before != stock.after;
-        if (!pair_.fixture && !cuts && is_clear(leg, *stock.left)) return true;
+        if (!pair_.fixture && !cuts) {
+            // Each takes up to a second, and a motion that turns has hundreds of pieces.
+            constexpr size_t most_checks = 32;
+            if (++checks_ > most_checks) return false;
+            if (is_clear(leg, *stock.left)) return true;
+        }
         pieces_.push_back(std::move(piece));
         return pieces_.size() <= most_pieces;
     }
@@ -418,6 +423,7 @@ private:
     double shrink_ = 0.0;
     std::vector<Piece> pieces_;
     size_t trials_ = 0;
+    size_t checks_ = 0; // of contact: is_clear
 };
 
 } // namespace
