@@ -386,10 +386,9 @@ Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
     Sides count;
     count_sides(entity->Outer(), sides, made, count);
     const auto& [open, closed, has_closed] = count;
-    const bool is_turned = open.turned + closed.turned > open.kept + closed.kept;
-    const bool is_mixed = is_turned ? closed.kept > 0 : closed.turned > 0;
-    // A file whose faces all look inwards is another fault, which Open CASCADE mends.
-    if (!is_mixed && !(is_turned && has_closed)) return true;
+    const int turned = open.turned + closed.turned;
+    // A file without round faces whose faces all look inwards has another fault, which is mended.
+    if (turned == 0 || (!has_closed && open.kept == 0)) return true;
     return fail(ErrorCode::invalid_value,
                 fmt::format("Open CASCADE reads a round face of the solid {} inside out, as the "
                             "part that is not there: export the body as IGES or STL",
