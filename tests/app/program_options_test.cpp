@@ -369,8 +369,8 @@ TEST(Kinematics, ThatMoveLinearAxesWithRotaryOnesAreRefused) {
                        folder.write("s.toml", plate_with_clamp().text()), "--ini",
                        folder.write("m.ini", "[KINS]\nKINEMATICS = " + name + "\n")});
     };
-    EXPECT_EQ(ran("xyzac-trt-kins").status, 2);
-    EXPECT_NE(ran("xyzac-trt-kins").err.find("xyzac-trt-kins is not supported"), std::string::npos);
+    EXPECT_EQ(ran("genhexkins").status, 2);
+    EXPECT_NE(ran("genhexkins").err.find("genhexkins is not supported"), std::string::npos);
     EXPECT_NE(ran("trivkins coordinates=XYZ").status, 2);
 }
 
