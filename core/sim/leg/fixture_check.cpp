@@ -8,10 +8,12 @@ namespace {
 
 /// Whether shorter legs may decide a pair that is undecided only because of how it turns.
 bool is_open_for_turning(const PairClearance& now, const PairClearance& known,
-                         const RelativeLeg& relative) {
+                         const RelativeLeg& relative, const Leg& leg) {
     constexpr double sharp = 5e-4; // mm: bounds that decide meet within twice that
+    // The error of the path is the same for all parts of it.
+    const double lasting = relative.lasting_error + leg.path_error;
     return now.verdict == Verdict::undecided && known.verdict < Verdict::violation
-           && relative.reducible_error() > std::max(sharp, 0.1 * relative.lasting_error);
+           && relative.error - lasting > std::max(sharp, 0.1 * lasting);
 }
 
 /// Axis values at a fraction of a leg; at its start if the path is unknown.
@@ -134,7 +136,7 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     if (context_.setup.needs_only_verdict && known.verdict != Verdict::clear) return;
     if (!context_.is_too_vague(relative)) {
         PairClearance now = measure(leg, start, relative, body, known);
-        const bool is_open = is_open_for_turning(now, known, relative);
+        const bool is_open = is_open_for_turning(now, known, relative, leg);
         if (!is_open
             && (now.lower >= std::min(known.upper, context_.setup.search_limit)
                 || context_.is_sharp(body, relative, now.lower)
