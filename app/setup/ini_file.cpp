@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
+#include "app/setup/linuxcnc_kinematics.h"
 #include "core/base/platform.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
@@ -115,14 +116,6 @@ bool is_on(const std::string& value) {
 bool keeps_linear_axes(const std::string& module) {
     for (const char* one : {"trivkins", "gantrykins", "corexykins", "lineardeltakins", "rotatekins",
                             "rotarydeltakins", "scarakins", "tripodkins"})
-        if (module == one) return true;
-    return false;
-}
-
-/// Kinematics that follow the tip of the tool: `linuxcnc_kinematics` knows them.
-bool follows_tip(const std::string& module) {
-    for (const char* one : {"xyzac-trt-kins", "xyzbc-trt-kins", "xyzab_tdr_kins", "5axiskins",
-                            "xyzacb_trsrn", "xyzbca_trsrn"})
         if (module == one) return true;
     return false;
 }
@@ -259,7 +252,7 @@ core::Result<IniFile> read_ini(const std::string& path) {
     }
     const std::string& module = reader.file.kinematics;
     reader.read_hal();
-    if (!module.empty() && !keeps_linear_axes(module) && !follows_tip(module))
+    if (!module.empty() && !keeps_linear_axes(module) && !is_known_kinematics(module))
         return tl::unexpected(core::Error{
             core::ErrorCode::unsupported,
             {},

@@ -174,6 +174,12 @@ const std::vector<Module>& modules() {
     return all;
 }
 
+const Module* module_named(const std::string& name) {
+    for (const Module& each : modules())
+        if (each.name == name) return &each;
+    return nullptr;
+}
+
 /// The value of `name=value` in the settings of a module.
 std::string setting(const std::string& settings, const std::string& name) {
     for (const std::string& word : words_of_line(settings))
@@ -207,12 +213,12 @@ std::optional<int> selecting_output(const HalSettings& hal) {
 
 } // namespace
 
+bool is_known_kinematics(const std::string& module) { return module_named(module) != nullptr; }
+
 std::optional<LinuxcncKinematics>
 linuxcnc_kinematics(const std::string& module, const std::string& settings, const HalSettings& hal,
                     const std::map<std::string, std::optional<double>, std::less<>>& stated) {
-    const Module* found = nullptr;
-    for (const Module& each : modules())
-        if (each.name == module) found = &each;
+    const Module* const found = module_named(module);
     if (!found) return std::nullopt;
 
     LinuxcncKinematics result;

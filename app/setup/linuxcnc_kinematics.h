@@ -17,6 +17,9 @@ struct LinuxcncKinematics {
     std::vector<std::string> notes;       // for the user
 };
 
+/// Whether `linuxcnc_kinematics` knows a module.
+bool is_known_kinematics(const std::string& module);
+
 /// The machine of xyzac-trt-kins, xyzbc-trt-kins, xyzab_tdr_kins, xyzacb_trsrn, xyzbca_trsrn or
 /// 5axiskins; empty for any other module.
 ///
