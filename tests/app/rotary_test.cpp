@@ -94,6 +94,21 @@ TEST(Rotary, ToolCentreControlKeepsTheTipOnItsLineWhileTheTableTurns) {
     EXPECT_LT(checked.at_line(8).removed, upright / std::cos(20.0 * pi / 180.0) + 40.0 * 10.0);
 }
 
+/// The edge of the flutes ends exactly at the minimum clearance of 2 mm: 5 mm times sin 20 above
+/// the tip. The path of the axes is known only within a chord error, so halving the leg decides
+/// nothing.
+TEST(Rotary, ATurnThatEndsExactlyAtTheMinimumClearanceIsMeasured) {
+    const SetupWriter setup =
+        cube().fixture("plate", "box = [[-70, -30, -40], [-22, 30, 0]]\nframe = \"G54\"\n");
+    const Checked checked =
+        check(setup, text("G43.4 H1 Z60.\nX-45. Y0 A0\nZ3.7101\nG1 X-40. A20. F600.\nG0 Z60.\nG49\n"
+                          "G53 Z0"));
+    EXPECT_LE(checked.status, 1);
+    const PairLine pair = checked.at_line(8).pair("flutes plate");
+    EXPECT_NEAR(pair.lower, 2.0, 0.01);
+    EXPECT_NEAR(pair.upper.value_or(0.0), 2.0, 0.01);
+}
+
 TEST(Rotary, LimitsOfRotaryAxesAreInDegrees) {
     const Checked checked = check(cube(), text("G43 H1 Z200.\nG0 A130."));
     EXPECT_EQ(checked.errors(), "over-travel 6");
