@@ -76,6 +76,7 @@ Leg hull_of(const std::vector<Leg>& legs) {
     Leg hull{.begin = legs.front().begin, .end = legs.front().begin, .straight = false};
     for (const Leg& leg : legs) {
         hull.path_error = std::max(hull.path_error, leg.path_error);
+        hull.turn_error = std::max(hull.turn_error, leg.turn_error);
         for (const AxisValues& position : leg.positions)
             if (std::find(hull.positions.begin(), hull.positions.end(), position)
                 == hull.positions.end())

@@ -75,6 +75,7 @@ struct ArcPath {
 struct TipPath {
     Vec3 from = Vec3(0.0), to = Vec3(0.0);
     double tool_length = 0.0; // as used by the control
+    double turn_error = 0.0;  // how far the rotary axes are in all from moving evenly, radians
 };
 
 /// How far the motions of a block are known.

@@ -299,6 +299,15 @@ double tilt_of_axis(const Machine& machine, const std::vector<size_t>& axes, con
     return tilt;
 }
 
+/// Adds to a leg what the errors of the rotary axes between its links turn the body by. No point of
+/// the body is farther from these axes than `reach`.
+void add_turn_error(RelativeLeg& relative, const Leg& leg, double reach) {
+    const double error = 1.01 * leg.turn_error * reach;
+    relative.error += error;
+    relative.lasting_error += error;
+    relative.travel += 2.0 * error;
+}
+
 /// The leg of a body without its play.
 RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& mover,
                       const Leg& leg) {
@@ -311,7 +320,19 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
             (is_rotary(i) ? turn : travel) += is_rotary(i) ? by / degrees_per_radian : by;
         }
     }
-    if (turn == 0.0) return without_turning(machine, target, mover, leg);
+    if (turn == 0.0) {
+        RelativeLeg relative = without_turning(machine, target, mover, leg);
+        if (leg.turn_error == 0.0) return relative;
+        double reach = 0.0;
+        for (const AxisValues& position : leg.positions) {
+            const Vec3 centre = machine_from_link(machine, mover.mount.link, position)
+                                * (mover.mount.link_from_body * mover.centre);
+            reach = std::max(reach, reach_from_axes(machine, axes, position, centre));
+        }
+        const bool turns = std::any_of(axes.begin(), axes.end(), is_rotary);
+        if (turns) add_turn_error(relative, leg, reach + mover.reach);
+        return relative;
+    }
 
     const auto pose = [&](const AxisValues& values) {
         return target_from_mover(machine, target, mover.mount, values);
@@ -343,6 +364,7 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     relative.travel =
         std::min(turn * (reach + mover.reach) + travel, chord + curve + tilt * mover.reach)
         + leg.path_error;
+    if (leg.turn_error > 0.0) add_turn_error(relative, leg, reach + mover.reach);
     return relative;
 }
 

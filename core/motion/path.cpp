@@ -224,10 +224,12 @@ void add_tip_path(Path& path, const Machine& machine, const Motion& motion, cons
     for (int i = 1; i <= count; ++i) {
         const double fraction = static_cast<double>(i) / count;
         const AxisValues next = i == count ? to : at(fraction);
+        // The linear axes compensate for the error of the rotary ones.
         path.legs.push_back({{here, next},
                              path.duration * (i - 1) / count,
                              path.duration * fraction,
-                             turn > 0.0 ? max_error : 0.0});
+                             (turn > 0.0 ? max_error : 0.0) + 1.01 * tip.turn_error * farthest,
+                             tip.turn_error});
         here = next;
     }
 }
@@ -278,7 +280,8 @@ Leg stretch(const Leg& leg, double first, double last) {
              between(leg.positions[0], leg.positions[1], last)},
             time(first),
             time(last),
-            leg.path_error};
+            leg.path_error,
+            leg.turn_error};
 }
 
 std::array<Leg, 2> halves(const Leg& leg) {

@@ -27,6 +27,7 @@ struct Leg {
     double begin = 0.0; // seconds from the motion's start
     double end = 0.0;
     double path_error = 0.0; // bound on the distance of the tool from its real position, mm
+    double turn_error = 0.0; // bound on the sum of the errors of all rotary axes, radians
     bool straight = true;
     bool start_known = true; // false: the machine may start anywhere within its limits
     std::vector<AxisValues> certain = {};

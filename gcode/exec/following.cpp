@@ -5,9 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/rule_table.h"
+#include "core/base/units.h"
 #include "core/motion/machine.h"
+#include "core/motion/plane_turn.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/text/source.h"
 
@@ -85,11 +89,10 @@ bool places_rotary_axes(const Execution& execution) {
     return placed >= 2;
 }
 
-/// G53.1.
 bool turns_to_plane(const Execution& execution) {
     const auto codes = execution.statement.codes();
     return std::any_of(codes.begin(), codes.end(),
-                       [](const CodeWord& entry) { return entry.code->number == g_code(53, 1); });
+                       [](const CodeWord& entry) { return turns_to_plane(entry); });
 }
 
 core::SourceSpan place_of(const Execution& execution) {
@@ -297,6 +300,59 @@ void check_turns(Execution& execution, const ModalState& before) {
     }
 }
 
+/// Where the axes of the machine are at a position; 0 where that is not known.
+AxisValues machine_values(const Offsets& offsets, const Position& program) {
+    const Position machine = machine_from_program(offsets, program);
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = machine[axis].value_or(0.0);
+    return values;
+}
+
+/// Whether a move that turns the tool in a plane goes the way that is assumed.
+bool is_certain_turn(Execution& execution, const AxisValues& from, const AxisValues& to) {
+    const auto turn =
+        core::turn_in_plane(*execution.modal().offsets.machine, from, to, core::turn_error);
+    if (!turn) return false;
+    const double limit = number_for(execution.state, execution.environment,
+                                    ControlQuestion::pole_limit, execution.block.line);
+    return turn->sine > core::sin(limit / core::degrees_per_radian);
+}
+
+/// Marks the motions of a block that turn the tool in a plane, where they pass near to a pole or
+/// are no straight lines: the control may turn the rotary axes otherwise.
+void check_turns_in_plane(Execution& execution, const ModalState& before) {
+    ModalState& modal = execution.modal();
+    if (!modal.turns_in_plane || !modal.offsets.follows_tip || !modal.offsets.machine) return;
+    Position here = before.position;
+    bool is_certain = true;
+    for (const CanonicalCommand& command : execution.result.commands) {
+        const auto* rapid = std::get_if<StraightTraverse>(&command);
+        const auto* feed = std::get_if<StraightFeed>(&command);
+        const auto* arc = std::get_if<ArcFeed>(&command);
+        if (!rapid && !feed && !arc) continue;
+        const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
+        const bool turns = !std::equal(end.begin() + 3, end.begin() + 6, here.begin() + 3);
+        if (turns)
+            is_certain = is_certain && !arc
+                         && is_certain_turn(execution, machine_values(modal.offsets, here),
+                                            machine_values(modal.offsets, end));
+        here = end;
+    }
+    if (is_certain) return;
+    execution.result.path = std::max(execution.result.path, core::PathCertainty::doubtful);
+    if (std::exchange(modal.following.said_pole, true)) return;
+    execution.result.warnings.push_back(
+        {Severity::warning, place_of(execution),
+         "how the control turns the tool here is not known: it turns on an arc, or passes near to "
+         "a "
+         "direction that it keeps while a rotary axis turns (the pole). This block and others like "
+         "it are measured with rotary axes that turn evenly, and are not proven clear",
+         core::rule_id("undecided"),
+         "Turn the rotary axes in a block of their own, or with ORIAXES; if the machine has "
+         "another "
+         "limit, state \"MD24530\" under [control] in the set-up."});
+}
+
 } // namespace
 
 void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
@@ -334,6 +390,7 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     ModalState& modal = execution.modal();
     Following& following = modal.following;
     check_turns(execution, before);
+    check_turns_in_plane(execution, before);
     if (following.awaits_sync && moves(execution)) {
         following.awaits_sync = false;
         execution.result.path = core::PathCertainty::unknown;

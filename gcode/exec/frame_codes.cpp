@@ -173,7 +173,8 @@ core::Result<void> check_contour_is_off(const Execution& execution, const CodeWo
     const ModalState& modal = execution.modal();
     const CodeNumber code = entry.code->number;
     const bool is_on = modal.offsets.has_frame;
-    const bool cancels = code == g_code(50) || code == g_code(50, 1) || code == g_code(69);
+    const bool cancels = code == g_code(50) || code == g_code(50, 1) || code == g_code(69)
+                         || code == g_code(255) || code == g_code(269);
     if (modal.compensation == Side::none || entry.code->group == ModalGroup::polar
         || (cancels && !is_on))
         return {};
@@ -182,6 +183,54 @@ core::Result<void> check_contour_is_off(const Execution& execution, const CodeWo
                                   "cutter radius compensation first",
                                   written(*entry.word)),
                       entry.word->span);
+}
+
+/// The plane of a dynamic work offset: the axes of the machine, about the origin of the work offset
+/// on the table. Rotary axes whose position is unknown are taken to be at 0.
+TiltedPlane plane_on_table(const ModalState& modal) {
+    const Offsets& offsets = modal.offsets;
+    const Position machine = machine_from_program(offsets, modal.position);
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = machine[axis].value_or(0.0);
+    const core::Mat3 table =
+        core::machine_from_link(*offsets.machine, offsets.machine->table, values).rotation;
+    return {.axes = turned_about(2, -offsets.work.rotation_deg) * glm::transpose(table),
+            .follows_table = true};
+}
+
+/// G254.
+///
+/// Source: Haas mill operator's manual, G254: the control applies the offsets between the position
+///         of the work as programmed and as the rotary axes have turned it; the work offsets of
+///         rotary axes must be 0.
+core::Result<void> set_dynamic_offset(Execution& execution, const CodeWord& entry) {
+    ModalState& modal = execution.modal();
+    if (!modal.offsets.machine) {
+        switch_following(execution, entry.word->span, written(*entry.word), FollowingSwitch::on);
+        return {};
+    }
+    if (modal.transforms.tilt && !modal.transforms.tilt->follows_table)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: cancel the tilted plane before it, with G269 or G69",
+                                      written(*entry.word)),
+                          entry.word->span);
+    const Position machine = machine_from_program(modal.offsets, modal.position);
+    for (size_t axis = 3; axis < 6; ++axis) {
+        if (!modal.offsets.machine->axes[axis].present) continue;
+        if (!machine[axis])
+            return core::fail(ErrorCode::missing_value,
+                              fmt::format("{}: the position of axis {} is unknown: set [program] "
+                                          "start or the machine's home in the set-up",
+                                          written(*entry.word), axis_letters[axis]),
+                              entry.word->span);
+        if (rotary_offset(modal.offsets, axis) != 0.0)
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: the work offset of axis {} must be 0",
+                                          written(*entry.word), axis_letters[axis]),
+                              entry.word->span);
+    }
+    modal.transforms.tilt = plane_on_table(modal);
+    return {};
 }
 
 core::Result<void> change_transforms(Execution& execution, const CodeWord& entry) {
@@ -203,7 +252,19 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
     case g_code(68):
         return set_rotation(execution, entry);
     case g_code(68, 2):
+    case g_code(268):
         return set_tilted_plane(execution);
+    case g_code(254):
+        return set_dynamic_offset(execution, entry);
+    case g_code(255):
+    case g_code(269):
+        if (transforms.tilt
+            && transforms.tilt->follows_table == (entry.code->number == g_code(255)))
+            transforms.tilt.reset();
+        if (entry.code->number == g_code(255) && !execution.modal().offsets.machine)
+            switch_following(execution, entry.word->span, written(*entry.word),
+                             FollowingSwitch::off);
+        return {};
     case g_code(69):
         transforms.rotation.reset();
         transforms.tilt.reset();
@@ -294,6 +355,12 @@ core::Result<core::Mat3> by_roll_pitch_yaw(const Execution& execution) {
     return axes;
 }
 
+/// G268 of Haas.
+bool is_feature_plane(const Execution& execution) {
+    const CodeWord* entry = execution.statement.of(ModalGroup::rotation);
+    return entry && entry->code->number == g_code(268);
+}
+
 core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     const Word* word = execution.statement.word('P');
     int form = 0;
@@ -301,6 +368,14 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
         FEELER_TRY(form, whole_number(*word, 0, 4));
     }
     const core::Vec3 angles = angles_of(execution);
+    if (is_feature_plane(execution)) {
+        if (!execution.statement.word('Q'))
+            return core::fail(ErrorCode::unsupported,
+                              "G268: without Q, the order of the rotations is not known: program "
+                              "Q, such as Q123",
+                              execution.statement.of(ModalGroup::rotation)->word->span);
+        return by_roll_pitch_yaw(execution);
+    }
     if (form == 1) return by_roll_pitch_yaw(execution);
     if (form != 0)
         return core::fail(ErrorCode::unsupported,
@@ -347,20 +422,31 @@ tl::unexpected<core::Error> fail_to_tilt(const std::string& what, core::SourceSp
         where);
 }
 
+/// A word as the program has it.
+std::string words_at(const Execution& execution, const Word& word) {
+    return std::string(execution.block.text.substr(word.span.column - 1, word.span.length));
+}
+
 /// Machine axis values that point the tool in a direction of the program coordinates.
 core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
                                  const core::Vec3& direction) {
     const Offsets& offsets = execution.modal().offsets;
-    FEELER_TRY(const AxisValues values, values_now(execution, word.span, written(word)));
+    FEELER_TRY(const AxisValues values,
+               values_now(execution, word.span, words_at(execution, word)));
     if (const auto found = core::point_tool(*offsets.machine, values, in_table(offsets, direction)))
         return *found;
-    return fail_to_tilt(written(word), word.span);
+    return fail_to_tilt(words_at(execution, word), word.span);
 }
 
-core::Result<void> turn_rotary_axes(Execution& execution, const Word& word) {
+/// `about_tip`: the tip stays where it is on the work; otherwise the linear axes stay.
+core::Result<void> turn_rotary_axes(Execution& execution, const Word& word, bool about_tip) {
     const ModalState& modal = execution.modal();
     FEELER_TRY(const AxisValues values, pointed(execution, word, core::Vec3(0.0, 0.0, 1.0)));
-    execution.traverse(turned_in_place(modal.offsets, modal.position, values));
+    if (about_tip)
+        turn_about_tip(execution, values, 0.0,
+                       [&](const Position& end) { execution.traverse(end); });
+    else
+        execution.traverse(turned_in_place(modal.offsets, modal.position, values));
     return {};
 }
 
@@ -376,26 +462,60 @@ core::Result<void> set_tilted_plane(Execution& execution) {
     return {};
 }
 
+bool turns_to_plane(const CodeWord& entry) {
+    const CodeNumber code = entry.code->number;
+    return code == g_code(53, 1) || code == g_code(53, 6) || code == g_code(253);
+}
+
 core::Result<void> turn_tool_to_plane(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (entry.code->number != g_code(53, 1)) continue;
-        if (const Word* word = execution.statement.word('P'); word && word->value != 0.0)
-            return core::fail(ErrorCode::unsupported,
-                              fmt::format("{}: which position of the rotary axes P chooses is not "
-                                          "supported yet: program G53.1 without it",
-                                          written(*word)),
-                              word->span);
+        if (!turns_to_plane(entry)) continue;
+        const std::string name = written(*entry.word);
+        for (const char letter : {'P', 'R'})
+            if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
+                return core::fail(
+                    ErrorCode::unsupported,
+                    letter == 'P'
+                        ? fmt::format("{}: which position of the rotary axes P chooses is not "
+                                      "supported yet: program {} without it",
+                                      written(*word), name)
+                        : fmt::format("{}: turning about another point than the tip is not "
+                                      "supported yet: program {} without R",
+                                      written(*word), name),
+                    word->span);
         if (!execution.modal().transforms.tilt)
-            return core::fail(ErrorCode::invalid_value,
-                              "G53.1 needs a tilted plane, but none is set: program G68.2 first",
-                              entry.word->span);
-        if (execution.modal().offsets.machine) return turn_rotary_axes(execution, *entry.word);
+            return core::fail(
+                ErrorCode::invalid_value,
+                fmt::format("{} needs a tilted plane, but none is set: program {} first", name,
+                            entry.code->number == g_code(253) ? "G268" : "G68.2"),
+                entry.word->span);
+        if (execution.modal().offsets.machine)
+            return turn_rotary_axes(execution, *entry.word, entry.code->number == g_code(53, 6));
         if (execution.modal().offsets.frame.tilts_tool)
             execution.warn(entry.word->span,
-                           "G53.1 moves rotary axes as the machine is built: without a machine in "
-                           "the set-up these moves are not followed");
+                           fmt::format("{} moves rotary axes as the machine is built: without a "
+                                       "machine in the set-up these moves are not followed",
+                                       name));
     }
     return {};
+}
+
+void turn_dynamic_offset(Execution& execution, const ModalState& before) {
+    ModalState& modal = execution.modal();
+    if (!modal.transforms.tilt || !modal.transforms.tilt->follows_table) return;
+    const bool turned = !std::equal(modal.position.begin() + 3, modal.position.begin() + 6,
+                                    before.position.begin() + 3);
+    if (!turned || !before.transforms.tilt) return;
+    if (execution.statement.letters & letter_bits("XYZ"))
+        lose_positions(
+            execution, {.line = execution.block.line, .column = 1},
+            "a move of linear and rotary axes at once while G254 is on: how the axes move "
+            "is not known. This block and later ones are not checked until X, Y and Z "
+            "have been programmed again",
+            "Turn the rotary axes in a block of their own, or use G234.");
+    ProgramTransforms transforms = modal.transforms;
+    transforms.tilt = plane_on_table(modal);
+    use_transforms(execution, transforms);
 }
 
 double rotary_offset(const Offsets& offsets, size_t axis) {
@@ -479,20 +599,33 @@ core::Result<void> check_free_axis(const Execution& execution, const core::Mat3&
     return {};
 }
 
+bool turns_tool(const ToolDirection& tool) {
+    return tool.direction.x != 0.0 || tool.direction.y != 0.0 || !(tool.direction.z > 0.0);
+}
+
+std::optional<ToolDirection> tool_direction(const Execution& execution) {
+    const std::string_view letters =
+        execution.modal().transforms.follows_vectors ? "IJK" : std::string_view("tuv");
+    ToolDirection found;
+    for (const Word& word : execution.block.words)
+        if (const size_t axis = letters.find(word.letter); axis != std::string_view::npos) {
+            found.direction[static_cast<int>(axis)] = word.value;
+            found.word = &word;
+        }
+    return found.word ? std::optional(found) : std::nullopt;
+}
+
 core::Result<void> point_by_vector(const Execution& execution, Position& target) {
     const ModalState& modal = execution.modal();
-    if (!modal.transforms.follows_vectors || !modal.offsets.machine) return {};
-    const core::Vec3 direction = angles_of(execution);
-    const Word* word = nullptr;
-    for (const char letter : {'I', 'J', 'K'})
-        if (const Word* found = execution.statement.word(letter)) word = found;
-    if (!word) return {};
-    if (!(glm::length(direction) > 0.0))
-        return core::fail(
-            ErrorCode::invalid_value,
-            fmt::format("{}: I, J and K are all 0 and give no tool direction", written(*word)),
-            word->span);
-    FEELER_TRY(const AxisValues values, pointed(execution, *word, direction));
+    if (!modal.offsets.machine) return {};
+    const auto tool = tool_direction(execution);
+    if (!tool) return {};
+    if (!(glm::length(tool->direction) > 0.0))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: a direction of 0, 0, 0 is no tool direction",
+                                      words_at(execution, *tool->word)),
+                          tool->word->span);
+    FEELER_TRY(const AxisValues values, pointed(execution, *tool->word, tool->direction));
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (is_rotary(axis) && modal.offsets.machine->axes[axis].present)
             target[axis] = values[axis] - rotary_offset(modal.offsets, axis);

@@ -66,10 +66,29 @@ core::Result<void> check_free_axis(const Execution& execution, const core::Mat3&
                                    core::SourceSpan where, const std::string& what,
                                    bool also_turned);
 
-/// With G43.5, sets the rotary axes of a target from the tool direction in I, J and K.
+/// The direction of the tool that a block programs, from the tip up. Program coordinates.
+struct ToolDirection {
+    core::Vec3 direction = core::Vec3(0.0);
+    const Word* word = nullptr; // one of its words
+};
+
+/// Whether it is another direction than +Z.
+bool turns_tool(const ToolDirection& tool);
+
+/// I, J and K under G43.5; A3, B3 and C3 of Siemens; TX, TY and TZ of Heidenhain. Words that are
+/// left out are 0. Empty if the block has none of them.
+std::optional<ToolDirection> tool_direction(const Execution& execution);
+
+/// Sets the rotary axes of a target from the direction of the tool.
 ///
 /// Errors: as turn_tool_to_plane; a zero direction.
 core::Result<void> point_by_vector(const Execution& execution, Position& target);
+
+/// Whether a code turns the rotary axes to the tilted plane: G53.1, G53.6, G253.
+bool turns_to_plane(const CodeWord& entry);
+
+/// After a block: a dynamic work offset (G254) turns with the table.
+void turn_dynamic_offset(Execution& execution, const ModalState& before);
 
 /// The axis of the plane that the first absolute motion after G68 does not name. It keeps the
 /// program coordinate it had before G68.

@@ -14,6 +14,7 @@
 #include "gcode/exec/fanuc_parameters.h"
 #include "gcode/exec/flow.h"
 #include "gcode/exec/following.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/linuxcnc_parameters.h"
 #include "gcode/exec/loop_detector.h"
 #include "gcode/exec/modes.h"
@@ -338,6 +339,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     ask_for_first_modes(execution);
     result.in_machine = in_machine_coordinates(execution);
     if (auto done = language.execute(execution, before.modal); !done) return done;
+    turn_dynamic_offset(execution, before.modal);
     mark_uncertain_motions(execution, before.modal);
     if (remapped) lose_remapped(execution, *remapped);
     return {};

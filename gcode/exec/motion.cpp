@@ -29,16 +29,28 @@ bool moves_by_radius_and_angle(const Execution& execution) {
 
 } // namespace
 
+namespace {
+
+/// Whether a move turns the tool in the plane of its directions.
+bool turns_in_plane(const ModalState& modal, const Position& end) {
+    return modal.turns_in_plane && modal.offsets.follows_tip
+           && !std::equal(end.begin() + 3, end.begin() + 6, modal.position.begin() + 3);
+}
+
+} // namespace
+
 void Execution::traverse(const Position& end, std::optional<core::RapidStyle> style) {
+    const bool in_plane = turns_in_plane(modal(), end);
     modal().position = end;
     modal().leaves_contour = false;
-    emit(StraightTraverse{end, style});
+    emit(StraightTraverse{end, style, in_plane});
 }
 
 void Execution::feed(const Position& end, double rate) {
+    const bool in_plane = turns_in_plane(modal(), end);
     modal().position = end;
     modal().leaves_contour = false;
-    emit(StraightFeed{end, rate});
+    emit(StraightFeed{end, rate, in_plane});
 }
 
 bool in_machine_coordinates(const Execution& execution) {

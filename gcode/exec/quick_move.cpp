@@ -46,8 +46,10 @@ struct Move {
         }
         const size_t axis = axes_by_letter[static_cast<size_t>(word.letter - 'A')];
         if (axis == axis_count) return false;
-        if (is_rotary(axis) && (modal.following.may_be_on || modal.offsets.follows_tip))
-            return false;
+        const Offsets& offsets = modal.offsets;
+        const bool is_plain =
+            !modal.following.may_be_on && !offsets.follows_tip && !offsets.tilted_plane;
+        if (is_rotary(axis) && !is_plain) return false;
         has_axis = true;
         if (std::abs(word.value) > largest_quick_value) return false;
         const double value = is_rotary(axis) ? word.value : to_mm(word.value, modal.unit);

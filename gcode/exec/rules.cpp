@@ -7,6 +7,7 @@
 
 #include "core/base/rule_table.h"
 #include "gcode/exec/execution.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/language/canonical.h"
 
 namespace gcode {
@@ -27,10 +28,10 @@ bool moves(const Execution& execution) {
     return std::any_of(commands.begin(), commands.end(), is_motion);
 }
 
-bool has_g53_1(const Execution& execution) {
+bool turns_to_plane(const Execution& execution) {
     const auto codes = execution.statement.codes();
     return std::any_of(codes.begin(), codes.end(),
-                       [](const CodeWord& entry) { return entry.code->number == g_code(53, 1); });
+                       [](const CodeWord& entry) { return turns_to_plane(entry); });
 }
 
 bool has_code(const Execution& execution, ModalGroup group, CodeNumber number) {
@@ -40,7 +41,7 @@ bool has_code(const Execution& execution, ModalGroup group, CodeNumber number) {
 
 /// G28, G30, G53: targets in machine coordinates. G53.1 moves only rotary axes.
 bool moves_in_machine_coordinates(const Execution& execution) {
-    if (has_g53_1(execution)) return true;
+    if (turns_to_plane(execution)) return true;
     const CodeWord* action = execution.statement.of(ModalGroup::action);
     if (!action) return false;
     return action->code->number == g_code(28) || action->code->number == g_code(30)
@@ -91,8 +92,8 @@ void check_tool_change(Execution& execution, const ModalState& before) {
 
 /// Whether a code turns on a length offset, but no H says which.
 bool names_no_length(const Execution& execution, CodeNumber code) {
-    const bool takes_number =
-        code == g_code(43) || code == g_code(44) || code == g_code(43, 4) || code == g_code(43, 5);
+    const bool takes_number = code == g_code(43) || code == g_code(44) || code == g_code(43, 4)
+                              || code == g_code(43, 5) || code == g_code(234);
     return takes_number && !execution.modal().length_number;
 }
 

@@ -54,6 +54,7 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
     if (const auto& tilt = transforms.tilt) {
         for (int column = 0; column < 3; ++column) add(digest, tilt->axes[column]);
         add(digest, tilt->origin);
+        digest.add(uint64_t{tilt->follows_table});
     }
     digest.add(uint64_t{transforms.follows_vectors});
     digest.add(uint64_t{transforms.polar.has_value()});
@@ -145,7 +146,8 @@ void add(Digest& digest, const ModalState& modal) {
     add_all(digest, modal.direction);
     digest.add(number_of(int(modal.following.may_be_on) + 2 * modal.following.unknown_axes
                          + 1024 * int(modal.following.rotary_unknown)
-                         + 2048 * int(modal.following.awaits_sync) + 16 * modal.doubt));
+                         + 2048 * int(modal.following.awaits_sync)
+                         + 4096 * int(modal.turns_in_plane) + 16 * modal.doubt));
     digest.add(number_of(modal.kinematics));
 }
 

@@ -176,8 +176,10 @@ core::Result<void> look_up(const Block& block, const Dialect& dialect,
             statement.polar_radius = &word;
         } else if (word.letter == '^') {
             statement.polar_angle = &word;
-        } else if (word.letter >= 'i' && word.letter <= 'k') {
-            continue; // I1, J1 and K1 of CIP, which it looks up itself
+        } else if ((word.letter >= 'i' && word.letter <= 'n') || word.letter >= 't') {
+            // I1, J1 and K1 of CIP, normals of a surface and directions of the tool, which are
+            // looked up where they are used.
+            continue;
         } else if (word.letter >= 'A' && word.letter <= 'Z') {
             statement.words[static_cast<size_t>(word.letter - 'A')] = &word;
             statement.letters |= letter_bit(word.letter);

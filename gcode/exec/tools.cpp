@@ -209,7 +209,8 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
     return {};
 }
 
-/// G43.4 and G43.5: the control keeps the tip on the programmed path relative to the work.
+/// G43.4, G43.5 and G234 of Haas: the control keeps the tip on the programmed path relative to the
+/// work.
 core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
     ProgramTransforms transforms = execution.modal().transforms;
     transforms.follows_vectors = entry.code->number == g_code(43, 5);
@@ -411,6 +412,7 @@ core::Result<void> set_tool_length(Execution& execution) {
         return add_table_offset(execution, *entry->word);
     case g_code(43, 4):
     case g_code(43, 5):
+    case g_code(234):
         return use_tool_centre_control(execution, *entry);
     case g_code(43, 1):
         modal.length_sign = 0.0;

@@ -90,6 +90,7 @@ bool has_motion_words(const Execution& execution) {
     if (statement.has_axis_word()) return true;
     if (statement.of(ModalGroup::motion) && execution.dialect.motion_codes_move) return true;
     const ModalState& modal = execution.modal();
+    if (!modal.cycle && is_straight(modal.motion) && tool_direction(execution)) return true;
     if (modal.cycle && execution.dialect.cycles_run_with_axes_or_r && statement.word('R'))
         return true;
     const bool arc = !modal.cycle && is_arc(modal.motion);

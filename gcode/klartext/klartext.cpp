@@ -7,6 +7,7 @@
 
 #include "core/base/math.h"
 #include "gcode/exec/following.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/loop_detector.h"
 #include "gcode/exec/state_digest.h"
 #include "gcode/klartext/klartext_parser.h"
@@ -42,13 +43,17 @@ const CodeWord* tip_control(const Execution& execution) {
 ///
 /// Source: HEIDENHAIN iTNC 530, user's manual, M128: the tip stays relative to the work, and the
 ///         coordinates turn with a tilting table. M128 acts at the start of its block, M129 at the
-///         end. TNC 640, FUNCTION TCPM: AXIS POS and PATHCTRL AXIS do the same.
+///         end. TNC 640, FUNCTION TCPM: AXIS POS and PATHCTRL AXIS do the same; with PATHCTRL
+///         VECTOR the tool turns in the plane of its directions at the ends of a block.
 void use_tip_control(Execution& execution, const CodeWord& entry) {
     const bool on = entry.code->number == m_code(128);
     const bool was_followed = execution.modal().offsets.follows_tip;
     const bool is_followed = on ? !klartext_of(execution.block).turns_otherwise : was_followed;
     if (on && !is_followed && was_followed) switch_tip_control(execution, false);
-    if (is_followed && switch_tip_control(execution, on)) return;
+    if (is_followed && switch_tip_control(execution, on)) {
+        execution.modal().turns_in_plane = on && klartext_of(execution.block).turns_in_plane;
+        return;
+    }
     const core::SourceSpan where = entry.word->span;
     std::string_view code = execution.block.text.substr(where.column - 1, where.length);
     if (code.starts_with("FUNCTION")) code = on ? "FUNCTION TCPM" : "FUNCTION RESET TCPM";
@@ -67,6 +72,34 @@ void check_machine_move(Execution& execution, core::SourceSpan where) {
         "known. This block and later ones are not checked until X, Y and Z have been "
         "programmed again",
         "Program M129 before it.");
+}
+
+/// The vectors of LN.
+///
+/// Source: HEIDENHAIN TNC 640, user's manual Klartext programming, "Three-dimensional tool
+///         compensation": deltas of length and radius shift the tool along the normal; with RL and
+///         RR the radius, too.
+core::Result<void> check_vectors(Execution& execution) {
+    if (!klartext_of(execution.block).has_normal) return {};
+    const auto& words = execution.block.words;
+    const auto has = [&](std::string_view letters) {
+        return std::any_of(words.begin(), words.end(), [&](const Word& word) {
+            return letters.find(word.letter) != std::string_view::npos;
+        });
+    };
+    ModalState& modal = execution.modal();
+    if (has("lmn") && klartext_of(execution.state).has_deltas)
+        return refuse_statement(execution,
+                                "the compensation of DL and DR of TOOL CALL along the "
+                                "normal is not supported yet: call the tool without them");
+    const auto tool = tool_direction(execution);
+    if (!tool) return {};
+    if (!modal.offsets.follows_tip && !modal.following.may_be_on)
+        return refuse_statement(execution,
+                                "TX, TY and TZ turn the tool only while M128 or FUNCTION "
+                                "TCPM is on: program it before them");
+    if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
+    return {};
 }
 
 /// M118 lets the operator shift the axes with the handwheel; M101 lets the control change to a
@@ -174,7 +207,8 @@ core::Result<void> call_cycle(Execution& execution) {
     KlartextState& klartext = writable_klartext(execution.state);
     if (command.calls_from_here) klartext.calls_after_motions = true;
     const bool moves = is_motion(command.kind)
-                       && (command.kind != straight || execution.statement.has_axis_word());
+                       && (command.kind != straight || execution.statement.has_axis_word()
+                           || tool_direction(execution));
     const bool calls =
         command.calls_cycle || command.calls_from_here || (klartext.calls_after_motions && moves);
     if (command.calls_cycle) klartext.calls_after_motions = false;
@@ -198,6 +232,7 @@ core::Result<void> run_klartext_block(Execution& execution) {
         if (auto done = set_coolant(execution); !done) return done;
     if (in_machine_coordinates(execution) && is_motion(command.kind) && command.kind != straight)
         return refuse_statement(execution, "M91 is only supported with L");
+    if (auto done = check_vectors(execution); !done) return done;
     if (auto done = run_statement(execution); !done) return done;
     if (is_motion(command.kind)) check_machine_move(execution, command.span);
     const bool calls = command.calls_cycle || command.calls_from_here
@@ -300,6 +335,8 @@ void use_length(Execution& execution, int number) {
             fmt::format("TOOL CALL: the length of tool {} is unknown and assumed to be 0", number));
     const Word* longer = execution.statement.word('L');
     const Word* wider = execution.statement.word('D');
+    writable_klartext(execution.state).has_deltas =
+        (longer && longer->value != 0.0) || (wider && wider->value != 0.0);
     Offsets offsets = execution.modal().offsets;
     offsets.tool = {};
     const size_t normal = axes_of(execution.modal().plane).normal;
@@ -448,7 +485,8 @@ void add(Digest& digest, const KlartextState& klartext) {
     }
     add(digest, klartext.cycle);
     digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)
-                         + 4 * int(klartext.turns_short_way) + 8 * int(klartext.has_moved)));
+                         + 16 * int(klartext.has_deltas) + 4 * int(klartext.turns_short_way)
+                         + 8 * int(klartext.has_moved)));
     digest.add(klartext.call_feed);
     digest.add(klartext.datum);
     add(digest, klartext.transforms);

@@ -56,8 +56,9 @@ struct KlartextLine {
     bool feed_of_call = false;    // Q206=FAUTO: the feed of TOOL CALL
     bool calls_at_point = false;  // CYCL CALL POS
     bool calls_from_here = false; // M89: after every motion
-    bool turns_otherwise = false; // FUNCTION TCPM: rotary axes are not programmed as positions, or
-                                  // do not turn evenly
+    bool turns_otherwise = false; // FUNCTION TCPM: rotary axes are not programmed as positions
+    bool turns_in_plane = false;  // PATHCTRL VECTOR
+    bool has_normal = false;      // LN
 };
 
 inline const KlartextLine& klartext_of(const Block& block) {

@@ -6,6 +6,7 @@
 #include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/contour/flat_path.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/klartext/klartext.h"
 #include "gcode/klartext/klartext_parser.h"
 #include "gcode/language/error_rules.h"
@@ -320,8 +321,8 @@ core::Result<void> move_in_klartext(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     const Statement& statement = execution.statement;
     if (command.kind == pole) return set_pole(execution);
-    const bool still =
-        (command.kind == straight || command.kind == cycle_call) && !statement.has_axis_word();
+    const bool still = (command.kind == straight || command.kind == cycle_call)
+                       && !statement.has_axis_word() && !tool_direction(execution);
     if (still || command.calls_at_point) return {};
     const Position start = execution.modal().position;
     FEELER_TRY(PathElement contour, contour_of(execution));

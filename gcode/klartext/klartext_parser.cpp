@@ -22,16 +22,48 @@ struct StatementKeyword {
     CommandKind kind;
 };
 
-constexpr StatementKeyword motions[] = {
-    {"L", CommandKind::straight},     {"LP", CommandKind::straight_polar},
-    {"CC", CommandKind::pole},        {"C", CommandKind::arc},
-    {"CP", CommandKind::arc_polar},   {"CR", CommandKind::arc_of_radius},
-    {"CT", CommandKind::tangent_arc}, {"CTP", CommandKind::tangent_polar},
-    {"RND", CommandKind::rounding},   {"CHF", CommandKind::chamfer}};
+constexpr StatementKeyword motions[] = {{"L", CommandKind::straight},
+                                        {"LN", CommandKind::straight},
+                                        {"LP", CommandKind::straight_polar},
+                                        {"CC", CommandKind::pole},
+                                        {"C", CommandKind::arc},
+                                        {"CP", CommandKind::arc_polar},
+                                        {"CR", CommandKind::arc_of_radius},
+                                        {"CT", CommandKind::tangent_arc},
+                                        {"CTP", CommandKind::tangent_polar},
+                                        {"RND", CommandKind::rounding},
+                                        {"CHF", CommandKind::chamfer}};
 
-constexpr std::string_view refused[] = {"APPR",  "DEP", "LN",     "SPL",    "FC",      "FCT",
-                                        "FL",    "FLT", "FPOL",   "SEL",    "PATTERN", "TCH",
-                                        "TRANS", "SQL", "PRESET", "CONTOUR"};
+constexpr std::string_view refused[] = {"APPR", "DEP",   "SPL",  "FC",     "FCT",
+                                        "FL",   "FLT",   "FPOL", "SEL",    "PATTERN",
+                                        "TCH",  "TRANS", "SQL",  "PRESET", "CONTOUR"};
+
+/// Consumes a name with digits, such as P1X.
+bool accept_name(KlartextReader& reader, std::string_view name) {
+    reader.next();
+    const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
+    const bool is_next = !name.empty() && rest.size() >= name.size()
+                         && std::equal(name.begin(), name.end(), rest.begin(),
+                                       [](char a, char b) { return a == upper(b); });
+    const char after = is_next && rest.size() > name.size() ? upper(rest[name.size()]) : ' ';
+    if (!is_next || (is_letter(after) && after != 'Q')) return false; // COORD after C
+    reader.lexer.at += name.size();
+    return true;
+}
+
+/// The words of LN: the normal of the surface as l, m and n, the direction of the tool as t, u and
+/// v.
+core::Result<bool> read_vector(KlartextReader& reader) {
+    constexpr std::string_view names[] = {"NX", "NY", "NZ", "TX", "TY", "TZ"};
+    const size_t from = reader.lexer.at;
+    for (size_t i = 0; i < std::size(names); ++i)
+        if (accept_name(reader, names[i])) {
+            if (auto done = reader.word("lmntuv"[i], from); !done)
+                return tl::unexpected(std::move(done).error());
+            return true;
+        }
+    return false;
+}
 
 core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
     KlartextLine& command = reader.command;
@@ -43,6 +75,10 @@ core::Result<void> read_motion(KlartextReader& reader, CommandKind kind) {
             continue;
         }
         if (!is_letter(c)) return reader.stray();
+        if (command.has_normal) {
+            FEELER_TRY(const bool is_vector, read_vector(reader));
+            if (is_vector) continue;
+        }
         if (auto done = read_contour_word(reader); !done) return done;
     }
     command.span = reader.span_from(reader.begin);
@@ -84,19 +120,6 @@ constexpr PlaneWords plane_forms[] = {
     {"RELATIV", PlaneForm::relative, {"SPA", "SPB", "SPC"}},
     {"RELATIVE", PlaneForm::relative, {"SPA", "SPB", "SPC"}},
     {"AXIAL", PlaneForm::axial, {"A", "B", "C"}}};
-
-/// Consumes a name with digits, such as P1X.
-bool accept_name(KlartextReader& reader, std::string_view name) {
-    reader.next();
-    const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
-    const bool is_next = !name.empty() && rest.size() >= name.size()
-                         && std::equal(name.begin(), name.end(), rest.begin(),
-                                       [](char a, char b) { return a == upper(b); });
-    const char after = is_next && rest.size() > name.size() ? upper(rest[name.size()]) : ' ';
-    if (!is_next || (is_letter(after) && after != 'Q')) return false; // COORD after C
-    reader.lexer.at += name.size();
-    return true;
-}
 
 /// SEQ+, SEQ-, and SYM, which is the same.
 core::Result<void> read_solution(KlartextReader& reader) {
@@ -163,15 +186,21 @@ core::Result<void> read_plane(KlartextReader& reader) {
     return {};
 }
 
-/// The words after FUNCTION TCPM. False if they select what M128 does not do: rotary words that are
-/// angles in space, a tool that turns in a plane, another point than the tip.
-bool is_as_m128(KlartextReader& reader) {
+/// PATHCTRL AXIS or VECTOR; the first has been read.
+bool read_path_control(KlartextReader& reader) {
+    reader.command.turns_in_plane = reader.accept("VECTOR");
+    return reader.command.turns_in_plane || reader.accept("AXIS");
+}
+
+/// The words after FUNCTION TCPM. False if they select what is not modelled: rotary words that are
+/// angles in space, another point than the tip.
+bool reads_as_tip_control(KlartextReader& reader) {
     bool is_same = true;
     while (reader.next() != '\0') {
         const bool is_known = reader.accept("F") ? reader.accept("TCP") || reader.accept("CONT")
                               : reader.accept("AXIS")
                                   ? reader.accept("POS")
-                                  : reader.accept("PATHCTRL") && reader.accept("AXIS");
+                                  : reader.accept("PATHCTRL") && read_path_control(reader);
         if (is_known) continue;
         is_same = false;
         reader.lexer.at += std::max<size_t>(reader.letters().size(), 1);
@@ -186,7 +215,7 @@ core::Result<void> read_function_mode(KlartextReader& reader) {
         return reader.refuse("'FUNCTION' is only supported with TCPM and RESET TCPM", reader.begin,
                              ErrorCode::unsupported);
     reader.add_word('M', resets ? 129.0 : 128.0, reader.begin);
-    reader.command.turns_otherwise = !is_as_m128(reader);
+    reader.command.turns_otherwise = !reads_as_tip_control(reader);
     reader.lexer.at = reader.lexer.line.size();
     reader.command.kind = CommandKind::modes;
     return {};
@@ -247,7 +276,10 @@ core::Result<void> read_keyword(KlartextReader& reader, const std::string& first
     for (const OpeningWord& word : opening_words)
         if (first == word.spelling) return word.read(reader);
     for (const StatementKeyword& keyword : motions)
-        if (first == keyword.spelling) return read_motion(reader, keyword.kind);
+        if (first == keyword.spelling) {
+            reader.command.has_normal = first == "LN";
+            return read_motion(reader, keyword.kind);
+        }
     const bool known =
         std::find(std::begin(refused), std::end(refused), first) != std::end(refused);
     return reader.refuse(known ? fmt::format("'{}' is not supported yet", first)

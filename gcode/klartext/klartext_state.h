@@ -81,6 +81,7 @@ struct KlartextState {
     bool calls_after_motions = false; // M89
     std::optional<double> call_feed;  // F of TOOL CALL, mm/min
     Transforms transforms;
+    bool has_deltas = false;      // DL or DR of TOOL CALL are not 0
     bool turns_short_way = false; // M126
     bool looks_ahead = false; // searching the motion after a corner; corners are ignored meanwhile
 

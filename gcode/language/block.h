@@ -23,8 +23,9 @@ constexpr bool is_absolute(Addressing addressing) {
 
 /// A letter and its value as written, in the units of the program.
 struct Word {
-    char letter =
-        '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and `,C`
+    char letter = '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and
+                        // `,C`, 'a' for `,A`, 'i' to 'k' for I1 to K1, 'l' to 'n' for the normal of
+                        // a surface, 't' to 'v' for the direction of the tool
     double value = 0.0;
     core::SourceSpan span{};
     bool has_point = false;  // X5. rather than X5; also set for computed values

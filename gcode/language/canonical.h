@@ -20,12 +20,14 @@ namespace gcode {
 struct StraightTraverse {
     Position end;
     std::optional<core::RapidStyle> style = {}; // empty: that of the machine
+    bool in_plane = false; // rotary axes turn the tool in the plane of its directions at the ends
 
     bool operator==(const StraightTraverse&) const = default;
 };
 struct StraightFeed {
     Position end;
     double feed;
+    bool in_plane = false; // as above
 
     bool operator==(const StraightFeed&) const = default;
 };

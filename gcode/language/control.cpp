@@ -289,6 +289,21 @@ constexpr ParameterValue outside_corners[] = {
 };
 constexpr ParameterValue hundred_degrees[] = {{100, 100, "100 degrees"}};
 constexpr ParameterRange of_corners{0.0, 180.0, "degrees"};
+constexpr ParameterValue turning_groups[] = {
+    {0, false, "ORIMKS and ORIWKS choose how the tool turns"},
+    {1, true, "ORIAXES and ORIVECT choose how the tool turns"},
+};
+constexpr ParameterValue turning_of_axes[] = {
+    {1, true, "where vectors turn the tool in a plane, positions of rotary axes do so, too",
+     "plane"},
+    {0, false, "each rotary axis turns evenly to a programmed position", "axes"},
+};
+constexpr ParameterValue two_degrees[] = {{2, 2, "2 degrees"}};
+constexpr ParameterRange of_poles{0.0, 90.0, "degrees"};
+constexpr ParameterValue frames_at_traori[] = {
+    {1, true, "TRAORI and TRAFOOF keep the work offset"},
+    {0, false, "TRAORI and TRAFOOF deselect the work offset, as G500"},
+};
 constexpr DialectId any_siemens[] = {DialectId::siemens, DialectId::siemens_iso};
 
 constexpr ControlParameter parameters[] = {
@@ -327,6 +342,24 @@ constexpr ControlParameter parameters[] = {
      follow_all, "SINUMERIK 840D sl, Programming Manual Fundamentals, tool change without M6"},
     {corners_are_met, siemens, "MD20150[17]", "MD20150[17] (GCODE_RESET_VALUES)", outside_corners,
      follow_all, "Siemens 6FC5398-2EP40-0BA0, 4.3, G group 18"},
+    {orientation_by_code, siemens, "MD21104", "MD21104 (ORI_IPO_WITH_G_CODE)", turning_groups,
+     follow_all, "SINUMERIK 840D sl, Programming Manual Job Planning, ORIWKS and ORIMKS"},
+    {axes_turn_in_plane, siemens, "ORIWKS",
+     "how the tool turns to positions of rotary axes under ORIWKS and ORIVECT", turning_of_axes,
+     follow_all, "SINUMERIK 840D sl, Programming Manual Job Planning, ORIWKS and ORIMKS"},
+    {pole_limit,
+     siemens,
+     "MD24530",
+     "MD24530 (TRAFO5_NON_POLE_LIMIT)",
+     two_degrees,
+     assume,
+     "SINUMERIK 840D sl, Function Manual Transformations, 5-axis transformation: singular "
+     "positions",
+     {},
+     of_poles},
+    {frame_survives_traori, siemens, "MD10602", "MD10602 (FRAME_GEOAX_CHANGE_MODE)",
+     frames_at_traori, follow_all,
+     "SINUMERIK 840D sl, Function Manual Basic Functions, K2: frames and transformations"},
     {corner_limit,
      siemens,
      "MD20210",

@@ -80,14 +80,19 @@ enum class ControlQuestion : uint8_t {
     arc_tolerance_inch,   // likewise under G20, inches
     one_way_is_modal,     // G60 belongs to the group of G0
     // Siemens:
-    machine_moves_tip,    // machine coordinates are those of the tip; otherwise of the gauge line
-    length_keeps_axis,    // the tool length stays along Z in each plane
-    change_selects_edge,  // a tool change without D selects the first cutting edge
-    increment_has_offset, // incremental words also travel a change of the zero offset
-    increment_has_length, // incremental words also travel a change of the tool length
-    tool_changes_with_t,  // T changes the tool; otherwise M6
-    corners_are_met,      // G451 is active at the start; otherwise G450
-    corner_limit,         // of G451: a larger change of direction has an arc, degrees
+    machine_moves_tip,     // machine coordinates are those of the tip; otherwise of the gauge line
+    length_keeps_axis,     // the tool length stays along Z in each plane
+    change_selects_edge,   // a tool change without D selects the first cutting edge
+    increment_has_offset,  // incremental words also travel a change of the zero offset
+    increment_has_length,  // incremental words also travel a change of the tool length
+    tool_changes_with_t,   // T changes the tool; otherwise M6
+    corners_are_met,       // G451 is active at the start; otherwise G450
+    orientation_by_code,   // ORIAXES and ORIVECT choose how the tool turns; otherwise ORIMKS and
+                           // ORIWKS
+    axes_turn_in_plane,    // positions of rotary axes turn the tool in a plane where vectors do
+    pole_limit,            // so near to a pole, the tool may turn otherwise, degrees
+    frame_survives_traori, // TRAORI and TRAFOOF keep the work offset
+    corner_limit,          // of G451: a larger change of direction has an arc, degrees
 };
 
 /// What each number of a table of tool offsets holds.

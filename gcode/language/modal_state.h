@@ -130,6 +130,8 @@ struct PlaneRotation {
 struct TiltedPlane {
     core::Mat3 axes = core::Mat3(1.0); // its axis directions as columns
     core::Vec3 origin = core::Vec3(0.0);
+    // G254 of Haas: the axes are those of the machine, and the origin turns with the table.
+    bool follows_table = false;
 
     bool operator==(const TiltedPlane&) const = default;
 };
@@ -215,6 +217,7 @@ struct Following {
     bool is_said = false;        // reported for this code
     bool rotary_unknown = false; // G53.1 turned the work by unknown angles
     bool said_turn = false;      // a rotary axis that turns the other way round was reported
+    bool said_pole = false;      // a turn that passes near to a pole was reported
     bool awaits_sync = false;    // LinuxCNC: kinematics were switched, and no M66 came yet
     uint8_t unknown_axes = 0;    // one bit for each of X, Y and Z whose position is unknown
 
@@ -297,7 +300,10 @@ struct ModalState {
     std::optional<Position> way_home; // intermediate point of G28, for G29; machine coordinates
     ProgramTransforms transforms;     // `offsets.frame` is derived from them
     Following following;
-    uint8_t doubt = 0;  // bits: tool_is_in_doubt ...
+    uint8_t doubt = 0; // bits: tool_is_in_doubt ...
+    // Under tool centre point control, the tool turns in the plane of its directions at the ends of
+    // a straight move; otherwise each rotary axis turns evenly.
+    bool turns_in_plane = false;
     int kinematics = 0; // LinuxCNC: the number of the active kinematics, of those it can switch
     // Siemens: how far the position programmed last has moved with the zero offset and the tool
     // length since then. Incremental words may travel it, too.

@@ -6,6 +6,7 @@
 #include "core/base/math.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
+#include "core/motion/plane_turn.h"
 #include "gcode/contour/flat_path.h"
 #include "gcode/exec/probing.h"
 #include "gcode/language/environment.h"
@@ -19,6 +20,12 @@ bool is_known(const core::AxisPosition& position) {
 
 /// Largest distance of a chord from its arc, mm.
 constexpr double chord_error = 0.001;
+
+AxisValues values_of(const Position& position) {
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
+    return values;
+}
 
 /// The axis of an arc in the machine (0 X, 1 Y, 2 Z) and whether the arc keeps its direction; empty
 /// when the offsets tilt the arc out of these planes.
@@ -161,13 +168,54 @@ struct Visitor {
         return motion;
     }
 
+    /// Adds a motion whose rotary axes turn the tool in a plane, in parts with even turns.
+    void add_in_plane(const core::Motion& whole) {
+        const core::Machine& machine = *lowering.offsets.machine;
+        const auto turn = core::turn_in_plane(machine, values_of(whole.from), values_of(whole.to),
+                                              core::turn_error);
+        if (!turn) {
+            events.emplace_back(whole);
+            return;
+        }
+        core::Motion part = whole;
+        part.tip->turn_error = turn->error;
+        const size_t count = turn->positions.size();
+        const size_t first = turn->begins_in_place ? 1 : 0;
+        const size_t moving = count - first - (turn->ends_in_place ? 1 : 0);
+        for (size_t i = 1; i < count; ++i) {
+            const size_t done = std::min(i - std::min(i, first), moving);
+            const double along = static_cast<double>(done) / static_cast<double>(moving);
+            part.tip->to = whole.tip->from + along * (whole.tip->to - whole.tip->from);
+            AxisValues there = turn->positions[i - 1];
+            for (size_t axis = 6; axis < axis_count; ++axis)
+                there[axis] += along * (whole.to[axis].value_or(0.0) - there[axis]);
+            const auto reached =
+                core::reach_tip(machine, there, part.tip->to, part.tip->tool_length);
+            for (size_t axis = 0; axis < axis_count; ++axis)
+                if (reached && whole.to[axis]) part.to[axis] = (*reached)[axis];
+            events.emplace_back(part);
+            part.from = part.to;
+            part.tip->from = part.tip->to;
+        }
+        part.to = whole.to;
+        part.tip->to = whole.tip->to;
+        events.emplace_back(part);
+    }
+
+    void add(const core::Motion& motion, bool in_plane) {
+        if (in_plane && motion.tip)
+            add_in_plane(motion);
+        else
+            events.emplace_back(motion);
+    }
+
     void operator()(const StraightTraverse& command) {
         core::Motion motion = motion_to(command.end, core::MotionKind::rapid, 0.0);
         motion.style = command.style;
-        events.emplace_back(motion);
+        add(motion, command.in_plane);
     }
     void operator()(const StraightFeed& command) {
-        events.emplace_back(motion_to(command.end, core::MotionKind::feed, command.feed));
+        add(motion_to(command.end, core::MotionKind::feed, command.feed), command.in_plane);
     }
     void operator()(const ArcFeed& command) {
         const Position from = program_from_machine(lowering.offsets, lowering.machine);

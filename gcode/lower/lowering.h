@@ -21,7 +21,8 @@ struct Lowering {
     /// An arc keeps its shape. An arc whose ends are not all known becomes a feed move between the
     /// known coordinates; one whose plane the offsets tilt or distort becomes chords within 0.001
     /// mm of it. If the machine is known, its rotary axes take the short way if they are built so,
-    /// and tool centre point control gives paths of the tip. `settles` is Motion::settles.
+    /// and tool centre point control gives paths of the tip, several where rotary axes do not turn
+    /// evenly. `settles` is Motion::settles.
     std::vector<core::Event> lower(const CanonicalCommand& command, core::AxisSet settles = 0);
 };
 

@@ -86,9 +86,13 @@ std::string_view name_of(core::SpindleDirection direction) {
 struct Details {
     Pairs pairs;
 
-    void operator()(const StraightTraverse& command) { pairs.add(command.end); }
+    void operator()(const StraightTraverse& command) {
+        pairs.add(command.end);
+        if (command.in_plane) pairs.add("in_plane");
+    }
     void operator()(const StraightFeed& command) {
         pairs.add(command.end).add("feed", command.feed);
+        if (command.in_plane) pairs.add("in_plane");
     }
     void operator()(const ArcFeed& command) {
         pairs.add(command.end)

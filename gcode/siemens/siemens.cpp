@@ -91,10 +91,15 @@ core::Result<void> note_keywords(Execution& execution) {
             say_so(use.keyword->text);
             break;
         case transformation:
-            switch_following(execution, use.span, use.keyword->name, FollowingSwitch::on);
-            break;
         case transformation_off:
-            switch_following(execution, use.span, use.keyword->name, FollowingSwitch::off);
+            if (auto done = switch_orientation(execution, use); !done) return done;
+            break;
+        case orient_axes:
+        case orient_by_vector:
+        case orient_in_machine:
+        case orient_in_work:
+        case other_orientation:
+            choose_orientation(execution, use.keyword->action);
             break;
         case orient_spindle:
             turn_siemens_spindle(execution, 5);
@@ -780,6 +785,8 @@ void add(Digest& digest, const SiemensState& siemens) {
                          + 32 * int(siemens.length_follows_plane)
                          + 64 * int(siemens.length_axis_is_settled)));
     digest.add(uint64_t{siemens.swivels});
+    digest.add(uint64_t(4 * siemens.turns_by_axes + 2 * siemens.turns_in_machine
+                        + siemens.turns_otherwise));
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row) digest.add(siemens.swivel.linear[column][row]);
     for (int axis = 0; axis < 3; ++axis) digest.add(siemens.swivel.shift[axis]);

@@ -33,6 +33,12 @@ void delete_siemens_frame(Execution& execution);                // as TRANS alon
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use);
 /// The plane of CYCLE800, before the frame of the program. Not on: level.
 void use_swivelled_plane(Execution& execution, const ProgramFrame& plane, bool is_on);
+/// TRAORI and TRAFOOF.
+core::Result<void> switch_orientation(Execution& execution, const SiemensKeywordUse& use);
+/// ORIAXES, ORIVECT, ORIMKS, ORIWKS and the like.
+void choose_orientation(Execution& execution, SiemensAction action);
+/// Decides before a move how the tool turns, and checks the words for its direction.
+core::Result<void> prepare_orientation(Execution& execution);
 core::Result<void> set_pole(Execution& execution);             // G110 G111 G112
 core::Result<void> move_in_siemens(Execution& execution);      // G0 to G3, CIP, CT, polar positions
 core::Result<void> go_to_fixed_position(Execution& execution); // G74 G75

@@ -6,6 +6,7 @@
 #include "core/base/math.h"
 #include "core/base/units.h"
 #include "gcode/contour/flat_path.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/iso/iso.h"
 #include "gcode/language/error_rules.h"
 #include "gcode/siemens/siemens.h"
@@ -378,10 +379,11 @@ core::Result<void> make_motion(Execution& execution) {
     if (has_frame_words(execution) || statement.axis_word_owner()) return {};
     const bool circles = is_arc(modal.motion);
     const bool moves =
-        statement.has_axis_word()
+        statement.has_axis_word() || tool_direction(execution)
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
     if (!modal.motion) modal.motion = MotionCode::straight; // default: G1 is active at the start
+    if (auto prepared = prepare_orientation(execution); !prepared) return prepared;
     settle_length(execution, !circles && modal.motion != by_point && modal.motion != by_tangent);
     const Position start = modal.position;
     if (auto moved = move_by_mode(execution); !moved) return moved;

@@ -147,11 +147,13 @@ private:
             return {};
         }
         const bool vector = (letter >= 'A' && letter <= 'C') && name.size() == 2;
-        return reader_.refuse(fmt::format("'{}=': {}", name,
-                                          vector ? "tool orientation by vectors is not supported "
-                                                   "yet: program the positions of the rotary axes"
-                                                 : "there is no such axis or address here"),
-                              begin, ErrorCode::unsupported);
+        return reader_.refuse(
+            fmt::format("'{}=': {}", name,
+                        vector ? "orientation by angles and by normal vectors is not "
+                                 "supported yet: program the direction of the "
+                                 "tool as A3= B3= C3=, or the rotary axes"
+                               : "there is no such axis or address here"),
+            begin, ErrorCode::unsupported);
     }
 
     /// G74 and G75 take machine axes.

@@ -65,6 +65,10 @@ struct SiemensState {
     int path_code = 0;            // G60, G64, G641 to G645; 0: that of the machine
     double feed_rounding = 0.0, rapid_rounding = 0.0; // ADIS and ADISPOS, mm
     double contour_tolerance = 0.0;                   // CTOL and CYCLE832, mm; 0: of the machine
+    bool turns_by_axes = false;                       // ORIAXES
+    bool turns_in_machine = false;                    // ORIMKS
+    bool turns_otherwise = false;                     // ORICONCCW and the like
+    bool said_turning = false, said_rotary_offset = false; // reported
     bool compresses = false; // COMPON, COMPCURV, COMPCAD: joins short moves
 
     bool operator==(const SiemensState&) const = default;

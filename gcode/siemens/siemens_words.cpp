@@ -7,6 +7,7 @@
 #include "core/base/rule_table.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/following.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/siemens/siemens.h"
 
@@ -29,6 +30,10 @@ bool is_used(const Execution& execution, const Word& word) {
     switch (word.letter) {
     case 'Q':
         return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn);
+    case 't': // A3, B3, C3
+    case 'u':
+    case 'v':
+        return true;
     case 'i':
     case 'j':
     case 'k':
@@ -133,6 +138,11 @@ core::Result<void> check_swivelled_axes(const Execution& execution) {
                             "CYCLE800() before it",
                             written(*word)),
                 word->span);
+    if (tool_direction(execution))
+        return core::fail(ErrorCode::unsupported,
+                          "A3, B3 and C3 while a plane of CYCLE800 is on are not supported yet: "
+                          "program CYCLE800() before them",
+                          {.line = execution.block.line, .column = 1});
     return {};
 }
 

@@ -31,7 +31,7 @@ Checked check_siemens(const SetupWriter& setup, const std::string& blocks) {
 
 TEST(FollowingAxes, ABlockWithTheWorkTurnedIsUndecidedUnderTraori) {
     const Checked checked = check_siemens(
-        cube(), "G0 X-40 Y0 Z50\nTRAORI\nZ40\nA30\nX-30\nA0\nX-40\nTRAFOOF\nX-30\nA30\nA0");
+        cube(), "G0 X-40 Y0 Z50\nTRAORI(2)\nZ40\nA30\nX-30\nA0\nX-40\nTRAFOOF\nX-30\nA30\nA0");
     EXPECT_EQ(checked.errors(), "undecided 8");
     EXPECT_EQ(checked.status, 1);
     EXPECT_EQ(checked.verdict, "undecided");
@@ -43,7 +43,7 @@ TEST(FollowingAxes, ABlockWithTheWorkTurnedIsUndecidedUnderTraori) {
 
 TEST(FollowingAxes, APositionIsUnknownAfterAChangeWithTheWorkTurned) {
     const Checked checked = check_siemens(
-        cube(), "G0 X-40 Y0 Z50\nA30\nTRAORI\nTRAFOOF\nA0\nX-30\nG91 Y1 Z1\nG90 Y1\nZ50\n"
+        cube(), "G0 X-40 Y0 Z50\nA30\nTRAORI(2)\nTRAFOOF\nA0\nX-30\nG91 Y1 Z1\nG90 Y1\nZ50\n"
                 "X-40");
     EXPECT_EQ(checked.errors(), "undecided 9");
     for (const int line : {9, 10, 11, 12, 13})
@@ -52,15 +52,15 @@ TEST(FollowingAxes, APositionIsUnknownAfterAChangeWithTheWorkTurned) {
 }
 
 TEST(FollowingAxes, NothingIsUndecidedWhileTheRotaryAxesAreAtZero) {
-    const Checked turned = check_siemens(cube(), "TRAORI\nG0 X-40 Y0 Z50\nC360\nZ40");
+    const Checked turned = check_siemens(cube(), "TRAORI(2)\nG0 X-40 Y0 Z50\nC360\nZ40");
     EXPECT_EQ(turned.errors(), "undecided 7"); // C turns once
     EXPECT_EQ(turned.at_line(8).verdict, "clear");
-    const Checked still = check_siemens(cube(), "TRAORI\nM77\nG0 X-40 Y0 Z50\nZ40");
+    const Checked still = check_siemens(cube(), "TRAORI(2)\nM77\nG0 X-40 Y0 Z50\nZ40");
     EXPECT_EQ(still.errors(), "");
     EXPECT_EQ(still.verdict, "clear");
     const Checked three_axes =
         check_siemens(SetupWriter().stock("box = [[-20, -20, -40], [20, 20, 0]]"),
-                      "TRAORI\nM77\nG0 X-40 Y0 Z50\nZ40");
+                      "TRAORI(2)\nM77\nG0 X-40 Y0 Z50\nZ40");
     EXPECT_EQ(three_axes.errors(), "");
 }
 
@@ -123,8 +123,9 @@ TEST(FollowingAxes, TheIniFileOfLinuxcncSaysWhatM428Does) {
 
 TEST(FollowingAxes, WhatAnUndecidedBlockCutsStaysInTheStock) {
     const Checked checked = check_siemens(
-        cube(), "G0 X-40 Y0 Z50\nTRAORI\nC1\nZ-3\nG1 X40 F600\nG0 Z50\nC0\nTRAFOOF\nG0 X-40\nZ-3\n"
-                "G1 X40 F600");
+        cube(),
+        "G0 X-40 Y0 Z50\nTRAORI(2)\nC1\nZ-3\nG1 X40 F600\nG0 Z50\nC0\nTRAFOOF\nG0 X-40\nZ-3\n"
+        "G1 X40 F600");
     EXPECT_EQ(checked.at_line(9).removed, 0.0);
     EXPECT_NEAR(checked.at_line(15).removed, 40.0 * 10.0 * 3.0, 30.0);
 }

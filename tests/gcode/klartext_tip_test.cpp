@@ -96,9 +96,75 @@ TEST(KlartextTip, FunctionTcpmIsFollowedIfItActsLikeM128) {
     EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS"), core::PathCertainty{});
     EXPECT_EQ(path("F CONT AXIS POS PATHCTRL AXIS"), core::PathCertainty{});
     EXPECT_EQ(path("F TCP AXIS SPAT PATHCTRL AXIS"), core::PathCertainty::unknown);
-    EXPECT_EQ(path("F TCP AXIS POS PATHCTRL VECTOR"), core::PathCertainty::unknown);
+    EXPECT_EQ(path("F TCP AXIS POS PATHCTRL VECTOR"), core::PathCertainty{});
     EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS REFPNT CENTER-CENTER"),
               core::PathCertainty::unknown);
+}
+
+TEST(KlartextTip, PathctrlVectorTurnsTheToolInAPlane) {
+    const auto driven_with = [](const std::string& words) {
+        return driven_klartext("FUNCTION TCPM F TCP AXIS POS PATHCTRL " + words
+                                   + "\nL X+1 Y+2 Z+3 A+40 FMAX\nL X+30 A+50 C+60 R0 F900\n",
+                               trunnion());
+    };
+    EXPECT_EQ(driven_with("AXIS").motions.size(), 2u);
+    const Driven found = driven_with("VECTOR");
+    ASSERT_GT(found.motions.size(), 20u);
+    const auto direction = [&](size_t i) {
+        return core::tool_frame(trunnion(), values_of(found.motions[i].to))[2];
+    };
+    const Vec3 normal =
+        glm::normalize(glm::cross(direction(0), direction(found.motions.size() - 1)));
+    for (size_t i = 1; i < found.motions.size(); ++i)
+        EXPECT_LT(std::abs(glm::dot(direction(i), normal)), 1e-9);
+    // M129 and the next M128 turn the axes evenly again.
+    EXPECT_EQ(driven_klartext("FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\nM129\nM128\n"
+                              "L X+1 Y+2 Z+3 A+40 FMAX\nL X+30 A+50 C+60 R0 F900\n",
+                              trunnion())
+                  .motions.size(),
+              2u);
+}
+
+TEST(KlartextTip, LnTurnsTheToolToItsVector) {
+    const core::Machine machine = trunnion();
+    std::string vectors = "M128\n";
+    for (const Target& target : random_targets()) {
+        core::AxisValues values{};
+        values[3] = std::abs(target.first) + 1.0, values[5] = target.second;
+        const Vec3 d = core::tool_frame(machine, values)[2];
+        vectors += fmt::format("LN X{:+.4f} Y{:+.4f} Z{:+.4f} NX+0 NY+0 NZ+1 TX{:+.12f} TY{:+.12f} "
+                               "TZ{:+.12f} R0 F900\n",
+                               target.tip.x, target.tip.y, target.tip.z, d.x, d.y, d.z);
+    }
+    const Driven found = driven_klartext(vectors, machine);
+    ASSERT_EQ(found.motions.size(), 200u);
+    size_t i = 0;
+    for (const Target& target : random_targets()) {
+        core::AxisValues values{};
+        values[3] = std::abs(target.first) + 1.0, values[5] = target.second;
+        const core::AxisValues to = values_of(found.motions[i++].to);
+        EXPECT_LT(
+            glm::distance(core::tool_frame(machine, to)[2], core::tool_frame(machine, values)[2]),
+            1e-9);
+        EXPECT_LT(glm::distance(core::tip_position(machine, to, tool_length), target.tip + datum),
+                  1e-4);
+    }
+}
+
+TEST(KlartextTip, LnIsRefusedWhereItCompensates) {
+    const auto refused = [](const std::string& lines,
+                            const std::string& call = "TOOL CALL 1 Z S5000\n") {
+        const Ran ran = run_text(klartext_program(call + lines),
+                                 environment_of(trunnion(), DialectId::heidenhain));
+        return ran.run.error ? ran.run.error->message : std::string();
+    };
+    EXPECT_EQ(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 R0 FMAX\n"), "");
+    EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1 FMAX\n"), HasSubstr("M128"));
+    EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 RL FMAX\n"), HasSubstr("RL"));
+    EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 FMAX\n", "TOOL CALL 1 Z S5000 DR+0.1\n"),
+                HasSubstr("DL and DR"));
+    EXPECT_THAT(refused("M128\nLN X+1 Y+2 Z+3 TX+0 TY+0 TZ+0 FMAX\n"),
+                HasSubstr("no tool direction"));
 }
 
 TEST(KlartextTip, IsNotFollowedWhereNobodyKnowsWhatTheAxesDo) {

@@ -35,10 +35,14 @@ struct Keys {
             json.add_null(key);
     }
 
-    void operator()(const gcode::StraightTraverse& c) const { json.add_position("end", c.end); }
+    void operator()(const gcode::StraightTraverse& c) const {
+        json.add_position("end", c.end);
+        if (c.in_plane) json.add("in_plane", true);
+    }
     void operator()(const gcode::StraightFeed& c) const {
         json.add_position("end", c.end);
         json.add("feed", c.feed);
+        if (c.in_plane) json.add("in_plane", true);
     }
     void operator()(const gcode::ArcFeed& c) const {
         json.add_position("end", c.end);

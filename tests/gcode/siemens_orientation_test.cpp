@@ -1,0 +1,242 @@
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/motion/plane_turn.h"
+#include "gcode/language/control.h"
+#include "tests/gcode/driven_machine.h"
+
+namespace gcode {
+namespace {
+
+using core::PathCertainty;
+using core::Vec3;
+using testing::HasSubstr;
+
+/// Everything that the program does not say is as on most machines.
+Environment siemens_on(const core::Machine& machine) {
+    Environment environment = environment_of(machine, DialectId::siemens);
+    environment.control.answers[ControlQuestion::machine_moves_tip] = 0;
+    return environment;
+}
+
+Driven driven_siemens(const std::string& lines, const core::Machine& machine) {
+    return driven("G71 G90 G94 G17 G54\nT1 D1\nM6\n" + lines, siemens_on(machine));
+}
+
+Vec3 direction_at(const core::Machine& machine, const core::AxisPosition& position) {
+    return core::tool_frame(machine, values_of(position))[2];
+}
+
+struct Target {
+    Vec3 tip, direction;
+    double first, second;
+};
+
+/// Targets with the direction that the axes give.
+std::vector<Target> random_targets(const core::Machine& machine, size_t first, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> place(-120.0, 120.0), tilt(8.0, 80.0), turn(-80, 80);
+    std::vector<Target> targets(150);
+    for (Target& target : targets) {
+        target = {
+            {place(random), place(random), place(random)}, Vec3(0.0), tilt(random), turn(random)};
+        core::AxisValues values{};
+        values[first] = target.first, values[5] = target.second;
+        target.direction = core::tool_frame(machine, values)[2];
+    }
+    return targets;
+}
+
+std::string at(const Vec3& tip) {
+    return fmt::format(" X={:.4f} Y={:.4f} Z={:.4f}", tip.x, tip.y, tip.z);
+}
+
+/// The same moves under TRAORI and under Fanuc's G43.4, whose motions are tested against sampling.
+void expect_as_g434(const core::Machine& machine, size_t first) {
+    const char letter = core::axis_letters[first];
+    std::string siemens = "TRAORI\nORIMKS\nORIAXES\n", fanuc = "G21 G90 G94\nT1 M6\nG43.4 H1\n";
+    for (const Target& target : random_targets(machine, first, 71)) {
+        siemens += fmt::format("G1{} {}={:.4f} C={:.4f} F900\n", at(target.tip), letter,
+                               target.first, target.second);
+        fanuc += fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f} {}{:.4f} C{:.4f} F900\n", target.tip.x,
+                             target.tip.y, target.tip.z, letter, target.first, target.second);
+    }
+    const Driven a = driven_siemens(siemens, machine);
+    const Driven b = driven(fanuc, environment_of(machine, DialectId::fanuc));
+    ASSERT_EQ(a.motions.size(), 150u);
+    ASSERT_EQ(b.motions.size(), 150u);
+    for (size_t i = 0; i < a.motions.size(); ++i) {
+        ASSERT_TRUE(a.motions[i].tip && b.motions[i].tip) << i;
+        for (size_t axis = 0; axis < 6; ++axis)
+            ASSERT_NEAR(a.motions[i].to[axis].value_or(-1e9), b.motions[i].to[axis].value_or(1e9),
+                        1e-9)
+                << i;
+    }
+    for (const PathCertainty path : a.paths) EXPECT_EQ(path, PathCertainty{});
+}
+
+TEST(SiemensOrientation, OfAxesUnderOrimksIsDrivenAsFanucDrivesIt) {
+    expect_as_g434(trunnion(), 3);
+    expect_as_g434(fork_head(), 4);
+}
+
+/// Under ORIWKS the tip goes straight and the tool turns in the plane of both directions, evenly.
+void expect_in_plane(const core::Machine& machine, size_t first, bool by_vectors) {
+    std::string lines = "TRAORI\nORIWKS\n";
+    const auto targets = random_targets(machine, first, 72);
+    for (const Target& target : targets) {
+        const Vec3 d = 0.7 * target.direction; // the length of the vector has no meaning
+        lines += "G1" + at(target.tip);
+        lines += by_vectors ? fmt::format(" A3={:.9f} B3={:.9f} C3={:.9f} F900\n", d.x, d.y, d.z)
+                            : fmt::format(" {}={:.9f} C={:.9f} F900\n", core::axis_letters[first],
+                                          target.first, target.second);
+    }
+    const Driven found = driven_siemens(lines, machine);
+    ASSERT_EQ(found.paths.size(), targets.size());
+    size_t motion = 0;
+    Vec3 tip_before(0.0), before(0.0);
+    for (size_t i = 0; i < targets.size(); ++i) {
+        const Vec3 there = targets[i].tip + datum;
+        size_t count = 0;
+        while (motion + count < found.motions.size()) {
+            ++count;
+            if (glm::distance(found.motions[motion + count - 1].tip->to, there) < 1e-4) break;
+        }
+        ASSERT_GT(count, 0u);
+        const core::Motion& last = found.motions[motion + count - 1];
+        EXPECT_LT(glm::distance(last.tip->to, there), 1e-4);
+        EXPECT_LT(glm::distance(direction_at(machine, last.to), targets[i].direction), 1e-6);
+        if (i > 0 && found.paths[i] == PathCertainty::known) {
+            const Vec3 after = targets[i].direction;
+            const Vec3 normal = glm::normalize(glm::cross(before, after));
+            const double angle = std::acos(std::clamp(glm::dot(before, after), -1.0, 1.0));
+            for (size_t part = 0; part < count; ++part) {
+                const core::Motion& piece = found.motions[motion + part];
+                const double fraction = static_cast<double>(part + 1) / static_cast<double>(count);
+                EXPECT_LT(
+                    glm::distance(piece.tip->to, tip_before + fraction * (there - tip_before)),
+                    1e-3);
+                const Vec3 d = direction_at(machine, piece.to);
+                EXPECT_LT(std::abs(glm::dot(d, normal)), 1e-6);
+                EXPECT_NEAR(std::acos(std::clamp(glm::dot(before, d), -1.0, 1.0)), fraction * angle,
+                            1e-5);
+                EXPECT_LE(piece.tip->turn_error, core::turn_error);
+                if (part > 0) {
+                    EXPECT_EQ(piece.from, found.motions[motion + part - 1].to);
+                }
+            }
+        }
+        motion += count;
+        tip_before = there, before = targets[i].direction;
+    }
+    EXPECT_EQ(motion, found.motions.size());
+    EXPECT_GT(found.motions.size(), 20 * targets.size()) << "they turn by up to 160 degrees";
+}
+
+TEST(SiemensOrientation, ByVectorsTurnsTheToolInTheirPlane) {
+    expect_in_plane(trunnion(), 3, true);
+    expect_in_plane(fork_head(), 4, true);
+}
+
+TEST(SiemensOrientation, ByAxesTurnsTheToolInThePlaneAsStated) {
+    expect_in_plane(trunnion(), 3, false);
+    Environment environment = siemens_on(trunnion());
+    environment.control.answers[ControlQuestion::axes_turn_in_plane] = 0;
+    const Driven even =
+        driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\nG0 A=40 C=0\nC=50\n", environment);
+    EXPECT_EQ(even.motions.size(), 2u);
+}
+
+TEST(SiemensOrientation, LeavesAPoleByTurningInPlaceFirst) {
+    const Driven found =
+        driven_siemens("TRAORI\nG0 X=0 Y=0 Z=50\nG1 X=10 A3=0.5 B3=0.5 C3=0.7 F500\n"
+                       "G1 X=20 A3=0 B3=0 C3=1\n",
+                       trunnion());
+    ASSERT_EQ(found.motions.size(), 4u);
+    EXPECT_EQ(found.motions[1].from[3], found.motions[1].to[3]) << "A stays";
+    EXPECT_EQ(found.motions[1].tip->from, found.motions[1].tip->to);
+    EXPECT_EQ(found.motions[2].from[5], found.motions[2].to[5]) << "C stays";
+    EXPECT_NEAR(*found.motions[3].to[3], 0.0, 1e-9);
+    for (const PathCertainty path : found.paths) EXPECT_EQ(path, PathCertainty{});
+}
+
+TEST(SiemensOrientation, NearAPoleIsNotKnown) {
+    const auto path = [](const std::string& lines, double limit) {
+        Environment environment = siemens_on(trunnion());
+        environment.control.answers[ControlQuestion::pole_limit] = limit;
+        const Driven found =
+            driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\n" + lines, environment);
+        return found.paths.back();
+    };
+    // One degree from the axis of C, turning about it.
+    const std::string near = "G0 X=0 Y=0 Z=50 A=1\nG1 A=1 C=40 F500\n";
+    EXPECT_EQ(path(near, 2.0), PathCertainty::doubtful);
+    EXPECT_EQ(path(near, 0.5), PathCertainty::known);
+    EXPECT_EQ(path("G0 X=0 Y=0 Z=50 A=30\nG1 C=180 F500\n", 0.0), PathCertainty::doubtful);
+    EXPECT_EQ(path("G0 X=0 Y=0 Z=50 A=30\nG2 X=10 Y=0 CR=8 C=30 F500\n", 0.0),
+              PathCertainty::doubtful);
+}
+
+TEST(SiemensOrientation, CodesChooseHowTheToolTurns) {
+    const auto count = [](const std::string& codes, int by_code) {
+        Environment environment = siemens_on(trunnion());
+        environment.control.answers[ControlQuestion::orientation_by_code] = by_code;
+        return driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\n" + codes
+                          + "\nG0 A=40\nG0 A3=0.5 B3=0.3 C3=0.8\n",
+                      environment)
+            .motions.size();
+    };
+    for (const int by_code : {0, 1}) EXPECT_GT(count("", by_code), 2u);
+    EXPECT_EQ(count("ORIMKS", 0), 2u);
+    EXPECT_GT(count("ORIMKS", 1), 2u);
+    EXPECT_GT(count("ORIAXES", 0), 2u);
+    EXPECT_EQ(count("ORIAXES", 1), 2u);
+    EXPECT_EQ(count("ORIMKS ORIAXES", 0), 2u);
+}
+
+TEST(SiemensOrientation, TraoriMayDeselectTheWorkOffset) {
+    const auto end = [](const std::string& lines, int kept) {
+        Environment environment = siemens_on(trunnion());
+        environment.control.answers[ControlQuestion::frame_survives_traori] = kept;
+        return *driven("G71 G90 G94 G17 G54\nT1 D1\nM6\n" + lines, environment)
+                    .motions.back()
+                    .to[0];
+    };
+    EXPECT_NEAR(end("TRAORI\nG0 X=10 Y=0 Z=0\n", 1), 10.0 + datum.x, 1e-9);
+    EXPECT_NEAR(end("TRAORI\nG0 X=10 Y=0 Z=0\n", 0), 10.0, 1e-9);
+    EXPECT_NEAR(end("TRANS X5\nTRAORI\nG54\nG0 X=10 Y=0 Z=0\n", 0), 10.0 + datum.x, 1e-9);
+    EXPECT_NEAR(end("TRANS X5\nTRAORI\nG0 X=10 Y=0 Z=0\nTRAFOOF\nG0 X=1 Y=0 Z=0\n", 1),
+                6.0 + datum.x, 1e-9);
+}
+
+TEST(SiemensOrientation, IsNotFollowedWhereNobodyKnowsWhatTheAxesDo) {
+    const auto last = [](const std::string& lines, const core::Machine& machine = trunnion()) {
+        return driven_siemens(lines, machine).paths.back();
+    };
+    EXPECT_EQ(last("TRAORI(2)\nG0 X=0 Y=0 Z=50 A=30\n"), PathCertainty::unknown);
+    EXPECT_EQ(last("TRAORI(1,0,1,0)\nG0 X=0 Y=0 Z=50 A=30\n"), PathCertainty::unknown);
+    EXPECT_EQ(last("TRAORI(1)\nG0 X=0 Y=0 Z=50 A=30\n"), PathCertainty::known);
+    EXPECT_EQ(last("TRAORI\nG0 X=0 Y=0 Z=50 A=30\nSUPA G0 Z0\n"), PathCertainty::unknown);
+    EXPECT_EQ(last("TRAORI\nG0 X=0 Y=0 Z=50\nSUPA G0 Z0\n"), PathCertainty::known);
+    EXPECT_EQ(last("TRAORI\nORICONCW\nG0 X=0 Y=0 Z=50 A=30\n"), PathCertainty::doubtful);
+    // Without the rotary axes of the machine.
+    const Driven bare = driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\n"
+                               "G0 X=0 Y=0 Z=50 A3=0.5 B3=0 C3=0.8\n",
+                               known_environment(DialectId::siemens));
+    EXPECT_EQ(bare.paths.back(), PathCertainty::unknown);
+    const auto refused = [](const std::string& lines) {
+        const Ran ran =
+            run_text("G71 G90 G94 G17 G54\nT1 D1\nM6\n" + lines, siemens_on(trunnion()));
+        return ran.run.error ? ran.run.error->message : std::string();
+    };
+    EXPECT_THAT(refused("G0 A3=0 B3=0 C3=1\n"), HasSubstr("program TRAORI before"));
+    EXPECT_THAT(refused("TRAORI\nG0 A3=0 B3=0 C3=0\n"), HasSubstr("no tool direction"));
+    EXPECT_THAT(refused("TRAORI\nG0 A2=0 B2=0 C2=0\n"), HasSubstr("A3= B3= C3="));
+    EXPECT_THAT(refused("G41 G1 X5 F100\nTRAORI\n"), HasSubstr("G40"));
+}
+
+} // namespace
+} // namespace gcode
