@@ -44,12 +44,23 @@ std::set<FindingKey> errors_of(const CheckRecord& record) {
     return keys;
 }
 
+/// Whether a finding follows from the whole run after its end, which other readings do not repeat.
+bool follows_from_whole_run(const core::Finding& finding) {
+    constexpr std::string_view rules[] = {core::rule_id("nothing-cut"),
+                                          core::rule_id("nothing-moves"),
+                                          core::rule_id("gouge"),
+                                          core::rule_id("rest-material"),
+                                          core::rule_id("offset-implausible"),
+                                          core::rule_id("implausible-value")};
+    return std::find(std::begin(rules), std::end(rules), finding.rule) != std::end(rules);
+}
+
 /// The first error of the assumed reading, from the block of the premise on, that another reading
 /// with these errors lacks.
 std::optional<ReadingError> avoided_by(const std::set<FindingKey>& errors,
                                        const ReadingResult& result, const CheckRecord& record) {
     for (const core::Finding& finding : record.findings) {
-        if (finding.severity != core::Severity::error) continue;
+        if (finding.severity != core::Severity::error || follows_from_whole_run(finding)) continue;
         const auto block = block_of(finding, record);
         if (!block || *finding.block < result.block) continue;
         if (!errors.contains(key_of(finding, block->file, block->line)))

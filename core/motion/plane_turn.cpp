@@ -11,7 +11,8 @@
 namespace core {
 namespace {
 
-constexpr int most_pieces = 4096;
+constexpr int many_pieces = 1024, most_pieces = 4096;
+constexpr double largest_error = 1e-3; // radians, of many pieces
 
 /// The direction of the tool and of the rotary axes at one position. Frame: the table link.
 struct Pose {
@@ -133,10 +134,11 @@ std::optional<PlaneTurn> turn_in_plane(const Machine& machine, const AxisValues&
     if (close > 0.0) // an estimate
         count = std::clamp(static_cast<int>(turned / std::sqrt(0.5 * max_error * close)) + 1, 1,
                            most_pieces);
-    for (; count <= most_pieces; count *= 2)
-        if (auto turn = turn_in_parts(machine, rotary, from, end, count);
-            turn && turn->error <= max_error)
-            return turn;
+    for (; count <= most_pieces; count *= 2) {
+        auto turn = turn_in_parts(machine, rotary, from, end, count);
+        const double allowed = count < many_pieces ? max_error : std::max(max_error, largest_error);
+        if (turn && turn->error <= allowed) return turn;
+    }
     return std::nullopt;
 }
 

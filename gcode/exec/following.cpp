@@ -313,9 +313,9 @@ bool is_certain_turn(Execution& execution, const AxisValues& from, const AxisVal
     const auto turn =
         core::turn_in_plane(*execution.modal().offsets.machine, from, to, core::turn_error);
     if (!turn) return false;
-    const double limit = number_for(execution.state, execution.environment,
-                                    ControlQuestion::pole_limit, execution.block.line);
-    return turn->sine > core::sin(limit / core::degrees_per_radian);
+    number_for(execution.state, execution.environment, ControlQuestion::pole_limit,
+               execution.block.line); // a premise
+    return turn->sine > sine_of_pole_limit(execution);
 }
 
 /// Marks the motions of a block that turn the tool in a plane, where they pass near to a pole or
@@ -339,6 +339,8 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
         here = end;
     }
     if (is_certain) return;
+    // Two positions of the rotary axes point the tool there, and the way decides which.
+    if (tool_direction(execution)) modal.following.rotary_unknown = true;
     execution.result.path = std::max(execution.result.path, core::PathCertainty::doubtful);
     if (std::exchange(modal.following.said_pole, true)) return;
     execution.result.warnings.push_back(
@@ -348,9 +350,10 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
          "direction that it keeps while a rotary axis turns (the pole). This block and others like "
          "it are measured with rotary axes that turn evenly, and are not proven clear",
          core::rule_id("undecided"),
-         "Turn the rotary axes in a block of their own, or with ORIAXES; if the machine has "
-         "another "
-         "limit, state \"MD24530\" under [control] in the set-up."});
+         execution.dialect.id == DialectId::siemens
+             ? "Turn the rotary axes in a block of their own, or with ORIAXES; if the machine has "
+               "another limit, state \"MD24530\" under [control] in the set-up."
+             : "Turn the rotary axes in a block of their own, or let each turn evenly."});
 }
 
 } // namespace

@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
+#include "core/motion/plane_turn.h"
 #include "gcode/exec/execution.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/modes.h"
@@ -209,6 +212,11 @@ core::Result<void> set_dynamic_offset(Execution& execution, const CodeWord& entr
         switch_following(execution, entry.word->span, written(*entry.word), FollowingSwitch::on);
         return {};
     }
+    if (modal.offsets.follows_tip)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: cancel tool centre point control before it, with G49",
+                                      written(*entry.word)),
+                          entry.word->span);
     if (modal.transforms.tilt && !modal.transforms.tilt->follows_table)
         return core::fail(ErrorCode::invalid_value,
                           fmt::format("{}: cancel the tilted plane before it, with G269 or G69",
@@ -253,6 +261,11 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
         return set_rotation(execution, entry);
     case g_code(68, 2):
     case g_code(268):
+        if (has_dynamic_offset(transforms))
+            return core::fail(ErrorCode::invalid_value,
+                              fmt::format("{}: cancel the dynamic work offset before it, with G255",
+                                          written(*entry.word)),
+                              entry.word->span);
         return set_tilted_plane(execution);
     case g_code(254):
         return set_dynamic_offset(execution, entry);
@@ -267,7 +280,7 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
         return {};
     case g_code(69):
         transforms.rotation.reset();
-        transforms.tilt.reset();
+        if (!has_dynamic_offset(transforms)) transforms.tilt.reset();
         transforms.before_rotation.reset();
         return {};
     case g_code(15):
@@ -433,9 +446,17 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
     const Offsets& offsets = execution.modal().offsets;
     FEELER_TRY(const AxisValues values,
                values_now(execution, word.span, words_at(execution, word)));
-    if (const auto found = core::point_tool(*offsets.machine, values, in_table(offsets, direction)))
-        return *found;
-    return fail_to_tilt(words_at(execution, word), word.span);
+    const auto ways =
+        core::ways_to_point_tool(*offsets.machine, values, in_table(offsets, direction));
+    if (ways.empty()) return fail_to_tilt(words_at(execution, word), word.span);
+    // A tool that turns in a plane gets to the position on its way, which may not be the nearest.
+    const bool in_plane = execution.modal().turns_in_plane && offsets.follows_tip;
+    const auto is_on_way = [&](const AxisValues& way) {
+        const auto turn = core::turn_in_plane(*offsets.machine, values, way, core::turn_error);
+        return turn && turn->sine > sine_of_pole_limit(execution);
+    };
+    const auto found = in_plane ? std::find_if(ways.begin(), ways.end(), is_on_way) : ways.begin();
+    return found == ways.end() ? ways.front() : *found;
 }
 
 /// `about_tip`: the tip stays where it is on the work; otherwise the linear axes stay.
@@ -462,6 +483,16 @@ core::Result<void> set_tilted_plane(Execution& execution) {
     return {};
 }
 
+bool has_dynamic_offset(const ProgramTransforms& transforms) {
+    return transforms.tilt && transforms.tilt->follows_table;
+}
+
+double sine_of_pole_limit(const Execution& execution) {
+    const double limit =
+        current_number(execution.state, execution.environment, ControlQuestion::pole_limit);
+    return core::sin(limit / core::degrees_per_radian);
+}
+
 bool turns_to_plane(const CodeWord& entry) {
     const CodeNumber code = entry.code->number;
     return code == g_code(53, 1) || code == g_code(53, 6) || code == g_code(253);
@@ -471,18 +502,16 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
         if (!turns_to_plane(entry)) continue;
         const std::string name = written(*entry.word);
-        for (const char letter : {'P', 'R'})
+        constexpr std::pair<char, std::string_view> refused[] = {
+            {'P', "choosing a position of the rotary axes"},
+            {'R', "turning about another point than the tip"},
+            {'H', "changing the tool length with the turn"}};
+        for (const auto& [letter, what] : refused)
             if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
-                return core::fail(
-                    ErrorCode::unsupported,
-                    letter == 'P'
-                        ? fmt::format("{}: which position of the rotary axes P chooses is not "
-                                      "supported yet: program {} without it",
-                                      written(*word), name)
-                        : fmt::format("{}: turning about another point than the tip is not "
-                                      "supported yet: program {} without R",
-                                      written(*word), name),
-                    word->span);
+                return core::fail(ErrorCode::unsupported,
+                                  fmt::format("{}: {} is not supported yet: program {} without {}",
+                                              written(*word), what, name, letter),
+                                  word->span);
         if (!execution.modal().transforms.tilt)
             return core::fail(
                 ErrorCode::invalid_value,
@@ -500,22 +529,24 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
     return {};
 }
 
-void turn_dynamic_offset(Execution& execution, const ModalState& before) {
-    ModalState& modal = execution.modal();
-    if (!modal.transforms.tilt || !modal.transforms.tilt->follows_table) return;
+core::Result<void> check_dynamic_offset(const Execution& execution, const ModalState& before) {
+    const ModalState& modal = execution.modal();
+    if (!has_dynamic_offset(modal.transforms) || !has_dynamic_offset(before.transforms)) return {};
+    const core::SourceSpan where{.line = execution.block.line, .column = 1};
     const bool turned = !std::equal(modal.position.begin() + 3, modal.position.begin() + 6,
                                     before.position.begin() + 3);
-    if (!turned || !before.transforms.tilt) return;
-    if (execution.statement.letters & letter_bits("XYZ"))
-        lose_positions(
-            execution, {.line = execution.block.line, .column = 1},
-            "a move of linear and rotary axes at once while G254 is on: how the axes move "
-            "is not known. This block and later ones are not checked until X, Y and Z "
-            "have been programmed again",
-            "Turn the rotary axes in a block of their own, or use G234.");
-    ProgramTransforms transforms = modal.transforms;
-    transforms.tilt = plane_on_table(modal);
-    use_transforms(execution, transforms);
+    const Offsets &now = modal.offsets, &then = before.offsets;
+    const bool shifted = now.active != then.active || now.work != then.work
+                         || now.local != then.local || now.axis != then.axis;
+    if (!turned && !shifted) return {};
+    return core::fail(ErrorCode::unsupported,
+                      turned
+                          ? "a rotary axis turns while G254 is on, and the manual of the control "
+                            "asks for G255 before: program G255 before this block, and G254 after "
+                            "it"
+                          : "a work offset changes while G254 is on: program G255 before this "
+                            "block, and G254 after it",
+                      where);
 }
 
 double rotary_offset(const Offsets& offsets, size_t axis) {
@@ -603,16 +634,32 @@ bool turns_tool(const ToolDirection& tool) {
     return tool.direction.x != 0.0 || tool.direction.y != 0.0 || !(tool.direction.z > 0.0);
 }
 
-std::optional<ToolDirection> tool_direction(const Execution& execution) {
-    const std::string_view letters =
-        execution.modal().transforms.follows_vectors ? "IJK" : std::string_view("tuv");
+namespace {
+
+/// A vector whose components are words with these letters.
+std::optional<ToolDirection> vector_words(const Block& block, std::string_view letters) {
     ToolDirection found;
-    for (const Word& word : execution.block.words)
+    for (const Word& word : block.words)
         if (const size_t axis = letters.find(word.letter); axis != std::string_view::npos) {
             found.direction[static_cast<int>(axis)] = word.value;
             found.word = &word;
         }
     return found.word ? std::optional(found) : std::nullopt;
+}
+
+} // namespace
+
+const Word* direction_word(const Block& block) {
+    const auto vector = vector_words(block, "tuv");
+    return vector ? vector->word : nullptr;
+}
+
+std::optional<ToolDirection> tool_direction(const Execution& execution) {
+    const ModalState& modal = execution.modal();
+    if (modal.transforms.follows_vectors) return vector_words(execution.block, "IJK");
+    if (!modal.offsets.follows_tip && !modal.following.may_be_on) return std::nullopt;
+    const auto tool = vector_words(execution.block, "tuv");
+    return tool ? tool : vector_words(execution.block, "lmn");
 }
 
 core::Result<void> point_by_vector(const Execution& execution, Position& target) {

@@ -72,11 +72,15 @@ struct ToolDirection {
     const Word* word = nullptr; // one of its words
 };
 
+/// A word of the block for the direction of the tool: A3, B3, C3; TX, TY, TZ. Null if it has none.
+const Word* direction_word(const Block& block);
+
 /// Whether it is another direction than +Z.
 bool turns_tool(const ToolDirection& tool);
 
-/// I, J and K under G43.5; A3, B3 and C3 of Siemens; TX, TY and TZ of Heidenhain. Words that are
-/// left out are 0. Empty if the block has none of them.
+/// I, J and K under G43.5; A3, B3 and C3 of Siemens, and TX, TY and TZ of Heidenhain, or else NX,
+/// NY and NZ, under tool centre point control. Words that are left out are 0. Empty if the block
+/// has none of them.
 std::optional<ToolDirection> tool_direction(const Execution& execution);
 
 /// Sets the rotary axes of a target from the direction of the tool.
@@ -84,11 +88,20 @@ std::optional<ToolDirection> tool_direction(const Execution& execution);
 /// Errors: as turn_tool_to_plane; a zero direction.
 core::Result<void> point_by_vector(const Execution& execution, Position& target);
 
+/// Whether a dynamic work offset (G254) is on.
+bool has_dynamic_offset(const ProgramTransforms& transforms);
+
+/// The sine of the angle to a pole within which the control may turn the tool otherwise than evenly
+/// in a plane.
+double sine_of_pole_limit(const Execution& execution);
+
 /// Whether a code turns the rotary axes to the tilted plane: G53.1, G53.6, G253.
 bool turns_to_plane(const CodeWord& entry);
 
-/// After a block: a dynamic work offset (G254) turns with the table.
-void turn_dynamic_offset(Execution& execution, const ModalState& before);
+/// After a block: whether a dynamic work offset (G254) is still as it was set.
+///
+/// Errors: unsupported if a rotary axis or a work offset has changed.
+core::Result<void> check_dynamic_offset(const Execution& execution, const ModalState& before);
 
 /// The axis of the plane that the first absolute motion after G68 does not name. It keeps the
 /// program coordinate it had before G68.

@@ -339,7 +339,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     ask_for_first_modes(execution);
     result.in_machine = in_machine_coordinates(execution);
     if (auto done = language.execute(execution, before.modal); !done) return done;
-    turn_dynamic_offset(execution, before.modal);
+    if (auto done = check_dynamic_offset(execution, before.modal); !done) return done;
     mark_uncertain_motions(execution, before.modal);
     if (remapped) lose_remapped(execution, *remapped);
     return {};

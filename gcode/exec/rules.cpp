@@ -66,7 +66,7 @@ std::string left_over(const ModalState& modal, bool at_end) {
     add(transforms.scaling.has_value(), "scaling (G51)");
     add(transforms.rotation.has_value(), "rotation (G68)");
     add(transforms.mirror.axes != MirrorImage{}.axes, "a mirror image");
-    add(transforms.tilt.has_value(), "a tilted plane (G68.2)");
+    add(transforms.tilt && !has_dynamic_offset(transforms), "a tilted plane (G68.2)");
     // A work offset that a program sets at an unknown position makes this offset unknown, too.
     add(at_end && modal.axis_offset_on && modal.offsets.axis != zero_position,
         "an axis offset (G92)");

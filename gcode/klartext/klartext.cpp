@@ -90,14 +90,13 @@ core::Result<void> check_vectors(Execution& execution) {
     ModalState& modal = execution.modal();
     if (has("lmn") && klartext_of(execution.state).has_deltas)
         return refuse_statement(execution,
-                                "the compensation of DL and DR of TOOL CALL along the "
+                                "the compensation of DL, DR and DR2 of TOOL CALL along the "
                                 "normal is not supported yet: call the tool without them");
     const auto tool = tool_direction(execution);
+    if (!tool && direction_word(execution.block))
+        execution.warn(klartext_of(execution.block).span,
+                       "TX, TY and TZ are ignored, because neither M128 nor FUNCTION TCPM is on");
     if (!tool) return {};
-    if (!modal.offsets.follows_tip && !modal.following.may_be_on)
-        return refuse_statement(execution,
-                                "TX, TY and TZ turn the tool only while M128 or FUNCTION "
-                                "TCPM is on: program it before them");
     if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
     return {};
 }
@@ -335,8 +334,9 @@ void use_length(Execution& execution, int number) {
             fmt::format("TOOL CALL: the length of tool {} is unknown and assumed to be 0", number));
     const Word* longer = execution.statement.word('L');
     const Word* wider = execution.statement.word('D');
-    writable_klartext(execution.state).has_deltas =
-        (longer && longer->value != 0.0) || (wider && wider->value != 0.0);
+    writable_klartext(execution.state).has_deltas = klartext_of(execution.block).has_corner_delta
+                                                    || (longer && longer->value != 0.0)
+                                                    || (wider && wider->value != 0.0);
     Offsets offsets = execution.modal().offsets;
     offsets.tool = {};
     const size_t normal = axes_of(execution.modal().plane).normal;

@@ -48,17 +48,18 @@ struct KlartextLine {
     int turn = 0;                 // DR+: 1, DR-: -1
     PlaneForm plane{};
     PlaneMove plane_move{};
-    int solution = 0;             // SEQ+: 1, SEQ-: -1
-    bool turns_table = false;     // TABLE ROT
-    bool retracts = false;        // MB
-    bool rapid = false;           // FMAX
-    bool calls_cycle = false;     // M99, or CYCL CALL
-    bool feed_of_call = false;    // Q206=FAUTO: the feed of TOOL CALL
-    bool calls_at_point = false;  // CYCL CALL POS
-    bool calls_from_here = false; // M89: after every motion
-    bool turns_otherwise = false; // FUNCTION TCPM: rotary axes are not programmed as positions
-    bool turns_in_plane = false;  // PATHCTRL VECTOR
-    bool has_normal = false;      // LN
+    int solution = 0;              // SEQ+: 1, SEQ-: -1
+    bool turns_table = false;      // TABLE ROT
+    bool retracts = false;         // MB
+    bool rapid = false;            // FMAX
+    bool calls_cycle = false;      // M99, or CYCL CALL
+    bool feed_of_call = false;     // Q206=FAUTO: the feed of TOOL CALL
+    bool calls_at_point = false;   // CYCL CALL POS
+    bool calls_from_here = false;  // M89: after every motion
+    bool turns_otherwise = false;  // FUNCTION TCPM: rotary axes are not programmed as positions
+    bool turns_in_plane = false;   // PATHCTRL VECTOR
+    bool has_normal = false;       // LN
+    bool has_corner_delta = false; // DR2 of TOOL CALL is not 0
 };
 
 inline const KlartextLine& klartext_of(const Block& block) {

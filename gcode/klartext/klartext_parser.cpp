@@ -529,6 +529,9 @@ core::Result<void> read_tool_call_word(KlartextReader& reader) {
     if (letters == "DR" && reader.lexer.line.substr(from + 2).starts_with('2')) { // of the corner
         reader.lexer.at += 3;
         if (reader.lexer.accept(':') || !reader.lexer.is_at_number()) return {};
+        const std::string_view rest = reader.lexer.line.substr(reader.lexer.at);
+        const std::string_view value = rest.substr(0, rest.find_first_of(" \t;~"));
+        reader.command.has_corner_delta = value.find_first_of("123456789Q") != value.npos;
         FEELER_TRY(const Expression ignored, reader.operand());
         (void)ignored;
         return {};

@@ -130,7 +130,8 @@ struct PlaneRotation {
 struct TiltedPlane {
     core::Mat3 axes = core::Mat3(1.0); // its axis directions as columns
     core::Vec3 origin = core::Vec3(0.0);
-    // G254 of Haas: the axes are those of the machine, and the origin turns with the table.
+    // G254 of Haas: the axes are those of the machine, and the origin is where the table has turned
+    // it.
     bool follows_table = false;
 
     bool operator==(const TiltedPlane&) const = default;

@@ -99,6 +99,8 @@ core::Result<void> note_keywords(Execution& execution) {
         case orient_in_machine:
         case orient_in_work:
         case other_orientation:
+        case smooth_orientation:
+        case plain_orientation:
             choose_orientation(execution, use.keyword->action);
             break;
         case orient_spindle:
@@ -785,8 +787,8 @@ void add(Digest& digest, const SiemensState& siemens) {
                          + 32 * int(siemens.length_follows_plane)
                          + 64 * int(siemens.length_axis_is_settled)));
     digest.add(uint64_t{siemens.swivels});
-    digest.add(uint64_t(4 * siemens.turns_by_axes + 2 * siemens.turns_in_machine
-                        + siemens.turns_otherwise));
+    digest.add(uint64_t(8 * siemens.smooths_turning + 4 * siemens.turns_by_axes
+                        + 2 * siemens.turns_in_machine + siemens.turns_otherwise));
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row) digest.add(siemens.swivel.linear[column][row]);
     for (int axis = 0; axis < 3; ++axis) digest.add(siemens.swivel.shift[axis]);

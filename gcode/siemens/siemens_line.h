@@ -33,16 +33,18 @@ enum class SiemensAction : uint8_t {
     diameters,        // DIAMON
     radii,            // DIAMOF
     transformation_off,
-    transformation,    // TRAORI
-    orient_axes,       // ORIAXES
-    orient_by_vector,  // ORIVECT, ORIPLANE
-    orient_in_machine, // ORIMKS
-    orient_in_work,    // ORIWKS
-    other_orientation, // ORICONCCW and the like
-    other_approach,    // KONT
-    usual_approach,    // NORM
-    bent_rapids,       // RTLIOF
-    straight_rapids,   // RTLION
+    transformation,     // TRAORI
+    orient_axes,        // ORIAXES
+    orient_by_vector,   // ORIVECT, ORIPLANE
+    orient_in_machine,  // ORIMKS
+    orient_in_work,     // ORIWKS
+    other_orientation,  // ORICONCCW and the like
+    smooth_orientation, // ORISON
+    plain_orientation,  // ORISOF
+    other_approach,     // KONT
+    usual_approach,     // NORM
+    bent_rapids,        // RTLIOF
+    straight_rapids,    // RTLION
     // frames
     shift,
     add_shift,

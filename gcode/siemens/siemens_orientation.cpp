@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -84,22 +85,30 @@ void doubt_block(Execution& execution, bool SiemensState::*said, std::string why
 }
 
 core::Result<void> check_direction_words(Execution& execution) {
-    const auto tool = tool_direction(execution);
-    if (!tool) return {};
+    const Word* word = direction_word(execution.block);
+    if (!word) return {};
     ModalState& modal = execution.modal();
-    if (!modal.offsets.follows_tip && !modal.following.may_be_on)
+    const auto tool = tool_direction(execution);
+    if (!tool)
         return core::fail(ErrorCode::invalid_value,
                           "A3, B3 and C3 turn the tool only while TRAORI is on: program TRAORI "
                           "before them",
-                          tool->word->span);
+                          word->span);
     if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
-    const bool is_turned =
-        modal.offsets.work.rotation_deg != 0.0 || modal.offsets.frame.linear != core::Mat3(1.0);
-    if (siemens_of(execution.state).turns_in_machine && is_turned)
-        return core::fail(ErrorCode::unsupported,
-                          "A3, B3 and C3 under ORIMKS while a frame turns the coordinates are not "
-                          "supported yet: program ORIWKS",
-                          tool->word->span);
+    const core::Mat3& frame = modal.offsets.frame.linear;
+    const bool is_turned = modal.offsets.work.rotation_deg != 0.0 || frame != core::Mat3(1.0);
+    constexpr double rounding = 1e-9;
+    bool is_rotation = glm::determinant(frame) > 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+        is_rotation = is_rotation && std::abs(glm::length(frame[axis]) - 1.0) < rounding;
+    const char* const why =
+        siemens_of(execution.state).turns_in_machine && is_turned
+            ? "A3, B3 and C3 under ORIMKS while a frame turns the coordinates are not supported "
+              "yet: program ORIWKS"
+        : !is_rotation ? "A3, B3 and C3 under SCALE or MIRROR are not supported yet: program the "
+                         "rotary axes"
+                       : nullptr;
+    if (why) return core::fail(ErrorCode::unsupported, why, tool->word->span);
     return {};
 }
 
@@ -134,6 +143,10 @@ void choose_orientation(Execution& execution, SiemensAction action) {
     case SiemensAction::orient_in_work:
         siemens.turns_in_machine = action == SiemensAction::orient_in_machine;
         break;
+    case SiemensAction::smooth_orientation:
+    case SiemensAction::plain_orientation:
+        siemens.smooths_turning = action == SiemensAction::smooth_orientation;
+        break;
     default:
         siemens.turns_by_axes = action == SiemensAction::orient_axes;
         siemens.turns_otherwise = action == SiemensAction::other_orientation;
@@ -161,12 +174,20 @@ core::Result<void> prepare_orientation(Execution& execution) {
                     "if they did not, and are not proven clear",
                     "Set the offsets of the rotary axes to 0.");
     if (!turns) return {};
-    if (siemens_of(execution.state).turns_otherwise)
-        doubt_block(execution, &SiemensState::said_turning,
-                    "the way in which the tool turns here (ORICON, ORIPATH, ORICURVE, ORISON) is "
-                    "not modelled: this block and others like it are measured with rotary axes "
-                    "that turn evenly, and are not proven clear",
-                    "Program ORIVECT or ORIAXES, and ORISOF.");
+    if (modal.compensation != Side::none)
+        return core::fail(
+            ErrorCode::unsupported,
+            "turning the tool between G41 or G42 and G40 is not supported yet: program "
+            "G40 before this block",
+            moving_word(execution).span);
+    const SiemensState& siemens = siemens_of(execution.state);
+    if (siemens.turns_otherwise || siemens.smooths_turning)
+        doubt_block(
+            execution, &SiemensState::said_turning,
+            "the way in which the tool turns here (ORICONCW, ORICONCCW, ORIPATH, ORICURVE, "
+            "ORISON) is not modelled: this block and others like it are measured with rotary "
+            "axes that turn evenly, and are not proven clear",
+            "Program ORIVECT or ORIAXES, and ORISOF.");
     else
         modal.turns_in_plane = turns_in_plane(execution);
     return {};

@@ -68,6 +68,10 @@ void restore_modes_of_call(InterpreterState& state, const Frame& frame) {
     siemens.path_code = before.path_code;
     siemens.compresses = before.compresses;
     siemens.corner_code = before.corner_code;
+    siemens.turns_by_axes = before.turns_by_axes;
+    siemens.turns_in_machine = before.turns_in_machine;
+    siemens.turns_otherwise = before.turns_otherwise;
+    siemens.smooths_turning = before.smooths_turning;
     if (changes_path) set_corner_tolerances(siemens, modal);
 }
 

@@ -68,6 +68,7 @@ struct SiemensState {
     bool turns_by_axes = false;                       // ORIAXES
     bool turns_in_machine = false;                    // ORIMKS
     bool turns_otherwise = false;                     // ORICONCCW and the like
+    bool smooths_turning = false;                     // ORISON
     bool said_turning = false, said_rotary_offset = false; // reported
     bool compresses = false; // COMPON, COMPCURV, COMPCAD: joins short moves
 

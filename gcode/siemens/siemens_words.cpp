@@ -138,7 +138,7 @@ core::Result<void> check_swivelled_axes(const Execution& execution) {
                             "CYCLE800() before it",
                             written(*word)),
                 word->span);
-    if (tool_direction(execution))
+    if (direction_word(execution.block))
         return core::fail(ErrorCode::unsupported,
                           "A3, B3 and C3 while a plane of CYCLE800 is on are not supported yet: "
                           "program CYCLE800() before them",
@@ -265,6 +265,13 @@ core::Result<void> check_fixed_point(Execution& execution) {
 core::Result<void> go_to_fixed_position(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     ModalState& modal = execution.modal();
+    if (modal.offsets.follows_tip)
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{} is not possible while TRAORI is on: program TRAFOOF before "
+                        "it",
+                        written(*entry.word)),
+            entry.word->span);
     if (!execution.statement.has_axis_word())
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{} has no axis word: it needs words such as X1=0 Y1=0 Z1=0",

@@ -43,6 +43,18 @@ TEST(Premises, AStatedParameterDecides) {
     EXPECT_EQ(moves.find("open-premise"), std::string::npos) << moves;
 }
 
+TEST(Premises, AnErrorAboutTheWholeProgramIsInEveryReading) {
+    const std::string above = head + std::string("G0 X50. Y50.\nG1 X90. F500.\nX10.\nX90.\n");
+    const Checked checked = check(plate("fanuc"), above + "G49\nG0 Z200.\nM30\n");
+    EXPECT_NE(checked.errors().find("nothing-cut"), std::string::npos) << checked.errors();
+    bool has_premise = false;
+    for (const std::string& assumption : checked.assumptions) {
+        has_premise = has_premise || assumption.find("TOS") != std::string::npos;
+        EXPECT_EQ(assumption.find("does not occur"), std::string::npos) << assumption;
+    }
+    EXPECT_TRUE(has_premise);
+}
+
 TEST(Premises, BlockDeleteIsANoteWhereBothPositionsWereChecked) {
     const std::string program = head + std::string("G0 X50. Y50.\n/G0 Z60.\nG0 Z90.\nM30\n");
     const FindingLine both = check(plate("fanuc"), program).finding("block-delete");

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <random>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -14,6 +15,7 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <GProp_GProps.hxx>
+#include <ShapeCustom.hxx>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,12 +80,28 @@ double volume_of(const TopoDS_Shape& shape) {
     return properties.Mass();
 }
 
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+    for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+        text.replace(at, what.size(), by);
+}
+
+/// A file of one solid, as the surfaces that bound it.
+std::string as_surfaces(std::string text) {
+    replace_all(text, "ADVANCED_BREP_SHAPE_REPRESENTATION",
+                "MANIFOLD_SURFACE_SHAPE_REPRESENTATION");
+    const size_t solid = text.find("MANIFOLD_SOLID_BREP(");
+    const size_t shell = text.find('#', solid), end = text.find(')', shell);
+    text.insert(end, ")").insert(shell, "(");
+    replace_all(text, "MANIFOLD_SOLID_BREP(", "SHELL_BASED_SURFACE_MODEL(");
+    return text;
+}
+
 /// Open CASCADE takes the wrong side of the border of some faces on a sphere when it reads them
 /// from STEP. Such a file is refused; all others have their bodies.
 TEST_F(CadFileTest, OfABallWithABoreIsReadRightOrRefused) {
     std::mt19937 random(27);
     std::uniform_real_distribution<double> part(-1.0, 1.0);
-    int refused = 0;
+    int refused[3] = {};
     for (int i = 0; i < 24; ++i) {
         const gp_Dir axis = i < 3   ? gp_Dir(i == 0, i == 1, i == 2)
                             : i < 6 ? gp_Dir(-(i == 3), -(i == 4), -(i == 5))
@@ -92,18 +110,48 @@ TEST_F(CadFileTest, OfABallWithABoreIsReadRightOrRefused) {
         const gp_Ax2 at(gp_Pnt(5.0 * axis.X(), 5.0 * axis.Y(), 5.0 * axis.Z()), axis);
         const TopoDS_Shape bored =
             BRepAlgoAPI_Cut(ball, BRepPrimAPI_MakeCylinder(at, 4.0, 40.0).Shape()).Shape();
-        write_step(path("ball.step"), bored);
-        const auto file = read_cad(path("ball.step"), 0.01);
-        if (!file) {
-            EXPECT_THAT(file.error().message, HasSubstr("inside out"));
-            ++refused;
-            continue;
+        const double volume = volume_of(bored);
+        write_step(path("solid.step"), bored);
+        write("surfaces.step", as_surfaces(bytes_of(path("solid.step"))));
+        write_step(path("revolved.step"), ShapeCustom::ConvertToRevolution(bored));
+        int way = 0;
+        for (const char* name : {"solid.step", "surfaces.step", "revolved.step"}) {
+            SCOPED_TRACE(std::string(name) + " " + std::to_string(i));
+            const auto file = read_cad(path(name), 0.01);
+            int& count = refused[way++];
+            if (!file) {
+                EXPECT_THAT(file.error().message, HasSubstr("inside out"));
+                ++count;
+                continue;
+            }
+            double read = 0.0;
+            for (const CadSolid& solid : (*file)->solids) read += signed_volume(solid.mesh);
+            EXPECT_NEAR(read, volume, 0.01 * 4.0 * 3.15 * 400.0 + 10.0);
         }
-        double volume = 0.0;
-        for (const CadSolid& solid : (*file)->solids) volume += signed_volume(solid.mesh);
-        EXPECT_NEAR(volume, volume_of(bored), 0.01 * 4.0 * 3.15 * 400.0 + 10.0) << i;
     }
-    EXPECT_LT(refused, 20);
+    for (const int count : refused) EXPECT_LT(count, 24);
+}
+
+/// A border on a sphere divides it into two parts. Without its curve in the parameters, an IGES
+/// file does not say which of them is meant.
+TEST_F(CadFileTest, OfIgesNeedsParametersOfBordersOnRoundSurfaces) {
+    const auto error_without = [&](const TopoDS_Shape& shape) {
+        write_iges(path("whole.igs"), shape, false);
+        const std::string text = std::regex_replace(
+            bytes_of(path("whole.igs")), std::regex("(142,[0-9],[0-9]+),[0-9]+,"), "$1,0,");
+        std::string padded; // the fields behind the parameters have fixed columns
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.size() < 80 && line.size() > 16)
+                line.insert(64 - std::min<size_t>(64, 80 - line.size()), 80 - line.size(), ' ');
+            padded += line + "\n";
+        }
+        return error_of(write("without.igs", padded));
+    };
+    const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(20.0).Shape();
+    const TopoDS_Shape dome = BRepAlgoAPI_Cut(ball, cad_box(Vec3(-30, -30, -30), Vec3(5, 30, 30)));
+    EXPECT_THAT(error_without(dome), HasSubstr("without curves in its parameters"));
+    EXPECT_EQ(error_without(cad_box(Vec3(0), Vec3(10))), "it was read");
 }
 
 /// Whose poles are collapsed sides of a spline.
@@ -279,6 +327,14 @@ TEST_F(CadFileTest, ThatWouldBeReadInPartIsAClearError) {
     EXPECT_EQ(error_with(map + "1.,#9004);\n"), "it was read");
     EXPECT_THAT(error_with(map + "2.,#9004);\n"), HasSubstr("#9006"));
     EXPECT_THAT(error_with(map + "1.,#9005);\n"), HasSubstr("mirror"));
+    // Axes that are left out are those of the coordinates.
+    const std::string half = axes
+                             + "#9007=DIRECTION('',(-1.,0.,0.));\n"
+                               "#9006=CARTESIAN_TRANSFORMATION_OPERATOR_3D('','','',";
+    EXPECT_EQ(error_with(half + "$,$,#9001,1.,$);\n"), "it was read");
+    EXPECT_EQ(error_with(half + "#9002,$,#9001,1.,$);\n"), "it was read");
+    EXPECT_THAT(error_with(half + "#9007,$,#9001,1.,$);\n"), HasSubstr("mirror"));
+    EXPECT_THAT(error_with(half + "$,$,#9001,1.,#9005);\n"), HasSubstr("mirror"));
     EXPECT_THAT(error_with("#9001=SWEPT_DISK_SOLID('',$,1.,$,0.,1.);\n"),
                 HasSubstr("SWEPT_DISK_SOLID"));
     EXPECT_EQ(error_with("#9001=TESSELLATED_SOLID('',(),$);\n"), "it was read")

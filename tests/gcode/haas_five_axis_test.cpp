@@ -81,16 +81,49 @@ TEST(HaasFiveAxis, G254ShiftsTheWorkOffsetToWhereTheTableHasTurnedIt) {
     }
 }
 
-TEST(HaasFiveAxis, G254TurnsWithTheTableWhileItIsOn) {
-    const std::string before = "G43 H1\nG0 X0. Y0. Z90.\nG53 G0 Z0\n";
-    const std::string after = "X10. Y20.\nZ5.\nG1 X12. F100.\nG255\n";
-    // Some posts program it before the turn; X, Y and Z stay on the machine meanwhile.
-    expect_same(driven_haas(before + "G254\nG0 A30. C40.\n" + after),
-                driven_haas(before + "G0 A30. C40.\nG254\n" + after));
-    const Driven both = driven_haas(before + "G254\nG0 X3. A30. C40.\nX10. Y20. Z50.\n" + after);
-    EXPECT_EQ(both.paths[2], PathCertainty::unknown);
-    EXPECT_EQ(both.paths.back(), PathCertainty::known);
-    EXPECT_THAT(both.warnings, HasSubstr("while G254 is on"));
+TEST(HaasFiveAxis, G254EndsBeforeATurnOrAnotherOffset) {
+    const Environment haas = environment_of(trunnion(), DialectId::haas);
+    const std::string on = "G43 H1\nG0 X0. Y0. Z90.\nG53 G0 Z0\nA30. C40.\nG254\nX1. Y1.\nZ50.\n";
+    EXPECT_EQ(refused(on + "G255\nG53 G0 Z0\nA0. C0.\n", haas), "");
+    EXPECT_EQ(refused(on + "M30\n", haas), "");
+    for (const std::string line : {"G0 A10.", "G91 C5.", "G28 A0"})
+        EXPECT_THAT(refused(on + line + "\n", haas), HasSubstr("program G255 before")) << line;
+    for (const std::string line : {"G55", "G52 X1."})
+        EXPECT_THAT(refused(on + line + "\n", haas), HasSubstr("offset changes while G254"))
+            << line;
+    for (const std::string line : {"G234 H1", "G43.4 H1", "G268 X0 Y0 Z0 I10. J0 K0 Q123"})
+        EXPECT_THAT(refused(on + line + "\n", haas), HasSubstr("with G255")) << line;
+    EXPECT_THAT(refused("G234 H1\nG254\n", haas), HasSubstr("with G49"));
+}
+
+TEST(HaasFiveAxis, G69AndG269LeaveG254On) {
+    const auto end = [](const std::string& lines) {
+        return *driven_haas("G43 H1\nG0 X0. Y0. Z90.\nG53 G0 Z0\nA30. C40.\nG254\n" + lines
+                            + "G0 X1. Y2. Z50.\n")
+                    .motions.back()
+                    .to[1];
+    };
+    EXPECT_EQ(end("G69\n"), end(""));
+    EXPECT_EQ(end("G269\n"), end(""));
+    EXPECT_NE(end("G255\n"), end(""));
+}
+
+TEST(FanucFiveAxis, G536TurnsAboutTheTip) {
+    const core::Machine machine = trunnion();
+    const Environment fanuc = environment_of(machine, DialectId::fanuc);
+    const std::string plane = "G43 H1\nG0 X5. Y6. Z40.\nG68.2 X0 Y0 Z0 I20. J30. K0\n";
+    const Driven found = driven(begin + plane + "G53.6\n", fanuc);
+    const core::Motion& turn = found.motions.back();
+    EXPECT_LT(glm::distance(core::tip_position(machine, values_of(turn.from), tool_length),
+                            core::tip_position(machine, values_of(turn.to), tool_length)),
+              1e-9);
+    ASSERT_TRUE(turn.tip);
+    EXPECT_LT(glm::distance(turn.tip->from, turn.tip->to), 1e-9);
+    const Driven other = driven(begin + plane + "G53.1\n", fanuc);
+    for (size_t axis = 3; axis < 6; ++axis) EXPECT_EQ(turn.to[axis], other.motions.back().to[axis]);
+    for (const std::string word : {"H2", "R10.", "P1"})
+        EXPECT_THAT(refused(plane + "G53.6 " + word + "\n", fanuc),
+                    HasSubstr("program G53.6 without"));
 }
 
 TEST(HaasFiveAxis, G254NeedsOffsetsOfRotaryAxesOf0) {

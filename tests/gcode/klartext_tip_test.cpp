@@ -151,6 +151,19 @@ TEST(KlartextTip, LnTurnsTheToolToItsVector) {
     }
 }
 
+TEST(KlartextTip, LnTurnsTheToolToItsNormalUnderM128) {
+    const auto end = [](const std::string& lines) {
+        return driven_klartext(lines, trunnion()).motions.back().to;
+    };
+    const std::string place = "LN X+1 Y+2 Z+30 ", normal = "NX+0.6 NY+0 NZ+0.8 ";
+    EXPECT_EQ(end("M128\n" + place + normal + "FMAX\n"),
+              end("M128\n" + place + "TX+0.6 TY+0 TZ+0.8 FMAX\n"));
+    EXPECT_EQ(end("M128\n" + place + normal + "TX+0 TY+0 TZ+1 FMAX\n"),
+              end("M128\n" + place + "TX+0 TY+0 TZ+1 FMAX\n"));
+    // Without M128 neither turns it.
+    EXPECT_EQ(end(place + normal + "TX+0.6 TY+0 TZ+0.8 FMAX\n"), end(place + "FMAX\n"));
+}
+
 TEST(KlartextTip, LnIsRefusedWhereItCompensates) {
     const auto refused = [](const std::string& lines,
                             const std::string& call = "TOOL CALL 1 Z S5000\n") {
@@ -159,10 +172,13 @@ TEST(KlartextTip, LnIsRefusedWhereItCompensates) {
         return ran.run.error ? ran.run.error->message : std::string();
     };
     EXPECT_EQ(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 R0 FMAX\n"), "");
-    EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY+0 TZ+1 FMAX\n"), HasSubstr("M128"));
+    EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 FMAX\n", "TOOL CALL 1 Z S5000 DR2-0.1\n"),
+                HasSubstr("DR2"));
+    EXPECT_EQ(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 FMAX\n", "TOOL CALL 1 Z S5000 DR2+0.00\n"),
+              "");
     EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 RL FMAX\n"), HasSubstr("RL"));
     EXPECT_THAT(refused("LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 FMAX\n", "TOOL CALL 1 Z S5000 DR+0.1\n"),
-                HasSubstr("DL and DR"));
+                HasSubstr("DL, DR and DR2"));
     EXPECT_THAT(refused("M128\nLN X+1 Y+2 Z+3 TX+0 TY+0 TZ+0 FMAX\n"),
                 HasSubstr("no tool direction"));
 }

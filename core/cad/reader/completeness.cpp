@@ -7,13 +7,19 @@
 
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <IGESGeom_BSplineSurface.hxx>
 #include <IGESGeom_BoundedSurface.hxx>
+#include <IGESGeom_CurveOnSurface.hxx>
+#include <IGESGeom_SurfaceOfRevolution.hxx>
 #include <IGESGeom_TrimmedSurface.hxx>
+#include <IGESSolid_Face.hxx>
+#include <IGESSolid_Loop.hxx>
 #include <IGESSolid_ManifoldSolid.hxx>
 #include <IGESSolid_Shell.hxx>
 #include <Interface_Check.hxx>
 #include <STEPConstruct_ExternRefs.hxx>
 #include <STEPConstruct_UnitContext.hxx>
+#include <StepBasic_ConversionBasedUnitAndLengthUnit.hxx>
 #include <StepBasic_ProductDefinition.hxx>
 #include <StepBasic_SiUnitAndLengthUnit.hxx>
 #include <StepData_UndefinedEntity.hxx>
@@ -23,6 +29,7 @@
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepGeom_Plane.hxx>
 #include <StepGeom_Point.hxx>
+#include <StepGeom_RectangularTrimmedSurface.hxx>
 #include <StepGeom_Surface.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
 #include <StepRepr_MappedItem.hxx>
@@ -166,11 +173,23 @@ Vec3 vector_of(const Handle(StepGeom_Direction) & direction) {
     return v;
 }
 
+/// Whether the axes of a transformation are left-handed, or undefined. Those that are not stated
+/// are those of the coordinates; all are at right angles to the ones before, third axis first.
+///
+/// Source: ISO 10303-42, base_axis.
 bool is_mirror(const Handle(StepGeom_CartesianTransformationOperator3d) & map) {
-    if (!map->HasAxis1() || !map->HasAxis2() || !map->HasAxis3()) return false;
-    return glm::dot(glm::cross(vector_of(map->Axis1()), vector_of(map->Axis2())),
-                    vector_of(map->Axis3()))
-           < 0.0;
+    constexpr double rounding = 1e-6;
+    const auto axis = [](bool is_stated, const Handle(StepGeom_Direction) & stated,
+                         const Vec3& otherwise) {
+        return is_stated ? glm::normalize(vector_of(stated)) : otherwise;
+    };
+    const Vec3 z = axis(map->HasAxis3(), map->Axis3(), {0.0, 0.0, 1.0});
+    const bool is_along_x = std::abs(std::abs(z.x) - 1.0) < rounding;
+    Vec3 x = axis(map->HasAxis1(), map->Axis1(), is_along_x ? Vec3(0, 1, 0) : Vec3(1, 0, 0));
+    x -= glm::dot(x, z) * z;
+    const Vec3 y = axis(map->HasAxis2(), map->Axis2(), {0.0, 1.0, 0.0});
+    const double hand = glm::dot(glm::cross(x, y), z);
+    return !(hand > rounding) && (map->HasAxis1() || map->HasAxis2() || map->HasAxis3());
 }
 
 /// Refuses transformations that Open CASCADE takes for others: scaled, mirrored, to a mere point.
@@ -204,6 +223,16 @@ Result<bool> check_unit(const Handle(Interface_InterfaceModel) & model,
     if (context.IsNull()) return true;
     STEPConstruct_UnitContext units;
     units.ComputeFactors(context->GlobalUnitAssignedContext());
+    const auto stated = context->GlobalUnitAssignedContext()->Units();
+    int lengths = 0;
+    for (int i = 1; !stated.IsNull() && i <= stated->Length(); ++i)
+        lengths +=
+            stated->Value(i)->IsKind(STANDARD_TYPE(StepBasic_SiUnitAndLengthUnit))
+            || stated->Value(i)->IsKind(STANDARD_TYPE(StepBasic_ConversionBasedUnitAndLengthUnit));
+    if (lengths > 1)
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("{} states several units of length: export the file again",
+                                entity_text(model, entity)));
     if (units.LengthDone()) return true;
     return fail(ErrorCode::invalid_value,
                 fmt::format("{} states no unit of length: export the file again",
@@ -352,11 +381,18 @@ void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
     for (int i = 1; i <= shell->NbCfsFaces(); ++i) {
         const auto face = Handle(StepShape_FaceSurface)::DownCast(shell->CfsFacesValue(i));
         if (face.IsNull() || face->FaceGeometry().IsNull()) continue;
-        const std::string_view kind = face->FaceGeometry()->DynamicType()->Name();
+        Handle(StepGeom_Surface) surface = face->FaceGeometry();
+        while (surface->IsKind(STANDARD_TYPE(StepGeom_RectangularTrimmedSurface))
+               && !Handle(StepGeom_RectangularTrimmedSurface)::DownCast(surface)
+                       ->BasisSurface()
+                       .IsNull())
+            surface = Handle(StepGeom_RectangularTrimmedSurface)::DownCast(surface)->BasisSurface();
+        const std::string_view kind = surface->DynamicType()->Name();
         const bool is_open = kind == "StepGeom_Plane" || kind == "StepGeom_CylindricalSurface"
                              || kind == "StepGeom_ConicalSurface";
         const bool is_known = is_open || kind == "StepGeom_SphericalSurface"
                               || kind == "StepGeom_ToroidalSurface"
+                              || kind == "StepGeom_SurfaceOfRevolution"
                               || kind.find("BSplineSurface") != std::string_view::npos;
         count.has_closed |= !is_open;
         TopoDS_Shape shape = TransferBRep::ShapeResult(made, face);
@@ -369,11 +405,28 @@ void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
     }
 }
 
+/// The shells of a solid or of a set of surfaces that bound it from outside.
+std::vector<Handle(StepShape_ConnectedFaceSet)> outer_shells(const Handle(Standard_Transient)
+                                                             & entity) {
+    if (const auto solid = Handle(StepShape_ManifoldSolidBrep)::DownCast(entity); !solid.IsNull())
+        return {solid->Outer()};
+    std::vector<Handle(StepShape_ConnectedFaceSet)> shells;
+    if (const auto surfaces = Handle(StepShape_ShellBasedSurfaceModel)::DownCast(entity);
+        !surfaces.IsNull())
+        for (int i = 1; i <= surfaces->NbSbsmBoundary(); ++i)
+            shells.push_back(Handle(StepShape_ConnectedFaceSet)::DownCast(
+                surfaces->SbsmBoundaryValue(i).Value()));
+    if (const auto surfaces = Handle(StepShape_FaceBasedSurfaceModel)::DownCast(entity);
+        !surfaces.IsNull())
+        for (int i = 1; i <= surfaces->FbsmFaces()->Length(); ++i)
+            shells.push_back(surfaces->FbsmFaces()->Value(i));
+    return shells;
+}
+
 /// Refuses a solid of which Open CASCADE has taken the wrong side of the border of a face on a
 /// sphere or a torus. It then turns this face, or the whole solid, inside out.
 Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
-                         const Handle(StepShape_ManifoldSolidBrep) & entity,
-                         const TopoDS_Shape& solid,
+                         const Handle(Standard_Transient) & entity, const TopoDS_Shape& solid,
                          const Handle(Transfer_TransientProcess) & made) {
     TopTools_DataMapOfShapeInteger sides;
     for (TopExp_Explorer e(solid.Oriented(TopAbs_FORWARD), TopAbs_FACE); e.More(); e.Next()) {
@@ -384,14 +437,14 @@ Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
         sides.Bind(face, side);
     }
     Sides count;
-    count_sides(entity->Outer(), sides, made, count);
+    for (const auto& shell : outer_shells(entity)) count_sides(shell, sides, made, count);
     const auto& [open, closed, has_closed] = count;
     const int turned = open.turned + closed.turned;
     // A file without round faces whose faces all look inwards has another fault, which is mended.
     if (turned == 0 || (!has_closed && open.kept == 0)) return true;
     return fail(ErrorCode::invalid_value,
                 fmt::format("Open CASCADE reads a round face of the solid {} inside out, as the "
-                            "part that is not there: export the body as IGES or STL",
+                            "part that is not there: export the body as STL",
                             entity_text(model, entity)));
 }
 
@@ -424,9 +477,12 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
     const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
     SolidNames names;
     for (int i = 1; i <= model->NbEntities(); ++i) {
-        if (is_surface_model(model->Value(i))
-            && TransferBRep::ShapeResult(made, model->Value(i)).IsNull())
-            return fail_to_make("surfaces", model, model->Value(i));
+        if (is_surface_model(model->Value(i))) {
+            const TopoDS_Shape surfaces = TransferBRep::ShapeResult(made, model->Value(i));
+            if (surfaces.IsNull()) return fail_to_make("surfaces", model, model->Value(i));
+            FEELER_TRY([[maybe_unused]] const bool whole,
+                       check_sides(model, model->Value(i), surfaces, made));
+        }
         const auto entity = Handle(StepShape_SolidModel)::DownCast(model->Value(i));
         if (entity.IsNull()) continue;
         const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
@@ -440,6 +496,62 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
         if (!name.empty()) names.push_back({solid, name});
     }
     return names;
+}
+
+/// Whether a surface closes on itself in both directions, or bends both ways: a border without
+/// curves in its parameters does not say which part of it is meant.
+bool is_round(const Handle(IGESData_IGESEntity) & surface) {
+    if (surface.IsNull()) return true;
+    constexpr int plane = 108, line = 110, revolution = 120, tabulated = 122, spline = 128;
+    constexpr int plane_solid = 190, cylinder = 192, cone = 194;
+    switch (surface->TypeNumber()) {
+    case plane:
+    case tabulated:
+    case plane_solid:
+    case cylinder:
+    case cone:
+        return false;
+    case revolution: {
+        const auto turned = Handle(IGESGeom_SurfaceOfRevolution)::DownCast(surface);
+        return turned.IsNull() || turned->Generatrix().IsNull()
+               || turned->Generatrix()->TypeNumber() != line;
+    }
+    case spline: {
+        const auto bent = Handle(IGESGeom_BSplineSurface)::DownCast(surface);
+        return bent.IsNull() || bent->IsClosedU() || bent->IsClosedV();
+    }
+    default:
+        return true;
+    }
+}
+
+/// Whether a border of a face on such a surface has no curves in the parameters.
+bool lacks_parameters(const Handle(IGESGeom_CurveOnSurface) & border) {
+    return !border.IsNull() && border->CurveUV().IsNull() && is_round(border->Surface());
+}
+
+bool lacks_parameters(const Handle(IGESSolid_Face) & face) {
+    if (!is_round(face->Surface())) return false;
+    for (int i = 1; i <= face->NbLoops(); ++i) {
+        const Handle(IGESSolid_Loop) loop = face->Loop(i);
+        for (int k = 1; !loop.IsNull() && k <= loop->NbEdges(); ++k)
+            if (loop->NbParameterCurves(k) == 0) return true;
+    }
+    return false;
+}
+
+Result<bool> check_parameters(const Handle(Interface_InterfaceModel) & model,
+                              const Handle(Standard_Transient) & entity) {
+    const auto border = Handle(IGESGeom_CurveOnSurface)::DownCast(entity);
+    const auto face = Handle(IGESSolid_Face)::DownCast(entity);
+    const bool lacks = (!border.IsNull() && lacks_parameters(border))
+                       || (!face.IsNull() && lacks_parameters(face));
+    if (!lacks) return true;
+    return fail(ErrorCode::unsupported,
+                fmt::format("{} bounds a part of a round surface without curves in its parameters, "
+                            "and it is not certain which part: export the body with these curves, "
+                            "or as STEP or STL",
+                            entity_text(model, entity)));
 }
 
 Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & session) {
@@ -457,6 +569,7 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
         const auto solid = Handle(IGESSolid_ManifoldSolid)::DownCast(entity);
         const auto any = Handle(IGESData_IGESEntity)::DownCast(entity);
         const int type = any.IsNull() ? 0 : any->TypeNumber();
+        FEELER_TRY([[maybe_unused]] const bool certain, check_parameters(model, entity));
         constexpr int first_solid = 150, last_solid = 184, manifold = 186, instance = 430;
         const bool is_primitive = (type >= first_solid && type <= last_solid) || type == instance;
         if (is_primitive && TransferBRep::ShapeResult(made, entity).IsNull())
@@ -464,6 +577,15 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
                         fmt::format("Open CASCADE cannot read {}, a solid without faces (IGES type "
                                     "{}): export it as a solid with faces, or as STL",
                                     entity_text(model, entity), type));
+        constexpr int rectangular_array = 412, circular_array = 414, external = 416;
+        if (type == rectangular_array || type == circular_array || type == external)
+            return fail(
+                ErrorCode::unsupported,
+                fmt::format("Open CASCADE leaves out {}, {} (IGES type {}): export each "
+                            "body in its place, in one file",
+                            entity_text(model, entity),
+                            type == external ? "a part in another file" : "copies of a part",
+                            type));
         if (type == manifold && any->HasTransf())
             return fail(ErrorCode::unsupported,
                         fmt::format("Open CASCADE does not move {} to its place: export the part "

@@ -8,6 +8,7 @@
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Plane.hxx>
+#include <Geom_RectangularTrimmedSurface.hxx>
 #include <gp_Pnt.hxx>
 #include <gp_Pnt2d.hxx>
 
@@ -325,7 +326,9 @@ namespace {
 /// positive.
 std::optional<double> extent_of_poles(const Handle(Geom_Surface) & surface, bool at_constant_u,
                                       double parameter) {
-    const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+    const auto trimmed = Handle(Geom_RectangularTrimmedSurface)::DownCast(surface);
+    const auto spline =
+        Handle(Geom_BSplineSurface)::DownCast(trimmed.IsNull() ? surface : trimmed->BasisSurface());
     if (spline.IsNull()) return std::nullopt;
     const Handle(Geom_Curve) iso =
         at_constant_u ? spline->UIso(parameter) : spline->VIso(parameter);
