@@ -36,12 +36,20 @@ Pose pose_at(const Machine& machine, const std::vector<size_t>& rotary, const Ax
     return pose;
 }
 
+/// A turn to be made: the rotary axes of the machine, its ends, and the poses there.
+struct Turn {
+    const Machine& machine;
+    std::vector<size_t> rotary;
+    AxisValues from, to;
+    Pose first{}, last{};
+};
+
 /// Whether the tool keeps its direction: all axes that move turn about it.
-bool keeps_direction(const Pose& pose, const std::vector<size_t>& rotary, const AxisValues& from,
-                     const AxisValues& to) {
+bool keeps_direction(const Turn& whole) {
     constexpr double rounding = 1e-12;
-    for (size_t n = 0; n < rotary.size(); ++n) {
-        const bool moves = from[rotary[n]] != to[rotary[n]];
+    const Pose& pose = whole.first;
+    for (size_t n = 0; n < whole.rotary.size(); ++n) {
+        const bool moves = whole.from[whole.rotary[n]] != whole.to[whole.rotary[n]];
         if (moves && glm::length(glm::cross(pose.axes[n], pose.tool)) > rounding) return false;
     }
     return true;
@@ -49,26 +57,26 @@ bool keeps_direction(const Pose& pose, const std::vector<size_t>& rotary, const 
 
 /// The turn if one axis alone makes it, at right angles to the tool, before or after another has
 /// turned about the tool; empty if not.
-std::optional<PlaneTurn> turn_by_one_axis(const Machine& machine, const std::vector<size_t>& rotary,
-                                          const AxisValues& from, const AxisValues& to) {
+std::optional<PlaneTurn> turn_by_one_axis(const Turn& whole) {
     constexpr double rounding = 1e-9;
-    const Pose first = pose_at(machine, rotary, from), last = pose_at(machine, rotary, to);
+    const auto& [machine, rotary, from, to, first, last] = whole;
+    const auto spins_at = [](const Pose& pose, size_t n) {
+        return glm::length(glm::cross(pose.axes[n], pose.tool)) < rounding;
+    };
     for (const size_t n : {size_t{0}, size_t{1}}) {
         const size_t tilts = rotary[n], spins = rotary[1 - n];
         if (from[tilts] == to[tilts]) continue;
         PlaneTurn turn;
         AxisValues between = from;
         if (from[spins] != to[spins]) {
-            turn.begins_in_place =
-                glm::length(glm::cross(first.axes[1 - n], first.tool)) < rounding;
-            turn.ends_in_place = !turn.begins_in_place
-                                 && glm::length(glm::cross(last.axes[1 - n], last.tool)) < rounding;
+            turn.begins_in_place = spins_at(first, 1 - n);
+            turn.ends_in_place = !turn.begins_in_place && spins_at(last, 1 - n);
             if (!turn.begins_in_place && !turn.ends_in_place) continue;
-            between[turn.begins_in_place ? spins : tilts] =
-                to[turn.begins_in_place ? spins : tilts];
+            const size_t earlier = turn.begins_in_place ? spins : tilts;
+            between[earlier] = to[earlier];
             turn.positions.push_back(between);
         }
-        const Pose tilting = pose_at(machine, rotary, turn.begins_in_place ? between : from);
+        const Pose tilting = turn.begins_in_place ? pose_at(machine, rotary, between) : first;
         const bool in_plane = std::abs(glm::dot(tilting.axes[n], tilting.tool)) < rounding
                               && std::abs(to[tilts] - from[tilts]) < 180.0;
         if (!in_plane) continue;
@@ -79,9 +87,8 @@ std::optional<PlaneTurn> turn_by_one_axis(const Machine& machine, const std::vec
 }
 
 /// A turn in `count` even parts; empty if the axes cannot go that way.
-std::optional<PlaneTurn> turn_in_parts(const Machine& machine, const std::vector<size_t>& rotary,
-                                       const AxisValues& from, const AxisValues& to, int count) {
-    const Pose first = pose_at(machine, rotary, from), last = pose_at(machine, rotary, to);
+std::optional<PlaneTurn> turn_in_parts(const Turn& whole, int count) {
+    const auto& [machine, rotary, from, to, first, last] = whole;
     const double angle =
         angle_of(glm::length(glm::cross(first.tool, last.tool)), glm::dot(first.tool, last.tool));
     const double part = angle / count;
@@ -118,24 +125,27 @@ std::optional<PlaneTurn> turn_in_parts(const Machine& machine, const std::vector
 
 std::optional<PlaneTurn> turn_in_plane(const Machine& machine, const AxisValues& from,
                                        const AxisValues& to, double max_error) {
-    std::vector<size_t> rotary;
+    Turn whole{.machine = machine, .rotary = {}, .from = from, .to = from};
     for (size_t i = 3; i < 6; ++i)
-        if (machine.axes[i].present) rotary.push_back(i);
-    AxisValues end = from;
-    for (const size_t i : rotary) end[i] = to[i];
-    const Pose start = pose_at(machine, rotary, from);
-    if (rotary.size() < 2 || end == from) return PlaneTurn{{end}};
-    if (rotary.size() > 2) return std::nullopt;
-    if (keeps_direction(start, rotary, from, end)) return PlaneTurn{{end}};
-    if (auto turn = turn_by_one_axis(machine, rotary, from, end)) return turn;
-    const double close = start.sine() + pose_at(machine, rotary, end).sine();
-    const double turned = turn_of(machine, from, end);
+        if (machine.axes[i].present) {
+            whole.rotary.push_back(i);
+            whole.to[i] = to[i];
+        }
+    if (whole.rotary.size() < 2 || whole.to == from) return PlaneTurn{{whole.to}};
+    if (whole.rotary.size() > 2) return std::nullopt;
+    whole.first = pose_at(machine, whole.rotary, from);
+    if (keeps_direction(whole)) return PlaneTurn{{whole.to}};
+    whole.last = pose_at(machine, whole.rotary, whole.to);
+    if (auto turn = turn_by_one_axis(whole)) return turn;
+    const double close = whole.first.sine() + whole.last.sine();
     int count = 1;
-    if (close > 0.0) // an estimate
+    if (close > 0.0) { // an estimate
+        const double turned = turn_of(machine, from, whole.to);
         count = std::clamp(static_cast<int>(turned / std::sqrt(0.5 * max_error * close)) + 1, 1,
                            most_pieces);
+    }
     for (; count <= most_pieces; count *= 2) {
-        auto turn = turn_in_parts(machine, rotary, from, end, count);
+        auto turn = turn_in_parts(whole, count);
         const double allowed = count < many_pieces ? max_error : std::max(max_error, largest_error);
         if (turn && turn->error <= allowed) return turn;
     }

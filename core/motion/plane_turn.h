@@ -30,10 +30,9 @@ constexpr double turn_error = 1e-5;
 /// Turns the rotary axes from one position to another.
 ///
 /// Result:  as few positions as keep `error` within `max_error`, or, from 1,024 on, within 1e-3.
-/// Only the end, without an error, if
-///          the machine has one rotary axis, if it only turns about the tool, or if a single axis
-///          turns the tool in a plane. Empty if there are three rotary axes, if the way passes too
-///          near to a pole, or if it does not lead to `to`.
+///          Without an error, only the end if the machine has one rotary axis, if it only turns
+///          about the tool, or if a single axis turns the tool in a plane. Empty if there are three
+///          rotary axes, if the way passes too near to a pole, or if it does not lead to `to`.
 /// Cost:    some us for each position.
 /// Proof:   core/sim/README.md, "Turning in a plane".
 std::optional<PlaneTurn> turn_in_plane(const Machine& machine, const AxisValues& from,

@@ -5,9 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/base/math.h"
 #include "core/base/rule_table.h"
-#include "core/base/units.h"
 #include "core/motion/machine.h"
 #include "core/motion/plane_turn.h"
 #include "gcode/exec/execution.h"
@@ -87,12 +85,6 @@ bool places_rotary_axes(const Execution& execution) {
     int placed = 0;
     for (size_t axis = 3; axis < 6; ++axis) placed += places(execution, axis) ? 1 : 0;
     return placed >= 2;
-}
-
-bool turns_to_plane(const Execution& execution) {
-    const auto codes = execution.statement.codes();
-    return std::any_of(codes.begin(), codes.end(),
-                       [](const CodeWord& entry) { return turns_to_plane(entry); });
 }
 
 core::SourceSpan place_of(const Execution& execution) {
@@ -300,14 +292,6 @@ void check_turns(Execution& execution, const ModalState& before) {
     }
 }
 
-/// Where the axes of the machine are at a position; 0 where that is not known.
-AxisValues machine_values(const Offsets& offsets, const Position& program) {
-    const Position machine = machine_from_program(offsets, program);
-    AxisValues values{};
-    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = machine[axis].value_or(0.0);
-    return values;
-}
-
 /// Whether a move that turns the tool in a plane goes the way that is assumed.
 bool is_certain_turn(Execution& execution, const AxisValues& from, const AxisValues& to) {
     const auto turn =
@@ -323,6 +307,9 @@ bool is_certain_turn(Execution& execution, const AxisValues& from, const AxisVal
 void check_turns_in_plane(Execution& execution, const ModalState& before) {
     ModalState& modal = execution.modal();
     if (!modal.turns_in_plane || !modal.offsets.follows_tip || !modal.offsets.machine) return;
+    const auto at = [&](const Position& program) {
+        return values_or_zero(machine_from_program(modal.offsets, program));
+    };
     Position here = before.position;
     bool is_certain = true;
     for (const CanonicalCommand& command : execution.result.commands) {
@@ -331,11 +318,8 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
         const auto* arc = std::get_if<ArcFeed>(&command);
         if (!rapid && !feed && !arc) continue;
         const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
-        const bool turns = !std::equal(end.begin() + 3, end.begin() + 6, here.begin() + 3);
-        if (turns)
-            is_certain = is_certain && !arc
-                         && is_certain_turn(execution, machine_values(modal.offsets, here),
-                                            machine_values(modal.offsets, end));
+        if (turns_between(here, end))
+            is_certain = is_certain && !arc && is_certain_turn(execution, at(here), at(end));
         here = end;
     }
     if (is_certain) return;
@@ -346,9 +330,8 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
     execution.result.warnings.push_back(
         {Severity::warning, place_of(execution),
          "how the control turns the tool here is not known: it turns on an arc, or passes near to "
-         "a "
-         "direction that it keeps while a rotary axis turns (the pole). This block and others like "
-         "it are measured with rotary axes that turn evenly, and are not proven clear",
+         "a direction that it keeps while a rotary axis turns (the pole). This block and others "
+         "like it are measured with rotary axes that turn evenly, and are not proven clear",
          core::rule_id("undecided"),
          execution.dialect.id == DialectId::siemens
              ? "Turn the rotary axes in a block of their own, or with ORIAXES; if the machine has "

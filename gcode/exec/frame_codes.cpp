@@ -192,9 +192,7 @@ core::Result<void> check_contour_is_off(const Execution& execution, const CodeWo
 /// on the table. Rotary axes whose position is unknown are taken to be at 0.
 TiltedPlane plane_on_table(const ModalState& modal) {
     const Offsets& offsets = modal.offsets;
-    const Position machine = machine_from_program(offsets, modal.position);
-    AxisValues values{};
-    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = machine[axis].value_or(0.0);
+    const AxisValues values = values_or_zero(machine_from_program(offsets, modal.position));
     const core::Mat3 table =
         core::machine_from_link(*offsets.machine, offsets.machine->table, values).rotation;
     return {.axes = turned_about(2, -offsets.work.rotation_deg) * glm::transpose(table),
@@ -217,26 +215,25 @@ core::Result<void> set_dynamic_offset(Execution& execution, const CodeWord& entr
                           fmt::format("{}: cancel tool centre point control before it, with G49",
                                       written(*entry.word)),
                           entry.word->span);
-    if (modal.transforms.tilt && !modal.transforms.tilt->follows_table)
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: cancel the tilted plane before it, with G269 or G69",
-                                      written(*entry.word)),
-                          entry.word->span);
+    if (modal.transforms.tilt && !has_dynamic_offset(modal.transforms))
+        return core::fail(
+            ErrorCode::invalid_value,
+            fmt::format("{}: cancel the tilted plane before it, with G269, or G69 after G68.2",
+                        written(*entry.word)),
+            entry.word->span);
     const Position machine = machine_from_program(modal.offsets, modal.position);
-    for (size_t axis = 3; axis < 6; ++axis) {
-        if (!modal.offsets.machine->axes[axis].present) continue;
-        if (!machine[axis])
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (modal.offsets.machine->axes[axis].present && !machine[axis])
             return core::fail(ErrorCode::missing_value,
                               fmt::format("{}: the position of axis {} is unknown: set [program] "
                                           "start or the machine's home in the set-up",
                                           written(*entry.word), axis_letters[axis]),
                               entry.word->span);
-        if (rotary_offset(modal.offsets, axis) != 0.0)
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: the work offset of axis {} must be 0",
-                                          written(*entry.word), axis_letters[axis]),
-                              entry.word->span);
-    }
+    if (const auto axis = axis_with_rotary_offset(modal.offsets))
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: the work offset of axis {} must be 0",
+                                      written(*entry.word), axis_letters[*axis]),
+                          entry.word->span);
     modal.transforms.tilt = plane_on_table(modal);
     return {};
 }
@@ -261,11 +258,7 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
         return set_rotation(execution, entry);
     case g_code(68, 2):
     case g_code(268):
-        if (has_dynamic_offset(transforms))
-            return core::fail(ErrorCode::invalid_value,
-                              fmt::format("{}: cancel the dynamic work offset before it, with G255",
-                                          written(*entry.word)),
-                              entry.word->span);
+        if (auto checked = check_dynamic_offset_is_off(execution, entry); !checked) return checked;
         return set_tilted_plane(execution);
     case g_code(254):
         return set_dynamic_offset(execution, entry);
@@ -493,14 +486,31 @@ double sine_of_pole_limit(const Execution& execution) {
     return core::sin(limit / core::degrees_per_radian);
 }
 
-bool turns_to_plane(const CodeWord& entry) {
+core::Result<void> check_dynamic_offset_is_off(const Execution& execution, const CodeWord& entry) {
+    if (!has_dynamic_offset(execution.modal().transforms)) return {};
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("{}: cancel the dynamic work offset before it, with G255",
+                                  written(*entry.word)),
+                      entry.word->span);
+}
+
+namespace {
+
+bool is_turn_to_plane(const CodeWord& entry) {
     const CodeNumber code = entry.code->number;
     return code == g_code(53, 1) || code == g_code(53, 6) || code == g_code(253);
 }
 
+} // namespace
+
+bool turns_to_plane(const Execution& execution) {
+    const auto codes = execution.statement.codes();
+    return std::any_of(codes.begin(), codes.end(), is_turn_to_plane);
+}
+
 core::Result<void> turn_tool_to_plane(Execution& execution) {
     for (const CodeWord& entry : execution.statement.codes()) {
-        if (!turns_to_plane(entry)) continue;
+        if (!is_turn_to_plane(entry)) continue;
         const std::string name = written(*entry.word);
         constexpr std::pair<char, std::string_view> refused[] = {
             {'P', "choosing a position of the rotary axes"},
@@ -533,8 +543,7 @@ core::Result<void> check_dynamic_offset(const Execution& execution, const ModalS
     const ModalState& modal = execution.modal();
     if (!has_dynamic_offset(modal.transforms) || !has_dynamic_offset(before.transforms)) return {};
     const core::SourceSpan where{.line = execution.block.line, .column = 1};
-    const bool turned = !std::equal(modal.position.begin() + 3, modal.position.begin() + 6,
-                                    before.position.begin() + 3);
+    const bool turned = turns_between(before.position, modal.position);
     const Offsets &now = modal.offsets, &then = before.offsets;
     const bool shifted = now.active != then.active || now.work != then.work
                          || now.local != then.local || now.axis != then.axis;
@@ -547,6 +556,22 @@ core::Result<void> check_dynamic_offset(const Execution& execution, const ModalS
                           : "a work offset changes while G254 is on: program G255 before this "
                             "block, and G254 after it",
                       where);
+}
+
+AxisValues values_or_zero(const Position& position) {
+    AxisValues values{};
+    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
+    return values;
+}
+
+bool turns_between(const Position& from, const Position& to) {
+    return !std::equal(from.begin() + 3, from.begin() + 6, to.begin() + 3);
+}
+
+std::optional<size_t> axis_with_rotary_offset(const Offsets& offsets) {
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (offsets.machine->axes[axis].present && rotary_offset(offsets, axis) != 0.0) return axis;
+    return std::nullopt;
 }
 
 double rotary_offset(const Offsets& offsets, size_t axis) {
@@ -634,9 +659,6 @@ bool turns_tool(const ToolDirection& tool) {
     return tool.direction.x != 0.0 || tool.direction.y != 0.0 || !(tool.direction.z > 0.0);
 }
 
-namespace {
-
-/// A vector whose components are words with these letters.
 std::optional<ToolDirection> vector_words(const Block& block, std::string_view letters) {
     ToolDirection found;
     for (const Word& word : block.words)
@@ -647,19 +669,12 @@ std::optional<ToolDirection> vector_words(const Block& block, std::string_view l
     return found.word ? std::optional(found) : std::nullopt;
 }
 
-} // namespace
-
-const Word* direction_word(const Block& block) {
-    const auto vector = vector_words(block, "tuv");
-    return vector ? vector->word : nullptr;
-}
-
 std::optional<ToolDirection> tool_direction(const Execution& execution) {
     const ModalState& modal = execution.modal();
     if (modal.transforms.follows_vectors) return vector_words(execution.block, "IJK");
     if (!modal.offsets.follows_tip && !modal.following.may_be_on) return std::nullopt;
-    const auto tool = vector_words(execution.block, "tuv");
-    return tool ? tool : vector_words(execution.block, "lmn");
+    const auto tool = vector_words(execution.block, direction_letters);
+    return tool ? tool : vector_words(execution.block, normal_letters);
 }
 
 core::Result<void> point_by_vector(const Execution& execution, Position& target) {

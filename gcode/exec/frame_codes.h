@@ -36,6 +36,15 @@ core::Result<void> set_tilted_plane(Execution& execution);
 ///         limits.
 core::Result<void> turn_tool_to_plane(Execution& execution);
 
+/// The values of a position; 0 where it is unknown.
+AxisValues values_or_zero(const Position& position);
+
+/// Whether a rotary axis has another position.
+bool turns_between(const Position& from, const Position& to);
+
+/// The first rotary axis of the machine that has an offset; empty if none has one.
+std::optional<size_t> axis_with_rotary_offset(const Offsets& offsets);
+
 /// Difference between the machine's and the program's value of a rotary axis.
 double rotary_offset(const Offsets& offsets, size_t axis);
 
@@ -72,8 +81,13 @@ struct ToolDirection {
     const Word* word = nullptr; // one of its words
 };
 
-/// A word of the block for the direction of the tool: A3, B3, C3; TX, TY, TZ. Null if it has none.
-const Word* direction_word(const Block& block);
+/// The letters of the words for the direction of the tool (A3, B3, C3; TX, TY, TZ) and for the
+/// normal of a surface (NX, NY, NZ).
+constexpr std::string_view direction_letters = "tuv", normal_letters = "lmn";
+
+/// The vector whose components are words with these letters. Words that are left out are 0. Empty
+/// if the block has none of them.
+std::optional<ToolDirection> vector_words(const Block& block, std::string_view letters);
 
 /// Whether it is another direction than +Z.
 bool turns_tool(const ToolDirection& tool);
@@ -95,8 +109,11 @@ bool has_dynamic_offset(const ProgramTransforms& transforms);
 /// in a plane.
 double sine_of_pole_limit(const Execution& execution);
 
-/// Whether a code turns the rotary axes to the tilted plane: G53.1, G53.6, G253.
-bool turns_to_plane(const CodeWord& entry);
+/// Errors: invalid_value if a dynamic work offset is on, which excludes this code.
+core::Result<void> check_dynamic_offset_is_off(const Execution& execution, const CodeWord& entry);
+
+/// Whether a code of the block turns the rotary axes to the tilted plane: G53.1, G53.6, G253.
+bool turns_to_plane(const Execution& execution);
 
 /// After a block: whether a dynamic work offset (G254) is still as it was set.
 ///

@@ -27,14 +27,9 @@ bool moves_by_radius_and_angle(const Execution& execution) {
                || execution.statement.word(axis_letters[axes.second]));
 }
 
-} // namespace
-
-namespace {
-
 /// Whether a move turns the tool in the plane of its directions.
 bool turns_in_plane(const ModalState& modal, const Position& end) {
-    return modal.turns_in_plane && modal.offsets.follows_tip
-           && !std::equal(end.begin() + 3, end.begin() + 6, modal.position.begin() + 3);
+    return modal.turns_in_plane && modal.offsets.follows_tip && turns_between(modal.position, end);
 }
 
 } // namespace
@@ -260,7 +255,7 @@ void leave_linear_axes(const Execution& execution, Position& target) {
     const ModalState& modal = execution.modal();
     const Offsets& offsets = modal.offsets;
     if (!offsets.machine || !offsets.tilted_plane || offsets.follows_tip) return;
-    if (std::equal(target.begin() + 3, target.begin() + 6, modal.position.begin() + 3)) return;
+    if (!turns_between(modal.position, target)) return;
     const Position kept =
         turned_in_place(offsets, modal.position, machine_from_program(offsets, target));
     for (size_t axis = 0; axis < 3; ++axis) {

@@ -28,12 +28,6 @@ bool moves(const Execution& execution) {
     return std::any_of(commands.begin(), commands.end(), is_motion);
 }
 
-bool turns_to_plane(const Execution& execution) {
-    const auto codes = execution.statement.codes();
-    return std::any_of(codes.begin(), codes.end(),
-                       [](const CodeWord& entry) { return turns_to_plane(entry); });
-}
-
 bool has_code(const Execution& execution, ModalGroup group, CodeNumber number) {
     const CodeWord* entry = execution.statement.of(group);
     return entry && entry->code->number == number;

@@ -212,11 +212,7 @@ core::Result<void> add_table_offset(Execution& execution, const Word& word) {
 /// G43.4, G43.5 and G234 of Haas: the control keeps the tip on the programmed path relative to the
 /// work.
 core::Result<void> use_tool_centre_control(Execution& execution, const CodeWord& entry) {
-    if (has_dynamic_offset(execution.modal().transforms))
-        return core::fail(ErrorCode::invalid_value,
-                          fmt::format("{}: cancel the dynamic work offset before it, with G255",
-                                      written(*entry.word)),
-                          entry.word->span);
+    if (auto checked = check_dynamic_offset_is_off(execution, entry); !checked) return checked;
     ProgramTransforms transforms = execution.modal().transforms;
     transforms.follows_vectors = entry.code->number == g_code(43, 5);
     use_transforms(execution, transforms);

@@ -74,26 +74,19 @@ void check_machine_move(Execution& execution, core::SourceSpan where) {
         "Program M129 before it.");
 }
 
-/// The vectors of LN.
+/// Checks the vectors of LN.
 ///
 /// Source: HEIDENHAIN TNC 640, user's manual Klartext programming, "Three-dimensional tool
-///         compensation": deltas of length and radius shift the tool along the normal; with RL and
-///         RR the radius, too.
+///         compensation": deltas of length and radius shift the tool along the normal.
 core::Result<void> check_vectors(Execution& execution) {
     if (!klartext_of(execution.block).has_normal) return {};
-    const auto& words = execution.block.words;
-    const auto has = [&](std::string_view letters) {
-        return std::any_of(words.begin(), words.end(), [&](const Word& word) {
-            return letters.find(word.letter) != std::string_view::npos;
-        });
-    };
     ModalState& modal = execution.modal();
-    if (has("lmn") && klartext_of(execution.state).has_deltas)
+    if (vector_words(execution.block, normal_letters) && klartext_of(execution.state).has_deltas)
         return refuse_statement(execution,
                                 "the compensation of DL, DR and DR2 of TOOL CALL along the "
                                 "normal is not supported yet: call the tool without them");
     const auto tool = tool_direction(execution);
-    if (!tool && direction_word(execution.block))
+    if (!tool && vector_words(execution.block, direction_letters))
         execution.warn(klartext_of(execution.block).span,
                        "TX, TY and TZ are ignored, because neither M128 nor FUNCTION TCPM is on");
     if (!tool) return {};

@@ -109,8 +109,7 @@ core::Result<AxisValues> axes_for_plane(Execution& execution) {
 }
 
 bool is_upright(const core::Machine& machine, const Position& position) {
-    AxisValues values{};
-    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
+    const AxisValues values = values_or_zero(position);
     const core::Vec3 up(0.0, 0.0, 1.0);
     const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation * up;
     return glm::distance(tool, up) < rounding;
@@ -162,13 +161,11 @@ core::Result<void> check_table_rotation(const Execution& execution) {
 core::Result<void> check_positions(const Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     const Offsets& offsets = execution.modal().offsets;
-    for (size_t axis = 3; axis < 6; ++axis)
-        if (offsets.machine->axes[axis].present && rotary_offset(offsets, axis) != 0.0)
-            return refuse_statement(
-                execution,
-                fmt::format("a tilted plane while axis {} has an offset is not supported "
-                            "yet: set its offset to 0",
-                            axis_letters[axis]));
+    if (const auto axis = axis_with_rotary_offset(offsets))
+        return refuse_statement(execution,
+                                fmt::format("a tilted plane while axis {} has an offset is not "
+                                            "supported yet: set its offset to 0",
+                                            axis_letters[*axis]));
     if (states_positions(command)) return {};
     const auto& order = klartext_of(execution.state).transforms.order;
     const bool is_on = std::find(order.begin(), order.end(), Transforms::Kind::tilt) != order.end();

@@ -8,6 +8,7 @@
 #include "core/motion/machine.h"
 #include "core/motion/plane_turn.h"
 #include "gcode/contour/flat_path.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/probing.h"
 #include "gcode/language/environment.h"
 
@@ -20,12 +21,6 @@ bool is_known(const core::AxisPosition& position) {
 
 /// Largest distance of a chord from its arc, mm.
 constexpr double chord_error = 0.001;
-
-AxisValues values_of(const Position& position) {
-    AxisValues values{};
-    for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
-    return values;
-}
 
 /// The axis of an arc in the machine (0 X, 1 Y, 2 Z) and whether the arc keeps its direction; empty
 /// when the offsets tilt the arc out of these planes.
@@ -171,8 +166,8 @@ struct Visitor {
     /// Adds a motion whose rotary axes turn the tool in a plane, in parts with even turns.
     void add_in_plane(const core::Motion& whole) {
         const core::Machine& machine = *lowering.offsets.machine;
-        const auto turn = core::turn_in_plane(machine, values_of(whole.from), values_of(whole.to),
-                                              core::turn_error);
+        const auto turn = core::turn_in_plane(machine, values_or_zero(whole.from),
+                                              values_or_zero(whole.to), core::turn_error);
         if (!turn) {
             events.emplace_back(whole);
             return;
@@ -189,10 +184,11 @@ struct Visitor {
             AxisValues there = turn->positions[i - 1];
             for (size_t axis = 6; axis < axis_count; ++axis)
                 there[axis] += along * (whole.to[axis].value_or(0.0) - there[axis]);
-            const auto reached =
-                core::reach_tip(machine, there, part.tip->to, part.tip->tool_length);
+            const AxisValues reached =
+                core::reach_tip(machine, there, part.tip->to, part.tip->tool_length)
+                    .value_or(there);
             for (size_t axis = 0; axis < axis_count; ++axis)
-                if (reached && whole.to[axis]) part.to[axis] = (*reached)[axis];
+                if (whole.to[axis]) part.to[axis] = reached[axis];
             events.emplace_back(part);
             part.from = part.to;
             part.tip->from = part.tip->to;

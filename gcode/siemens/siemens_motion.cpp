@@ -379,7 +379,7 @@ core::Result<void> make_motion(Execution& execution) {
     if (has_frame_words(execution) || statement.axis_word_owner()) return {};
     const bool circles = is_arc(modal.motion);
     const bool moves =
-        statement.has_axis_word() || direction_word(execution.block)
+        statement.has_axis_word() || vector_words(execution.block, direction_letters)
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
     if (!modal.motion) modal.motion = MotionCode::straight; // default: G1 is active at the start

@@ -48,12 +48,6 @@ bool programs_rotary_axes(const Execution& execution) {
     return false;
 }
 
-bool has_offset_of_rotary_axis(const Offsets& offsets) {
-    for (size_t axis = 3; axis < 6; ++axis)
-        if (offsets.machine->axes[axis].present && rotary_offset(offsets, axis) != 0.0) return true;
-    return false;
-}
-
 bool answer(Execution& execution, ControlQuestion question) {
     return answer_to(execution.state, execution.environment, question, execution.block.line);
 }
@@ -85,15 +79,15 @@ void doubt_block(Execution& execution, bool SiemensState::*said, std::string why
 }
 
 core::Result<void> check_direction_words(Execution& execution) {
-    const Word* word = direction_word(execution.block);
-    if (!word) return {};
+    const auto words = vector_words(execution.block, direction_letters);
+    if (!words) return {};
     ModalState& modal = execution.modal();
     const auto tool = tool_direction(execution);
     if (!tool)
         return core::fail(ErrorCode::invalid_value,
                           "A3, B3 and C3 turn the tool only while TRAORI is on: program TRAORI "
                           "before them",
-                          word->span);
+                          words->word->span);
     if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
     const core::Mat3& frame = modal.offsets.frame.linear;
     const bool is_turned = modal.offsets.work.rotation_deg != 0.0 || frame != core::Mat3(1.0);
@@ -167,7 +161,7 @@ core::Result<void> prepare_orientation(Execution& execution) {
                        "Program TRAFOOF before it.");
         return {};
     }
-    if (has_offset_of_rotary_axis(modal.offsets) && (turns || is_work_turned(modal)))
+    if (axis_with_rotary_offset(modal.offsets) && (turns || is_work_turned(modal)))
         doubt_block(execution, &SiemensState::said_rotary_offset,
                     "TRAORI while a rotary axis has a work offset: whether the coordinates turn "
                     "with it is set at the machine. This block and others like it are measured as "

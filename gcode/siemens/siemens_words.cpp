@@ -138,7 +138,7 @@ core::Result<void> check_swivelled_axes(const Execution& execution) {
                             "CYCLE800() before it",
                             written(*word)),
                 word->span);
-    if (direction_word(execution.block))
+    if (vector_words(execution.block, direction_letters))
         return core::fail(ErrorCode::unsupported,
                           "A3, B3 and C3 while a plane of CYCLE800 is on are not supported yet: "
                           "program CYCLE800() before them",

@@ -15,6 +15,9 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <GProp_GProps.hxx>
+#include <IGESControl_Writer.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <IGESDraw_RectArraySubfigure.hxx>
 #include <ShapeCustom.hxx>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -309,6 +312,34 @@ TEST_F(CadFileTest, WithoutAUnitIsAClearError) {
     ASSERT_NE(at, std::string::npos);
     text.replace(at, unit.size(), "SI_UNIT(.MILLI.,.SECOND.)");
     EXPECT_THAT(error_of(write("unit.step", text)), ::testing::Not(HasSubstr("it was read")));
+}
+
+TEST_F(CadFileTest, WithTwoUnitsOfLengthIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    std::string text = bytes_of(path("box.step"));
+    const size_t context = text.find("GLOBAL_UNIT_ASSIGNED_CONTEXT");
+    ASSERT_NE(context, std::string::npos);
+    text.insert(text.find('#', context), "#9001,");
+    text.insert(text.rfind("ENDSEC;"), "#9001=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));\n");
+    EXPECT_THAT(error_of(write("units.step", text)), HasSubstr("several units of length"));
+}
+
+/// Open CASCADE leaves out the copies.
+TEST_F(CadFileTest, OfIgesWithCopiesOfAPartIsAClearError) {
+    IGESControl_Writer writer("MM", 1);
+    writer.AddShape(cad_box(Vec3(0), Vec3(10)));
+    writer.AddShape(cad_box(Vec3(50), Vec3(60)));
+    Handle(IGESData_IGESEntity) part;
+    for (int i = 1; i <= writer.Model()->NbEntities(); ++i)
+        if (const auto entity = writer.Model()->Entity(i); entity->TypeNumber() == 186)
+            part = entity;
+    ASSERT_FALSE(part.IsNull());
+    const Handle(IGESDraw_RectArraySubfigure) copies = new IGESDraw_RectArraySubfigure;
+    copies->Init(part, 1.0, gp_XYZ(30, 0, 0), 3, 2, 20.0, 20.0, 0.0, 0, {});
+    writer.AddEntity(copies);
+    writer.ComputeModel();
+    ASSERT_TRUE(writer.Write(path("copies.igs").c_str()));
+    EXPECT_THAT(error_of("copies.igs"), HasSubstr("copies of a part"));
 }
 
 /// A file that scales a part, mirrors it, or has a body of a kind without faces.

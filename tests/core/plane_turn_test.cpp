@@ -134,8 +134,12 @@ TEST(PlaneTurn, BoundsEveryPointOfEveryBodyFromItsLegs) {
         std::vector<LinkId> links = {LinkId::base, machine.spindle, machine.table, link_of(2)};
         for (size_t i = 3; i < 6; ++i)
             if (machine.axes[i].present) links.push_back(link_of(i));
-        for (int i = 0; i < 40; ++i) {
-            const RandomTurn ends(machine, rng, 8.0);
+        for (int i = 0; i < 120; ++i) {
+            // Some turn a little by one axis alone, which stays within one part and yet needs the
+            // other; some bodies are far from the axes.
+            const bool is_small = i % 3 == 0;
+            RandomTurn ends(machine, rng, is_small ? 2.0 : 8.0);
+            for (size_t a = 3; is_small && a < 5; ++a) ends.to[a] = ends.from[a];
             const auto turn = turn_in_plane(machine, ends.from, ends.to, 1e-3);
             if (!turn) continue;
             // The tip goes straight, in as many parts.
@@ -160,7 +164,8 @@ TEST(PlaneTurn, BoundsEveryPointOfEveryBodyFromItsLegs) {
             const LinkId a = links[rng() % links.size()], b = links[rng() % links.size()];
             if (a == b) continue;
             const Mount target{a, {}};
-            const Vec3 centre(mm(rng), mm(rng), mm(rng));
+            const double far = i % 2 == 0 ? 20.0 : 1.0;
+            const Vec3 centre = far * Vec3(mm(rng), mm(rng), mm(rng));
             const Mover mover{.mount = {b, {}}, .centre = centre, .reach = 100.0};
             for (const Leg& leg : path.legs) {
                 const RelativeLeg relative = relative_leg(machine, target, mover, leg);
@@ -189,6 +194,38 @@ TEST(PlaneTurn, BoundsEveryPointOfEveryBodyFromItsLegs) {
     }
 }
 
+/// A body far from the tip, while both rotary axes may be off: also one that turns with an axis
+/// that does not move in this leg.
+TEST(PlaneTurn, CountsTheErrorOfTheRotaryAxesFarFromTheTip) {
+    const Machine machine = trunnion({0, 0, -500}, {0, 0, -480});
+    constexpr double length = 90.0, off = 1e-3;
+    const Vec3 tip(10.0, 20.0, -470.0);
+    AxisValues from{}, to{};
+    from[3] = to[3] = 30.0;
+    to[5] = 1e-3;
+    Motion motion{.kind = MotionKind::feed, .feed = 1000.0};
+    const AxisValues begin = *reach_tip(machine, from, tip, length);
+    const AxisValues end = *reach_tip(machine, to, tip + Vec3(1, 0, 0), length);
+    for (size_t a = 0; a < axis_count; ++a) motion.from[a] = begin[a], motion.to[a] = end[a];
+    motion.tip = TipPath{tip, tip + Vec3(1, 0, 0), length, off};
+    const Path path = path_of(motion, machine, 1e-4);
+    ASSERT_EQ(path.legs.size(), 1u);
+    for (const size_t carrier : {size_t{3}, size_t{5}}) { // A stays, C turns
+        const Mover mover{.mount = {link_of(carrier), {}}, .centre = {0, 5000, -500}};
+        const RelativeLeg relative = relative_leg(machine, {}, mover, path.legs[0]);
+        AxisValues truth = begin;
+        truth[3] += off / radian;
+        truth = *reach_tip(machine, truth, tip, length);
+        const Vec3 there = target_from_mover(machine, {}, mover.mount, truth) * mover.centre;
+        const Vec3 assumed = relative.positions[0] + relative.orientation * mover.centre;
+        const double apart = glm::distance(there, assumed);
+        EXPECT_GT(apart, 4.9);
+        EXPECT_LE(apart, relative.error);
+        EXPECT_LT(relative.error, 8.0);
+        EXPECT_GT(relative.lasting_error, 4.9);
+    }
+}
+
 TEST(PlaneTurn, IsASingleTiltWhereOneAxisTurnsAtRightAnglesToTheTool) {
     const Machine machine = trunnion({0, 0, -500}, {0, 0, -480});
     AxisValues from{}, to{};
@@ -204,19 +241,17 @@ TEST(PlaneTurn, TurnsInPlaceAtAPole) {
     const Machine machine = trunnion({0, 0, -500}, {0, 0, -480});
     AxisValues from{}, to{};
     to[3] = 40.0, to[5] = 70.0;
-    const auto away = turn_in_plane(machine, from, to, 1e-5);
-    ASSERT_TRUE(away);
-    EXPECT_TRUE(away->begins_in_place);
-    ASSERT_EQ(away->positions.size(), 2u);
-    EXPECT_EQ(away->positions[0][5], 70.0);
-    EXPECT_EQ(away->positions[0][3], 0.0);
-    EXPECT_EQ(away->positions[1], to);
-    const auto back = turn_in_plane(machine, to, from, 1e-5);
-    ASSERT_TRUE(back);
-    EXPECT_TRUE(back->ends_in_place);
-    ASSERT_EQ(back->positions.size(), 2u);
-    EXPECT_EQ(back->positions[0][5], 70.0);
-    EXPECT_EQ(back->positions[0][3], 0.0);
+    for (const bool is_away : {true, false}) {
+        const AxisValues &begin = is_away ? from : to, &end = is_away ? to : from;
+        const auto turn = turn_in_plane(machine, begin, end, 1e-5);
+        ASSERT_TRUE(turn);
+        EXPECT_EQ(turn->begins_in_place, is_away);
+        EXPECT_EQ(turn->ends_in_place, !is_away);
+        ASSERT_EQ(turn->positions.size(), 2u);
+        EXPECT_EQ(turn->positions[0][5], 70.0);
+        EXPECT_EQ(turn->positions[0][3], 0.0);
+        EXPECT_EQ(turn->positions[1], end);
+    }
 }
 
 TEST(PlaneTurn, HasNoWayThroughAPoleThatIsNotAtAnEnd) {

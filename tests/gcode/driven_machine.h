@@ -77,6 +77,29 @@ inline Driven driven_klartext(const std::string& lines, const core::Machine& mac
                   environment_of(machine, DialectId::heidenhain));
 }
 
+/// The same motions, with or without a path of the tip, and the same certainty of each block.
+inline void expect_same_motions(const Driven& a, const Driven& b) {
+    ASSERT_EQ(a.motions.size(), b.motions.size());
+    for (size_t i = 0; i < a.motions.size(); ++i) {
+        const core::Motion &one = a.motions[i], &other = b.motions[i];
+        ASSERT_EQ(one.tip.has_value(), other.tip.has_value()) << i;
+        for (size_t axis = 0; axis < 6; ++axis)
+            ASSERT_NEAR(one.to[axis].value_or(-1e9), other.to[axis].value_or(1e9), 1e-9) << i;
+        if (one.tip) {
+            EXPECT_LT(glm::distance(one.tip->to, other.tip->to), 1e-9) << i;
+        }
+    }
+    EXPECT_EQ(a.paths, b.paths);
+}
+
+/// The same motions, all with a path of the tip and all certain.
+inline void expect_same_tip_paths(const Driven& a, const Driven& b, size_t count) {
+    EXPECT_EQ(a.motions.size(), count);
+    for (const core::Motion& motion : a.motions) EXPECT_TRUE(motion.tip);
+    for (const core::PathCertainty path : a.paths) EXPECT_EQ(path, core::PathCertainty{});
+    expect_same_motions(a, b);
+}
+
 inline core::AxisValues values_of(const core::AxisPosition& position) {
     core::AxisValues values{};
     for (size_t axis = 0; axis < values.size(); ++axis) values[axis] = position[axis].value_or(0.0);

@@ -24,32 +24,22 @@ std::string refused(const std::string& lines, const Environment& environment) {
     return ran.run.error ? ran.run.error->message : std::string();
 }
 
-void expect_same(const Driven& a, const Driven& b) {
-    ASSERT_EQ(a.motions.size(), b.motions.size());
-    for (size_t i = 0; i < a.motions.size(); ++i) {
-        EXPECT_EQ(a.motions[i].tip.has_value(), b.motions[i].tip.has_value());
-        for (size_t axis = 0; axis < 6; ++axis)
-            EXPECT_NEAR(a.motions[i].to[axis].value_or(-1e9), b.motions[i].to[axis].value_or(1e9),
-                        1e-9)
-                << i;
-    }
-    EXPECT_EQ(a.paths, b.paths);
-}
-
 TEST(HaasFiveAxis, G234FollowsTheTipAsG434Does) {
     const std::string moves = "G0 X1. Y2. Z60. A10. C5.\nG1 X-20. Y3. Z5. A-35. C80. F500.\nC-20.\n"
                               "G49\nG0 A0. C0.\n";
-    expect_same(driven_haas("G234 H1\n" + moves),
-                driven(begin + "G43.4 H1\n" + moves, environment_of(trunnion(), DialectId::fanuc)));
+    expect_same_motions(
+        driven_haas("G234 H1\n" + moves),
+        driven(begin + "G43.4 H1\n" + moves, environment_of(trunnion(), DialectId::fanuc)));
 }
 
 TEST(HaasFiveAxis, G268AndG253AreATiltedPlane) {
     const std::string moves = "G0 X5. Y-3. Z40.\nG1 Z-2. F100.\nX9.\nG0 Z40.\n";
-    expect_same(driven_haas("G43 H1 Z100.\nG268 X3. Y4. Z-5. I25. J10. K30. Q123\nG253\n" + moves
-                            + "G269\nG0 X0 Y0\n"),
-                driven(begin + "G43 H1 Z100.\nG68.2 P1 X3. Y4. Z-5. I25. J10. K30. Q123\nG53.1\n"
-                           + moves + "G69\nG0 X0 Y0\n",
-                       environment_of(trunnion(), DialectId::fanuc)));
+    expect_same_motions(
+        driven_haas("G43 H1 Z100.\nG268 X3. Y4. Z-5. I25. J10. K30. Q123\nG253\n" + moves
+                    + "G269\nG0 X0 Y0\n"),
+        driven(begin + "G43 H1 Z100.\nG68.2 P1 X3. Y4. Z-5. I25. J10. K30. Q123\nG53.1\n" + moves
+                   + "G69\nG0 X0 Y0\n",
+               environment_of(trunnion(), DialectId::fanuc)));
     const Environment haas = environment_of(trunnion(), DialectId::haas);
     EXPECT_THAT(refused("G268 X0 Y0 Z0 I10. J0 K0\n", haas), HasSubstr("Q123"));
     EXPECT_THAT(refused("G253\n", haas), HasSubstr("G268"));

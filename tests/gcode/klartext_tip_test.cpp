@@ -36,19 +36,8 @@ void expect_as_g434(const core::Machine& machine, char first) {
         klartext += "L" + places + " R0 F900\n";
         fanuc += "G1" + places + " F900\n";
     }
-    Environment of_fanuc = environment_of(machine, DialectId::fanuc);
-    const Driven a = driven_klartext(klartext, machine), b = driven(fanuc, of_fanuc);
-    ASSERT_EQ(a.motions.size(), 200u);
-    ASSERT_EQ(b.motions.size(), 200u);
-    for (size_t i = 0; i < a.motions.size(); ++i) {
-        ASSERT_TRUE(a.motions[i].tip && b.motions[i].tip) << i;
-        for (size_t axis = 0; axis < 6; ++axis)
-            ASSERT_NEAR(a.motions[i].to[axis].value_or(-1e9), b.motions[i].to[axis].value_or(1e9),
-                        1e-9)
-                << i;
-        EXPECT_LT(glm::distance(a.motions[i].tip->to, b.motions[i].tip->to), 1e-9);
-    }
-    for (const core::PathCertainty path : a.paths) EXPECT_EQ(path, core::PathCertainty{});
+    expect_same_tip_paths(driven_klartext(klartext, machine),
+                          driven(fanuc, environment_of(machine, DialectId::fanuc)), 200);
 }
 
 TEST(KlartextTip, IsDrivenAsFanucDrivesIt) {

@@ -64,18 +64,8 @@ void expect_as_g434(const core::Machine& machine, size_t first) {
         fanuc += fmt::format("G1 X{:.4f} Y{:.4f} Z{:.4f} {}{:.4f} C{:.4f} F900\n", target.tip.x,
                              target.tip.y, target.tip.z, letter, target.first, target.second);
     }
-    const Driven a = driven_siemens(siemens, machine);
-    const Driven b = driven(fanuc, environment_of(machine, DialectId::fanuc));
-    ASSERT_EQ(a.motions.size(), 150u);
-    ASSERT_EQ(b.motions.size(), 150u);
-    for (size_t i = 0; i < a.motions.size(); ++i) {
-        ASSERT_TRUE(a.motions[i].tip && b.motions[i].tip) << i;
-        for (size_t axis = 0; axis < 6; ++axis)
-            ASSERT_NEAR(a.motions[i].to[axis].value_or(-1e9), b.motions[i].to[axis].value_or(1e9),
-                        1e-9)
-                << i;
-    }
-    for (const PathCertainty path : a.paths) EXPECT_EQ(path, PathCertainty{});
+    expect_same_tip_paths(driven_siemens(siemens, machine),
+                          driven(fanuc, environment_of(machine, DialectId::fanuc)), 150);
 }
 
 TEST(SiemensOrientation, OfAxesUnderOrimksIsDrivenAsFanucDrivesIt) {

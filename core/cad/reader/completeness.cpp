@@ -189,7 +189,7 @@ bool is_mirror(const Handle(StepGeom_CartesianTransformationOperator3d) & map) {
     x -= glm::dot(x, z) * z;
     const Vec3 y = axis(map->HasAxis2(), map->Axis2(), {0.0, 1.0, 0.0});
     const double hand = glm::dot(glm::cross(x, y), z);
-    return !(hand > rounding) && (map->HasAxis1() || map->HasAxis2() || map->HasAxis3());
+    return !(hand > rounding);
 }
 
 /// Refuses transformations that Open CASCADE takes for others: scaled, mirrored, to a mere point.
@@ -374,6 +374,15 @@ struct Sides {
     bool has_closed = false;
 };
 
+/// A surface without the rectangles of parameters that it is cut to.
+Handle(StepGeom_Surface) untrimmed(Handle(StepGeom_Surface) surface) {
+    while (true) {
+        const auto trimmed = Handle(StepGeom_RectangularTrimmedSurface)::DownCast(surface);
+        if (trimmed.IsNull() || trimmed->BasisSurface().IsNull()) return surface;
+        surface = trimmed->BasisSurface();
+    }
+}
+
 void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
                  const TopTools_DataMapOfShapeInteger& sides,
                  const Handle(Transfer_TransientProcess) & made, Sides& count) {
@@ -381,13 +390,7 @@ void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
     for (int i = 1; i <= shell->NbCfsFaces(); ++i) {
         const auto face = Handle(StepShape_FaceSurface)::DownCast(shell->CfsFacesValue(i));
         if (face.IsNull() || face->FaceGeometry().IsNull()) continue;
-        Handle(StepGeom_Surface) surface = face->FaceGeometry();
-        while (surface->IsKind(STANDARD_TYPE(StepGeom_RectangularTrimmedSurface))
-               && !Handle(StepGeom_RectangularTrimmedSurface)::DownCast(surface)
-                       ->BasisSurface()
-                       .IsNull())
-            surface = Handle(StepGeom_RectangularTrimmedSurface)::DownCast(surface)->BasisSurface();
-        const std::string_view kind = surface->DynamicType()->Name();
+        const std::string_view kind = untrimmed(face->FaceGeometry())->DynamicType()->Name();
         const bool is_open = kind == "StepGeom_Plane" || kind == "StepGeom_CylindricalSurface"
                              || kind == "StepGeom_ConicalSurface";
         const bool is_known = is_open || kind == "StepGeom_SphericalSurface"
@@ -498,8 +501,8 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
     return names;
 }
 
-/// Whether a surface closes on itself in both directions, or bends both ways: a border without
-/// curves in its parameters does not say which part of it is meant.
+/// Whether a border without curves in the parameters may leave open which part of a surface is
+/// meant: the surface closes on itself, or may do so.
 bool is_round(const Handle(IGESData_IGESEntity) & surface) {
     if (surface.IsNull()) return true;
     constexpr int plane = 108, line = 110, revolution = 120, tabulated = 122, spline = 128;
@@ -527,7 +530,7 @@ bool is_round(const Handle(IGESData_IGESEntity) & surface) {
 
 /// Whether a border of a face on such a surface has no curves in the parameters.
 bool lacks_parameters(const Handle(IGESGeom_CurveOnSurface) & border) {
-    return !border.IsNull() && border->CurveUV().IsNull() && is_round(border->Surface());
+    return border->CurveUV().IsNull() && is_round(border->Surface());
 }
 
 bool lacks_parameters(const Handle(IGESSolid_Face) & face) {
@@ -554,6 +557,23 @@ Result<bool> check_parameters(const Handle(Interface_InterfaceModel) & model,
                             entity_text(model, entity)));
 }
 
+/// Refuses what Open CASCADE leaves out without an error.
+Result<bool> check_copies(const Handle(Interface_InterfaceModel) & model) {
+    constexpr int rectangular_array = 412, circular_array = 414, external = 416;
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto entity = Handle(IGESData_IGESEntity)::DownCast(model->Value(i));
+        const int type = entity.IsNull() ? 0 : entity->TypeNumber();
+        if (type != rectangular_array && type != circular_array && type != external) continue;
+        return fail(ErrorCode::unsupported,
+                    fmt::format("Open CASCADE leaves out {}, {} (IGES type {}): export each body "
+                                "in its place, in one file",
+                                entity_text(model, entity),
+                                type == external ? "a part in another file" : "copies of a part",
+                                type));
+    }
+    return true;
+}
+
 Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & session) {
     const Handle(Interface_InterfaceModel) model = session->Model();
     const auto& global = Handle(IGESData_IGESModel)::DownCast(model)->GlobalSection();
@@ -563,6 +583,7 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
                                 global.Scale()));
     if (global.UnitFlag() < 1 || global.UnitFlag() > 11)
         return fail(ErrorCode::invalid_value, "it states no unit of length: export it again");
+    FEELER_TRY([[maybe_unused]] const bool alone, check_copies(model));
     const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const Handle(Standard_Transient) entity = model->Value(i);
@@ -577,15 +598,6 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
                         fmt::format("Open CASCADE cannot read {}, a solid without faces (IGES type "
                                     "{}): export it as a solid with faces, or as STL",
                                     entity_text(model, entity), type));
-        constexpr int rectangular_array = 412, circular_array = 414, external = 416;
-        if (type == rectangular_array || type == circular_array || type == external)
-            return fail(
-                ErrorCode::unsupported,
-                fmt::format("Open CASCADE leaves out {}, {} (IGES type {}): export each "
-                            "body in its place, in one file",
-                            entity_text(model, entity),
-                            type == external ? "a part in another file" : "copies of a part",
-                            type));
         if (type == manifold && any->HasTransf())
             return fail(ErrorCode::unsupported,
                         fmt::format("Open CASCADE does not move {} to its place: export the part "
