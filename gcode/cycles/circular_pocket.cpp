@@ -86,6 +86,16 @@ void mill_circles(Execution& execution, const CircularPocket& pocket) {
     add_arc(execution, pocket, x + 0.5 * reached, x, y);
 }
 
+/// The control takes X, Y and Z only.
+core::Result<void> check_axes(const Execution& execution, const CodeWord& entry) {
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (const Word* word = execution.statement.word(axis_letters[axis]))
+            return refusal(*word, ErrorCode::syntax,
+                           fmt::format("{} moves X, Y and Z only: move {} in an earlier block",
+                                       written(*entry.word), word->letter));
+    return {};
+}
+
 core::Result<void> check_place(const Execution& execution, const CodeWord& entry) {
     const Position& place = execution.modal().position;
     if (execution.modal().plane != Plane::xy)
@@ -101,6 +111,7 @@ core::Result<void> check_place(const Execution& execution, const CodeWord& entry
 core::Result<void> mill_circular_pocket(Execution& execution) {
     const CodeWord& entry = *execution.statement.of(ModalGroup::action);
     if (auto checked = check_arc_in_frame(execution, axes_of(Plane::xy)); !checked) return checked;
+    if (auto checked = check_axes(execution, entry); !checked) return checked;
     FEELER_TRY(const CircularPocket pocket, pocket_of(execution, entry));
     FEELER_TRY(const Position target, target_of(execution));
     Position middle = execution.modal().position;

@@ -188,7 +188,11 @@ core::Result<int> repeats_of(const Execution& execution) {
     return whole_number(*word, execution.dialect.cycles_are_rs274 ? 1 : 0, 10000);
 }
 
-/// Moves to the next hole, then down to R.
+/// Moves to the next hole, also along the rotary and other axes that the block names, then down to
+/// R.
+///
+/// Source: Fanuc 30i user's manual B-63944EN-2, "Canned cycle for drilling": every axis but the
+///         drilling axis is a positioning axis.
 void approach(Drilling& hole, const Position& target) {
     Execution& execution = hole.execution;
     Position over = execution.modal().position;
@@ -196,14 +200,36 @@ void approach(Drilling& hole, const Position& target) {
     const bool is_above = over[hole.normal] && *over[hole.normal] > hole.r;
     const bool climbs = execution.dialect.g98_cycle_starts_high && !is_above
                         && execution.modal().retract == RetractMode::initial_level;
-    over[hole.first] = target[hole.first];
-    over[hole.second] = target[hole.second];
+    for (size_t axis = 0; axis < axis_count; ++axis)
+        if (axis != hole.normal) over[axis] = target[axis];
     const bool only_climbs = execution.dialect.cycles_are_rs274 && over[hole.normal];
     const double lowest = only_climbs ? std::max(*over[hole.normal], hole.r) : 0.0;
     if (climbs && hole.clear) over[hole.normal] = hole.clear;
     if (only_climbs) over[hole.normal] = std::max(*over[hole.normal], lowest);
     execution.traverse(over);
     if (!hole.kind.traits.works_upwards && over[hole.normal] != hole.r) hole.traverse(hole.r);
+}
+
+/// Refuses a word of the axis parallel to the drilling axis: which of the two drills depends on the
+/// control.
+core::Result<void> check_parallel_axis(const Execution& execution, size_t normal) {
+    const size_t parallel = normal + 6;
+    if (parallel >= axis_count) return {};
+    const Word* word = execution.statement.word(axis_letters[parallel]);
+    if (!word) return {};
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{}: whether {} or {} drills in this cycle depends on the "
+                                  "control: move {} in an earlier block",
+                                  written(*word), axis_letters[normal], word->letter, word->letter),
+                      word->span);
+}
+
+/// Whether the block names an axis that is positioned before the hole is drilled, besides those of
+/// the plane.
+bool names_another_axis(const Execution& execution, size_t normal) {
+    for (size_t axis = 3; axis < axis_count; ++axis)
+        if (axis != normal && execution.statement.word(axis_letters[axis])) return true;
+    return false;
 }
 
 /// The next of L holes with G91: the same step again, or the same polar words about the origin.
@@ -236,7 +262,17 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     modal.cycle = cycle;
     modal.cycle_dwell = cycle.dwell.value_or(modal.cycle_dwell);
     execution.result.is_cycle = true;
-    if (repeats == 0 || only_defines(execution, axes)) return {};
+    if (auto checked = check_parallel_axis(execution, normal); !checked) return checked;
+    if (repeats == 0 || only_defines(execution, axes)) {
+        if (names_another_axis(execution, normal))
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{}: whether the control moves the axes of this block, "
+                                          "which only defines its cycle, is not known: move them "
+                                          "in an earlier block",
+                                          written(cycle.code)),
+                              moving_word(execution).span);
+        return {};
+    }
     FEELER_TRY(Drilling hole, drilling_of(execution, kind, cycle, axes));
 
     // RS274/NGC 3.5.16: from below R the axis first moves up to R. On other controls the move to

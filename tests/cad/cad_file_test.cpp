@@ -135,6 +135,34 @@ TEST_F(CadFileTest, OfABallWithABoreIsReadRightOrRefused) {
     for (const int count : refused) EXPECT_LT(count, 24);
 }
 
+TEST_F(CadFileTest, OfAVoidIsReadRightOrRefused) {
+    std::mt19937 random(28);
+    std::uniform_real_distribution<double> part(-1.0, 1.0);
+    const TopoDS_Shape block = cad_box(Vec3(-30), Vec3(30));
+    const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(20.0).Shape();
+    int refused = 0;
+    for (int i = 0; i < 16; ++i) {
+        const gp_Ax2 at(gp_Pnt(0.0, 0.0, 5.0), gp_Dir(part(random), part(random), part(random)));
+        const TopoDS_Shape bore = BRepPrimAPI_MakeCylinder(at, 4.0, 40.0).Shape();
+        const TopoDS_Shape hollow = i == 0   ? ball
+                                    : i == 1 ? cad_box(Vec3(-5), Vec3(5))
+                                             : BRepAlgoAPI_Cut(ball, bore).Shape();
+        const TopoDS_Shape body = BRepAlgoAPI_Cut(block, hollow).Shape();
+        const double volume = volume_of(body);
+        write_step(path("void.step"), i % 2 ? ShapeCustom::ConvertToRevolution(body) : body);
+        const auto file = read_cad(path("void.step"), 0.01);
+        if (!file) {
+            EXPECT_GE(i, 2) << file.error().message;
+            EXPECT_THAT(file.error().message, HasSubstr("inside out"));
+            ++refused;
+            continue;
+        }
+        ASSERT_EQ((*file)->solids.size(), 1u);
+        EXPECT_NEAR(signed_volume((*file)->solids[0].mesh), volume, 60.0) << i;
+    }
+    EXPECT_LT(refused, 14);
+}
+
 /// A border on a sphere divides it into two parts. Without its curve in the parameters, an IGES
 /// file does not say which of them is meant.
 TEST_F(CadFileTest, OfIgesNeedsParametersOfBordersOnRoundSurfaces) {

@@ -8,6 +8,7 @@ namespace gcode {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// The actions of a program after its first block: r rapid, f feed, each with X and Z; d dwell; the
 /// spindle cw, ccw, off; stop.
@@ -36,6 +37,34 @@ std::string steps(const std::string& text, DialectId dialect = DialectId::fanuc)
         }
     }
     return found;
+}
+
+TEST(FanucCycle, RotaryWordsTurnBeforeTheHole) {
+    const std::string turned = "straight_traverse x=1 y=0 z=20 a=90\n"
+                               "straight_traverse x=1 y=0 z=2 a=90\n"
+                               "straight_feed x=1 y=0 z=-5 a=90 feed=100\n"
+                               "straight_traverse x=1 y=0 z=20 a=90\n"
+                               "straight_traverse x=1 y=0 z=20 a=180 b=20\n"
+                               "straight_traverse x=1 y=0 z=2 a=180 b=20\n";
+    const std::string text =
+        "G21\nG0 X0 Y0 Z20\nF100\n\nG98 G81 X1. Z-5. R2. A90.\nA180. B20.\nG80\n";
+    EXPECT_THAT(trace(text, DialectId::fanuc), HasSubstr(turned));
+    EXPECT_THAT(trace(text, DialectId::haas), HasSubstr(turned));
+}
+
+TEST(FanucCycle, RepeatedHolesTurnByTheSameAngle) {
+    const std::string text = "G21\nG0 X0 Y0 Z20\nG91 G81 Z-5. R-2. F100. A30. L3\n";
+    const std::string found = trace(text, DialectId::haas);
+    for (const std::string angle : {"a=30", "a=60", "a=90"})
+        EXPECT_THAT(found, HasSubstr("straight_feed x=0 y=0 z=13 " + angle + " feed=100"));
+    EXPECT_THAT(found, Not(HasSubstr("a=120")));
+}
+
+TEST(FanucCycle, RefusesAxesOfWhichTheUseIsUnknown) {
+    EXPECT_THAT(steps("G81 X1 Z-8 R3 W-2 F50"), HasSubstr("whether Z or W drills"));
+    EXPECT_THAT(steps("G81 X1 Z-8 R3 A90 F50 K0"), HasSubstr("only defines its cycle"));
+    EXPECT_THAT(error_of("G0 X0 Y0 Z5\nG12 I5 D1 Z-1 F100 A90", DialectId::haas),
+                HasSubstr("G12 moves X, Y and Z only"));
 }
 
 TEST(FanucCycle, G84TapsInAndOutWithTheSpindleReversed) {

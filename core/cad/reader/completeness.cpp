@@ -39,12 +39,15 @@
 #include <StepRepr_RepresentationMap.hxx>
 #include <StepRepr_RepresentedDefinition.hxx>
 #include <StepRepr_ShapeRepresentationRelationship.hxx>
+#include <StepShape_BrepWithVoids.hxx>
 #include <StepShape_ClosedShell.hxx>
 #include <StepShape_ConnectedFaceSet.hxx>
 #include <StepShape_ContextDependentShapeRepresentation.hxx>
 #include <StepShape_FaceBasedSurfaceModel.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <StepShape_HArray1OfOrientedClosedShell.hxx>
 #include <StepShape_ManifoldSolidBrep.hxx>
+#include <StepShape_OrientedClosedShell.hxx>
 #include <StepShape_ShapeDefinitionRepresentation.hxx>
 #include <StepShape_ShapeRepresentation.hxx>
 #include <StepShape_ShellBasedSurfaceModel.hxx>
@@ -426,6 +429,17 @@ std::vector<Handle(StepShape_ConnectedFaceSet)> outer_shells(const Handle(Standa
     return shells;
 }
 
+/// The shells of the voids of a solid.
+std::vector<Handle(StepShape_ConnectedFaceSet)> void_shells(const Handle(Standard_Transient)
+                                                            & entity) {
+    std::vector<Handle(StepShape_ConnectedFaceSet)> shells;
+    if (const auto solid = Handle(StepShape_BrepWithVoids)::DownCast(entity);
+        !solid.IsNull() && !solid->Voids().IsNull())
+        for (const auto& shell : *solid->Voids())
+            if (!shell.IsNull()) shells.push_back(shell->ClosedShellElement());
+    return shells;
+}
+
 /// Refuses a solid of which Open CASCADE has taken the wrong side of the border of a face on a
 /// sphere or a torus. It then turns this face, or the whole solid, inside out.
 Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
@@ -444,7 +458,14 @@ Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
     const auto& [open, closed, has_closed] = count;
     const int turned = open.turned + closed.turned;
     // A file without round faces whose faces all look inwards has another fault, which is mended.
-    if (turned == 0 || (!has_closed && open.kept == 0)) return true;
+    bool is_wrong = turned > 0 && (has_closed || open.kept > 0);
+    for (const auto& shell : void_shells(entity)) {
+        Sides sides_of_void; // all kept or all turned, as the shell is
+        count_sides(shell, sides, made, sides_of_void);
+        const auto& [flat, round, has_round] = sides_of_void;
+        is_wrong |= flat.kept + round.kept > 0 && flat.turned + round.turned > 0;
+    }
+    if (!is_wrong) return true;
     return fail(ErrorCode::invalid_value,
                 fmt::format("Open CASCADE reads a round face of the solid {} inside out, as the "
                             "part that is not there: export the body as STL",
