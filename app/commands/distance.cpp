@@ -51,6 +51,17 @@ struct DistanceOptions {
 
 core::Vec3 vector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
+/// The error, with the name of the body that cannot be scanned, if it is one of a body.
+core::Error named(core::Error error, const NamedBody& a, const NamedBody& b,
+                  const DistanceOptions& options) {
+    for (const NamedBody* body : {&a, &b})
+        if (!points_of(body->body, options.mesh_size)) {
+            error.message = fmt::format("{}: {}", body->name, error.message);
+            break;
+        }
+    return error;
+}
+
 core::Result<std::string> answer(const DistanceOptions& options) {
     FEELER_TRY(const NamedBody a, body_argument(options.a, options.deviation));
     FEELER_TRY(const NamedBody b, body_argument(options.b, options.deviation));
@@ -58,8 +69,9 @@ core::Result<std::string> answer(const DistanceOptions& options) {
                                    vector(options.move)};
     const core::Vec3 sweep = vector(options.sweep);
     const auto engine = options.engine == "paper" ? core::paper_engine() : core::fast_engine();
-    FEELER_TRY(BodyPairDistance found,
-               measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine));
+    auto measured = measure(a.body, b.body, a_from_b, sweep, options.mesh_size, *engine);
+    if (!measured) return tl::unexpected(named(std::move(measured).error(), a, b, options));
+    BodyPairDistance& found = *measured;
     const double deviation = a.deviation + b.deviation;
     found.lower = std::max(0.0, found.lower - deviation);
     if (found.upper > 0.0) {

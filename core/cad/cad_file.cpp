@@ -37,10 +37,18 @@ CadReadObserver::~CadReadObserver() { current_observer = older_; }
 
 const CadReadObserver* CadReadObserver::current() { return current_observer; }
 
+namespace {
+
+bool is_step(const std::filesystem::path& path) {
+    const std::string extension = lower_case(path.extension().generic_string());
+    return extension == ".step" || extension == ".stp" || extension == ".p21";
+}
+
+} // namespace
+
 bool is_cad_file(const std::filesystem::path& path) {
     const std::string extension = lower_case(path.extension().generic_string());
-    return extension == ".step" || extension == ".stp" || extension == ".iges"
-           || extension == ".igs";
+    return is_step(path) || extension == ".iges" || extension == ".igs";
 }
 
 #ifdef FEELER_OPENCASCADE
@@ -70,11 +78,6 @@ std::filesystem::path reader_path() {
     return platform::facts_of(folder / "feeler-cad") ? folder / "feeler-cad" : installed;
 }
 
-bool is_step(const std::filesystem::path& path) {
-    const std::string extension = lower_case(path.extension().generic_string());
-    return extension == ".step" || extension == ".stp";
-}
-
 /// What can be said about the bytes of a STEP file before it is read.
 Result<bool> check_step(std::string_view bytes) {
     constexpr size_t head = 4096;
@@ -84,7 +87,8 @@ Result<bool> check_step(std::string_view bytes) {
     const size_t first_end = bytes.find(last_word);
     if (first_end == std::string_view::npos)
         return fail(ErrorCode::syntax,
-                    "it is not complete: END-ISO-10303-21 is missing at its end");
+                    "it is not complete: END-ISO-10303-21 is missing at its end; copy or export it "
+                    "again");
     // What follows, such as signatures, is no part of the bodies.
     if (bytes.find("ISO-10303-21;", first_end + last_word.size() + 1) != std::string_view::npos)
         return fail(ErrorCode::syntax,
@@ -102,7 +106,8 @@ Result<bool> check_iges(std::string_view bytes) {
     const size_t last = bytes.find_last_not_of("\r\n \t\x1a");
     const size_t line = bytes.find_last_of("\r\n", last) + 1; // 0 if there is none
     if (line + section >= bytes.size() || bytes[line + section] != 'T')
-        return fail(ErrorCode::syntax, "it is not complete: section T is missing at its end");
+        return fail(ErrorCode::syntax,
+                    "it is not complete: section T is missing at its end; copy or export it again");
     return true;
 }
 
@@ -113,6 +118,9 @@ Result<std::string> cad_bytes(const std::filesystem::path& path) {
     if (bytes->empty()) return fail(ErrorCode::syntax, "the file is empty");
     if (bytes->size() > largest_cad_file)
         return fail(ErrorCode::unsupported, "it has more than 1 GiB, the limit");
+    if (bytes->starts_with("\xEF\xBB\xBF") || bytes->starts_with("\xFF\xFE"))
+        return fail(ErrorCode::syntax, "it begins with a byte-order mark, so a text editor has "
+                                       "saved it: export it again, or save it as ASCII");
     FEELER_TRY([[maybe_unused]] const bool is_plausible,
                is_step(path) ? check_step(*bytes) : check_iges(*bytes));
     return *std::move(bytes);

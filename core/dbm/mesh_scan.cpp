@@ -76,7 +76,8 @@ tl::unexpected<Error> unsound_mesh(int axis, double u, double v, double along) {
     p[u_axis(axis)] = u;
     p[v_axis(axis)] = v;
     return fail(ErrorCode::invalid_value,
-                fmt::format("the mesh is open or partly inside out near ({:.6g}, {:.6g}, {:.6g})",
+                fmt::format("the mesh is open or partly inside out near ({:.6g}, {:.6g}, {:.6g}): "
+                            "repair it where its surface passes through itself",
                             p.x, p.y, p.z));
 }
 

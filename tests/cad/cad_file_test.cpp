@@ -203,6 +203,14 @@ TEST_F(CadFileTest, OfSeveralFilesInOneIsAClearError) {
     EXPECT_THAT(error_of(write("two.step", one + one)), HasSubstr("several STEP files in one"));
 }
 
+TEST_F(CadFileTest, OfATextEditorIsAClearError) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(1)));
+    const std::string bytes = bytes_of(path("box.step"));
+    EXPECT_THAT(error_of(write("marked.step", "\xEF\xBB\xBF" + bytes)),
+                HasSubstr("byte-order mark"));
+    EXPECT_EQ(read(write("box.p21", bytes))->solids.size(), 1u);
+}
+
 TEST_F(CadFileTest, HoldsABoxExactly) {
     write_step(path("box.step"), cad_box(Vec3(1, 2, 3), Vec3(11, 22, 33)));
     const auto file = read("box.step");

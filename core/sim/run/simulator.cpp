@@ -8,7 +8,12 @@
 namespace core {
 
 Result<SimulatorState> start_of_run(const Setup& setup, const AxisPosition& position) {
-    FEELER_TRY(CutModel stock, make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit));
+    auto made = make_cut_model(setup.stock, setup.mesh_size, setup.memory_limit);
+    if (!made) {
+        made.error().message = "stock: " + made.error().message;
+        return tl::unexpected(std::move(made).error());
+    }
+    CutModel& stock = *made;
     if (setup.earlier_cuts) cut(stock, *setup.earlier_cuts, std::thread::hardware_concurrency());
     SimulatorState state{.stock = std::move(stock)};
     state.tool = setup.tool_at_start;
