@@ -196,6 +196,11 @@ bool comes_to(const LoggedSweep& logged, const Square& square, const Interval& h
 
 constexpr Interval any_height{-infinity, infinity};
 
+bool comes_to(const LoggedSweep& logged, const TiltedBox* box, const Square& square,
+              const Interval& heights) {
+    return comes_to(logged, square, heights) && (!box || box->comes_to(square, heights));
+}
+
 /// The part of the intervals between two heights.
 IntervalList clipped(IntervalList all, const Interval& heights) {
     all.subtract({-infinity, heights.lower});
@@ -205,26 +210,63 @@ IntervalList clipped(IntervalList all, const Interval& heights) {
 
 } // namespace
 
-std::vector<LoggedSweep> sweeps_near_cell(const CutModel& model, int i, int j) {
-    const Square cell = cell_square(model, i, j);
-    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
-    std::vector<LoggedSweep> sweeps;
-    for (size_t k = 0; k < runs.size(); ++k)
-        for (uint32_t number = runs[k].first; number <= runs[k].last; ++number)
-            if (overlaps(model.log.box(number), cell)) {
-                const LoggedSweep sweep = model.log[number];
-                if (comes_to(sweep, cell, any_height)) sweeps.push_back(sweep);
-            }
-    return sweeps;
+TiltedBox::TiltedBox(const CutterSweep& sweep) {
+    const Vec3& axis = sweep.orientation[2];
+    const double level = std::sqrt(axis.x * axis.x + axis.y * axis.y);
+    const Vec3 across = level > 0.0 ? Vec3(-axis.y, axis.x, 0.0) / level : Vec3(1.0, 0.0, 0.0);
+    axes_ = {axis, across, glm::cross(axis, across)};
+    const Aabb& body = sweep.cutter->body;
+    const double radius = std::max({body.max.x, body.max.y, -body.min.x, -body.min.y});
+    for (size_t i = 0; i < axes_.size(); ++i) {
+        const double from = glm::dot(axes_[i], sweep.from), to = glm::dot(axes_[i], sweep.to);
+        least_[i] = std::min(from, to) + (i == 0 ? body.min.z : -radius);
+        most_[i] = std::max(from, to) + (i == 0 ? body.max.z : radius);
+    }
 }
 
-SquareCuts::SquareCuts(const CutModel& model, const std::vector<LoggedSweep>& sweeps,
-                       const Square& square, const Interval& heights)
+bool TiltedBox::comes_to(const Square& square, const Interval& heights) const {
+    constexpr double slack = 1e-6; // mm, far above the rounding errors of this test
+    constexpr double far = 1e9;    // mm, beyond every height
+    const Vec3 low(square.x0, square.y0, std::max(heights.lower, -far));
+    const Vec3 high(square.x1, square.y1, std::min(heights.upper, far));
+    for (size_t i = 0; i < axes_.size(); ++i) {
+        const Vec3 a = axes_[i] * low, b = axes_[i] * high;
+        const Vec3 least = glm::min(a, b), most = glm::max(a, b);
+        if (least.x + least.y + least.z > most_[i] + slack
+            || most.x + most.y + most.z < least_[i] - slack)
+            return false;
+    }
+    return true;
+}
+
+CellSweeps sweeps_near_cell(const CutModel& model, int i, int j) {
+    const Square cell = cell_square(model, i, j);
+    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
+    CellSweeps near;
+    for (size_t k = 0; k < runs.size(); ++k)
+        for (uint32_t number = runs[k].first; number <= runs[k].last; ++number) {
+            if (!overlaps(model.log.box(number), cell)) continue;
+            const LoggedSweep sweep = model.log[number];
+            std::optional<TiltedBox> box;
+            if (!is_upright(sweep.sweep.orientation)) box.emplace(sweep.sweep);
+            const Interval heights{sweep.box.min.z, sweep.box.max.z};
+            if (!comes_to(sweep, box ? &*box : nullptr, cell, heights)) continue;
+            near.sweeps.push_back(sweep);
+            near.boxes.push_back(box);
+        }
+    return near;
+}
+
+SquareCuts::SquareCuts(const CutModel& model, const CellSweeps& near, const Square& square,
+                       const Interval& heights)
     : SquareCuts(model, square, heights) {
-    for (const LoggedSweep& sweep : sweeps)
-        if (comes_to(sweep, square_, heights_))
+    for (size_t i = 0; i < near.sweeps.size(); ++i) {
+        const LoggedSweep& sweep = near.sweeps[i];
+        const TiltedBox* const box = near.boxes[i] ? &*near.boxes[i] : nullptr;
+        if (comes_to(sweep, box, square_, heights_))
             for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
-                cuts_.push_back({&sweep, &piece, {}, {}});
+                cuts_.push_back({&sweep, box, &piece, {}, {}});
+    }
 }
 
 SquareCuts SquareCuts::within(int number, const Interval& heights) const {
@@ -233,8 +275,8 @@ SquareCuts SquareCuts::within(int number, const Interval& heights) const {
         {std::max(heights_.lower, heights.lower), std::min(heights_.upper, heights.upper)});
     const int column = number % 2, row = number / 2;
     for (const PieceCut& cut : cuts_) {
-        if (!comes_to(*cut.sweep, part.square_, part.heights_)) continue;
-        PieceCut& same = part.cuts_.emplace_back(PieceCut{cut.sweep, cut.piece, {}, {}});
+        if (!comes_to(*cut.sweep, cut.box, part.square_, part.heights_)) continue;
+        PieceCut& same = part.cuts_.emplace_back(PieceCut{cut.sweep, cut.box, cut.piece, {}, {}});
         for (const int i : {0, 1})
             for (const int j : {0, 1}) {
                 const auto from = static_cast<size_t>(column + i + 3 * (row + j));
@@ -278,7 +320,10 @@ std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number, const Int
     Interval common{-infinity, infinity};
     for (const int i : {right, 1 - right})
         for (const int j : {back, 1 - back}) {
-            const auto& corner = segment(cut, number % 2 + i, number / 2 + j);
+            const int column = number % 2 + i, row = number / 2 + j;
+            if (cut.box && !cut.box->comes_to({x(column), x(column), y(row), y(row)}, left))
+                return std::nullopt;
+            const auto& corner = segment(cut, column, row);
             if (!corner) return std::nullopt;
             common.lower = std::max(common.lower, corner->lower);
             common.upper = std::min(common.upper, corner->upper);
@@ -293,7 +338,7 @@ IntervalList SquareCuts::column(int number) {
     for (PieceCut& cut : cuts_) {
         if (column.empty()) return column;
         const Interval left{column[0].lower, column[column.size() - 1].upper};
-        if (!comes_to(*cut.sweep, part, left)) continue;
+        if (!comes_to(*cut.sweep, cut.box, part, left)) continue;
         if (const auto gone = covered(cut, number, left)) column.subtract(*gone);
     }
     return column;
@@ -304,16 +349,45 @@ IntervalList SquareCuts::line_at_centre() const {
     IntervalList line = clipped(line_of(model_->solid, 2, at_x, at_y), heights_);
     for (const PieceCut& cut : cuts_) {
         if (line.empty()) return line;
-        if (!comes_to(*cut.sweep, {at_x, at_x, at_y, at_y}, heights_)) continue;
+        if (!comes_to(*cut.sweep, cut.box, {at_x, at_x, at_y, at_y}, heights_)) continue;
         if (const auto gone = line_interval(cut.piece->around, cut.sweep->sweep, 2, at_x, at_y))
             line.subtract(*gone);
     }
     return line;
 }
 
+const IntervalList& KeptSquare::line_at_centre() {
+    if (!line_) line_ = cuts_.line_at_centre();
+    return *line_;
+}
+
+const IntervalList& KeptSquare::column(int quarter) {
+    std::optional<IntervalList>& column = columns_[static_cast<size_t>(quarter)];
+    if (!column) column = cuts_.column(quarter);
+    return *column;
+}
+
+KeptSquare& KeptSquare::within(int quarter) {
+    std::unique_ptr<KeptSquare>& part = quarters_[static_cast<size_t>(quarter)];
+    if (!part) part = std::make_unique<KeptSquare>(cuts_.within(quarter, any_height));
+    return *part;
+}
+
+KeptSquare* KeptSquares::of_cell(int i, int j) {
+    constexpr size_t most = 200'000;
+    const auto known = cells_.find({i, j});
+    if (known != cells_.end()) return &*known->second.square;
+    if (kept_ > most) return nullptr;
+    Cell& cell = cells_[{i, j}];
+    cell.sweeps = sweeps_near_cell(*model_, i, j);
+    cell.square.emplace(SquareCuts(*model_, cell.sweeps, cell_square(*model_, i, j), any_height));
+    kept_ += cell.sweeps.sweeps.size();
+    return &*cell.square;
+}
+
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square) {
     IntervalList column = column_of(model.solid, square);
-    for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
+    for (const LoggedSweep& one : sweeps_near_cell(model, i, j).sweeps) {
         if (!comes_to(one, square, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (column.empty()) return column;
@@ -326,7 +400,7 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
     IntervalList line = line_of(model.solid, 2, x, y);
-    for (const LoggedSweep& one : sweeps_near_cell(model, i, j)) {
+    for (const LoggedSweep& one : sweeps_near_cell(model, i, j).sweeps) {
         if (!comes_to(one, {x, x, y, y}, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (line.empty()) return line;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <bitset>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -61,6 +62,20 @@ private:
 struct LoggedSweep {
     CutterSweep sweep;
     Aabb box;
+};
+
+/// A box around everything that a tilted cutter may remove on one move. It stands along the tool
+/// axis, so a line along Z that passes beside the cutter mostly misses it.
+class TiltedBox {
+public:
+    explicit TiltedBox(const CutterSweep& sweep);
+
+    /// Whether the box may come to a square between two heights.
+    bool comes_to(const Square& square, const Interval& heights) const;
+
+private:
+    std::array<Vec3, 3> axes_; // unit vectors: the tool axis, one across it and level, and a third
+    std::array<double, 3> least_, most_; // along each
 };
 
 /// The executed moves in order. A move that continues where the last one ended, with the same
@@ -227,16 +242,21 @@ void note_search(CutModel& model, size_t box_tests);
 /// The square of a column, clipped to the extent of the stock.
 Square cell_square(const CutModel& model, int i, int j);
 
-/// The logged moves that may have cut cell (i, j) of a model, in order.
-std::vector<LoggedSweep> sweeps_near_cell(const CutModel& model, int i, int j);
+/// The logged moves that may have cut a cell, in order.
+struct CellSweeps {
+    std::vector<LoggedSweep> sweeps;
+    std::vector<std::optional<TiltedBox>> boxes; // of each; none if the cutter is upright
+};
+
+CellSweeps sweeps_near_cell(const CutModel& model, int i, int j);
 
 /// What is left of the stock in a square within a cell, between two heights, recomputed from the
 /// moves that may have cut there. The square is divided into quarters; what a move sweeps at a
 /// corner is computed once for all quarters, and quarters of quarters, that share it.
 class SquareCuts {
 public:
-    /// `sweeps`: of the cell; they and the model must outlive this.
-    SquareCuts(const CutModel& model, const std::vector<LoggedSweep>& sweeps, const Square& square,
+    /// `near`: those of the cell; they and the model must outlive this.
+    SquareCuts(const CutModel& model, const CellSweeps& near, const Square& square,
                const Interval& heights);
 
     const Square& square() const { return square_; }
@@ -258,6 +278,7 @@ private:
     /// through the corners of the quarters, by X and then Y; computed on demand.
     struct PieceCut {
         const LoggedSweep* sweep;
+        const TiltedBox* box; // null: the cutter is upright
         const Cutter::Piece* piece;
         std::array<std::optional<Interval>, 9> at;
         std::bitset<9> is_known;
@@ -275,6 +296,44 @@ private:
     Square square_;
     Interval heights_;
     std::vector<PieceCut> cuts_;
+};
+
+/// As SquareCuts between all heights, with all answers kept.
+class KeptSquare {
+public:
+    explicit KeptSquare(SquareCuts cuts) : cuts_(std::move(cuts)) {}
+
+    const Square& square() const { return cuts_.square(); }
+    const IntervalList& line_at_centre();
+    Square quarter(int number) const { return cuts_.quarter(number); }
+    const IntervalList& column(int quarter);
+    KeptSquare& within(int quarter);
+
+private:
+    SquareCuts cuts_;
+    std::optional<IntervalList> line_;
+    std::array<std::optional<IntervalList>, 4> columns_;
+    std::array<std::unique_ptr<KeptSquare>, 4> quarters_;
+};
+
+/// The squares that searches against the same stock have recomputed. Not for several threads.
+class KeptSquares {
+public:
+    /// The model must outlive this, unchanged.
+    explicit KeptSquares(const CutModel& model) : model_(&model) {}
+
+    /// Null if so much is kept that no more cells are.
+    KeptSquare* of_cell(int i, int j);
+
+private:
+    struct Cell {
+        CellSweeps sweeps;
+        std::optional<KeptSquare> square;
+    };
+
+    const CutModel* model_;
+    std::map<std::pair<int, int>, Cell> cells_;
+    size_t kept_ = 0; // pieces of sweeps, some 300 bytes each
 };
 
 /// The heights at which the part `square` of cell (i, j) may contain material, recomputed from the

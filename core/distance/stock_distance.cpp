@@ -451,8 +451,11 @@ private:
             return;
         }
         if (keeps_whole(square, near)) return;
-        const std::vector<LoggedSweep> sweeps = sweeps_near_cell(stock_, i, j);
-        refine(SquareCuts(stock_, sweeps, square, near.heights));
+        if (KeptSquare* const kept = goal_.kept ? goal_.kept->of_cell(i, j) : nullptr)
+            return refine(*kept);
+        const CellSweeps sweeps = sweeps_near_cell(stock_, i, j);
+        SquareCuts cuts(stock_, sweeps, square, near.heights);
+        refine(cuts);
     }
 
     /// The part of a column that is too near, and its bound; tight only if that is kept.
@@ -496,7 +499,8 @@ private:
 
     /// Divides a square that is too near until its bound reaches the threshold; the least remaining
     /// bound is kept.
-    void refine(SquareCuts cuts) {
+    template <typename Cuts>
+    void refine(Cuts& cuts) {
         const Square& square = cuts.square();
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
         for (const Interval& matter : cuts.line_at_centre())
@@ -508,7 +512,12 @@ private:
             const Square part = cuts.quarter(quarter);
             const Near left = near_part(part, cuts.column(quarter), ends_refining());
             if (left.bound >= near_enough() || keeps_whole(part, left)) continue;
-            refine(cuts.within(quarter, left.heights));
+            if constexpr (std::is_same_v<Cuts, KeptSquare>) {
+                refine(cuts.within(quarter));
+            } else {
+                SquareCuts within = cuts.within(quarter, left.heights);
+                refine(within);
+            }
         }
     }
 

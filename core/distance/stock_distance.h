@@ -9,6 +9,7 @@
 
 namespace core {
 
+class KeptSquares;
 struct CutModel;
 
 /// The bounds of the distance to compute. The other one is valid but not tight.
@@ -31,6 +32,7 @@ struct StockGoal {
     // Squares that may be recomputed once a square of the finest side is too near: `lower` cannot
     // reach the threshold any more, but material nearer than the threshold may still be found.
     size_t futile_limit = 100'000;
+    KeptSquares* kept = nullptr; // of this stock, if several searches share what they recompute
     std::optional<LineId> first_line; // searched first; the last answer is a good guess
 };
 

@@ -13,6 +13,7 @@ using test_support::CutBox;
 using test_support::random_cut_box;
 using test_support::random_direction;
 using test_support::random_point;
+using test_support::random_tilted_cut_box;
 
 constexpr double spacing = 0.7;
 
@@ -198,31 +199,70 @@ TEST(CutModel, DoesNotDependOnTheOrderOfCuts) {
 }
 
 /// Divides a square and its quarters, and compares each with what the whole log leaves there.
-void expect_same_quarters(const CutModel& model, int i, int j, SquareCuts cuts, int depth) {
+void expect_same_quarters(const CutModel& model, int i, int j, SquareCuts cuts, KeptSquare& kept,
+                          int depth) {
     const Square& s = cuts.square();
     EXPECT_EQ(cuts.line_at_centre(),
               fresh_line(model, i, j, 0.5 * (s.x0 + s.x1), 0.5 * (s.y0 + s.y1)));
+    for (const bool again : {false, true}) // what is kept stays the same
+        EXPECT_EQ(kept.line_at_centre(), cuts.line_at_centre()) << again;
     for (int quarter = 0; quarter < 4; ++quarter) {
         const Square part = cuts.quarter(quarter);
         EXPECT_EQ(cuts.column(quarter), fresh_column(model, i, j, part));
+        for (const bool again : {false, true})
+            EXPECT_EQ(kept.column(quarter), cuts.column(quarter)) << again;
         if (depth > 0)
             expect_same_quarters(model, i, j, cuts.within(quarter, {-infinity, infinity}),
-                                 depth - 1);
+                                 kept.within(quarter), depth - 1);
     }
+}
+
+void expect_same_quarters(const CutModel& model, std::mt19937& rng) {
+    KeptSquares kept(model);
+    std::uniform_int_distribution<int> start(0, 2);
+    for (int j = start(rng); j < model.columns.v_count(); j += 3)
+        for (int i = start(rng); i < model.columns.u_count(); i += 2) {
+            const CellSweeps near = sweeps_near_cell(model, i, j);
+            const SquareCuts cuts(model, near, cell_square(model, i, j), {-infinity, infinity});
+            KeptSquare* const square = kept.of_cell(i, j);
+            ASSERT_NE(square, nullptr);
+            ASSERT_EQ(square, kept.of_cell(i, j));
+            expect_same_quarters(model, i, j, cuts, *square, 1);
+        }
 }
 
 TEST(CutModel, QuartersOfASquareAreWhatTheWholeLogLeavesThere) {
     std::mt19937 rng(68);
     for (int k = 0; k < 12; ++k) {
-        const CutModel model = random_cut_box(rng, 8, k % 2 ? 0.1 : 0.0).model(spacing);
-        for (int j = k % 3; j < model.columns.v_count(); j += 3)
-            for (int i = k % 2; i < model.columns.u_count(); i += 2) {
-                const std::vector<LoggedSweep> sweeps = sweeps_near_cell(model, i, j);
-                expect_same_quarters(
-                    model, i, j,
-                    SquareCuts(model, sweeps, cell_square(model, i, j), {-infinity, infinity}), 1);
-            }
+        const double error = k % 2 ? 0.1 : 0.0;
+        expect_same_quarters(random_cut_box(rng, 8, error).model(spacing), rng);
+        expect_same_quarters(random_tilted_cut_box(rng, 8, error).model(spacing), rng);
     }
+}
+
+/// A box that misses a square says that no line through it meets the cutter.
+TEST(CutModel, BoxesOfTiltedCuttersMissOnlyWhatTheyDoNotSweep) {
+    std::mt19937 rng(69);
+    int missed = 0, met = 0;
+    for (int k = 0; k < 60; ++k) {
+        const CutModel model = random_tilted_cut_box(rng, 1, k % 2 ? 0.1 : 0.0).model(spacing);
+        const LoggedSweep logged = model.log[0];
+        const TiltedBox box(logged.sweep);
+        for (int i = 0; i < 300; ++i) {
+            const Vec3 p = random_point(model.outer_box, rng);
+            const Interval heights{p.z, p.z + 0.5};
+            const bool comes = box.comes_to({p.x, p.x, p.y, p.y}, heights);
+            ++(comes ? met : missed);
+            if (comes) continue;
+            for (const Cutter::Piece& piece : logged.sweep.cutter->pieces) {
+                const auto swept = line_interval(piece.around, logged.sweep, 2, p.x, p.y);
+                EXPECT_TRUE(!swept || swept->upper <= heights.lower
+                            || swept->lower >= heights.upper);
+            }
+        }
+    }
+    EXPECT_GT(met, 1000);
+    EXPECT_GT(missed, 1000);
 }
 
 void expect_same(const CutModel& one, const CutModel& other) {

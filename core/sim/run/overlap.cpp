@@ -182,8 +182,20 @@ private:
                              .threshold = enough,
                              .finest = 0.1,
                              .work_limit = 250,
-                             .futile_limit = 0};
+                             .futile_limit = 0,
+                             .kept = &kept_of(piece.before)};
         return separation(shapes, *piece.before, goal).separation.lower >= enough;
+    }
+
+    /// What the searches against a stock have recomputed.
+    KeptSquares& kept_of(const std::shared_ptr<const CutModel>& stock) {
+        constexpr size_t most_trials = 1000; // so much may be kept in memory
+        if (kept_stock_ != stock || ++kept_trials_ > most_trials) {
+            kept_stock_ = stock;
+            kept_.emplace(*stock);
+            kept_trials_ = 0;
+        }
+        return *kept_;
     }
 
     /// Shortens a translation that separates the bodies.
@@ -423,6 +435,9 @@ private:
     double shrink_ = 0.0;
     std::vector<Piece> pieces_;
     size_t trials_ = 0;
+    std::shared_ptr<const CutModel> kept_stock_; // of kept_
+    std::optional<KeptSquares> kept_;
+    size_t kept_trials_ = 0;
     size_t checks_ = 0; // of contact: is_clear
 };
 
