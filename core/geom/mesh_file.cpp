@@ -421,8 +421,11 @@ Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view
     if (extension == ".obj") return MeshFormat::obj;
     if (extension == ".off") return MeshFormat::off;
     if (extension == ".ply") return MeshFormat::ply;
-    return fail(ErrorCode::unsupported,
-                fmt::format("'{}' is not a supported mesh format (stl, obj, ply, off)", extension));
+    return fail(
+        ErrorCode::unsupported,
+        fmt::format("'{}' is not the ending of a mesh or CAD file (stl, obj, ply, off, step, "
+                    "stp, iges, igs)",
+                    extension));
 }
 
 /// The input of OpenMesh, and the expected counts.

@@ -15,7 +15,10 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <GProp_GProps.hxx>
+#include <IGESBasic_SingularSubfigure.hxx>
+#include <IGESBasic_SubfigureDef.hxx>
 #include <IGESControl_Writer.hxx>
+#include <IGESData_HArray1OfIGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <IGESDraw_RectArraySubfigure.hxx>
 #include <ShapeCustom.hxx>
@@ -104,7 +107,7 @@ std::string as_surfaces(std::string text) {
 TEST_F(CadFileTest, OfABallWithABoreIsReadRightOrRefused) {
     std::mt19937 random(27);
     std::uniform_real_distribution<double> part(-1.0, 1.0);
-    int refused[3] = {};
+    int refused[4] = {};
     for (int i = 0; i < 24; ++i) {
         const gp_Dir axis = i < 3   ? gp_Dir(i == 0, i == 1, i == 2)
                             : i < 6 ? gp_Dir(-(i == 3), -(i == 4), -(i == 5))
@@ -117,8 +120,13 @@ TEST_F(CadFileTest, OfABallWithABoreIsReadRightOrRefused) {
         write_step(path("solid.step"), bored);
         write("surfaces.step", as_surfaces(bytes_of(path("solid.step"))));
         write_step(path("revolved.step"), ShapeCustom::ConvertToRevolution(bored));
+        // A sphere is a torus of radius 0.
+        std::string text = bytes_of(path("solid.step"));
+        text = std::regex_replace(text, std::regex("SPHERICAL_SURFACE\\('',(#[0-9]+),20\\.\\)"),
+                                  "DEGENERATE_TOROIDAL_SURFACE('',$1,0.,20.,.T.)");
+        write("torus.step", text);
         int way = 0;
-        for (const char* name : {"solid.step", "surfaces.step", "revolved.step"}) {
+        for (const char* name : {"solid.step", "surfaces.step", "revolved.step", "torus.step"}) {
             SCOPED_TRACE(std::string(name) + " " + std::to_string(i));
             const auto file = read_cad(path(name), 0.01);
             int& count = refused[way++];
@@ -406,6 +414,80 @@ TEST_F(CadFileTest, ThatWouldBeReadInPartIsAClearError) {
                 HasSubstr("SWEPT_DISK_SOLID"));
     EXPECT_EQ(error_with("#9001=TESSELLATED_SOLID('',(),$);\n"), "it was read")
         << "beside an exact body";
+}
+
+/// A coordinate system among the items of a body's representation, as a drawing has it.
+TEST_F(CadFileTest, ACoordinateSystemBesideABodyDoesNotMoveIt) {
+    write_step(path("box.step"), cad_box(Vec3(0), Vec3(10)));
+    std::string text = bytes_of(path("box.step"));
+    const size_t items = text.find("#", text.find("SHAPE_REPRESENTATION('',("));
+    ASSERT_NE(items, std::string::npos);
+    text.insert(items, "#9004,");
+    text.insert(text.rfind("ENDSEC;"),
+                "#9001=CARTESIAN_POINT('',(100.,0.,0.));\n#9002=DIRECTION('',(0.,0.,1.));\n"
+                "#9003=DIRECTION('',(1.,0.,0.));\n"
+                "#9004=AXIS2_PLACEMENT_3D('csys',#9001,#9002,#9003);\n");
+    const auto file = read(write("csys.step", text));
+    ASSERT_EQ(file->solids.size(), 1u);
+    EXPECT_NEAR(file->solids[0].mesh.bounds().max.x, 10.0, 1e-9);
+}
+
+TEST_F(CadFileTest, WithAPlaceThatIsNoUseInAnAssemblyIsAClearError) {
+    CadPart bolt{"bolt", cad_cylinder(3, 20), {10, 0, 0}};
+    write_step(path("vise.step"), CadPart{"vise", {}, {}, 0, {bolt}});
+    std::string text = bytes_of(path("vise.step"));
+    const std::string use = "NEXT_ASSEMBLY_USAGE_OCCURRENCE(";
+    const size_t at = text.find(use);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, use.size(), "ASSEMBLY_COMPONENT_USAGE(");
+    EXPECT_THAT(error_of(write("used.step", text)), HasSubstr("does not place a part"));
+}
+
+TEST_F(CadFileTest, OfWhichOnlySomePartsStateAnglesIsAClearError) {
+    const CadPart one{"one", cad_box(Vec3(0), Vec3(1))}, two{"two", cad_box(Vec3(0), Vec3(2))};
+    write_step(path("pair.step"), CadPart{"pair", {}, {}, 0, {one, two}});
+    std::string text = bytes_of(path("pair.step"));
+    const size_t units = text.rfind("GLOBAL_UNIT_ASSIGNED_CONTEXT");
+    const size_t angle = text.find(',', units), next = text.find(',', angle + 1);
+    ASSERT_NE(units, std::string::npos);
+    text.erase(angle, next - angle); // length, angle, solid angle
+    EXPECT_THAT(error_of(write("angles.step", text)), HasSubstr("unit of angles"));
+}
+
+TEST_F(CadFileTest, OfIgesWithAScaledPartIsAClearError) {
+    const auto error_at = [&](double scale) {
+        IGESControl_Writer writer("MM", 1);
+        writer.AddShape(cad_box(Vec3(0), Vec3(10)));
+        writer.AddShape(cad_box(Vec3(50), Vec3(60)));
+        Handle(IGESData_IGESEntity) part;
+        for (int i = 1; i <= writer.Model()->NbEntities(); ++i)
+            if (const auto entity = writer.Model()->Entity(i); entity->TypeNumber() == 186)
+                part = entity;
+        const Handle(IGESData_HArray1OfIGESEntity) parts = new IGESData_HArray1OfIGESEntity(1, 1);
+        parts->SetValue(1, part);
+        const Handle(IGESBasic_SubfigureDef) figure = new IGESBasic_SubfigureDef;
+        figure->Init(0, new TCollection_HAsciiString("part"), parts);
+        const Handle(IGESBasic_SingularSubfigure) placed = new IGESBasic_SingularSubfigure;
+        placed->Init(figure, gp_XYZ(30, 0, 0), true, scale);
+        writer.AddEntity(placed);
+        writer.ComputeModel();
+        EXPECT_TRUE(writer.Write(path("part.igs").c_str()));
+        return error_of("part.igs");
+    };
+    EXPECT_EQ(error_at(1.0), "it was read");
+    EXPECT_THAT(error_at(2.0), HasSubstr("scaled"));
+}
+
+TEST_F(CadFileTest, OfIgesInAUnitWithAStrangeNameIsAClearError) {
+    write_iges(path("whole.igs"), cad_box(Vec3(0), Vec3(10)), true);
+    std::string text = bytes_of(path("whole.igs"));
+    const size_t unit = text.find(",2,2HMM,");
+    ASSERT_NE(unit, std::string::npos);
+    EXPECT_THAT(error_of(write("in.igs", text.replace(unit, 8, ",3,2Hin,"))),
+                HasSubstr("no unit of length"));
+    EXPECT_NEAR(
+        read(write("inch.igs", text.replace(unit, 8, ",3,2HIN,")))->solids[0].mesh.bounds().max.x,
+        254.0, 1e-6);
 }
 
 TEST_F(CadFileTest, OfIgesAtAnotherScaleIsAClearError) {

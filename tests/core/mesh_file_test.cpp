@@ -209,8 +209,8 @@ TEST(MeshFile, SaysWhenThereIsNoSuchFile) {
 
 TEST(MeshFile, RefusesAnUnknownExtension) {
     EXPECT_THAT(error_of("part.step", "ISO-10303-21;"),
-                HasSubstr("'.step' is not a supported mesh format"));
-    EXPECT_THAT(error_of("part", "solid"), HasSubstr("is not a supported mesh format"));
+                HasSubstr("'.step' is not the ending of a mesh"));
+    EXPECT_THAT(error_of("part", "solid"), HasSubstr("is not the ending of a mesh"));
 }
 
 TEST(MeshFile, RefusesATruncatedStl) {

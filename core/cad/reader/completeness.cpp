@@ -5,12 +5,14 @@
 #include <map>
 #include <set>
 
+#include <IGESBasic_SingularSubfigure.hxx>
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <IGESGeom_BSplineSurface.hxx>
 #include <IGESGeom_BoundedSurface.hxx>
 #include <IGESGeom_CurveOnSurface.hxx>
 #include <IGESGeom_SurfaceOfRevolution.hxx>
+#include <IGESGeom_TransformationMatrix.hxx>
 #include <IGESGeom_TrimmedSurface.hxx>
 #include <IGESSolid_Face.hxx>
 #include <IGESSolid_Loop.hxx>
@@ -59,6 +61,7 @@
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <fmt/format.h>
+#include <gp_GTrsf.hxx>
 
 #include "core/base/vec.h"
 
@@ -218,10 +221,15 @@ Result<bool> check_transformations(const Handle(Interface_InterfaceModel) & mode
     return true;
 }
 
+/// How many contexts of shapes state a unit of angles.
+struct AngleUnits {
+    int stated = 0, missing = 0;
+};
+
 /// Refuses coordinates without a unit.
 template <typename Context>
 Result<bool> check_unit(const Handle(Interface_InterfaceModel) & model,
-                        const Handle(Standard_Transient) & entity) {
+                        const Handle(Standard_Transient) & entity, AngleUnits& angles) {
     const auto context = Handle(Context)::DownCast(entity);
     if (context.IsNull()) return true;
     STEPConstruct_UnitContext units;
@@ -236,10 +244,13 @@ Result<bool> check_unit(const Handle(Interface_InterfaceModel) & model,
         return fail(ErrorCode::invalid_value,
                     fmt::format("{} states several units of length: export the file again",
                                 entity_text(model, entity)));
-    if (units.LengthDone()) return true;
-    return fail(ErrorCode::invalid_value,
-                fmt::format("{} states no unit of length: export the file again",
-                            entity_text(model, entity)));
+    if (!units.LengthDone()) {
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("{} states no unit of length: export the file again",
+                                entity_text(model, entity)));
+    }
+    ++(units.PlaneAngleDone() ? angles.stated : angles.missing);
+    return true;
 }
 
 Result<bool> check_units(const Handle(Interface_InterfaceModel) & model) {
@@ -252,11 +263,17 @@ Result<bool> check_units(const Handle(Interface_InterfaceModel) & model) {
     }
     using WithUncertainty = StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx;
     using Without = StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext;
+    AngleUnits angles;
     for (int i = 1; i <= model->NbEntities(); ++i) {
         FEELER_TRY([[maybe_unused]] const bool a,
-                   check_unit<WithUncertainty>(model, model->Value(i)));
-        FEELER_TRY([[maybe_unused]] const bool b, check_unit<Without>(model, model->Value(i)));
+                   check_unit<WithUncertainty>(model, model->Value(i), angles));
+        FEELER_TRY([[maybe_unused]] const bool b,
+                   check_unit<Without>(model, model->Value(i), angles));
     }
+    // Open CASCADE takes the unit of another context.
+    if (angles.stated > 0 && angles.missing > 0)
+        return fail(ErrorCode::invalid_value,
+                    "only some of its parts state a unit of angles: export the file again");
     return true;
 }
 
@@ -322,8 +339,23 @@ Structure structure_of(const Handle(Interface_InterfaceModel) & model) {
     return found;
 }
 
-/// Refuses an assembly in which a part has no place: Open CASCADE leaves it out.
+/// Refuses an assembly in which a part has no place: Open CASCADE leaves it out. Places of
+/// relations that are no use in an assembly are left out as well.
 Result<bool> check_places(const Handle(Interface_InterfaceModel) & model) {
+    for (int i = 1; i <= model->NbEntities(); ++i) {
+        const auto place =
+            Handle(StepShape_ContextDependentShapeRepresentation)::DownCast(model->Value(i));
+        if (place.IsNull() || place->RepresentedProductRelation().IsNull()) continue;
+        const Handle(Standard_Transient) relation =
+            place->RepresentedProductRelation()->Definition().ProductDefinitionRelationship();
+        if (relation.IsNull()
+            || relation->IsKind(STANDARD_TYPE(StepRepr_NextAssemblyUsageOccurrence)))
+            continue;
+        return fail(ErrorCode::unsupported,
+                    fmt::format("Open CASCADE does not place a part as {} says: export the part in "
+                                "its final place",
+                                entity_text(model, place)));
+    }
     const Structure structure = structure_of(model);
     std::map<const Standard_Transient*, int> without_place; // uses of a product
     for (const auto& use : structure.uses)
@@ -354,6 +386,12 @@ size_t faces_of(const TopoDS_Shape& shape) {
     return count;
 }
 
+size_t solids_of(const TopoDS_Shape& shape) {
+    size_t count = 0;
+    for (TopExp_Explorer e(shape, TopAbs_SOLID); e.More(); e.Next()) ++count;
+    return count;
+}
+
 bool is_surface_model(const Handle(Standard_Transient) & entity) {
     return entity->IsKind(STANDARD_TYPE(StepShape_ShellBasedSurfaceModel))
            || entity->IsKind(STANDARD_TYPE(StepShape_FaceBasedSurfaceModel));
@@ -373,7 +411,7 @@ struct Sides {
     struct Count {
         int kept = 0, turned = 0;
     };
-    Count open, closed; // on planes, cylinders and cones; on spheres, tori and splines
+    Count open, closed; // on planes, cylinders and cones; on all others, which may be closed
     bool has_closed = false;
 };
 
@@ -396,13 +434,9 @@ void count_sides(const Handle(StepShape_ConnectedFaceSet) & shell,
         const std::string_view kind = untrimmed(face->FaceGeometry())->DynamicType()->Name();
         const bool is_open = kind == "StepGeom_Plane" || kind == "StepGeom_CylindricalSurface"
                              || kind == "StepGeom_ConicalSurface";
-        const bool is_known = is_open || kind == "StepGeom_SphericalSurface"
-                              || kind == "StepGeom_ToroidalSurface"
-                              || kind == "StepGeom_SurfaceOfRevolution"
-                              || kind.find("BSplineSurface") != std::string_view::npos;
         count.has_closed |= !is_open;
         TopoDS_Shape shape = TransferBRep::ShapeResult(made, face);
-        if (!is_known || shape.IsNull()) continue;
+        if (shape.IsNull()) continue;
         shape.Orientation(TopAbs_FORWARD);
         shape.Location(TopLoc_Location());
         if (!sides.IsBound(shape)) continue;
@@ -477,12 +511,14 @@ Result<bool> check_sides(const Handle(Interface_InterfaceModel) & model,
 Result<bool> check_entities(const Handle(Interface_InterfaceModel) & model) {
     for (int i = 1; i <= model->NbEntities(); ++i)
         if (model->IsErrorEntity(i) && is_needed(model->Value(i)->DynamicType()->Name()))
-            return fail(ErrorCode::syntax, fmt::format("it is damaged: {} cannot be read",
-                                                       entity_text(model, model->Value(i))));
+            return fail(ErrorCode::syntax,
+                        fmt::format("it is damaged: {} cannot be read; export it again",
+                                    entity_text(model, model->Value(i))));
     // References to entities that are not in the file are no fault of the entity that has them.
     const Handle(Interface_Check) whole = model->GlobalCheck();
     if (!whole.IsNull() && whole->HasFailed())
-        return fail(ErrorCode::syntax, "it is damaged: " + missing_text(whole->CFail(1)));
+        return fail(ErrorCode::syntax,
+                    "it is damaged: " + missing_text(whole->CFail(1)) + "; export it again");
     return true;
 }
 
@@ -511,6 +547,11 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
         if (entity.IsNull()) continue;
         const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
         if (solid.IsNull()) return fail_to_make("solid", model, entity);
+        if (solids_of(solid) != 1)
+            return fail(ErrorCode::invalid_value,
+                        fmt::format("Open CASCADE makes {} solids of the solid {}, which may lack "
+                                    "a part: export the body as STL",
+                                    solids_of(solid), entity_text(model, entity)));
         if (const auto brep = Handle(StepShape_ManifoldSolidBrep)::DownCast(entity);
             !brep.IsNull()) {
             FEELER_TRY([[maybe_unused]] const bool whole, check_sides(model, brep, solid, made));
@@ -578,21 +619,59 @@ Result<bool> check_parameters(const Handle(Interface_InterfaceModel) & model,
                             entity_text(model, entity)));
 }
 
-/// Refuses what Open CASCADE leaves out without an error.
+/// Whether a matrix keeps lengths and angles. It may mirror: curves are often placed so.
+bool keeps_shape(const gp_GTrsf& matrix) {
+    constexpr double rounding = 1e-5; // files state few digits
+    Mat3 turn;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            turn[column][row] = matrix.Value(row + 1, column + 1);
+    const Mat3 square = glm::transpose(turn) * turn;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (std::abs(square[i][k] - (i == k ? 1.0 : 0.0)) > rounding) return false;
+    return true;
+}
+
+/// Why Open CASCADE does not place what an IGES entity describes as the file says; empty: it does.
+std::string why_misplaced(const Handle(IGESData_IGESEntity) & entity) {
+    constexpr int rectangular_array = 412, circular_array = 414, external = 416, matrix = 124;
+    constexpr int first_part_of_solid = 502, last_part_of_solid = 514;
+    const int type = entity->TypeNumber();
+    if (type == rectangular_array || type == circular_array) return "copies of a part";
+    if (type == external) return "a part in another file";
+    const auto part = Handle(IGESBasic_SingularSubfigure)::DownCast(entity);
+    if (!part.IsNull() && part->ScaleFactor() != 1.0) return "a part that is scaled";
+    const bool is_part = type >= first_part_of_solid && type <= last_part_of_solid;
+    if (entity->HasTransf() && (is_part || type == matrix)) return "a place within a place";
+    const auto place = Handle(IGESGeom_TransformationMatrix)::DownCast(entity);
+    constexpr int left_handed = 1;
+    if (!place.IsNull() && place->FormNumber() <= left_handed && !keeps_shape(place->Value()))
+        return "a place that scales or shears";
+    return {};
+}
+
 Result<bool> check_copies(const Handle(Interface_InterfaceModel) & model) {
-    constexpr int rectangular_array = 412, circular_array = 414, external = 416;
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const auto entity = Handle(IGESData_IGESEntity)::DownCast(model->Value(i));
-        const int type = entity.IsNull() ? 0 : entity->TypeNumber();
-        if (type != rectangular_array && type != circular_array && type != external) continue;
+        const std::string why = entity.IsNull() ? "" : why_misplaced(entity);
+        if (why.empty()) continue;
         return fail(ErrorCode::unsupported,
                     fmt::format("Open CASCADE leaves out {}, {} (IGES type {}): export each body "
                                 "in its place, in one file",
-                                entity_text(model, entity),
-                                type == external ? "a part in another file" : "copies of a part",
-                                type));
+                                entity_text(model, entity), why, entity->TypeNumber()));
     }
     return true;
+}
+
+/// The unit as it is stated by a number, or by a name that Open CASCADE knows.
+bool states_unit(const IGESData_GlobalSection& global) {
+    constexpr int by_name = 3;
+    if (global.UnitFlag() < 1 || global.UnitFlag() > 11) return false;
+    if (global.UnitFlag() != by_name) return true;
+    static const std::set<std::string> known = {"IN", "INCH", "MM", "FT", "MI", "M",
+                                                "KM", "MIL",  "UM", "CM", "UIN"};
+    return !global.UnitName().IsNull() && known.contains(global.UnitName()->ToCString());
 }
 
 Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & session) {
@@ -602,8 +681,9 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
         return fail(ErrorCode::unsupported,
                     fmt::format("its model space has the scale {:g}: export it at full size",
                                 global.Scale()));
-    if (global.UnitFlag() < 1 || global.UnitFlag() > 11)
-        return fail(ErrorCode::invalid_value, "it states no unit of length: export it again");
+    if (!states_unit(global))
+        return fail(ErrorCode::invalid_value,
+                    "it states no unit of length, or one that is not known: export it again");
     FEELER_TRY([[maybe_unused]] const bool alone, check_copies(model));
     const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
     for (int i = 1; i <= model->NbEntities(); ++i) {

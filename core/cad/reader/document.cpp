@@ -295,15 +295,18 @@ Result<Document> Collector::collect() {
 }
 
 tl::unexpected<Error> fail_reading(IFSelect_ReturnStatus status, const char* format) {
-    return fail(ErrorCode::syntax, status == IFSelect_RetVoid
-                                       ? fmt::format("it has no contents that {} defines", format)
-                                       : fmt::format("it is damaged, or no {} file", format));
+    return fail(ErrorCode::syntax,
+                status == IFSelect_RetVoid
+                    ? fmt::format("it has no contents that {} defines", format)
+                    : fmt::format("it is damaged, or no {} file: export it again", format));
 }
 
 Result<SolidNames> read_step(const std::string& path, Handle(TDocStd_Document) & document,
                              const Message_ProgressRange& progress) {
     STEPCAFControl_Reader reader;
     Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+    // Otherwise a coordinate system beside a body moves it.
+    Interface_Static::SetCVal("read.step.root.transformation", "OFF");
     reader.SetNameMode(true);
     reader.SetColorMode(true);
     reader.SetLayerMode(false);
