@@ -37,12 +37,11 @@ Coverage CheckRun::full_coverage() const {
         const bool feeds = motion != core::BlockMotion::none && motion != core::BlockMotion::rapid;
         if (feeds && block.result.tool) feeding.insert(*block.result.tool);
     }
-    for (const core::ToolNumber number : feeding) {
+    const auto has_holder = [&](core::ToolNumber number) {
         const auto tool = setup.tools.find(number);
-        if (tool == setup.tools.end() || tool->second.description.holder.empty())
-            full.tools_without_holder.push_back(number);
-    }
-    full.holders = full.tools_without_holder.empty() ? Known::described : Known::missing;
+        return tool != setup.tools.end() && !tool->second.description.holder.empty();
+    };
+    count_tools(feeding, has_holder, full);
     reduce_by(findings, full);
     return full;
 }

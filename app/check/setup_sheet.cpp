@@ -29,6 +29,13 @@ SheetTool sheet_tool(const SetupFile& file, const core::ToolAssembly& tool) {
     return shown;
 }
 
+/// A tool that the program uses and the set-up lacks.
+SheetTool missing_tool(core::ToolNumber number) {
+    SheetTool missing{.source = SetupSource::assumed, .is_described = false};
+    missing.tool.number = number;
+    return missing;
+}
+
 std::vector<SheetOffset> sheet_offsets(const SetupFile& file) {
     std::set<size_t> shown(file.offsets_used.begin(), file.offsets_used.end());
     for (const int index : file.offsets_set) shown.insert(static_cast<size_t>(index));
@@ -84,6 +91,10 @@ SetupSheet sheet_of(const SetupFile& file, const core::Setup& setup) {
     const bool is_assumed = file.needs_stock || file.assumed.contains("stock");
     if (is_assumed) sheet.stock_source = SetupSource::assumed;
     for (const auto& [number, tool] : setup.tools) sheet.tools.push_back(sheet_tool(file, tool));
+    for (const core::ToolNumber number : file.tools_used)
+        if (!setup.tools.contains(number)) sheet.tools.push_back(missing_tool(number));
+    std::sort(sheet.tools.begin(), sheet.tools.end(),
+              [](const SheetTool& a, const SheetTool& b) { return a.tool.number < b.tool.number; });
     for (const auto& [number, found] : file.library) sheet.library.push_back(found);
     sheet.offsets = sheet_offsets(file);
     sheet.allowance = setup.allowance;

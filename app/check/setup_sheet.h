@@ -35,6 +35,7 @@ struct SheetTool {
     SetupSource source = SetupSource::stated; // of all values not in `stated`
     std::string why;                          // reason for assuming it, a sentence
     std::set<std::string> stated = {};        // keys that a partly described tool states
+    bool is_described = true; // else the set-up lacks it, and its motions are not checked
 
     SetupSource source_of(const std::string& key) const {
         return stated.contains(key) ? SetupSource::stated : source;

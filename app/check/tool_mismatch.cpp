@@ -120,36 +120,73 @@ std::multimap<ToolNumber, FoundTool> commented_tools(const gcode::Program& progr
     return tools;
 }
 
-std::optional<ToolMismatch> compared(const FoundTool& found, const core::ToolDescription& stated) {
+/// A tool as the set-up or its library states it.
+struct StatedTool {
+    core::ToolDescription tool;
+    bool has_shape = true, has_diameter = true;
+    std::string place = "the set-up";
+};
+
+std::optional<ToolMismatch> compared(const FoundTool& found, const StatedTool& listed) {
+    const core::ToolDescription& stated = listed.tool;
     const double more = found.tool.diameter - stated.diameter;
     const bool other_size =
-        std::abs(more) > std::max(same_diameter, same_fraction * stated.diameter);
-    const bool other_shape = found.has_shape && differ(found.tool.shape, stated.shape);
+        listed.has_diameter
+        && std::abs(more) > std::max(same_diameter, same_fraction * stated.diameter);
+    const bool other_shape =
+        found.has_shape && listed.has_shape && differ(found.tool.shape, stated.shape);
     if (!other_size && !other_shape) return std::nullopt;
     ToolMismatch mismatch;
     mismatch.tool = stated.number;
-    mismatch.is_larger = more > std::max(same_diameter, larger_fraction * stated.diameter);
-    mismatch.message = fmt::format("Tool {} is {} in the set-up, but {} according to {}.",
-                                   core::value_of(stated.number), described(stated, true),
-                                   described(found.tool, found.has_shape), found.source);
+    mismatch.is_larger =
+        listed.has_diameter && more > std::max(same_diameter, larger_fraction * stated.diameter);
+    const std::string in_setup = listed.has_diameter
+                                     ? described(stated, listed.has_shape)
+                                     : std::string(core::description_of(stated.shape));
+    mismatch.message =
+        fmt::format("Tool {} is {} in {}, but {} according to {}.", core::value_of(stated.number),
+                    in_setup, listed.place, described(found.tool, found.has_shape), found.source);
+    if (!listed.has_diameter) return mismatch;
     if (is_inch_apart(found.tool.diameter, stated.diameter))
         mismatch.message += " The sizes are 25.4 times apart: one of the units is probably wrong.";
     return mismatch;
+}
+
+/// The tools that a set-up states, in whole or in part, and those of its library.
+std::vector<StatedTool> stated_tools(const SetupFile& file) {
+    std::vector<StatedTool> tools;
+    for (const auto& [number, tool] : file.setup.tools) tools.push_back({tool.description});
+    for (const auto& [number, partial] : file.partial_tools) {
+        StatedTool stated{partial.tool, partial.stated.contains("shape"),
+                          partial.stated.contains("diameter")};
+        stated.tool.number = number;
+        if (stated.has_shape || stated.has_diameter) tools.push_back(std::move(stated));
+    }
+    for (const auto& [number, listed] : file.library) {
+        const bool is_replaced =
+            file.setup.tools.contains(number) || file.partial_tools.contains(number);
+        if (is_replaced || !listed.has_diameter) continue;
+        StatedTool stated{listed.tool, listed.has_shape, true, "the tool library"};
+        stated.tool.number = number;
+        tools.push_back(std::move(stated));
+    }
+    return tools;
 }
 
 } // namespace
 
 std::vector<ToolMismatch> tool_mismatches(const gcode::Program& program, const SetupFile& file) {
     std::vector<ToolMismatch> mismatches;
-    if (file.setup.tools.empty()) return mismatches;
+    const std::vector<StatedTool> all = stated_tools(file);
+    if (all.empty()) return mismatches;
     const auto named =
         commented_tools(program, unit_of_program(program, unit_at_start(file.environment)));
-    for (const auto& [number, stated] : file.setup.tools) {
+    for (const StatedTool& stated : all) {
         std::optional<ToolMismatch> first;
         bool fits = false; // one of the comments
-        const auto [begin, end] = named.equal_range(number);
+        const auto [begin, end] = named.equal_range(stated.tool.number);
         for (auto found = begin; found != end; ++found) {
-            auto mismatch = compared(found->second, stated.description);
+            auto mismatch = compared(found->second, stated);
             fits = fits || !mismatch;
             if (!first) first = std::move(mismatch);
         }

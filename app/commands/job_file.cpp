@@ -65,7 +65,10 @@ core::Result<viewer::JobFileNews> import_job(const CheckJob& job, const std::str
     }
     news.text = added.empty() ? "The set-up states all of it already.\n"
                               : fmt::format("Added: {}.\n", fmt::join(added, ", "));
-    for (const std::string& note : import.import_notes) news.text += note + ".\n";
+    // The first note says what a set-up made of the job alone has from it.
+    const size_t first = before.empty() || import.import_notes.empty() ? 0 : 1;
+    for (size_t i = first; i < import.import_notes.size(); ++i)
+        news.text += import.import_notes[i] + ".\n";
     return news;
 }
 

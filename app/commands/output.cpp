@@ -85,6 +85,8 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     if (!state->file) return refused(path, "cannot be written: no such folder, or no permission");
     state->fresh = fresh;
     if (replace) state->target = target;
+    if (replace && kind == std::filesystem::file_type::regular)
+        core::platform::take_permissions(fresh, target); // before anybody can read its contents
     return OutputStream(std::move(state));
 }
 

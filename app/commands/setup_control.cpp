@@ -58,6 +58,7 @@ core::Result<ExitCode> compare_with_control(const std::string& program,
                                                         : offset_text(comparison, files);
     if (auto written = write_output(output, text, read); !written)
         return tl::unexpected(written.error());
+    if (comparison.stopped) return ExitCode::failed;
     return comparison.differences() > 0 ? ExitCode::findings : ExitCode::clear;
 }
 

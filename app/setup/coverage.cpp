@@ -11,9 +11,11 @@
 namespace app {
 namespace {
 
-std::string holders_text(const std::vector<core::ToolNumber>& tools) {
+/// "holder of T1" or "holders of T1, T2".
+std::string tools_text(const char* one, const char* several,
+                       const std::vector<core::ToolNumber>& tools) {
     constexpr size_t most = 12;
-    std::string text = tools.size() == 1 ? "holder of" : "holders of";
+    std::string text = tools.size() == 1 ? one : several;
     for (size_t i = 0; i < std::min(tools.size(), most); ++i)
         text += fmt::format("{} T{}", i == 0 ? "" : ",", core::value_of(tools[i]));
     return tools.size() > most ? text + fmt::format(" and {} more", tools.size() - most) : text;
@@ -26,10 +28,12 @@ std::string names_text(const Coverage& coverage, Known known) {
         if (item.known != known) continue;
         if (coverage.limits_need_offsets && item.key == std::string_view("limits")) continue;
         if (coverage.stock_is_elsewhere && item.key == std::string_view("stock")) continue;
-        const bool is_tools = item.key == std::string_view("holders");
-        const bool has_tools = is_tools && !coverage.tools_without_holder.empty();
-        text += (text.empty() ? "" : ", ")
-                + (has_tools ? holders_text(coverage.tools_without_holder) : item.name);
+        std::string name = item.name;
+        if (item.key == std::string_view("holders") && !coverage.tools_without_holder.empty())
+            name = tools_text("holder of", "holders of", coverage.tools_without_holder);
+        if (item.key == std::string_view("tools") && !coverage.tools_assumed.empty())
+            name = tools_text("size of", "sizes of", coverage.tools_assumed);
+        text += (text.empty() ? "" : ", ") + name;
     }
     return text;
 }
@@ -41,13 +45,25 @@ const char* name_of(Known known) {
     return names[static_cast<size_t>(known)];
 }
 
-std::array<CoverageItem, 6> items_of(const Coverage& coverage) {
+std::array<CoverageItem, 7> items_of(const Coverage& coverage) {
     return {{{"stock", "stock", coverage.stock},
+             {"tools", "sizes of tools", coverage.tools},
              {"holders", "holders", coverage.holders},
              {"fixtures", "fixtures", coverage.fixtures},
              {"offsets", "work offsets", coverage.offsets},
              {"limits", "axis limits", coverage.limits},
              {"start", "start position", coverage.start}}};
+}
+
+void count_tools(const std::set<core::ToolNumber>& feeding,
+                 const std::function<bool(core::ToolNumber)>& has_holder, Coverage& coverage) {
+    coverage.tools_without_holder.clear();
+    for (const core::ToolNumber number : feeding)
+        if (!has_holder(number)) coverage.tools_without_holder.push_back(number);
+    coverage.holders = coverage.tools_without_holder.empty() ? Known::described : Known::missing;
+    std::erase_if(coverage.tools_assumed,
+                  [&](core::ToolNumber number) { return !feeding.contains(number); });
+    coverage.tools = coverage.tools_assumed.empty() ? Known::described : Known::inferred;
 }
 
 void reduce_by(const std::vector<core::Finding>& findings, Coverage& coverage) {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,14 +33,22 @@ struct Coverage {
     Known offsets = Known::inferred;  // the work offsets under which the program feeds
     Known limits = Known::missing;    // of all linear axes
     Known start = Known::described;   // the start position, or no verdict rests on it
+    Known tools = Known::described;   // the diameters and stick-outs of the tools that feed
     std::vector<core::ToolNumber> tools_without_holder; // that feed; in ascending order
-    bool moves = false;                                 // some block moves
+    // Tools of which the diameter or the stick-out is a guess; at the end of a run, those that
+    // feed.
+    std::vector<core::ToolNumber> tools_assumed;
+    bool moves = false;               // some block moves
     bool limits_need_offsets = false; // the limits are described, but not where the work is
     bool stock_is_elsewhere = false;  // than some or all of the cuts; then it counts as inferred
 
     bool is_complete() const;
     bool operator==(const Coverage&) const = default;
 };
+
+/// Counts the tools that feed.
+void count_tools(const std::set<core::ToolNumber>& feeding,
+                 const std::function<bool(core::ToolNumber)>& has_holder, Coverage& coverage);
 
 /// Takes from a coverage what the findings of the run show to be missing: a start position that
 /// nothing states, work beside the stock or above it, or any motion.
@@ -52,7 +62,7 @@ struct CoverageItem {
 };
 
 /// The items in the order in which reports list them.
-std::array<CoverageItem, 6> items_of(const Coverage& coverage);
+std::array<CoverageItem, 7> items_of(const Coverage& coverage);
 
 /// What was not described, for a sentence: "fixtures, axis limits, holders of T1, T2: not
 /// described; stock: assumed". Empty if all of it is.

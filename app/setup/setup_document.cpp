@@ -47,7 +47,8 @@ void SetupDocument::undo() {
     if (undo_.empty()) return;
     Version version = std::move(undo_.back());
     undo_.pop_back();
-    redo_.push_back({std::move(version.title), text_});
+    takes_back_file_ |= version.is_of_file;
+    redo_.push_back({std::move(version.title), text_, version.is_of_file});
     mark_.clear();
     put(std::move(version.text));
 }
@@ -56,7 +57,8 @@ void SetupDocument::redo() {
     if (redo_.empty()) return;
     Version version = std::move(redo_.back());
     redo_.pop_back();
-    undo_.push_back({std::move(version.title), text_});
+    if (version.is_of_file) takes_back_file_ = false;
+    undo_.push_back({std::move(version.title), text_, version.is_of_file});
     mark_.clear();
     put(std::move(version.text));
 }
@@ -64,12 +66,16 @@ void SetupDocument::redo() {
 void SetupDocument::saved_as(std::string path) {
     path_ = std::move(path);
     saved_ = text_;
+    takes_back_file_ = false;
     mark_.clear();
 }
 
 void SetupDocument::file_changed(std::string text) {
     saved_ = text;
+    takes_back_file_ = false;
+    const bool is_change = text != text_;
     static_cast<void>(edit("Read the changed file", [&](const std::string&) { return text; }));
+    if (is_change) undo_.back().is_of_file = true;
 }
 
 namespace {
@@ -123,6 +129,9 @@ core::Result<void> check_target(const SetupDocument& document, const std::string
         if (!is_own) return core::fail_file(path, "already exists");
         if (core::file_bytes(path) != document.saved_text())
             return core::fail_file(path, "has been changed by another program since it was read");
+        if (document.takes_back_file())
+            return core::fail_file(path, "has a change of another program, which you have undone: "
+                                         "saving writes over that change");
     }
     // A set-up without a file is read as if it were next to the program.
     const std::string& place = document.path().empty() ? program : document.path();

@@ -51,16 +51,21 @@ public:
     void file_changed(std::string text);
     /// Keeps the text although the file has changed; it then counts as modified.
     void keep_over(std::string text_of_file) { saved_ = std::move(text_of_file); }
+    /// Whether undo() has taken back what another program wrote into the file, so that saving would
+    /// overwrite it.
+    bool takes_back_file() const { return takes_back_file_; }
 
 private:
     struct Version {
         std::string title, text; // `text`: on the other side of the edit
+        bool is_of_file = false; // another program has made it
     };
     void put(std::string text);
 
     std::string path_, text_, saved_, mark_;
     std::vector<Version> undo_, redo_;
     uint64_t version_ = 0;
+    bool takes_back_file_ = false;
 };
 
 /// Writes a file completely or not at all.

@@ -87,9 +87,10 @@ std::string assumed_length(double mm, LengthUnit unit) {
 }
 
 std::string exact_length(double mm, LengthUnit unit) {
-    if (unit == LengthUnit::mm) return toml_number(mm);
+    constexpr double rounding = 1e-11; // mm, of conversions between units
     const double round = rounded_in(mm, unit);
-    return toml_number(gcode::to_mm(round, unit) == mm ? round : exact_in(mm, unit));
+    if (std::abs(gcode::to_mm(round, unit) - mm) < rounding) return toml_number(round);
+    return toml_number(exact_in(mm, unit));
 }
 
 } // namespace app

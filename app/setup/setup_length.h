@@ -43,9 +43,8 @@ std::string assumed_length(double mm, gcode::LengthUnit unit);
 /// A number in TOML, exact to the last bit; whole numbers are written without a fraction.
 std::string toml_number(double value);
 
-/// A length in mm as a number that is this length when read, to the last bit where there is such a
-/// number: one double of eight is no product with 25.4, and is off by its last bit. With no more
-/// decimals than setup_length() if that is enough.
+/// A length in mm as a number that is this length when read, to 1e-11 mm. With no more decimals
+/// than setup_length() if that is enough.
 std::string exact_length(double mm, gcode::LengthUnit unit);
 
 } // namespace app

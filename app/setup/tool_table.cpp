@@ -102,6 +102,14 @@ void add_partial(TableReader& table, const core::ToolDescription& tool, SetupFil
     if (!tool.outline.empty() && tool.shape != core::ToolShape::profile)
         return table.refuse("profile", "needs shape = \"profile\"");
     if (!tool.name.empty()) file.environment.tool_names.emplace(tool.name, tool.number);
+    for (const core::ToolSize& size : core::tool_sizes()) {
+        const auto value = size.of(tool);
+        const std::string_view key = size.key;
+        const bool may_be_zero = size.is_angle() || key == "corner_radius" || key == "tip_diameter";
+        const bool is_stated = table.has(size.key) && !is_unknown(table, size.key);
+        if (is_stated && value && (*value < 0.0 || (*value == 0.0 && !may_be_zero)))
+            return table.refuse(size.key, may_be_zero ? "must not be negative" : "must be above 0");
+    }
     PartialTool partial{tool, {}, {table.line(), 0, 0}};
     const std::set<std::string> unknown = unknown_sizes(table);
     for (const std::string& key : table.keys())

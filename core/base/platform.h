@@ -112,6 +112,10 @@ std::FILE* open_file(const std::filesystem::path& path, const char* mode);
 /// Flushes a file to the disk. Whether all of it was written.
 bool write_through(std::FILE* file);
 
+/// Gives a file the group and the permissions of the one that it will replace, as far as the user
+/// may. Windows inherits them from the folder.
+void take_permissions(const std::filesystem::path& fresh, const std::filesystem::path& old);
+
 /// Renames a file over another. Waits for a moment if another program has that open, where this is
 /// in the way.
 std::error_code replace_file(const std::filesystem::path& fresh, const std::filesystem::path& old);

@@ -234,6 +234,14 @@ std::FILE* open_file(const std::filesystem::path& path, const char* mode) {
 
 bool write_through(std::FILE* file) { return ::fsync(::fileno(file)) == 0; }
 
+void take_permissions(const std::filesystem::path& fresh, const std::filesystem::path& old) {
+    struct stat was {};
+    if (::stat(old.c_str(), &was) != 0) return;
+    // Without the right to do this, the file stays one of the user, as after any other saving.
+    [[maybe_unused]] const int group = ::chown(fresh.c_str(), static_cast<uid_t>(-1), was.st_gid);
+    [[maybe_unused]] const int mode = ::chmod(fresh.c_str(), was.st_mode & 07777);
+}
+
 std::error_code replace_file(const std::filesystem::path& fresh, const std::filesystem::path& old) {
     std::error_code failure;
     std::filesystem::rename(fresh, old, failure);

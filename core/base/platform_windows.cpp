@@ -455,6 +455,8 @@ std::FILE* open_file(const std::filesystem::path& path, const char* mode) {
 
 bool write_through(std::FILE* file) { return ::_commit(::_fileno(file)) == 0; }
 
+void take_permissions(const std::filesystem::path&, const std::filesystem::path&) {}
+
 std::error_code replace_file(const std::filesystem::path& fresh, const std::filesystem::path& old) {
     constexpr int attempts = 20;
     constexpr DWORD pause = 50; // ms; virus scanners open new files for a moment

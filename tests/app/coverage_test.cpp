@@ -101,6 +101,40 @@ TEST(Coverage, WhatASetupCallsAssumedIsNotDescribed) {
     EXPECT_THAT(wrong.err, HasSubstr("is a list of stock, offsets, start"));
 }
 
+/// A tool of which nobody states the diameter, or where the holder is.
+TEST(Coverage, ToolsOfWhichASizeIsAGuessAreNotDescribed) {
+    const std::string rest = setup_of(without("tool"));
+    const std::string holder = "holder = [[40, 40, 60]]\n";
+    const auto with_tool = [&](const std::string& sizes) {
+        return json_of(slot, rest + "[[tool]]\nnumber = 1\n" + sizes + holder);
+    };
+    for (const char* sizes : {"", "diameter = 10\n", "stick_out = 40\n",
+                              "shape = \"flat\"\ndiameter = 10\nflute_length = 25\n"
+                              "stick_out = \"unknown\"\n"}) {
+        const Json report = with_tool(sizes);
+        EXPECT_EQ(report["headline"], "NO ERROR IN THE PROGRAM ITSELF") << sizes;
+        EXPECT_EQ(report["coverage"]["tools"], "inferred") << sizes;
+        EXPECT_EQ(report["coverage"]["tools_assumed"], Json::array({1})) << sizes;
+    }
+    const Json report = with_tool("diameter = 10\nstick_out = 40\n");
+    EXPECT_EQ(report["coverage"]["tools"], "described");
+    EXPECT_EQ(report["headline"], "CLEAR");
+    const std::string text = run(slot, rest + "[[tool]]\nnumber = 1\n" + holder).out;
+    EXPECT_THAT(text, HasSubstr("size of T1: assumed"));
+}
+
+/// The diameter in a comment counts against one that the set-up states, even alone.
+TEST(Coverage, ToolsInPartAreComparedWithTheComment) {
+    const std::string rest = setup_of(without("tool"));
+    const std::string tool =
+        "[[tool]]\nnumber = 1\ndiameter = 12\nstick_out = 40\nholder = [[40, 40, 60]]\n";
+    const auto ran = [&](const std::string& size) {
+        return run("(T1 D=" + size + " - FLAT END MILL)\n" + slot, rest + tool).out;
+    };
+    EXPECT_THAT(ran("16."), HasSubstr("tool-mismatch"));
+    EXPECT_THAT(ran("12."), Not(HasSubstr("tool-mismatch")));
+}
+
 TEST(Coverage, LimitsAreNotCheckedAgainstAnAssumedOffset) {
     std::string beyond = setup_of(all_tables);
     const std::string offset = "X = -350";

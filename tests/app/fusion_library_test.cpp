@@ -443,5 +443,45 @@ TEST(FusionLibrary, DamagedLibrariesAreReadOrRefused) {
     EXPECT_GT(accepted, 300u);
 }
 
+TEST(FusionLibrary, KeepsTheHolderWhereTheBodyEnds) {
+    Json tool = tool_json("flat end mill", {{"DC", 12}, {"LB", 20}, {"LCF", 26}, {"SFDM", 12}});
+    EXPECT_EQ(only_tool(tool).tool.stick_out, 20.0);
+    EXPECT_EQ(only_tool(tool).tool.flute_length, 20.0);
+    static_cast<void>(assembled_of(only_tool(tool)));
+}
+
+TEST(FusionLibrary, LeavesOutAHolderWithSizesThatAreNoNumbers) {
+    for (const char* damage : {R"("lower-diameter": "32")", R"("upper-diameter": null)"}) {
+        const std::string whole = R"({"height": 30, "lower-diameter": 32, "upper-diameter": 40})";
+        Json segment = Json::parse(whole);
+        segment.update(Json::parse(std::string("{") + damage + "}"));
+        Json tool = tool_json("flat end mill", {{"DC", 12}, {"LB", 40}, {"LCF", 26}});
+        tool["holder"] = {{"segments", Json::array({Json::parse(whole), segment})}};
+        const FoundTool found = only_tool(tool);
+        EXPECT_TRUE(found.tool.holder.empty());
+        ASSERT_EQ(found.assumed.size(), 1u);
+        EXPECT_EQ(found.assumed[0].find("no holder"), 0u);
+    }
+}
+
+TEST(FusionLibrary, KnowsUnitsInAnyCaseAndRefusesOthers) {
+    Json tool = tool_json("flat end mill", {{"DC", 0.5}});
+    tool["unit"] = "Inch";
+    EXPECT_EQ(only_tool(tool).tool.diameter, 12.7);
+    tool["unit"] = "centimeters";
+    const auto read =
+        library_in("cm.tools", test_support::packed_zip_of({{"tools.json", text_of({tool})}}));
+    ASSERT_FALSE(read);
+    EXPECT_NE(error_text(read.error()).find("centimeters"), std::string::npos);
+}
+
+TEST(FusionLibrary, TakesNumbersHoweverTheyAreWritten) {
+    for (const Json& number : {Json(7), Json(7.0), Json("7")}) {
+        Json tool = tool_json("flat end mill", {{"DC", 6}});
+        tool["post-process"]["number"] = number;
+        EXPECT_EQ(core::value_of(only_tool(tool).tool.number), 7);
+    }
+}
+
 } // namespace
 } // namespace app

@@ -84,6 +84,20 @@ TEST(SetupControl, ALibraryWithHoldersStatesLengths) {
               std::string::npos);
 }
 
+TEST(SetupControl, OfAProgramThatStopsIsNotComplete) {
+    const ScopedFolder folder;
+    std::string program = drilled;
+    program.replace(program.find("\n", program.size() / 2), 1, "\nG999\n");
+    const std::string control = folder.write("c.txt", origins);
+    const auto ran = feeler({"setup", folder.write("p.nc", program), "--control", control});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_NE(ran.out.find("STOPPED"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("G999"), std::string::npos) << ran.out;
+    const auto as_json =
+        feeler({"setup", folder / "p.nc", "--control", control, "--format", "json"});
+    EXPECT_TRUE(nlohmann::json::parse(as_json.out).contains("stopped"));
+}
+
 TEST(SetupControl, WithoutASetUpAllThatTheProgramUsesIsMissingThere) {
     const ComparedJob job;
     const ScopedFolder alone;

@@ -69,10 +69,11 @@ void expect_same_solid(const core::Solid& a, const core::Solid& b, const std::st
 
 void expect_same_tool(const core::ToolAssembly& a, const core::ToolAssembly& b,
                       const std::string& where) {
-    EXPECT_EQ(a.length, b.length) << where;
+    constexpr double written = 1e-10; // mm, as set-ups state lengths
+    EXPECT_NEAR(a.length, b.length, written) << where;
     EXPECT_EQ(a.description.shape, b.description.shape) << where;
-    EXPECT_EQ(a.description.diameter, b.description.diameter) << where;
-    EXPECT_EQ(a.description.flute_length, b.description.flute_length) << where;
+    EXPECT_NEAR(a.description.diameter, b.description.diameter, written) << where;
+    EXPECT_NEAR(a.description.flute_length, b.description.flute_length, written) << where;
     EXPECT_EQ(a.description.corner_radius, b.description.corner_radius) << where;
     EXPECT_EQ(a.description.point_deg, b.description.point_deg) << where;
     EXPECT_EQ(cones_text(a.description.shank), cones_text(b.description.shank)) << where;
@@ -82,7 +83,9 @@ void expect_same_tool(const core::ToolAssembly& a, const core::ToolAssembly& b,
     ASSERT_EQ(a.parts.size(), b.parts.size()) << where;
     for (size_t i = 0; i < a.parts.size(); ++i) {
         EXPECT_EQ(a.parts[i].kind, b.parts[i].kind) << where;
-        EXPECT_EQ(core::bounds(a.parts[i].profile).max, core::bounds(b.parts[i].profile).max)
+        EXPECT_NEAR(glm::distance(core::bounds(a.parts[i].profile).max,
+                                  core::bounds(b.parts[i].profile).max),
+                    0.0, written)
             << where;
     }
 }
@@ -265,6 +268,8 @@ TEST(StatedTool, OfTheSheetIsThatOfTheSetup) {
         const auto check = app::read_check(job);
         ASSERT_TRUE(check) << setup;
         for (const app::SheetTool& tool : sheet_of(job).tools) {
+            EXPECT_EQ(tool.is_described, check->run.setup.tools.contains(tool.tool.number));
+            if (!tool.is_described) continue;
             const auto assembled = core::assemble(tool.tool);
             ASSERT_TRUE(assembled) << setup << assembled.error().message;
             EXPECT_NEAR(assembled->length, check->run.setup.tools.at(tool.tool.number).length, 1e-9)
@@ -568,7 +573,46 @@ TEST(SetupDocument, UndoesAndRedoesEveryEdit) {
     document.undo();
     EXPECT_EQ(document.text(), "e") << "nothing is lost when the file changes";
     EXPECT_TRUE(document.is_modified());
+    EXPECT_TRUE(document.takes_back_file());
+    document.redo();
+    EXPECT_FALSE(document.takes_back_file());
+    document.undo();
+    ASSERT_TRUE(set("g"));
+    EXPECT_TRUE(document.takes_back_file());
+    document.saved_as("x.toml");
+    EXPECT_FALSE(document.takes_back_file());
 }
+
+TEST(SavedSetup, DoesNotWriteOverAChangeThatWasUndone) {
+    OwnProgram own;
+    const std::string path = own.folder.write("s.toml", "mesh_size = 1\n");
+    SetupDocument document(path, "mesh_size = 1\n");
+    own.folder.write("s.toml", "mesh_size = 2 # mine\n");
+    document.file_changed("mesh_size = 2 # mine\n");
+    document.undo();
+    const auto save = [&](app::Replacing replacing) {
+        return app::save_setup(document, path, replacing, own.job.program, app::write_output);
+    };
+    const auto refused = save(app::Replacing::refused);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().message, HasSubstr("which you have undone"));
+    EXPECT_EQ(bytes_of(path), "mesh_size = 2 # mine\n");
+    EXPECT_TRUE(save(app::Replacing::allowed));
+    EXPECT_EQ(bytes_of(path), "mesh_size = 1\n");
+}
+
+#ifndef _WIN32
+TEST(SavedSetup, KeepsThePermissionsOfItsFile) {
+    OwnProgram own;
+    const std::string path = own.folder.write("s.toml", "mesh_size = 1\n");
+    using std::filesystem::perms;
+    for (const perms mode : {perms{0600}, perms{0640}, perms{0664}}) {
+        std::filesystem::permissions(path, mode);
+        ASSERT_TRUE(app::write_output(path, "mesh_size = 2\n"));
+        EXPECT_EQ(std::filesystem::status(path).permissions(), mode);
+    }
+}
+#endif
 
 TEST(SavedSetup, NeverReplacesAFileUnasked) {
     OwnProgram own;

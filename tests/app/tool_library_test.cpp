@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/report/text/text_report.h"
+#include "app/setup/tools/freecad_bit.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/language/modal_state.h"
@@ -47,7 +48,7 @@ TEST(ToolLibrary, ReadsFreeCadsBits) {
     EXPECT_EQ(mill.diameter, 5.0);
     EXPECT_EQ(mill.flute_length, 30.0);
     EXPECT_EQ(mill.shank_diameter, 3.0);
-    EXPECT_EQ(mill.stick_out, 50.0);
+    EXPECT_EQ(mill.stick_out, std::nullopt) << "a part of its length is in the holder";
     const auto inch = tool_of(read("b.fctb", bit("ballend.fcstd", R"("Diameter": "1/4 in")")));
     EXPECT_EQ(inch.shape, ToolShape::ball);
     EXPECT_EQ(inch.diameter, 6.35);
@@ -67,6 +68,25 @@ TEST(ToolLibrary, ReadsFreeCadsBits) {
         "CuttingEdgeHeight": "9 mm", "Diameter": "19 mm", "NeckDiameter": "8 mm", "NeckHeight": "5 mm")")));
     EXPECT_EQ(dove.angle_deg, 30.0);
     EXPECT_EQ(dove.neck_length, 5.0);
+}
+
+TEST(ToolLibrary, ReadsFreeCadsQuantitiesInAllUnits) {
+    const std::pair<const char*, std::optional<double>> cases[] = {
+        {"12 mm", 12.0},    {"1.20 cm", 12.0},   {"0.012 m", 12.0}, {"12000 \u00b5m", 12.0},
+        {"12000 um", 12.0}, {"0.5 in", 12.7},    {"1/2 in", 12.7},  {"1 1/2 in", 38.1},
+        {"1/2\"", 12.7},    {"0.5 ft", 152.4},   {"500 mil", 12.7}, {"500 thou", 12.7},
+        {"1.2e1 mm", 12.0}, {"12,5 mm", 12.5},   {"12", 12.0},      {"+12 mm", 12.0},
+        {"-12 mm", -12.0},  {"60.0 \u00b0", 60}, {"12 parsec", {}}, {"mm", {}},
+        {"12 mm 3", {}},    {"1.2.3 mm", {}},    {"12 / 0 mm", {}}, {"", {}}};
+    for (const auto& [text, expected] : cases) {
+        const auto found = freecad_quantity(nlohmann::json(text));
+        EXPECT_EQ(found.has_value(), expected.has_value()) << text;
+        if (found && expected) {
+            EXPECT_NEAR(*found, *expected, 1e-9) << text;
+        }
+    }
+    EXPECT_FALSE(read("p.fctb", bit("endmill.fcstd", R"("Diameter": "-12 mm")")));
+    EXPECT_FALSE(read("q.fctb", bit("endmill.fcstd", R"("Diameter": "12 parsec")")));
 }
 
 TEST(ToolLibrary, ReadsAFreeCadLibraryWithItsBits) {

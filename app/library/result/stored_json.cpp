@@ -59,9 +59,12 @@ std::array<std::string, 2> pair_from(const StoredJson& json) {
 StoredJson json_of(const Coverage& coverage) {
     StoredJson json = StoredJson::object();
     for (const CoverageItem& item : items_of(coverage)) json[item.key] = name_of(item.known);
-    json["tools_without_holder"] = StoredJson::array();
-    for (const core::ToolNumber tool : coverage.tools_without_holder)
-        json["tools_without_holder"].push_back(core::value_of(tool));
+    const auto put = [&](const char* key, const std::vector<core::ToolNumber>& tools) {
+        json[key] = StoredJson::array();
+        for (const core::ToolNumber tool : tools) json[key].push_back(core::value_of(tool));
+    };
+    put("tools_without_holder", coverage.tools_without_holder);
+    put("tools_assumed", coverage.tools_assumed);
     json["moves"] = coverage.moves;
     json["limits_need_offsets"] = coverage.limits_need_offsets;
     json["stock_is_elsewhere"] = coverage.stock_is_elsewhere;
@@ -80,9 +83,14 @@ Coverage coverage_from(const StoredJson& json) {
                       .fixtures = known("fixtures"),
                       .offsets = known("offsets"),
                       .limits = known("limits"),
-                      .start = known("start")};
-    for (const StoredJson& tool : list_from(json.at("tools_without_holder")))
-        coverage.tools_without_holder.push_back(core::ToolNumber{whole_from<int>(tool)});
+                      .start = known("start"),
+                      .tools = known("tools")};
+    const auto take = [&](const char* key, std::vector<core::ToolNumber>& tools) {
+        for (const StoredJson& tool : list_from(json.at(key)))
+            tools.push_back(core::ToolNumber{whole_from<int>(tool)});
+    };
+    take("tools_without_holder", coverage.tools_without_holder);
+    take("tools_assumed", coverage.tools_assumed);
     if (!json.at("moves").is_boolean()) throw std::invalid_argument("neither true nor false");
     coverage.moves = json.at("moves").get<bool>();
     coverage.limits_need_offsets = json.value("limits_need_offsets", false);

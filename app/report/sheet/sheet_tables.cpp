@@ -415,9 +415,10 @@ std::string tool_table_html(const CheckRun& run, const SheetContent& content,
                               {"Tool", "Kind", "\xE2\x8C\x80", "Corner R", "Flutes", "Stick-out",
                                "Holder", "Length on the control", "D", "Speed, rev/min"});
     for (const ToolUse& use : content.use.tools) {
-        const auto shown =
-            std::find_if(content.sheet.tools.begin(), content.sheet.tools.end(),
-                         [&](const SheetTool& tool) { return tool.tool.number == use.tool; });
+        const auto shown = std::find_if(
+            content.sheet.tools.begin(), content.sheet.tools.end(), [&](const SheetTool& tool) {
+                return tool.is_described && tool.tool.number == use.tool;
+            });
         html += "<tbody>"
                 + tool_row(use, shown == content.sheet.tools.end() ? nullptr : &*shown, run.setup,
                            allowed, content)

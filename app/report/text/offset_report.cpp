@@ -7,6 +7,7 @@
 
 #include "app/base/text.h"
 #include "app/base/version.h"
+#include "app/report/text/text_report.h"
 #include "app/setup/control/offset_differences.h"
 #include "core/base/math.h"
 #include "gcode/language/modal_state.h"
@@ -104,6 +105,11 @@ std::string offset_text(const OffsetComparison& comparison, const ComparedFiles&
     for (const ComparedOffset& value : comparison.values) text += cells.row(value);
     if (comparison.values.empty()) text.clear();
     text += fmt::format("{}{}", text.empty() ? "" : "\n", summary_of(comparison));
+    if (comparison.stopped)
+        text += wrapped("STOPPED: the program was not read to its end, and what it uses after "
+                        "this place was not compared: "
+                            + printable(error_text(*comparison.stopped)),
+                        0, 4);
     const std::string setup =
         files.setup.empty() ? "inferred from the program" : printable(files.setup);
     text += wrapped("Set-up: " + setup, 0, 4);
@@ -121,6 +127,7 @@ std::string offset_json(const OffsetComparison& comparison, const ComparedFiles&
         {"differences", comparison.differences()},
         {"values", OffsetJson::array()},
         {"notes", OffsetJson::array()}};
+    if (comparison.stopped) json["stopped"] = utf8_text(error_text(*comparison.stopped));
     for (const std::string& path : files.control) json["control"].push_back(utf8_text(path));
     for (const ComparedOffset& value : comparison.values) json["values"].push_back(json_of(value));
     for (const std::string& note : comparison.notes) json["notes"].push_back(utf8_text(note));

@@ -234,7 +234,9 @@ size_t OffsetComparison::differences() const {
 
 OffsetComparison differences(const SetupFile& setup, const ControlOffsets& control,
                              const UsedOffsets& used) {
-    return Comparison(setup, control, used).result();
+    OffsetComparison compared = Comparison(setup, control, used).result();
+    compared.stopped = used.stopped;
+    return compared;
 }
 
 namespace {

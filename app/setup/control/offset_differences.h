@@ -36,6 +36,8 @@ struct OffsetComparison {
     gcode::LengthUnit unit = gcode::LengthUnit::mm; // of the set-up, for texts; all values are mm
     std::vector<ComparedOffset> values;             // work offsets, then lengths, then diameters
     std::vector<std::string> notes;                 // for the user
+    // Why the program was not read to its end: what it uses after that is not compared.
+    std::optional<core::Error> stopped{};
 
     /// How many of the values are not equal.
     size_t differences() const;

@@ -49,6 +49,7 @@ UsedOffsets used_offsets(const gcode::Program& program, const gcode::Environment
     UsedOffsets used;
     while (true) {
         const auto block = interpreter.next(state);
+        if (!block) used.stopped = block.error();
         if (!block || !*block) return used;
         add_block(**block, state, environment, used);
     }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <set>
 
 #include "core/base/ids.h"
+#include "core/base/result.h"
 
 namespace gcode {
 struct Environment;
@@ -16,6 +18,7 @@ namespace app {
 struct UsedOffsets {
     std::set<size_t> work;                           // by index, 0 is G54
     std::set<core::OffsetNumber> lengths, diameters; // under H and D
+    std::optional<core::Error> stopped;              // why the program was not read to its end
 };
 
 /// Runs a program to its end or its first error.

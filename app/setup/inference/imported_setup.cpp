@@ -33,10 +33,10 @@ std::string facts_of(const FreeCadJob& job) {
 }
 
 void take_job(FreeCadJob job, const std::string& path, SetupFile& file) {
-    std::string about = fmt::format("tools{} are those of the job \"{}\" in {}",
-                                    job.stock ? " and stock" : "", job.name, path);
-    if (const std::string facts = facts_of(job); !facts.empty()) about += " (" + facts + ")";
-    file.import_notes.push_back(std::move(about));
+    file.import_notes.push_back(fmt::format("tools{} are those of the job \"{}\" in {}",
+                                            job.stock ? " and stock" : "", job.name, path));
+    if (const std::string facts = facts_of(job); !facts.empty())
+        file.import_notes.push_back("the job states " + facts);
     for (const std::string& note : job.notes)
         file.import_notes.push_back(fmt::format("{}: {}", path, note));
     file.library = std::move(job.tools);

@@ -757,6 +757,7 @@ std::shared_ptr<const Coverage> coverage_of(const SetupFile& file) {
         .offsets = file.loses_machine ? Known::missing : known(file.offsets_known, "offsets"),
         .limits = file.limits_known,
         .start = known(start, "start"),
+        .tools_assumed = {file.guessed_tools.begin(), file.guessed_tools.end()},
         .limits_need_offsets = file.limits_need_offsets});
 }
 
@@ -817,8 +818,17 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     CompleteTool whole = complete(found, least_flutes);
     core::ToolDescription& tool = whole.tool;
     const auto partial = file.partial_tools.find(tool.number);
-    const bool states_length =
-        partial != file.partial_tools.end() && partial->second.stated.contains("touched_off");
+    const auto states = [&](const char* key) {
+        return partial != file.partial_tools.end() && partial->second.stated.contains(key);
+    };
+    const bool states_length = states("touched_off");
+    const core::ToolDescription& known = found.tool;
+    const bool knows_diameter = states("diameter") || known.shape == core::ToolShape::profile
+                                || (found.has_diameter && found.is_described);
+    const bool knows_reach = known.stick_out || !known.shank.empty()
+                             || (known.gauge_length && !known.holder.empty())
+                             || known.shape == core::ToolShape::profile;
+    if (!knows_diameter || !knows_reach) file.guessed_tools.insert(tool.number);
     const bool knows_lengths = !file.library.empty() || !file.tool_table.empty();
     const bool is_guess = file.is_inferred || (file.is_partial && !knows_lengths);
     if ((is_guess || file.touches_off) && !states_length) {

@@ -1,7 +1,12 @@
 #include "app/setup/tools/freecad_bit.h"
 
+#include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <map>
+#include <regex>
 
+#include "app/base/text.h"
 #include "app/setup/tools/json_file.h"
 #include "app/setup/tools/tool_text.h"
 #include "core/base/text.h"
@@ -16,12 +21,43 @@ using nlohmann::json;
 std::optional<double> freecad_quantity(const json& value) {
     if (value.is_number()) return value.get<double>();
     if (!value.is_string()) return std::nullopt;
-    const std::vector<TextNumber> numbers = numbers_of(plain_capitals(value.get<std::string>()));
-    if (numbers.size() != 1) return std::nullopt;
-    const TextNumber& number = numbers[0];
-    const bool inch = number.suffix == "IN" || number.suffix == "\"";
-    if (number.suffix == "M") return 1000.0 * number.value;
-    return number.value * (inch ? core::mm_per_inch : 1.0);
+    // A decimal number, or a fraction as in "1 1/2 in", and a unit.
+    static const std::regex form(R"(\s*([+-]?)(?:(\d+[.,]?\d*(?:[eE][+-]?\d+)?|[.,]\d+))?)"
+                                 R"((?:(?:^|[\s-])\s*(\d+)/(\d+))?\s*([^\s\d.,/+-]\S*)?\s*)");
+    static const std::regex fraction(R"(\s*([+-]?)()(\d+)/(\d+)\s*([^\s\d.,/+-]\S*)?\s*)");
+    static const std::map<std::string, double, std::less<>> units = {
+        {"", 1.0},
+        {"mm", 1.0},
+        {"cm", 10.0},
+        {"dm", 100.0},
+        {"m", 1000.0},
+        {"um", 0.001},
+        {"\xC2\xB5m", 0.001},
+        {"\xCE\xBCm", 0.001},
+        {"in", core::mm_per_inch},
+        {"\"", core::mm_per_inch},
+        {"ft", 12.0 * core::mm_per_inch},
+        {"'", 12.0 * core::mm_per_inch},
+        {"mil", 0.001 * core::mm_per_inch},
+        {"thou", 0.001 * core::mm_per_inch},
+        {"deg", 1.0},
+        {"\xC2\xB0", 1.0}};
+    std::smatch match;
+    const std::string text = value.get<std::string>();
+    if (!std::regex_match(text, match, fraction) && !std::regex_match(text, match, form))
+        return std::nullopt;
+    const auto unit = units.find(match[5].str());
+    if (unit == units.end() || (!match[2].length() && !match[3].length())) return std::nullopt;
+    std::string digits = match[2];
+    std::replace(digits.begin(), digits.end(), ',', '.');
+    double number = digits.empty() ? 0.0 : number_in(digits).value_or(core::infinity);
+    if (match[3].length() > 0) {
+        const auto above = number_in(match[3].str()), below = number_in(match[4].str());
+        if (!above || !below || *below == 0.0) return std::nullopt;
+        number += *above / *below;
+    }
+    if (!std::isfinite(number)) return std::nullopt;
+    return (match[1] == "-" ? -number : number) * unit->second;
 }
 
 namespace {
@@ -37,6 +73,12 @@ std::optional<double> parameter(const json& parameters, std::initializer_list<co
         if (const auto found = parameters.find(name); found != parameters.end())
             return freecad_quantity(*found);
     return std::nullopt;
+}
+
+/// A length by any of its names; empty if it is not above 0.
+std::optional<double> length(const json& parameters, std::initializer_list<const char*> names) {
+    const auto value = parameter(parameters, names);
+    return value && *value > 0.0 ? value : std::nullopt;
 }
 
 std::optional<ToolShape> shape_of_bit(std::string shape) {
@@ -57,17 +99,16 @@ void read_angles(const json& parameters, ToolDescription& tool) {
     if (tool.shape == ToolShape::taper) tool.angle_deg = parameter(parameters, {"TaperAngle"});
 }
 
-/// A slitting saw is a T-slot cutter with a thin head.
+/// A slitting saw is a T-slot cutter with a thin head. The length of a bit is that of the whole
+/// tool, of which a part is in the holder.
 void read_lengths(const json& parameters, ToolDescription& tool) {
     tool.flute_length =
-        parameter(parameters, {"CuttingEdgeHeight", "BladeThickness", "CuttingEdge"}).value_or(0.0);
-    tool.shank_diameter = parameter(parameters, {"ShankDiameter", "ShaftDiameter"});
-    const auto length = parameter(parameters, {"Length", "OverallLength"});
-    if (length && *length > tool.flute_length) tool.stick_out = length;
+        length(parameters, {"CuttingEdgeHeight", "BladeThickness", "CuttingEdge"}).value_or(0.0);
+    tool.shank_diameter = length(parameters, {"ShankDiameter", "ShaftDiameter"});
     const bool necked = tool.shape == ToolShape::dovetail || tool.shape == ToolShape::threadmill;
-    if (necked) tool.neck_diameter = parameter(parameters, {"NeckDiameter"});
+    if (necked) tool.neck_diameter = length(parameters, {"NeckDiameter"});
     if (necked && tool.neck_diameter)
-        tool.neck_length = parameter(parameters, {"NeckHeight", "NeckLength"});
+        tool.neck_length = length(parameters, {"NeckHeight", "NeckLength"});
     if (tool.shape == ToolShape::threadmill)
         tool.flute_length = 0.0; // "Crest" is the width of one tooth
 }
@@ -87,7 +128,9 @@ core::Result<FoundTool> tool_of_freecad_bit(const json& bit, int number,
     if (!bit.is_object()) return tl::unexpected(bit_error(path, "is not a tool bit"));
     const json& parameters = bit.contains("parameter") ? bit["parameter"] : bit;
     const auto diameter = parameter(parameters, {"Diameter"});
-    if (!diameter) return tl::unexpected(bit_error(path, "the bit has no Diameter"));
+    if (!diameter || !(*diameter > 0.0))
+        return tl::unexpected(
+            bit_error(path, "the bit has no Diameter above 0 in a unit that is known"));
     found.tool.diameter = *diameter;
     read_angles(parameters, found.tool);
     read_lengths(parameters, found.tool);

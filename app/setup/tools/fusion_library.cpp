@@ -1,7 +1,9 @@
 #include "app/setup/tools/fusion_library.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
@@ -22,9 +24,22 @@ using nlohmann::json;
 
 constexpr int highest_tool_number = 99999999;
 
-bool names_inches(const std::string& unit) { return unit.find("inch") != std::string::npos; }
+/// mm in a unit of a library; empty if it is not known.
+std::optional<double> unit_of(const std::string& name) {
+    const std::string unit = core::lower_case(trimmed(name));
+    if (unit.find("inch") != std::string::npos || unit == "in") return core::mm_per_inch;
+    if (unit.empty() || unit.find("millimet") != std::string::npos || unit == "mm") return 1.0;
+    return std::nullopt;
+}
 
-double unit_of(const std::string& unit) { return names_inches(unit) ? core::mm_per_inch : 1.0; }
+core::Error unit_error(const std::string& unit, const std::string& path) {
+    return {core::ErrorCode::syntax,
+            {},
+            fmt::format("has a tool in the unit \"{}\", which is not known: use millimeters or "
+                        "inches",
+                        unit),
+            path};
+}
 
 /// A number with a unit and nothing else, such as `6 mm`; empty for formulas. Lengths in mm; those
 /// without a unit are multiplied by `unit`.
@@ -64,11 +79,16 @@ struct FusionEntry {
 };
 
 /// The segments of a holder or shaft, from the tip up.
-std::vector<ConeStep> segments_of(const json& part, double unit) {
+///
+/// Result: empty if a size is no number.
+std::optional<std::vector<ConeStep>> segments_of(const json& part, double unit) {
     std::vector<ConeStep> steps;
     const json& segments = member_at(part, "segments");
-    if (!segments.is_array()) return steps;
+    if (segments.is_null()) return steps;
+    if (!segments.is_array()) return std::nullopt;
     for (const json& segment : segments) {
+        for (const char* key : {"height", "lower-diameter", "upper-diameter"})
+            if (!member_at(segment, key).is_number()) return std::nullopt;
         const double height = number_at(segment, "height") * unit;
         const double lower = number_at(segment, "lower-diameter") * unit;
         const double upper = number_at(segment, "upper-diameter") * unit;
@@ -78,16 +98,31 @@ std::vector<ConeStep> segments_of(const json& part, double unit) {
     return steps;
 }
 
-/// The unit of a part of a tool, which may have one of its own.
+/// The unit of a part of a tool, which may have one of its own that is known.
 double unit_of_part(const json& part, double unit_of_tool) {
     const std::string unit = text_at(part, "unit");
-    return unit.empty() ? unit_of_tool : unit_of(unit);
+    return unit.empty() ? unit_of_tool : unit_of(unit).value_or(unit_of_tool);
+}
+
+std::string unit_of_tool(const json& tool) {
+    const std::string unit = text_at(tool, "unit");
+    return unit.empty() ? text_at(member_at(tool, "expressions"), "tool_unit") : unit;
+}
+
+/// A unit in a tool that is not known.
+std::optional<std::string> unknown_unit(const json& tool) {
+    for (const std::string& unit : {unit_of_tool(tool), text_at(member_at(tool, "holder"), "unit"),
+                                    text_at(member_at(tool, "shaft"), "unit")})
+        if (!unit_of(unit)) return unit;
+    return std::nullopt;
 }
 
 void read_holder_of(const FusionEntry& entry, FusionTool& tool) {
     const json& holder = member_at(entry.tool, "holder");
     const double unit = unit_of_part(holder, entry.unit);
-    tool.holder = segments_of(holder, unit);
+    const auto steps = segments_of(holder, unit);
+    tool.is_damaged_above |= !steps;
+    tool.holder = steps.value_or(std::vector<ConeStep>());
     const double own = number_at(holder, "gaugeLength") * unit;
     const auto whole = entry.length("assemblyGaugeLength");
     if (own > 0.0)
@@ -99,9 +134,11 @@ void read_holder_of(const FusionEntry& entry, FusionTool& tool) {
 /// The number by which programs call a tool; 0 if it has none.
 int post_number_of(const json& tool) {
     const json& number = member_at(member_at(tool, "post-process"), "number");
-    if (!number.is_number_integer()) return 0;
-    const auto value = number.get<int64_t>();
-    return value > 0 && value <= highest_tool_number ? static_cast<int>(value) : 0;
+    const std::optional<double> value = number.is_number()   ? number.get<double>()
+                                        : number.is_string() ? number_in(number.get<std::string>())
+                                                             : std::nullopt;
+    const bool is_whole = value && *value == std::floor(*value);
+    return is_whole && *value > 0.0 && *value <= highest_tool_number ? static_cast<int>(*value) : 0;
 }
 
 std::string name_of_tool(const json& tool) {
@@ -127,9 +164,7 @@ void read_sizes(const FusionEntry& entry, FusionTool& tool) {
 }
 
 FusionTool fusion_tool(const json& json_tool) {
-    std::string unit = text_at(json_tool, "unit");
-    if (unit.empty()) unit = text_at(member_at(json_tool, "expressions"), "tool_unit");
-    const FusionEntry entry{json_tool, unit_of(unit)};
+    const FusionEntry entry{json_tool, unit_of(unit_of_tool(json_tool)).value_or(1.0)};
     FusionTool tool;
     tool.type = text_at(json_tool, "type");
     tool.name = name_of_tool(json_tool);
@@ -138,7 +173,10 @@ FusionTool fusion_tool(const json& json_tool) {
     const json& hand = member_at(member_at(json_tool, "geometry"), "HAND");
     tool.is_left_hand = tool.type == "tap left hand" || (hand.is_boolean() && !hand.get<bool>());
     const json& shaft = member_at(json_tool, "shaft");
-    tool.shaft = segments_of(shaft, unit_of_part(shaft, entry.unit));
+    const auto steps = segments_of(shaft, unit_of_part(shaft, entry.unit));
+    tool.shaft = steps.value_or(std::vector<ConeStep>());
+    tool.is_damaged_above = !steps;
+    if (!steps) tool.body_length.reset();
     read_holder_of(entry, tool);
     return tool;
 }
@@ -191,7 +229,7 @@ void read_body(const pugi::xml_node& body, double unit, FusionTool& tool) {
 }
 
 FusionTool hsm_tool(const pugi::xml_node& node) {
-    const double unit = unit_of(node.attribute("unit").as_string());
+    const double unit = unit_of(node.attribute("unit").as_string()).value_or(1.0);
     FusionTool tool;
     tool.type = node.attribute("type").as_string();
     for (const char* key : {"description", "product-id"})
@@ -224,8 +262,11 @@ core::Result<std::map<core::ToolNumber, FoundTool>>
 tools_of_fusion_library(const nlohmann::json& library, const std::filesystem::path& path) {
     NumberedTools tools(path.generic_string());
     for (const json& entry : member_at(library, "data"))
-        if (entry.is_object() && !is_no_rotating_cutter(text_at(entry, "type")))
+        if (entry.is_object() && !is_no_rotating_cutter(text_at(entry, "type"))) {
+            if (const auto unit = unknown_unit(entry))
+                return tl::unexpected(unit_error(*unit, path.generic_string()));
             tools.add(fusion_tool(entry));
+        }
     return tools.result();
 }
 
@@ -258,8 +299,11 @@ core::Result<std::map<core::ToolNumber, FoundTool>> tools_of_hsm_library(const s
     for (const pugi::xml_node& root : xml.root().children()) {
         if (!is_hsm_library(root)) continue;
         for (const pugi::xml_node& node : root.children("tool"))
-            if (!is_no_rotating_cutter(node.attribute("type").as_string()))
+            if (!is_no_rotating_cutter(node.attribute("type").as_string())) {
+                const std::string unit = node.attribute("unit").as_string();
+                if (!unit_of(unit)) return tl::unexpected(unit_error(unit, path));
                 tools.add(hsm_tool(node));
+            }
         return tools.result();
     }
     return tl::unexpected(

@@ -127,6 +127,15 @@ void read_fusion_shape(const FusionTool& tool, ToolDescription& made) {
 
 // --- lengths ------------------------------------------------------------------------------------
 
+/// Makes flutes at least as long as the ball or the rounding at the tip is high.
+void keep_head_whole(ToolDescription& made) {
+    if (made.shape == ToolShape::ball || made.shape == ToolShape::lollipop)
+        made.flute_length = std::max(made.flute_length, 0.5 * made.diameter);
+    if (made.shape == ToolShape::bull)
+        made.flute_length =
+            std::max(made.flute_length, made.corner_radius.value_or(0.0) + same_size);
+}
+
 /// The length of the flutes; a ball or a rounding is never higher.
 void read_flutes(const FusionTool& tool, ToolDescription& made) {
     if (made.shape == ToolShape::profile) {
@@ -134,12 +143,7 @@ void read_flutes(const FusionTool& tool, ToolDescription& made) {
         return;
     }
     made.flute_length = tool.flute_length.value_or(0.0);
-    if (made.flute_length <= 0.0) return;
-    if (made.shape == ToolShape::ball || made.shape == ToolShape::lollipop)
-        made.flute_length = std::max(made.flute_length, 0.5 * made.diameter);
-    if (made.shape == ToolShape::bull)
-        made.flute_length =
-            std::max(made.flute_length, made.corner_radius.value_or(0.0) + same_size);
+    if (made.flute_length > 0.0) keep_head_whole(made);
 }
 
 /// The steps up to a total length; the last one is cut where it goes beyond.
@@ -167,7 +171,13 @@ void read_shank(const FusionTool& tool, ToolDescription& made) {
     made.stick_out = tool.body_length;
     if (!tool.body_length || made.flute_length <= 0.0) return;
     if (made.shape == ToolShape::lollipop) return; // its head is longer than its flutes
-    const double room = *tool.body_length - made.flute_length;
+    double room = *tool.body_length - made.flute_length;
+    if (room < -same_size && made.shape != ToolShape::profile) {
+        // The flutes end where the holder begins; the head alone may be longer.
+        made.flute_length = tool.body_length.value_or(0.0);
+        keep_head_whole(made);
+        room = *tool.body_length - made.flute_length;
+    }
     if (room < -same_size) made.stick_out = made.flute_length;
     if (room <= same_size) return;
     const double shoulder = tool.shoulder_length.value_or(0.0) - made.flute_length;
@@ -183,6 +193,10 @@ void read_shank(const FusionTool& tool, ToolDescription& made) {
 
 /// The holder up to the gauge line.
 void read_fusion_holder(const FusionTool& tool, FoundTool& found) {
+    if (tool.is_damaged_above) {
+        found.assumed.emplace_back("no holder (the library has sizes of it that are no numbers)");
+        return;
+    }
     std::vector<ConeStep> steps = tool.holder;
     if (steps.empty()) return;
     const double missing = tool.holder_length.value_or(0.0) - core::total_length(steps);

@@ -26,6 +26,7 @@ struct FusionTool {
     std::vector<core::ConeStep> shaft;   // from the shoulder up
     std::vector<core::ConeStep> holder;  // from the tool up
     std::optional<double> holder_length; // from its lower face to the gauge line
+    bool is_damaged_above = false;       // the shaft or the holder has a size that is no number
 };
 
 /// Whether tools of this type are for turning, cut without contact, or do not cut at all.

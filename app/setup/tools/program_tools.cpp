@@ -280,13 +280,19 @@ using gcode::LengthUnit;
 constexpr auto style = std::regex::ECMAScript | std::regex::optimize;
 const char* const number_text = R"(([0-9]*\.?[0-9]+|[0-9]+\.?))";
 
+/// The same with a decimal comma, in forms without lists of numbers.
+const char* const number_with_comma = R"(([0-9]*[.,]?[0-9]+|[0-9]+[.,]?))";
+
 std::regex pattern(std::string text) {
-    for (size_t at = text.find("<N>"); at != std::string::npos; at = text.find("<N>", at))
-        text.replace(at, 3, number_text);
+    for (const auto& [name, meaning] :
+         {std::pair{"<N>", number_text}, std::pair{"<C>", number_with_comma}})
+        for (size_t at = text.find(name); at != std::string::npos; at = text.find(name, at))
+            text.replace(at, 3, meaning);
     return std::regex(text, style);
 }
 
-double number_of(const std::string& text) {
+double number_of(std::string text) {
+    std::replace(text.begin(), text.end(), ',', '.');
     double value = 0.0;
     std::from_chars(text.data(), text.data() + text.size(), value);
     return value;
@@ -305,13 +311,17 @@ struct Form {
 };
 
 void read_fusion(const std::smatch& m, LengthUnit unit, ToolComment& comment) {
+    const std::string stated = m[3], rest = m[6];
+    const LengthUnit own = stated == "MM"   ? LengthUnit::mm
+                           : stated.empty() ? unit
+                                            : LengthUnit::inch;
     comment.number = whole_of(m[1]);
-    comment.text = read_tool_text(m[5].str(), unit);
-    comment.text.diameter = gcode::to_mm(number_of(m[2]), unit);
+    comment.text = read_tool_text(rest, unit);
+    comment.text.diameter = gcode::to_mm(number_of(m[2]), own);
     comment.text.stated = comment.whole = true;
-    if (m[3].matched) comment.text.corner_radius = gcode::to_mm(number_of(m[3]), unit);
-    if (m[4].matched) comment.text.angle_deg = number_of(m[4]);
-    comment.flank_angle = m[5].str().find("COUNTER") == std::string::npos;
+    if (m[4].matched) comment.text.corner_radius = gcode::to_mm(number_of(m[4]), own);
+    if (m[5].matched) comment.text.angle_deg = number_of(m[5]);
+    comment.flank_angle = rest.find("COUNTER") == std::string::npos;
 }
 
 void read_mastercam(const std::smatch& m, LengthUnit unit, ToolComment& comment) {
@@ -375,7 +385,10 @@ void read_name_first(const std::smatch& m, LengthUnit unit, ToolComment& comment
 
 const std::vector<Form>& forms() {
     static const std::vector<Form> all = {
-        {pattern(R"(^ *T *([0-9]+) +D=<N>(?: +CR=<N>)?(?: +TAPER=<N> *DEG)?(.*)$)"), read_fusion},
+        {pattern(
+             R"(^ *T *([0-9]+) +D=<C>(?: *(MM|IN(?:CH)?\b|"))?(?: +CR=<C> *(?:MM|IN(?:CH)?\b|")?)?)"
+             R"((?: +TAPER=<C> *DEG)?(.*)$)"),
+         read_fusion},
         {pattern(R"(^ *(?:TOOL *)?T? *#?([0-9]+) *\|([^|]*)(.*)$)"), read_mastercam},
         {pattern(R"(^(.*)TOOL *- *([0-9]+) +DIA\. *OFF\..* DIA\. *- *<N> *$)"), read_old_mastercam},
         {pattern(R"(^ *T *([0-9]+) *: *<N> *$)"), read_cambam},

@@ -163,16 +163,18 @@ void end_walk(ViewModel& model, const RunEnd& end, double now) {
 /// What the check covers so far.
 Coverage coverage_so_far(const ViewModel& model) {
     Coverage coverage = *model.program->coverage;
-    std::set<core::ToolNumber> bare;
+    std::set<core::ToolNumber> feeding;
     std::optional<core::ToolNumber> last; // most rows have the tool of the row before
     for (const BlockRow& row : model.rows) {
         coverage.moves = coverage.moves || moves(row);
         if (!feeds(row) || !row.tool || row.tool == last) continue;
         last = row.tool;
-        if (!model.program->tools_with_holder.contains(*row.tool)) bare.insert(*row.tool);
+        feeding.insert(*row.tool);
     }
-    coverage.tools_without_holder.assign(bare.begin(), bare.end());
-    coverage.holders = bare.empty() ? Known::described : Known::missing;
+    const auto has_holder = [&](core::ToolNumber number) {
+        return model.program->tools_with_holder.contains(number);
+    };
+    count_tools(feeding, has_holder, coverage);
     reduce_by(model.findings, coverage);
     return coverage;
 }

@@ -96,6 +96,12 @@ void add_tool_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<
     rows.push_back(heading_row("Tools"));
     for (const SheetTool& tool : sheet.tools) {
         const core::ToolNumber number = tool.tool.number;
+        if (!tool.is_described) {
+            rows.push_back({item(Kind::tool, {}, number),
+                            fmt::format("T{}", core::value_of(number)), "not described",
+                            tool.source});
+            continue;
+        }
         SetupRow row{item(Kind::tool, {}, number),
                      fmt::format("T{}  {} {}", core::value_of(number),
                                  core::name_of(tool.tool.shape),
@@ -108,7 +114,10 @@ void add_tool_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<
 }
 
 void take_in_text(Workspace& workspace) {
-    workspace.stated = std::make_shared<const StatedSetup>(stated_in(workspace.document.text()));
+    const std::string& text = workspace.document.text();
+    // A text with an error says nothing: the rows stay as they were.
+    if (!workspace.stated || parsed_toml(text))
+        workspace.stated = std::make_shared<const StatedSetup>(stated_in(text));
     workspace.refusal.clear();
 }
 
@@ -167,7 +176,9 @@ bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument:
         },
         mark);
     if (!edited) {
-        workspace.refusal = edited.error().message;
+        const bool is_damaged = !parsed_toml(workspace.document.text());
+        workspace.refusal = is_damaged ? "Correct the set-up file first: " : "";
+        workspace.refusal += edited.error().message;
         return false;
     }
     take_in_text(workspace);
@@ -249,7 +260,14 @@ bool can_state(const ViewModel& model, const SetupItem& item) {
     }
     if (item.kind != Kind::tool) return false;
     const SheetTool* tool = sheet->tool(item.tool);
-    return tool && tool->source == SetupSource::assumed;
+    return tool && tool->is_described && tool->source == SetupSource::assumed;
+}
+
+void describe_tool(ViewModel& model, core::ToolNumber number) {
+    FoundTool bare{.has_diameter = false, .is_described = false};
+    bare.tool.number = number;
+    edit_setup(model, fmt::format("Describe T{}", core::value_of(number)),
+               [&](const std::string& text) { return with_found_tool(text, bare); });
 }
 
 void state_item(ViewModel& model, const SetupItem& item) {

@@ -158,6 +158,8 @@ void use_machine(ViewModel& model, const std::string& file);
 
 /// States the ini file of LinuxCNC; none if `file` is empty.
 void use_ini(ViewModel& model, const std::string& file);
+/// Adds a tool that the set-up lacks to it, with nothing but its number.
+void describe_tool(ViewModel& model, core::ToolNumber number);
 /// Takes a tool of the library for a number: states what the library states.
 void take_library_tool(ViewModel& model, core::ToolNumber number, FoundTool tool);
 /// Adds a file to the set-up by its kind: a mesh as a fixture, a tool library, a machine. False: it

@@ -42,6 +42,9 @@ void ProgramTab::open(const CheckJob& check) {
     const std::string text = check.setup.empty() ? "" : core::file_bytes(check.setup).value_or("");
     open_document(model, SetupDocument(check.setup, text));
     model.workspace.found = unsaved_.find(check.program, check.setup, text);
+    // Edits from before the set-up had a file.
+    if (!check.setup.empty() && model.workspace.found.empty())
+        model.workspace.found = unsaved_.find(check.program, "", text);
     keep_at_.reset();
     kept_ = {};
     watch({});

@@ -159,6 +159,14 @@ void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
     const bool is_stated = model.workspace.stated->has_tool(number);
     ImGui::PushID(core::value_of(number));
     draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), true, is_stated);
+    if (!shown.is_described) {
+        wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
+                     "The set-up does not describe this tool, so none of its motions is checked.");
+        if (ImGui::Button("Describe it")) describe_tool(model, number);
+        draw_library(frame, number);
+        ImGui::PopID();
+        return;
+    }
     if (shown.tool.shape == core::ToolShape::profile) {
         wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      "Edit its outline in the set-up file.");
