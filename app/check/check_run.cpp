@@ -30,18 +30,20 @@ bool CheckRun::has_errors() const {
 
 Coverage CheckRun::full_coverage() const {
     Coverage full = coverage ? *coverage : Coverage();
-    std::set<core::ToolNumber> feeding;
+    std::set<core::ToolNumber> feeding, moving;
     for (const CheckedBlock& block : blocks.without_texts()) {
         const core::BlockMotion motion = block.result.motion;
         full.moves = full.moves || motion != core::BlockMotion::none;
         const bool feeds = motion != core::BlockMotion::none && motion != core::BlockMotion::rapid;
         if (feeds && block.result.tool) feeding.insert(*block.result.tool);
+        if (motion != core::BlockMotion::none && block.result.tool)
+            moving.insert(*block.result.tool);
     }
     const auto has_holder = [&](core::ToolNumber number) {
         const auto tool = setup.tools.find(number);
         return tool != setup.tools.end() && !tool->second.description.holder.empty();
     };
-    count_tools(feeding, has_holder, full);
+    count_tools(feeding, moving, has_holder, full);
     reduce_by(findings, full);
     return full;
 }

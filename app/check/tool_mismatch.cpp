@@ -127,9 +127,20 @@ struct StatedTool {
     std::string place = "the set-up";
 };
 
+/// Of a tool that widens upwards, else its diameter.
+double tip_diameter(const core::ToolDescription& tool) {
+    if (tool.shape == ToolShape::taper) return tool.tip_diameter;
+    if (tool.shape == ToolShape::profile && !tool.outline.empty())
+        return 2.0 * tool.outline.front()[0];
+    return tool.diameter;
+}
+
 std::optional<ToolMismatch> compared(const FoundTool& found, const StatedTool& listed) {
     const core::ToolDescription& stated = listed.tool;
-    const double more = found.tool.diameter - stated.diameter;
+    // A comment may give the diameter at the tip.
+    const double more = std::abs(found.tool.diameter - tip_diameter(stated)) <= same_diameter
+                            ? 0.0
+                            : found.tool.diameter - stated.diameter;
     const bool other_size =
         listed.has_diameter
         && std::abs(more) > std::max(same_diameter, same_fraction * stated.diameter);
@@ -163,12 +174,16 @@ std::vector<StatedTool> stated_tools(const SetupFile& file) {
         if (stated.has_shape || stated.has_diameter) tools.push_back(std::move(stated));
     }
     for (const auto& [number, listed] : file.library) {
-        const bool is_replaced =
-            file.setup.tools.contains(number) || file.partial_tools.contains(number);
-        if (is_replaced || !listed.has_diameter) continue;
-        StatedTool stated{listed.tool, listed.has_shape, true, "the tool library"};
+        if (file.setup.tools.contains(number)) continue;
+        StatedTool stated{listed.tool, listed.has_shape, listed.has_diameter, "the tool library"};
         stated.tool.number = number;
-        tools.push_back(std::move(stated));
+        if (const auto partial = file.partial_tools.find(number);
+            partial != file.partial_tools.end()) {
+            stated.has_shape = stated.has_shape && !partial->second.stated.contains("shape");
+            stated.has_diameter =
+                stated.has_diameter && !partial->second.stated.contains("diameter");
+        }
+        if (stated.has_shape || stated.has_diameter) tools.push_back(std::move(stated));
     }
     return tools;
 }

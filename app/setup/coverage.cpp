@@ -56,13 +56,14 @@ std::array<CoverageItem, 7> items_of(const Coverage& coverage) {
 }
 
 void count_tools(const std::set<core::ToolNumber>& feeding,
+                 const std::set<core::ToolNumber>& moving,
                  const std::function<bool(core::ToolNumber)>& has_holder, Coverage& coverage) {
     coverage.tools_without_holder.clear();
     for (const core::ToolNumber number : feeding)
         if (!has_holder(number)) coverage.tools_without_holder.push_back(number);
     coverage.holders = coverage.tools_without_holder.empty() ? Known::described : Known::missing;
     std::erase_if(coverage.tools_assumed,
-                  [&](core::ToolNumber number) { return !feeding.contains(number); });
+                  [&](core::ToolNumber number) { return !moving.contains(number); });
     coverage.tools = coverage.tools_assumed.empty() ? Known::described : Known::inferred;
 }
 

@@ -33,10 +33,9 @@ struct Coverage {
     Known offsets = Known::inferred;  // the work offsets under which the program feeds
     Known limits = Known::missing;    // of all linear axes
     Known start = Known::described;   // the start position, or no verdict rests on it
-    Known tools = Known::described;   // the diameters and stick-outs of the tools that feed
+    Known tools = Known::described;   // diameter, flutes and stick-out of those that move
     std::vector<core::ToolNumber> tools_without_holder; // that feed; in ascending order
-    // Tools of which the diameter or the stick-out is a guess; at the end of a run, those that
-    // feed.
+    // Tools of which one of these sizes is a guess; at the end of a run, those that move.
     std::vector<core::ToolNumber> tools_assumed;
     bool moves = false;               // some block moves
     bool limits_need_offsets = false; // the limits are described, but not where the work is
@@ -46,8 +45,9 @@ struct Coverage {
     bool operator==(const Coverage&) const = default;
 };
 
-/// Counts the tools that feed.
+/// Counts the tools that feed, for their holders, and those that move at all, for their sizes.
 void count_tools(const std::set<core::ToolNumber>& feeding,
+                 const std::set<core::ToolNumber>& moving,
                  const std::function<bool(core::ToolNumber)>& has_holder, Coverage& coverage);
 
 /// Takes from a coverage what the findings of the run show to be missing: a start position that

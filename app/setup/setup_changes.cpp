@@ -435,6 +435,11 @@ Result<std::string> with_found_tool(const std::string& text, const FoundTool& to
                            {"holder", "holder_file", "holder_mesh", "mesh_unit"});
 }
 
+Result<std::string> with_bare_tool(const std::string& text, core::ToolNumber number) {
+    if (path_of_tool(text, number)) return text;
+    return toml_with_table(text, "tool", fmt::format("number = {}\n", core::value_of(number)));
+}
+
 Result<std::string> without_tool(const std::string& text, core::ToolNumber number) {
     const auto path = path_of_tool(text, number);
     return path ? toml_without(text, *path) : Result<std::string>(text);

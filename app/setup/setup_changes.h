@@ -108,6 +108,8 @@ core::Result<std::string> with_tool_size(const std::string& text, core::ToolNumb
                                          const core::ToolSize& size, double value);
 /// States a tool completely, in place of the old description.
 core::Result<std::string> with_tool(const std::string& text, const core::ToolDescription& tool);
+/// Adds a tool of which nothing but the number is stated; the rest is assumed.
+core::Result<std::string> with_bare_tool(const std::string& text, core::ToolNumber number);
 /// States what a source states of a tool, in place of the old description; the rest is assumed. A
 /// holder stays if the source has none.
 core::Result<std::string> with_found_tool(const std::string& text, const FoundTool& tool);

@@ -47,7 +47,7 @@ void SetupDocument::undo() {
     if (undo_.empty()) return;
     Version version = std::move(undo_.back());
     undo_.pop_back();
-    takes_back_file_ |= version.is_of_file;
+    changes_taken_back_ += version.is_of_file;
     redo_.push_back({std::move(version.title), text_, version.is_of_file});
     mark_.clear();
     put(std::move(version.text));
@@ -57,7 +57,7 @@ void SetupDocument::redo() {
     if (redo_.empty()) return;
     Version version = std::move(redo_.back());
     redo_.pop_back();
-    if (version.is_of_file) takes_back_file_ = false;
+    changes_taken_back_ -= version.is_of_file;
     undo_.push_back({std::move(version.title), text_, version.is_of_file});
     mark_.clear();
     put(std::move(version.text));
@@ -66,13 +66,13 @@ void SetupDocument::redo() {
 void SetupDocument::saved_as(std::string path) {
     path_ = std::move(path);
     saved_ = text_;
-    takes_back_file_ = false;
+    changes_taken_back_ = 0;
     mark_.clear();
 }
 
 void SetupDocument::file_changed(std::string text) {
     saved_ = text;
-    takes_back_file_ = false;
+    changes_taken_back_ = 0;
     const bool is_change = text != text_;
     static_cast<void>(edit("Read the changed file", [&](const std::string&) { return text; }));
     if (is_change) undo_.back().is_of_file = true;

@@ -53,7 +53,7 @@ public:
     void keep_over(std::string text_of_file) { saved_ = std::move(text_of_file); }
     /// Whether undo() has taken back what another program wrote into the file, so that saving would
     /// overwrite it.
-    bool takes_back_file() const { return takes_back_file_; }
+    bool takes_back_file() const { return changes_taken_back_ > 0; }
 
 private:
     struct Version {
@@ -65,7 +65,7 @@ private:
     std::string path_, text_, saved_, mark_;
     std::vector<Version> undo_, redo_;
     uint64_t version_ = 0;
-    bool takes_back_file_ = false;
+    int changes_taken_back_ = 0; // of the file by another program, by undo()
 };
 
 /// Writes a file completely or not at all.

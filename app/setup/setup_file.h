@@ -65,7 +65,7 @@ struct SetupFile {
     std::set<size_t> offsets_of_bodies;       // in which bodies stand, and whose place is assumed
     bool names_offset_of_bodies = false;      // not only by default
     std::set<core::ToolNumber> tools_used;    // that the program calls or has in the spindle
-    std::set<core::ToolNumber> guessed_tools; // of which the diameter or the stick-out is a guess
+    std::set<core::ToolNumber> guessed_tools; // of which a size that matters is a guess
     std::set<core::OffsetNumber> lengths_set; // numbers of the length offsets in the file
     std::map<core::ToolNumber, FoundTool> library; // from tool_library, for tools without [[tool]]
     std::map<core::ToolNumber, PartialTool> partial_tools;

@@ -238,8 +238,9 @@ void take_permissions(const std::filesystem::path& fresh, const std::filesystem:
     struct stat was {};
     if (::stat(old.c_str(), &was) != 0) return;
     // Without the right to do this, the file stays one of the user, as after any other saving.
-    [[maybe_unused]] const int group = ::chown(fresh.c_str(), static_cast<uid_t>(-1), was.st_gid);
-    [[maybe_unused]] const int mode = ::chmod(fresh.c_str(), was.st_mode & 07777);
+    const bool has_group = ::chown(fresh.c_str(), static_cast<uid_t>(-1), was.st_gid) == 0;
+    const mode_t mode = was.st_mode & (has_group ? 07777U : 07707U); // not for another group
+    [[maybe_unused]] const int done = ::chmod(fresh.c_str(), mode);
 }
 
 std::error_code replace_file(const std::filesystem::path& fresh, const std::filesystem::path& old) {

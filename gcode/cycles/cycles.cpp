@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gcode/cycles/rs274_cycles.h"
+#include "gcode/exec/frame_codes.h"
 #include "gcode/exec/readings.h"
 #include "gcode/language/control.h"
 
@@ -224,18 +225,20 @@ core::Result<void> check_parallel_axis(const Execution& execution, size_t normal
                       word->span);
 }
 
-/// Whether the block names an axis that is positioned before the hole is drilled, besides those of
-/// the plane.
-bool names_another_axis(const Execution& execution, size_t normal) {
+/// Whether the block moves an axis besides those of the plane and the drilling axis.
+bool moves_another_axis(const Execution& execution, size_t normal, const Position& target) {
     for (size_t axis = 3; axis < axis_count; ++axis)
-        if (axis != normal && execution.statement.word(axis_letters[axis])) return true;
+        if (axis != normal && target[axis] != execution.modal().position[axis]) return true;
     return false;
 }
 
-/// The next of L holes with G91: the same step again, or the same polar words about the origin.
-core::Result<Position> next_hole(const Execution& execution, Position target,
-                                 const Position& step) {
-    if (execution.statement.polar_radius || execution.statement.polar_angle)
+/// The next of L holes with G91: the same step again, or the same polar words once more.
+core::Result<Position> next_hole(Execution& execution, Position target, const Position& step) {
+    if (execution.modal().transforms.polar)
+        if (auto taken = read_polar_words(execution); !taken)
+            return tl::unexpected(std::move(taken).error());
+    if (execution.statement.polar_radius || execution.statement.polar_angle
+        || execution.modal().transforms.polar)
         return target_of(execution);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (target[axis] && step[axis]) *target[axis] += *step[axis];
@@ -264,7 +267,7 @@ core::Result<void> run_canned_cycle(Execution& execution) {
     execution.result.is_cycle = true;
     if (auto checked = check_parallel_axis(execution, normal); !checked) return checked;
     if (repeats == 0 || only_defines(execution, axes)) {
-        if (names_another_axis(execution, normal))
+        if (moves_another_axis(execution, normal, target))
             return core::fail(ErrorCode::unsupported,
                               fmt::format("{}: whether the control moves the axes of this block, "
                                           "which only defines its cycle, is not known: move them "

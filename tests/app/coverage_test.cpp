@@ -109,6 +109,8 @@ TEST(Coverage, ToolsOfWhichASizeIsAGuessAreNotDescribed) {
         return json_of(slot, rest + "[[tool]]\nnumber = 1\n" + sizes + holder);
     };
     for (const char* sizes : {"", "diameter = 10\n", "stick_out = 40\n",
+                              "diameter = 10\nstick_out = 40\n", // the shank may rub
+                              "diameter = 10\nshank = [[10, 8, 10]]\n",
                               "shape = \"flat\"\ndiameter = 10\nflute_length = 25\n"
                               "stick_out = \"unknown\"\n"}) {
         const Json report = with_tool(sizes);
@@ -116,9 +118,12 @@ TEST(Coverage, ToolsOfWhichASizeIsAGuessAreNotDescribed) {
         EXPECT_EQ(report["coverage"]["tools"], "inferred") << sizes;
         EXPECT_EQ(report["coverage"]["tools_assumed"], Json::array({1})) << sizes;
     }
-    const Json report = with_tool("diameter = 10\nstick_out = 40\n");
+    const Json report = with_tool("diameter = 10\nflute_length = 25\nstick_out = 40\n");
     EXPECT_EQ(report["coverage"]["tools"], "described");
     EXPECT_EQ(report["headline"], "CLEAR");
+    const std::string rapid = test_support::program({"G0 X-20. Y50.", "Z60."});
+    EXPECT_EQ(json_of(rapid, rest + "[[tool]]\nnumber = 1\n" + holder)["coverage"]["tools"],
+              "inferred");
     const std::string text = run(slot, rest + "[[tool]]\nnumber = 1\n" + holder).out;
     EXPECT_THAT(text, HasSubstr("size of T1: assumed"));
 }
@@ -133,6 +138,39 @@ TEST(Coverage, ToolsInPartAreComparedWithTheComment) {
     };
     EXPECT_THAT(ran("16."), HasSubstr("tool-mismatch"));
     EXPECT_THAT(ran("12."), Not(HasSubstr("tool-mismatch")));
+}
+
+/// So do those of a library, also if the set-up states their holder.
+TEST(Coverage, ToolsOfALibraryAreComparedWithTheComment) {
+    const auto ran = [&](const std::string& entry, const std::string& comment,
+                         const std::string& tool) {
+        const test_support::ScopedFolder folder;
+        folder.write("l.json", R"({"data": [{"unit": "millimeters", "post-process": {"number": 1},)"
+                                   + entry + "}]}");
+        const std::string setup = folder.write("s.toml", "tool_library = \"l.json\"\n"
+                                                             + setup_of(without("tool")) + tool);
+        const std::string program = folder.write("p.nc", "(" + comment + ")\n" + slot);
+        return feeler({"check", program, "--setup", setup}).out;
+    };
+    const std::string mill =
+        R"("type": "flat end mill", "geometry": {"DC": 12, "LCF": 26, "LB": 40, "SFDM": 12})";
+    const std::string held = "[[tool]]\nnumber = 1\nholder = [[40, 40, 60]]\n";
+    for (const std::string& tool : {std::string(), held}) {
+        EXPECT_THAT(ran(mill, "T1 D=16. - FLAT END MILL", tool), HasSubstr("tool-mismatch"));
+        EXPECT_THAT(ran(mill, "T1 D=12. - FLAT END MILL", tool), Not(HasSubstr("tool-mismatch")));
+    }
+    // The D of a comment is the diameter at the tip.
+    const std::string tapered = R"("type": "tapered mill", "geometry": {"DC": 3, "TA": 5,
+        "LCF": 22, "LB": 40, "SFDM": 8})";
+    const std::string faces = R"("type": "face mill", "geometry": {"DC": 50, "DCX": 62,
+        "LCF": 8, "LB": 40, "SFDM": 22})";
+    const std::string rounds = R"("type": "radius mill", "geometry": {"DC": 6, "RE": 3,
+        "LCF": 10, "LB": 40, "SFDM": 12})";
+    for (const auto& [entry, comment] :
+         {std::pair{tapered, "T1 D=3. CR=0. TAPER=5DEG - TAPERED MILL"},
+          std::pair{faces, "T1 D=50. CR=0. - FACE MILL"},
+          std::pair{rounds, "T1 D=6. CR=3. - RADIUS MILL"}})
+        EXPECT_THAT(ran(entry, comment, ""), Not(HasSubstr("tool-mismatch"))) << comment;
 }
 
 TEST(Coverage, LimitsAreNotCheckedAgainstAnAssumedOffset) {
@@ -229,7 +267,7 @@ TEST(Coverage, WithoutASetupStandsFirstInTheSummary) {
     const std::string text = run(slot, "").out;
     EXPECT_THAT(text, HasSubstr("p.nc: NO ERROR IN THE PROGRAM ITSELF\n"
                                 "  unchecked  holder of T1, fixtures, axis limits: not described; "
-                                "stock, work"));
+                                "stock, size of\n             T1, work offsets"));
     EXPECT_THAT(text, Not(HasSubstr("CLEAR")));
 }
 

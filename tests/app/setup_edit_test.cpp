@@ -581,6 +581,14 @@ TEST(SetupDocument, UndoesAndRedoesEveryEdit) {
     EXPECT_TRUE(document.takes_back_file());
     document.saved_as("x.toml");
     EXPECT_FALSE(document.takes_back_file());
+    document.file_changed("h");
+    document.file_changed("i");
+    document.undo();
+    document.undo();
+    document.redo();
+    EXPECT_TRUE(document.takes_back_file()) << "the second change is still undone";
+    document.redo();
+    EXPECT_FALSE(document.takes_back_file());
 }
 
 TEST(SavedSetup, DoesNotWriteOverAChangeThatWasUndone) {

@@ -71,13 +71,31 @@ TEST(ToolLibrary, ReadsFreeCadsBits) {
 }
 
 TEST(ToolLibrary, ReadsFreeCadsQuantitiesInAllUnits) {
-    const std::pair<const char*, std::optional<double>> cases[] = {
-        {"12 mm", 12.0},    {"1.20 cm", 12.0},   {"0.012 m", 12.0}, {"12000 \u00b5m", 12.0},
-        {"12000 um", 12.0}, {"0.5 in", 12.7},    {"1/2 in", 12.7},  {"1 1/2 in", 38.1},
-        {"1/2\"", 12.7},    {"0.5 ft", 152.4},   {"500 mil", 12.7}, {"500 thou", 12.7},
-        {"1.2e1 mm", 12.0}, {"12,5 mm", 12.5},   {"12", 12.0},      {"+12 mm", 12.0},
-        {"-12 mm", -12.0},  {"60.0 \u00b0", 60}, {"12 parsec", {}}, {"mm", {}},
-        {"12 mm 3", {}},    {"1.2.3 mm", {}},    {"12 / 0 mm", {}}, {"", {}}};
+    const std::pair<const char*, std::optional<double>> cases[] = {{"12 mm", 12.0},
+                                                                   {"1.20 cm", 12.0},
+                                                                   {"0.012 m", 12.0},
+                                                                   {"12000 \u00b5m", 12.0},
+                                                                   {"12000 um", 12.0},
+                                                                   {"0.5 in", 12.7},
+                                                                   {"1/2 in", 12.7},
+                                                                   {"1 1/2 in", 38.1},
+                                                                   {"1/2\"", 12.7},
+                                                                   {"1+1/2\"", 38.1},
+                                                                   {"0.5 ft", 152.4},
+                                                                   {"500 mil", 12.7},
+                                                                   {"500 thou", 12.7},
+                                                                   {"1.2e1 mm", 12.0},
+                                                                   {"12,5 mm", 12.5},
+                                                                   {"12", 12.0},
+                                                                   {"+12 mm", 12.0},
+                                                                   {"-12 mm", -12.0},
+                                                                   {"60.0 \u00b0", 60},
+                                                                   {"12 parsec", {}},
+                                                                   {"mm", {}},
+                                                                   {"12 mm 3", {}},
+                                                                   {"1.2.3 mm", {}},
+                                                                   {"12 / 0 mm", {}},
+                                                                   {"", {}}};
     for (const auto& [text, expected] : cases) {
         const auto found = freecad_quantity(nlohmann::json(text));
         EXPECT_EQ(found.has_value(), expected.has_value()) << text;

@@ -60,9 +60,17 @@ TEST(FanucCycle, RepeatedHolesTurnByTheSameAngle) {
     EXPECT_THAT(found, Not(HasSubstr("a=120")));
 }
 
+TEST(FanucCycle, RepeatedHolesInPolarCoordinatesStayOnTheCircle) {
+    const std::string found = trace("G21 G16\nG0 X0 Y0 Z20\nG81 X50. Y60. Z-5. R2. F100.\n"
+                                    "G91 Y30. K2\n");
+    for (const std::string place : {"x=25 y=43.30127", "x=0 y=50", "x=-25 y=43.30127"})
+        EXPECT_THAT(found, HasSubstr("straight_feed " + place)) << found;
+}
+
 TEST(FanucCycle, RefusesAxesOfWhichTheUseIsUnknown) {
     EXPECT_THAT(steps("G81 X1 Z-8 R3 W-2 F50"), HasSubstr("whether Z or W drills"));
     EXPECT_THAT(steps("G81 X1 Z-8 R3 A90 F50 K0"), HasSubstr("only defines its cycle"));
+    EXPECT_EQ(error_of("G21\nG0 X0 Y0 Z5 A90\nG81 X1 Z-8 R3 A90 F50 K0"), "");
     EXPECT_THAT(error_of("G0 X0 Y0 Z5\nG12 I5 D1 Z-1 F100 A90", DialectId::haas),
                 HasSubstr("G12 moves X, Y and Z only"));
 }

@@ -90,6 +90,38 @@ TEST(Workspace, StatesWhatIsAssumedWithOneClick) {
     EXPECT_EQ(text_of_setup(model), "");
 }
 
+TEST(Workspace, ShowsAToolThatTheSetupLacks) {
+    ViewModel model = opened_model();
+    auto opened = std::make_shared<OpenedProgram>(*model.program);
+    auto sheet = std::make_shared<app::SetupSheet>(*opened->sheet);
+    app::SheetTool missing{.source = app::SetupSource::assumed, .is_described = false};
+    missing.tool.number = core::ToolNumber{4};
+    sheet->tools.push_back(missing);
+    opened->sheet = sheet;
+    model.program = opened;
+    const SetupItem tool{Kind::tool, {}, core::ToolNumber{4}};
+    EXPECT_THAT(titles(model), testing::Contains("T4"));
+    EXPECT_FALSE(can_state(model, tool)) << "nothing is known of it";
+    model.workspace.selected = tool;
+    copy_selected(model);
+    EXPECT_EQ(text_of_setup(model), "");
+    describe_tool(model, core::ToolNumber{4});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("[[tool]]\nnumber = 4\n"));
+    undo(model, 0.0);
+    EXPECT_EQ(text_of_setup(model), "");
+}
+
+TEST(Workspace, KeepsTheRowsOfATextThatIsDamaged) {
+    const std::string text = "[[fixture]]\nname = \"vise\"\nbox = [[0, 0, 0], [10, 20, 30]]\n";
+    ViewModel model = opened_model(text, "/jobs/plate.toml");
+    take_file(model, "[offsets]\nG54 = { X = 1q }\n" + text);
+    EXPECT_THAT(titles(model), testing::Contains("vise"));
+    add_box(model);
+    EXPECT_THAT(model.workspace.refusal, HasSubstr("Correct the set-up file first"));
+    take_file(model, "[offsets]\nG54 = { X = 1 }\n");
+    EXPECT_THAT(titles(model), testing::Not(testing::Contains("vise")));
+}
+
 TEST(Workspace, StatesAStockThatTheFileCallsAssumed) {
     const std::string stock = "[stock] # sawn\nbox = [[0, 0, -10], [120, 80, 0]]\n";
     ViewModel model = opened_model("assumed = [\"stock\"]\n" + stock, "/jobs/plate.toml");

@@ -825,10 +825,12 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     const core::ToolDescription& known = found.tool;
     const bool knows_diameter = states("diameter") || known.shape == core::ToolShape::profile
                                 || (found.has_diameter && found.is_described);
-    const bool knows_reach = known.stick_out || !known.shank.empty()
-                             || (known.gauge_length && !known.holder.empty())
-                             || known.shape == core::ToolShape::profile;
-    if (!knows_diameter || !knows_reach) file.guessed_tools.insert(tool.number);
+    const bool is_whole = known.shape == core::ToolShape::profile;
+    const bool knows_flutes =
+        is_whole || known.flute_length > 0.0 || known.shape == core::ToolShape::lollipop;
+    const bool knows_reach = is_whole || known.stick_out || !known.shank.empty()
+                             || (known.gauge_length && !known.holder.empty());
+    if (!knows_flutes || !knows_diameter || !knows_reach) file.guessed_tools.insert(tool.number);
     const bool knows_lengths = !file.library.empty() || !file.tool_table.empty();
     const bool is_guess = file.is_inferred || (file.is_partial && !knows_lengths);
     if ((is_guess || file.touches_off) && !states_length) {

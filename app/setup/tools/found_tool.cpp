@@ -172,6 +172,9 @@ void complete_lengths(ToolDescription& tool, double least_flutes,
         if (tool.stick_out)
             tool.flute_length =
                 std::min(tool.flute_length, *tool.stick_out - tool.neck_length.value_or(0.0));
+        const double room = tool.gauge_length.value_or(0.0) - core::total_length(tool.holder);
+        if (!tool.stick_out && !tool.holder.empty() && room > tool.neck_length.value_or(0.0))
+            tool.flute_length = std::min(tool.flute_length, room - tool.neck_length.value_or(0.0));
         assumed.push_back(fmt::format("flutes {:.4g} mm", tool.flute_length));
     }
     if (!tool.shank_diameter) {

@@ -23,7 +23,7 @@ std::optional<double> freecad_quantity(const json& value) {
     if (!value.is_string()) return std::nullopt;
     // A decimal number, or a fraction as in "1 1/2 in", and a unit.
     static const std::regex form(R"(\s*([+-]?)(?:(\d+[.,]?\d*(?:[eE][+-]?\d+)?|[.,]\d+))?)"
-                                 R"((?:(?:^|[\s-])\s*(\d+)/(\d+))?\s*([^\s\d.,/+-]\S*)?\s*)");
+                                 R"((?:(?:^|[\s+-])\s*(\d+)/(\d+))?\s*([^\s\d.,/+-]\S*)?\s*)");
     static const std::regex fraction(R"(\s*([+-]?)()(\d+)/(\d+)\s*([^\s\d.,/+-]\S*)?\s*)");
     static const std::map<std::string, double, std::less<>> units = {
         {"", 1.0},

@@ -10,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "app/setup/tools/tool_text.h"
+#include "core/base/math.h"
 #include "core/base/text.h"
+#include "core/base/units.h"
 #include "gcode/language/dialect.h"
 #include "gcode/language/environment.h"
 #include "gcode/language/lexer.h"
@@ -90,6 +92,14 @@ bool is_name(const ToolText& text) {
     return text.sized || (text.pointed && text.words <= longest_without_unit);
 }
 
+/// A tapered mill of which the diameter at the tip is given; its flutes have the usual length.
+void widen_upwards(core::ToolDescription& tool) {
+    constexpr double usual_flutes = 3.0, usual_angle = 5.0; // diameters; degrees
+    tool.tip_diameter = tool.diameter;
+    const double flank = core::radians_of(tool.angle_deg.value_or(usual_angle));
+    tool.diameter += 2.0 * usual_flutes * tool.tip_diameter * core::tan(flank);
+}
+
 std::optional<FoundTool> Scan::tool_of(const ToolComment& comment, size_t line) const {
     if (!comment.whole && !is_name(comment.text)) return std::nullopt;
     FoundTool named;
@@ -108,6 +118,7 @@ std::optional<FoundTool> Scan::tool_of(const ToolComment& comment, size_t line) 
     named.tool = *tool;
     if (comment.flank_angle && tool->shape == ToolShape::chamfer)
         named.tool.angle_deg = text.angle_deg;
+    if (comment.flank_angle && tool->shape == ToolShape::taper) widen_upwards(named.tool);
     return named;
 }
 
@@ -280,8 +291,8 @@ using gcode::LengthUnit;
 constexpr auto style = std::regex::ECMAScript | std::regex::optimize;
 const char* const number_text = R"(([0-9]*\.?[0-9]+|[0-9]+\.?))";
 
-/// The same with a decimal comma, in forms without lists of numbers.
-const char* const number_with_comma = R"(([0-9]*[.,]?[0-9]+|[0-9]+[.,]?))";
+/// The same with a decimal comma, in forms without lists of numbers; not "12,3 FLUTE".
+const char* const number_with_comma = R"(([0-9]*[.,]?[0-9]+(?! *FL)|[0-9]+[.,]?))";
 
 std::regex pattern(std::string text) {
     for (const auto& [name, meaning] :
@@ -385,9 +396,9 @@ void read_name_first(const std::smatch& m, LengthUnit unit, ToolComment& comment
 
 const std::vector<Form>& forms() {
     static const std::vector<Form> all = {
-        {pattern(
-             R"(^ *T *([0-9]+) +D=<C>(?: *(MM|IN(?:CH)?\b|"))?(?: +CR=<C> *(?:MM|IN(?:CH)?\b|")?)?)"
-             R"((?: +TAPER=<C> *DEG)?(.*)$)"),
+        {pattern(R"(^ *T *([0-9]+) +D=<C>(?![0-9/.])(?! *[0-9]+/))"
+                 R"((?: *(MM|IN(?:CH)?\b(?! *HOLDER)|"))?)"
+                 R"((?: +CR=<C> *(?:MM|IN(?:CH)?\b|")?)?(?: +TAPER=<C> *DEG)?(.*)$)"),
          read_fusion},
         {pattern(R"(^ *(?:TOOL *)?T? *#?([0-9]+) *\|([^|]*)(.*)$)"), read_mastercam},
         {pattern(R"(^(.*)TOOL *- *([0-9]+) +DIA\. *OFF\..* DIA\. *- *<N> *$)"), read_old_mastercam},

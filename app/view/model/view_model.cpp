@@ -163,18 +163,22 @@ void end_walk(ViewModel& model, const RunEnd& end, double now) {
 /// What the check covers so far.
 Coverage coverage_so_far(const ViewModel& model) {
     Coverage coverage = *model.program->coverage;
-    std::set<core::ToolNumber> feeding;
+    std::set<core::ToolNumber> feeding, moving;
     std::optional<core::ToolNumber> last; // most rows have the tool of the row before
+    bool last_feeds = false;
     for (const BlockRow& row : model.rows) {
         coverage.moves = coverage.moves || moves(row);
-        if (!feeds(row) || !row.tool || row.tool == last) continue;
+        if (!moves(row) || !row.tool) continue;
+        if (row.tool == last && last_feeds) continue;
         last = row.tool;
-        feeding.insert(*row.tool);
+        last_feeds = feeds(row);
+        moving.insert(*row.tool);
+        if (last_feeds) feeding.insert(*row.tool);
     }
     const auto has_holder = [&](core::ToolNumber number) {
         return model.program->tools_with_holder.contains(number);
     };
-    count_tools(feeding, has_holder, coverage);
+    count_tools(feeding, moving, has_holder, coverage);
     reduce_by(model.findings, coverage);
     return coverage;
 }

@@ -99,7 +99,7 @@ void add_tool_rows(const ViewModel& model, const SetupSheet& sheet, std::vector<
         if (!tool.is_described) {
             rows.push_back({item(Kind::tool, {}, number),
                             fmt::format("T{}", core::value_of(number)), "not described",
-                            tool.source});
+                            tool.source, true});
             continue;
         }
         SetupRow row{item(Kind::tool, {}, number),
@@ -264,10 +264,8 @@ bool can_state(const ViewModel& model, const SetupItem& item) {
 }
 
 void describe_tool(ViewModel& model, core::ToolNumber number) {
-    FoundTool bare{.has_diameter = false, .is_described = false};
-    bare.tool.number = number;
     edit_setup(model, fmt::format("Describe T{}", core::value_of(number)),
-               [&](const std::string& text) { return with_found_tool(text, bare); });
+               [&](const std::string& text) { return with_bare_tool(text, number); });
 }
 
 void state_item(ViewModel& model, const SetupItem& item) {
@@ -434,7 +432,7 @@ void copy_tool(ViewModel& model, core::ToolNumber number) {
     const SheetTool* const shown = sheet ? sheet->tool(number) : nullptr;
     const auto edit = [&](const std::string& text) -> core::Result<std::string> {
         if (model.workspace.stated->has_tool(number)) return with_copied_tool(text, number, copy);
-        if (!shown) return text;
+        if (!shown || !shown->is_described) return text;
         core::ToolDescription tool = shown->tool;
         tool.number = copy;
         return with_tool(text, tool);

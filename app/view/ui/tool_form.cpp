@@ -158,7 +158,8 @@ void SetupForms::draw_tool(Frame& frame, const SheetTool& shown) {
     const core::ToolNumber number = shown.tool.number;
     const bool is_stated = model.workspace.stated->has_tool(number);
     ImGui::PushID(core::value_of(number));
-    draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), true, is_stated);
+    draw_item_head(frame, fmt::format("Tool {}", core::value_of(number)), shown.is_described,
+                   is_stated);
     if (!shown.is_described) {
         wrapped_text(frame.fonts.text, frame.palette.color(Role::dim),
                      "The set-up does not describe this tool, so none of its motions is checked.");

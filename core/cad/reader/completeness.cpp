@@ -621,7 +621,7 @@ Result<bool> check_parameters(const Handle(Interface_InterfaceModel) & model,
 
 /// Whether a matrix keeps lengths and angles. It may mirror: curves are often placed so.
 bool keeps_shape(const gp_GTrsf& matrix) {
-    constexpr double rounding = 1e-5; // files state few digits
+    constexpr double rounding = 1e-4; // files state few digits, such as .7071
     Mat3 turn;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
@@ -669,8 +669,8 @@ bool states_unit(const IGESData_GlobalSection& global) {
     constexpr int by_name = 3;
     if (global.UnitFlag() < 1 || global.UnitFlag() > 11) return false;
     if (global.UnitFlag() != by_name) return true;
-    static const std::set<std::string> known = {"IN", "INCH", "MM", "FT", "MI", "M",
-                                                "KM", "MIL",  "UM", "CM", "UIN"};
+    static const std::set<std::string> known = {"IN", "INCH", "MM",  "mm", "FT", "MI",
+                                                "M",  "KM",   "MIL", "UM", "CM", "UIN"};
     return !global.UnitName().IsNull() && known.contains(global.UnitName()->ToCString());
 }
 
