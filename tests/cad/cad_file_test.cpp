@@ -368,15 +368,21 @@ TEST_F(CadFileTest, WithTwoUnitsOfLengthIsAClearError) {
     EXPECT_THAT(error_of(write("units.step", text)), HasSubstr("several units of length"));
 }
 
-/// Open CASCADE leaves out the copies.
-TEST_F(CadFileTest, OfIgesWithCopiesOfAPartIsAClearError) {
-    IGESControl_Writer writer("MM", 1);
+/// Writes two boxes; the solid of the second.
+Handle(IGESData_IGESEntity) last_of_two_boxes(IGESControl_Writer& writer) {
     writer.AddShape(cad_box(Vec3(0), Vec3(10)));
     writer.AddShape(cad_box(Vec3(50), Vec3(60)));
     Handle(IGESData_IGESEntity) part;
     for (int i = 1; i <= writer.Model()->NbEntities(); ++i)
         if (const auto entity = writer.Model()->Entity(i); entity->TypeNumber() == 186)
             part = entity;
+    return part;
+}
+
+/// Open CASCADE leaves out the copies.
+TEST_F(CadFileTest, OfIgesWithCopiesOfAPartIsAClearError) {
+    IGESControl_Writer writer("MM", 1);
+    const Handle(IGESData_IGESEntity) part = last_of_two_boxes(writer);
     ASSERT_FALSE(part.IsNull());
     const Handle(IGESDraw_RectArraySubfigure) copies = new IGESDraw_RectArraySubfigure;
     copies->Init(part, 1.0, gp_XYZ(30, 0, 0), 3, 2, 20.0, 20.0, 0.0, 0, {});
@@ -457,12 +463,7 @@ TEST_F(CadFileTest, OfWhichOnlySomePartsStateAnglesIsAClearError) {
 TEST_F(CadFileTest, OfIgesWithAScaledPartIsAClearError) {
     const auto error_at = [&](double scale) {
         IGESControl_Writer writer("MM", 1);
-        writer.AddShape(cad_box(Vec3(0), Vec3(10)));
-        writer.AddShape(cad_box(Vec3(50), Vec3(60)));
-        Handle(IGESData_IGESEntity) part;
-        for (int i = 1; i <= writer.Model()->NbEntities(); ++i)
-            if (const auto entity = writer.Model()->Entity(i); entity->TypeNumber() == 186)
-                part = entity;
+        const Handle(IGESData_IGESEntity) part = last_of_two_boxes(writer);
         const Handle(IGESData_HArray1OfIGESEntity) parts = new IGESData_HArray1OfIGESEntity(1, 1);
         parts->SetValue(1, part);
         const Handle(IGESBasic_SubfigureDef) figure = new IGESBasic_SubfigureDef;

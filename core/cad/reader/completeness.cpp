@@ -380,15 +380,9 @@ size_t faces_of(const Handle(IGESSolid_ManifoldSolid) & solid) {
     return count;
 }
 
-size_t faces_of(const TopoDS_Shape& shape) {
+size_t count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
     size_t count = 0;
-    for (TopExp_Explorer e(shape, TopAbs_FACE); e.More(); e.Next()) ++count;
-    return count;
-}
-
-size_t solids_of(const TopoDS_Shape& shape) {
-    size_t count = 0;
-    for (TopExp_Explorer e(shape, TopAbs_SOLID); e.More(); e.Next()) ++count;
+    for (TopExp_Explorer e(shape, kind); e.More(); e.Next()) ++count;
     return count;
 }
 
@@ -547,11 +541,12 @@ Result<SolidNames> names_of_solids(const Handle(XSControl_WorkSession) & session
         if (entity.IsNull()) continue;
         const TopoDS_Shape solid = TransferBRep::ShapeResult(made, entity);
         if (solid.IsNull()) return fail_to_make("solid", model, entity);
-        if (solids_of(solid) != 1)
+        const size_t solids = count_of(solid, TopAbs_SOLID);
+        if (solids != 1)
             return fail(ErrorCode::invalid_value,
                         fmt::format("Open CASCADE makes {} solids of the solid {}, which may lack "
                                     "a part: export the body as STL",
-                                    solids_of(solid), entity_text(model, entity)));
+                                    solids, entity_text(model, entity)));
         if (const auto brep = Handle(StepShape_ManifoldSolidBrep)::DownCast(entity);
             !brep.IsNull()) {
             FEELER_TRY([[maybe_unused]] const bool whole, check_sides(model, brep, solid, made));
@@ -709,7 +704,7 @@ Result<bool> check_transferred_iges(const Handle(XSControl_WorkSession) & sessio
         if (solid.IsNull() && !is_surface) continue;
         const TopoDS_Shape shape = TransferBRep::ShapeResult(made, entity);
         if (shape.IsNull()) return fail_to_make(is_surface ? "surface" : "solid", model, entity);
-        if (!solid.IsNull() && faces_of(shape) < faces_of(solid))
+        if (!solid.IsNull() && count_of(shape, TopAbs_FACE) < faces_of(solid))
             return fail_to_make("faces of the solid", model, entity);
     }
     return true;
