@@ -247,10 +247,10 @@ CellSweeps sweeps_near_cell(const CutModel& model, int i, int j) {
         for (uint32_t number = runs[k].first; number <= runs[k].last; ++number) {
             if (!overlaps(model.log.box(number), cell)) continue;
             const LoggedSweep sweep = model.log[number];
+            if (!comes_to(sweep, cell, any_height)) continue;
             std::optional<TiltedBox> box;
             if (!is_upright(sweep.sweep.orientation)) box.emplace(sweep.sweep);
-            const Interval heights{sweep.box.min.z, sweep.box.max.z};
-            if (!comes_to(sweep, box ? &*box : nullptr, cell, heights)) continue;
+            if (box && !box->comes_to(cell, {sweep.box.min.z, sweep.box.max.z})) continue;
             near.sweeps.push_back(sweep);
             near.boxes.push_back(box);
         }
@@ -321,7 +321,9 @@ std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number, const Int
     for (const int i : {right, 1 - right})
         for (const int j : {back, 1 - back}) {
             const int column = number % 2 + i, row = number / 2 + j;
-            if (cut.box && !cut.box->comes_to({x(column), x(column), y(row), y(row)}, left))
+            const bool is_known = cut.is_known[static_cast<size_t>(column + 3 * row)];
+            if (!is_known && cut.box
+                && !cut.box->comes_to({x(column), x(column), y(row), y(row)}, left))
                 return std::nullopt;
             const auto& corner = segment(cut, column, row);
             if (!corner) return std::nullopt;
