@@ -34,10 +34,9 @@ Coverage CheckRun::full_coverage() const {
     for (const CheckedBlock& block : blocks.without_texts()) {
         const core::BlockMotion motion = block.result.motion;
         full.moves = full.moves || motion != core::BlockMotion::none;
-        const bool feeds = motion != core::BlockMotion::none && motion != core::BlockMotion::rapid;
-        if (feeds && block.result.tool) feeding.insert(*block.result.tool);
-        if (motion != core::BlockMotion::none && block.result.tool)
-            moving.insert(*block.result.tool);
+        if (motion == core::BlockMotion::none || !block.result.tool) continue;
+        moving.insert(*block.result.tool);
+        if (motion != core::BlockMotion::rapid) feeding.insert(*block.result.tool);
     }
     const auto has_holder = [&](core::ToolNumber number) {
         const auto tool = setup.tools.find(number);

@@ -157,8 +157,7 @@ std::optional<ToolMismatch> compared(const FoundTool& found, const StatedTool& l
     mismatch.message =
         fmt::format("Tool {} is {} in {}, but {} according to {}.", core::value_of(stated.number),
                     in_setup, listed.place, described(found.tool, found.has_shape), found.source);
-    if (!listed.has_diameter) return mismatch;
-    if (is_inch_apart(found.tool.diameter, stated.diameter))
+    if (listed.has_diameter && is_inch_apart(found.tool.diameter, stated.diameter))
         mismatch.message += " The sizes are 25.4 times apart: one of the units is probably wrong.";
     return mismatch;
 }

@@ -191,9 +191,6 @@ core::Result<int> repeats_of(const Execution& execution) {
 
 /// Moves to the next hole, also along the rotary and other axes that the block names, then down to
 /// R.
-///
-/// Source: Fanuc 30i user's manual B-63944EN-2, "Canned cycle for drilling": every axis but the
-///         drilling axis is a positioning axis.
 void approach(Drilling& hole, const Position& target) {
     Execution& execution = hole.execution;
     Position over = execution.modal().position;
@@ -234,9 +231,8 @@ bool moves_another_axis(const Execution& execution, size_t normal, const Positio
 
 /// The next of L holes with G91: the same step again, or the same polar words once more.
 core::Result<Position> next_hole(Execution& execution, Position target, const Position& step) {
-    if (execution.modal().transforms.polar)
-        if (auto taken = read_polar_words(execution); !taken)
-            return tl::unexpected(std::move(taken).error());
+    if (auto taken = read_polar_words(execution); !taken) // of G16
+        return tl::unexpected(std::move(taken).error());
     if (execution.statement.polar_radius || execution.statement.polar_angle
         || execution.modal().transforms.polar)
         return target_of(execution);

@@ -28,6 +28,18 @@ struct Expected {
 
 const std::string code = "\nG1 X1. Y2. F100\n";
 
+/// The D of a tapered mill is the diameter at its tip; above it the mill is wider.
+TEST(ToolComment, OfATaperedMillGivesTheDiameterAtTheTip) {
+    const ProgramTools found =
+        tools_in("(T1 D=3. CR=0. TAPER=5DEG - ZMIN=-5. - TAPERED MILL)\nG21\nT1 M6" + code);
+    ASSERT_TRUE(found.tools.contains(ToolNumber{1}));
+    const core::ToolDescription tool = complete(found.tools.at(ToolNumber{1})).tool;
+    EXPECT_EQ(tool.shape, ToolShape::taper);
+    EXPECT_EQ(tool.tip_diameter, 3.0);
+    EXPECT_NEAR(tool.diameter, 3.0 + 2.0 * 9.0 * 0.08748866, 1e-6); // over 9 mm of flutes
+    EXPECT_EQ(tool.angle_deg, 5.0);
+}
+
 TEST(ToolComment, IsReadInTheFormsOfCamSystems) {
     using enum ToolShape;
     const Expected cases[] = {

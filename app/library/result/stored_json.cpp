@@ -84,13 +84,13 @@ Coverage coverage_from(const StoredJson& json) {
                       .offsets = known("offsets"),
                       .limits = known("limits"),
                       .start = known("start"),
-                      .tools = known("tools")};
+                      .tools = json.contains("tools") ? known("tools") : Known::described};
     const auto take = [&](const char* key, std::vector<core::ToolNumber>& tools) {
         for (const StoredJson& tool : list_from(json.at(key)))
             tools.push_back(core::ToolNumber{whole_from<int>(tool)});
     };
     take("tools_without_holder", coverage.tools_without_holder);
-    take("tools_assumed", coverage.tools_assumed);
+    if (json.contains("tools_assumed")) take("tools_assumed", coverage.tools_assumed);
     if (!json.at("moves").is_boolean()) throw std::invalid_argument("neither true nor false");
     coverage.moves = json.at("moves").get<bool>();
     coverage.limits_need_offsets = json.value("limits_need_offsets", false);

@@ -823,9 +823,9 @@ std::string put_tool(SetupFile& file, const FoundTool& found, double least_flute
     };
     const bool states_length = states("touched_off");
     const core::ToolDescription& known = found.tool;
-    const bool knows_diameter = states("diameter") || known.shape == core::ToolShape::profile
-                                || (found.has_diameter && found.is_described);
     const bool is_whole = known.shape == core::ToolShape::profile;
+    const bool knows_diameter =
+        is_whole || states("diameter") || (found.has_diameter && found.is_described);
     const bool knows_flutes =
         is_whole || known.flute_length > 0.0 || known.shape == core::ToolShape::lollipop;
     const bool knows_reach = is_whole || known.stick_out || !known.shank.empty()

@@ -646,6 +646,7 @@ std::string why_misplaced(const Handle(IGESData_IGESEntity) & entity) {
     return {};
 }
 
+/// Refuses what Open CASCADE leaves out, or does not place as the file says, without an error.
 Result<bool> check_copies(const Handle(Interface_InterfaceModel) & model) {
     for (int i = 1; i <= model->NbEntities(); ++i) {
         const auto entity = Handle(IGESData_IGESEntity)::DownCast(model->Value(i));
