@@ -144,11 +144,15 @@ std::vector<Body> tool_bodies(const core::Setup& setup, const core::ToolAssembly
     return bodies;
 }
 
+core::Transform stock_from_tip(const core::Setup& setup, double tool_length,
+                               const core::AxisValues& values) {
+    return stock_from_mount(
+        setup, {setup.machine.spindle, core::translation({0.0, 0.0, -tool_length})}, values);
+}
+
 core::Vec3 tip_in_stock(const core::Setup& setup, double tool_length,
                         const core::AxisValues& values) {
-    return stock_from_mount(
-               setup, {setup.machine.spindle, core::translation({0.0, 0.0, -tool_length})}, values)
-        .translation;
+    return stock_from_tip(setup, tool_length, values).translation;
 }
 
 } // namespace render

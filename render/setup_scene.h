@@ -52,6 +52,11 @@ std::vector<Body> tool_bodies(const core::Setup& setup, const core::ToolAssembly
                               const std::vector<SharedMesh>& meshes,
                               const core::AxisValues& values);
 
+/// The pose of the tool tip relative to the stock. Frame of the tip: Z along the tool, up to the
+/// spindle; all axes along those of the machine while its rotary axes are at 0.
+core::Transform stock_from_tip(const core::Setup& setup, double tool_length,
+                               const core::AxisValues& values);
+
 /// The position of the tool tip. Frame: the stock's.
 core::Vec3 tip_in_stock(const core::Setup& setup, double tool_length,
                         const core::AxisValues& values);

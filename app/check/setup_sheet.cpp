@@ -20,6 +20,8 @@ SheetTool sheet_tool(const SetupFile& file, const core::ToolAssembly& tool) {
     if (const auto why = file.inferred_tools.find(number); why != file.inferred_tools.end())
         shown.why = why->second;
     if (file.is_inferred || !shown.why.empty()) shown.source = SetupSource::assumed;
+    if (const auto found = file.found_tools.find(number); found != file.found_tools.end())
+        shown.is_guess = !found->second.is_described;
     const auto partial = file.partial_tools.find(number);
     if (partial != file.partial_tools.end()) {
         shown.stated = partial->second.stated;

@@ -36,6 +36,7 @@ struct SheetTool {
     std::string why;                          // reason for assuming it, a sentence
     std::set<std::string> stated = {};        // keys that a partly described tool states
     bool is_described = true; // else the set-up lacks it, and its motions are not checked
+    bool is_guess = false;    // inferred from its use alone, as nothing but a number names it
 
     SetupSource source_of(const std::string& key) const {
         return stated.contains(key) ? SetupSource::stated : source;

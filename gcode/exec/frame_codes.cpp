@@ -385,8 +385,8 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     if (form == 1) return by_roll_pitch_yaw(execution);
     if (form != 0)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: planes defined by points, vectors or projected angles "
-                                      "are not supported yet: use Euler angles, G68.2 X Y Z I J K",
+                          fmt::format("{}: planes defined by projected angles are not supported "
+                                      "yet: use Euler angles, G68.2 X Y Z I J K",
                                       written(*word)),
                           word->span);
     // About Z, then about the new X, then about the new Z.
@@ -466,11 +466,108 @@ core::Result<void> turn_rotary_axes(Execution& execution, const Word& word, bool
 
 } // namespace
 
-core::Result<void> set_tilted_plane(Execution& execution) {
-    TiltedPlane plane;
+namespace {
+
+/// X, Y and Z of a block, which are absolute; 0 for missing words.
+core::Vec3 point_of(const Execution& execution) {
+    core::Vec3 point(0.0);
     for (int axis = 0; axis < 3; ++axis)
         if (const Word* word = execution.statement.word(axis_letters[static_cast<size_t>(axis)]))
-            plane.origin[axis] = length_of(execution, *word);
+            point[axis] = length_of(execution, *word);
+    return point;
+}
+
+tl::unexpected<core::Error> refuse_plane(const Execution& execution, const std::string& why) {
+    return core::fail(ErrorCode::invalid_value, "G68.2: " + why,
+                      execution.statement.of(ModalGroup::rotation)->word->span);
+}
+
+/// A plane through three points: X points from the first to the second, and the third is on the
+/// side of +Y.
+core::Result<TiltedPlane> plane_through(const Execution& execution, const core::Vec3& first,
+                                        const core::Vec3& second, const core::Vec3& third) {
+    constexpr double least_sine = 1e-3; // below, rounded coordinates decide the direction
+    const core::Vec3 x = second - first, side = third - first;
+    const core::Vec3 normal = glm::cross(x, side);
+    const double most = glm::length(x) * glm::length(side);
+    if (!(most > 0.0) || !(glm::length(normal) > least_sine * most))
+        return refuse_plane(execution, "the three points are on one line, or two are the same");
+    const core::Vec3 along_x = glm::normalize(x), along_z = glm::normalize(normal);
+    return TiltedPlane{.axes = core::Mat3(along_x, glm::cross(along_z, along_x), along_z),
+                       .origin = first};
+}
+
+/// A plane with these directions of X and Z, perpendicular but for rounding.
+core::Result<TiltedPlane> plane_along(const Execution& execution, const core::Vec3& origin,
+                                      const core::Vec3& x, const core::Vec3& z) {
+    constexpr double rounding = 2e-3;
+    const double lengths = glm::length(x) * glm::length(z);
+    if (!(lengths > 0.0)) return refuse_plane(execution, "a direction I J K has no length");
+    if (std::abs(glm::dot(x, z)) > rounding * lengths)
+        return refuse_plane(execution, "the directions of X (Q1) and Z (Q2) must be perpendicular");
+    const core::Vec3 along_z = glm::normalize(z);
+    const core::Vec3 along_y = glm::normalize(glm::cross(along_z, x));
+    return TiltedPlane{.axes = core::Mat3(glm::cross(along_y, along_z), along_y, along_z),
+                       .origin = origin};
+}
+
+/// A block of G68.2 P2 or P3, of which the last one sets the plane.
+///
+/// Source: Fanuc 30i, tilted working plane command: the order and meaning of the blocks.
+core::Result<void> add_to_plane(Execution& execution, bool by_points) {
+    const auto refuse_words = [&](std::string_view letters) -> core::Result<void> {
+        for (const char letter : letters)
+            if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
+                return core::fail(ErrorCode::unsupported,
+                                  fmt::format("{}: not supported yet in this block of G68.2 P{}",
+                                              written(*word), by_points ? 2 : 3),
+                                  word->span);
+        return {};
+    };
+    std::optional<BegunPlane>& begun = execution.modal().transforms.begun_plane;
+    const Word* which = execution.statement.word('Q');
+    int block = 0;
+    if (which) {
+        FEELER_TRY(block, whole_number(*which, 0, by_points ? 3 : 2));
+    }
+    const bool begins = !begun && (block == 1 || (block == 0 && by_points && which));
+    if (!begins && (!begun || begun->by_points != by_points || begun->next != block))
+        return refuse_plane(execution, begun
+                                           ? fmt::format("P{} Q{} must come next",
+                                                         begun->by_points ? 2 : 3, begun->next)
+                                           : fmt::format("P{} begins with Q1", by_points ? 2 : 3));
+    if (begins) begun = BegunPlane{.by_points = by_points};
+    begun->next = block + 1;
+    const core::Vec3 point = point_of(execution), direction = angles_of(execution);
+    if (by_points) {
+        if (auto done = refuse_words(block == 0 ? "XYZIJKR" : "IJKR"); !done) return done;
+        if (block == 0) return {};
+        if (block < 3) {
+            begun->points[static_cast<size_t>(block) - 1] = point;
+            return {};
+        }
+        FEELER_TRY(execution.modal().transforms.tilt,
+                   plane_through(execution, begun->points[0], begun->points[1], point));
+    } else {
+        if (auto done = refuse_words(block == 1 ? "R" : "XYZR"); !done) return done;
+        if (block == 1) {
+            begun->points = {point, direction};
+            return {};
+        }
+        FEELER_TRY(execution.modal().transforms.tilt,
+                   plane_along(execution, begun->points[0], begun->points[1], direction));
+    }
+    begun.reset();
+    return {};
+}
+
+} // namespace
+
+core::Result<void> set_tilted_plane(Execution& execution) {
+    const Word* form = is_feature_plane(execution) ? nullptr : execution.statement.word('P');
+    if (form && (form->value == 2.0 || form->value == 3.0))
+        return add_to_plane(execution, form->value == 2.0);
+    TiltedPlane plane{.origin = point_of(execution)};
     FEELER_TRY(plane.axes, axes_of_plane(execution));
     execution.modal().transforms.tilt = plane;
     return {};
@@ -558,10 +655,31 @@ core::Result<void> check_dynamic_offset(const Execution& execution, const ModalS
                       where);
 }
 
+core::Result<void> check_plane_is_complete(const Execution& execution, const ModalState& before) {
+    const auto& begun = before.transforms.begun_plane;
+    if (!begun || execution.modal().transforms.begun_plane != begun) return {};
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("G68.2 P{} is not complete: Q{} must come before this block",
+                                  begun->by_points ? 2 : 3, begun->next),
+                      {.line = execution.block.line, .column = 1});
+}
+
 AxisValues values_or_zero(const Position& position) {
     AxisValues values{};
     for (size_t axis = 0; axis < axis_count; ++axis) values[axis] = position[axis].value_or(0.0);
     return values;
+}
+
+bool is_upright(const core::Machine& machine, const Position& position) {
+    constexpr double rounding = 1e-9;
+    for (size_t axis = 3; axis < 6; ++axis)
+        if (machine.axes[axis].present && machine.axes[axis].side == core::Side::tool
+            && !position[axis])
+            return false;
+    const AxisValues values = values_or_zero(position);
+    const core::Vec3 up(0.0, 0.0, 1.0);
+    const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation * up;
+    return glm::distance(tool, up) < rounding;
 }
 
 bool turns_between(const Position& from, const Position& to) {

@@ -39,6 +39,9 @@ core::Result<void> turn_tool_to_plane(Execution& execution);
 /// The values of a position; 0 where it is unknown.
 AxisValues values_or_zero(const Position& position);
 
+/// Whether the tool is along Z of the machine; false if an axis that turns it is unknown.
+bool is_upright(const core::Machine& machine, const Position& position);
+
 /// Whether a rotary axis has another position.
 bool turns_between(const Position& from, const Position& to);
 
@@ -119,6 +122,11 @@ bool turns_to_plane(const Execution& execution);
 ///
 /// Errors: unsupported if a rotary axis or a work offset has changed.
 core::Result<void> check_dynamic_offset(const Execution& execution, const ModalState& before);
+
+/// After a block: whether it continues the blocks of G68.2 P2 or P3 if these are not complete.
+///
+/// Errors: invalid_value.
+core::Result<void> check_plane_is_complete(const Execution& execution, const ModalState& before);
 
 /// The axis of the plane that the first absolute motion after G68 does not name. It keeps the
 /// program coordinate it had before G68.

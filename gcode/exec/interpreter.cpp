@@ -340,6 +340,7 @@ core::Result<void> Interpreter::Scratch::run_block(InterpreterState& state) {
     result.in_machine = in_machine_coordinates(execution);
     if (auto done = language.execute(execution, before.modal); !done) return done;
     if (auto done = check_dynamic_offset(execution, before.modal); !done) return done;
+    if (auto done = check_plane_is_complete(execution, before.modal); !done) return done;
     mark_uncertain_motions(execution, before.modal);
     if (remapped) lose_remapped(execution, *remapped);
     return {};

@@ -56,6 +56,11 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
         add(digest, tilt->origin);
         digest.add(uint64_t{tilt->follows_table});
     }
+    digest.add(uint64_t{transforms.begun_plane.has_value()});
+    if (const auto& begun = transforms.begun_plane) {
+        digest.add(number_of(2 * begun->next + int(begun->by_points)));
+        for (const core::Vec3& point : begun->points) add(digest, point);
+    }
     digest.add(uint64_t{transforms.follows_vectors});
     digest.add(uint64_t{transforms.polar.has_value()});
     if (const auto& polar = transforms.polar) {

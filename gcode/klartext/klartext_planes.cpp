@@ -108,13 +108,6 @@ core::Result<AxisValues> axes_for_plane(Execution& execution) {
     return axes_along_z(execution, command.span, words_of(execution), command.solution);
 }
 
-bool is_upright(const core::Machine& machine, const Position& position) {
-    const AxisValues values = values_or_zero(position);
-    const core::Vec3 up(0.0, 0.0, 1.0);
-    const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation * up;
-    return glm::distance(tool, up) < rounding;
-}
-
 /// MB: along the tool, before the rotary axes turn. To the limit of Z if that is known.
 void retract(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);

@@ -673,6 +673,9 @@ AxisValues whole(const SettingValue& value) {
     return values;
 }
 
+constexpr std::string_view swivel_data =
+    "SINUMERIK Operate (IM9), Commissioning Manual 12/2017, 15.7, parameters of tool carriers";
+
 constexpr ControlSetting settings[] = {
     {fanuc, "1240", "first reference point (G28), machine coordinates", SettingKind::position,
      [](Environment& to, const SettingValue& value) { to.home = whole(value); },
@@ -702,6 +705,24 @@ constexpr ControlSetting settings[] = {
     {siemens, "MD30600", "first fixed point (G75), machine coordinates", SettingKind::position,
      [](Environment& to, const SettingValue& value) { to.fixed_point = whole(value); },
      "SINUMERIK 840D sl, Programming Manual Fundamentals, approaching a fixed point (G75)"},
+    {siemens, "TC_CARR38", "where CYCLE800 retracts along X, machine coordinate",
+     SettingKind::length,
+     [](Environment& to, const SettingValue& value) {
+         to.swivel_retract[0] = std::get<double>(value);
+     },
+     swivel_data},
+    {siemens, "TC_CARR39", "where CYCLE800 retracts along Y, machine coordinate",
+     SettingKind::length,
+     [](Environment& to, const SettingValue& value) {
+         to.swivel_retract[1] = std::get<double>(value);
+     },
+     swivel_data},
+    {siemens, "TC_CARR40", "where CYCLE800 retracts along Z, machine coordinate",
+     SettingKind::length,
+     [](Environment& to, const SettingValue& value) {
+         to.swivel_retract[2] = std::get<double>(value);
+     },
+     swivel_data},
     {klartext, "datum", "the row of the preset table that is the work offset of the set-up",
      SettingKind::number,
      [](Environment& to, const SettingValue& value) { to.datum = std::get<double>(value); },

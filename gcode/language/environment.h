@@ -179,6 +179,7 @@ struct Environment {
     std::optional<AxisValues> home{};        // G28; machine zero if not stated
     std::optional<AxisValues> second_home{}; // G30; likewise
     std::optional<AxisValues> fixed_point{}; // Siemens' G75; machine coordinates
+    Position swivel_retract{}; // where CYCLE800 retracts before it swivels; empty: not known
     std::array<std::optional<AxisValues>, 2> further_homes{}; // G30 P3 and P4
     // G60: the last part of its rapid, whose sign is the direction; empty: not known.
     std::optional<AxisValues> one_way_approach{};

@@ -137,6 +137,15 @@ struct TiltedPlane {
     bool operator==(const TiltedPlane&) const = default;
 };
 
+/// G68.2 P2 and P3: what the blocks so far state of a plane, in work coordinates.
+struct BegunPlane {
+    bool by_points = true;                 // P2: three points; otherwise P3: two directions
+    int next = 0;                          // the Q of the next block
+    std::array<core::Vec3, 2> points = {}; // P2: the first two; P3: the origin, the X axis
+
+    bool operator==(const BegunPlane&) const = default;
+};
+
 /// G16: positions in the plane are given by radius and angle.
 struct PolarPositions {
     std::array<double, 2> origin{};
@@ -151,6 +160,7 @@ struct ProgramTransforms {
     MirrorImage mirror;
     std::optional<PlaneRotation> rotation;
     std::optional<TiltedPlane> tilt;
+    std::optional<BegunPlane> begun_plane;
     bool follows_vectors = false; // G43.5: moves specify the tool direction
     std::optional<PolarPositions> polar;
     std::optional<Position> before_rotation; // program coordinates just before G68

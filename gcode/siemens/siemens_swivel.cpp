@@ -22,6 +22,7 @@ struct Swivel {
     core::Vec3 before, after; // X0 Y0 Z0 and X1 Y1 Z1, mm
     core::Vec3 angles;        // in the order of the mode
     int direction = 0;        // _DIR
+    double way_back = 0.0;    // _FR_I, mm
     size_t given = 0;         // parameters
 
     bool adds() const { return std::abs(state) % 10 == 1; }
@@ -42,6 +43,7 @@ Swivel swivel_of(const Execution& execution, const std::vector<std::optional<dou
                   .after = lengths(10),
                   .angles = {value(7), value(8), value(9)},
                   .direction = whole(13),
+                  .way_back = to_mm(value(14), execution.modal().unit),
                   .given = values.size()};
     if (values.size() > 3 && values[3]) swivel.mode = whole(3);
     return swivel;
@@ -71,6 +73,57 @@ core::Result<core::Mat3> rotation_of(const Swivel& swivel, core::SourceSpan wher
                 fmt::format("CYCLE800: mode {} names no axis for its angle {}", swivel.mode, i + 1),
                 where);
     return rotation;
+}
+
+/// The way that a retract takes through machine coordinates; empty if it is not known.
+///
+/// Source: SINUMERIK 840D sl, Turning, Operating Manual 06/2019, swivel plane: the kinds of
+/// retract.
+///         Commissioning Manual 12/2017, 15.7: where the machine builder states its positions.
+std::vector<Position> way_of_retract(const Execution& execution, const Swivel& swivel) {
+    constexpr int along_z = 1, along_z_then_xy = 2, along_tool = 4, along_tool_by = 5;
+    const Position& stated = execution.environment.swivel_retract;
+    const Offsets& offsets = execution.modal().offsets;
+    const Position now = machine_from_program(offsets, execution.modal().position);
+    Position above = now, aside = now;
+    switch (swivel.retract) {
+    case along_z:
+        above[2] = stated[2];
+        return above[2] ? std::vector{above} : std::vector<Position>{};
+    case along_z_then_xy:
+        above[2] = stated[2];
+        aside = stated;
+        std::copy(now.begin() + 3, now.end(), aside.begin() + 3);
+        if (!aside[0] || !aside[1] || !aside[2]) return {};
+        return {above, aside};
+    case along_tool: {
+        const auto limit = offsets.machine ? offsets.machine->axes[2].max : std::optional<double>();
+        if (!limit || !is_upright(*offsets.machine, now)) return {};
+        above[2] = limit;
+        return {above};
+    }
+    case along_tool_by: {
+        if (!offsets.machine || !is_upright(*offsets.machine, now) || !now[2]) return {};
+        above[2] = *now[2] + swivel.way_back;
+        return {above};
+    }
+    default:
+        return {};
+    }
+}
+
+void retract(Execution& execution, const Swivel& swivel, core::SourceSpan where) {
+    const std::vector<Position> way = way_of_retract(execution, swivel);
+    for (const Position& machine : way)
+        execution.traverse(program_from_machine(execution.modal().offsets, machine));
+    if (way.empty())
+        lose_positions(execution, where,
+                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
+                       "move is not checked, nor are later ones until X, Y and Z have been "
+                       "programmed again",
+                       "State under [control] where it retracts: TC_CARR40 for Z, TC_CARR38 and "
+                       "TC_CARR39 for X and Y. Or retract before the cycle, and call it with 0 as "
+                       "its first parameter.");
 }
 
 /// Turns the rotary axes to the plane.
@@ -108,12 +161,7 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "cutter radius compensation first",
                           use.span);
     execution.column = use.span.column;
-    if (swivel.retract != 0)
-        lose_positions(execution, use.span,
-                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
-                       "move is not checked, nor are later ones until X, Y and Z have been "
-                       "programmed again",
-                       "Retract before the cycle, and call it with 0 as its first parameter.");
+    if (swivel.retract != 0) retract(execution, swivel, use.span);
     const bool deletes = !swivel.adds();
     if (!deletes && siemens_of(execution.state).frame != ProgramFrame{})
         return core::fail(ErrorCode::unsupported,

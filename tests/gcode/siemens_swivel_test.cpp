@@ -127,6 +127,72 @@ TEST(SiemensSwivel, KeepsTheTipIfItIsTracked) {
     EXPECT_LT(glm::distance(tip(0), tip(1)), 1e-9);
 }
 
+TEST(SiemensSwivel, RetractsWhereTheSetupSays) {
+    core::Machine machine = trunnion();
+    machine.axes[2].max = 600.0;
+    const auto retracted = [&](int kind, Position stated, const std::string& before = "") {
+        Environment environment = environment_of(machine, DialectId::siemens);
+        environment.swivel_retract = stated;
+        return driven(
+            fmt::format("T1 M6 D1\nG17 G90 G54 G710\nG0 X30 Y-20 Z15\n{}CYCLE800({},\"T\","
+                        "0,57,0,0,0,40,0,0,0,0,0,-1,70,1)\nG0 X1 Y2\nM30\n",
+                        before, kind),
+            environment);
+    };
+    const auto at = [](const Driven& found, size_t i) { return values_of(found.motions[i].to); };
+    const Position of_z{std::nullopt, std::nullopt, 555.0}, of_all{-11.0, -12.0, 555.0};
+
+    const Driven along_z = retracted(1, of_z);
+    ASSERT_EQ(along_z.motions.size(), 4u) << "approach, retract, turn, next";
+    core::AxisValues expected = at(along_z, 0);
+    expected[2] = 555.0;
+    EXPECT_EQ(at(along_z, 1), expected);
+    EXPECT_NE(at(along_z, 2)[3], 0.0);
+    EXPECT_EQ(at(along_z, 2)[2], 555.0) << "the linear axes stand while the table turns";
+    for (const core::PathCertainty path : along_z.paths) EXPECT_EQ(path, core::PathCertainty{});
+
+    const Driven aside = retracted(2, of_all);
+    ASSERT_EQ(aside.motions.size(), 5u);
+    EXPECT_EQ(at(aside, 1), expected);
+    EXPECT_NEAR(at(aside, 2)[0], -11.0, 1e-9);
+    EXPECT_NEAR(at(aside, 2)[1], -12.0, 1e-9);
+    EXPECT_NEAR(at(aside, 2)[2], 555.0, 1e-9);
+
+    EXPECT_NEAR(at(retracted(4, {}), 1)[2], 600.0, 1e-9) << "as far as Z goes";
+    EXPECT_NEAR(at(retracted(5, {}), 1)[2], at(along_z, 0)[2] + 70.0, 1e-9);
+
+    // From a plane that is tilted already: along Z of the machine, not of the plane.
+    const Driven tilted =
+        retracted(1, of_z, "CYCLE800(0,\"T\",0,57,0,0,0,20,0,0,0,0,0,-1,100,1)\nG0 X30 Y-20 Z15\n");
+    const size_t last = tilted.motions.size() - 3; // before turn and next
+    EXPECT_NEAR(at(tilted, last)[2], 555.0, 1e-9);
+    for (const size_t axis : {0, 1, 3, 4})
+        EXPECT_NEAR(at(tilted, last)[axis], at(tilted, last - 1)[axis], 1e-9);
+}
+
+TEST(SiemensSwivel, IsUndecidedIfItRetractsToAnUnknownPlace) {
+    core::Machine machine = trunnion();
+    machine.axes[2].max.reset();
+    const auto is_certain = [&](int kind, Position stated) {
+        Environment environment = environment_of(machine, DialectId::siemens);
+        environment.swivel_retract = stated;
+        const Driven found = driven(
+            fmt::format(
+                "T1 M6 D1\nG17 G90 G54 G710\nG0 X3 Y-2 Z15\nCYCLE800({},\"T\",0,57,0,0,0,40,0,"
+                "0,0,0,0,-1,70,1)\nG0 X1 Y2\nM30\n",
+                kind),
+            environment);
+        return found.paths.back() == core::PathCertainty{};
+    };
+    EXPECT_TRUE(is_certain(0, {}));
+    EXPECT_FALSE(is_certain(1, {}));
+    EXPECT_FALSE(is_certain(1, {1.0, 2.0, std::nullopt}));
+    EXPECT_FALSE(is_certain(2, {std::nullopt, std::nullopt, 500.0}));
+    EXPECT_FALSE(is_certain(3, {1.0, 2.0, 500.0})) << "no known kind";
+    EXPECT_FALSE(is_certain(4, {1.0, 2.0, 500.0})) << "Z has no limit";
+    EXPECT_TRUE(is_certain(5, {}));
+}
+
 TEST(SiemensSwivel, IsUndecidedWithoutTheRotaryAxes) {
     const Driven bare =
         driven("G17 G90 G710\nG0 X1 Y1 Z50\nCYCLE800(0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\n"

@@ -1,3 +1,7 @@
+#include <cmath>
+#include <random>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +54,79 @@ TEST(TiltedPlane, RollPitchYawTurnAboutTheWorkAxesInTheirOrder) {
     EXPECT_THAT(error_of("G68.2 P1 Q122 I1"), HasSubstr("once each"));
 }
 
+TEST(TiltedPlane, GoesThroughThreePoints) {
+    // X along the work's Y, and +Y on the side of the work's Z: Z is the work's X.
+    const std::string plane = "G68.2 P2 Q1 X10 Y20 Z30\nG68.2 P2 Q2 X10 Y25 Z30\n"
+                              "G68.2 P2 Q3 X10 Y22 Z37\n";
+    expect_machine_at(plane + "G0 X1 Y2 Z3", 13, 21, 32, true);
+    expect_machine_at("G91\nG68.2 P2 Q0 X0 Y0 Z0 R0\n" + plane + "G90\nG0 X1 Y2 Z3", 13, 21, 32,
+                      true);
+    expect_machine_at("G20\nG68.2 P2 Q1 X1\nG68.2 P2 Q2 X2\nG68.2 P2 Q3 Z1\nG0 X1 Y1 Z1", 50.8,
+                      -25.4, 25.4, true);
+}
+
+TEST(TiltedPlane, HasTwoStatedDirections) {
+    expect_machine_at("G68.2 P3 Q1 X10 Y20 Z30 I0 J4 K0\nG68.2 P3 Q2 I.5 J0 K0\nG0 X1 Y2 Z3", 13,
+                      21, 32, true);
+    // Rounded directions: the axis of the tool counts.
+    expect_machine_at("G68.2 P3 Q1 I1 J0 K.001\nG68.2 P3 Q2 I0 J0 K1\nG0 X1 Y2 Z3", 1, 2, 3, false);
+}
+
+TEST(TiltedPlane, ThroughRandomPointsIsTheSameAsByAngles) {
+    std::mt19937 random(682);
+    std::uniform_real_distribution<double> angle(-80.0, 80.0), place(-50.0, 50.0);
+    for (int i = 0; i < 500; ++i) {
+        const core::Vec3 angles(angle(random), angle(random), angle(random));
+        const core::Vec3 origin(place(random), place(random), place(random));
+        // About Z, about the new X, about the new Z.
+        const core::Mat3 axes =
+            turned_about(2, angles.x) * turned_about(0, angles.y) * turned_about(2, angles.z);
+        const core::Vec3 second = origin + axes * core::Vec3(5.0 + std::abs(place(random)), 0, 0);
+        const core::Vec3 third =
+            origin + axes * core::Vec3(place(random), 5.0 + std::abs(place(random)), 0);
+        const auto words = [](const char* letters, const core::Vec3& v) {
+            return fmt::format("{}{:.10f} {}{:.10f} {}{:.10f}", letters[0], v.x, letters[1], v.y,
+                               letters[2], v.z);
+        };
+        const std::string move = "G0 X7 Y-8 Z9";
+        const Position by_angles =
+            lowered("G68.2 " + words("XYZ", origin) + " " + words("IJK", angles) + "\n" + move)
+                .machine;
+        const Position by_points =
+            lowered("G68.2 P2 Q1 " + words("XYZ", origin) + "\nG68.2 P2 Q2 " + words("XYZ", second)
+                    + "\nG68.2 P2 Q3 " + words("XYZ", third) + "\n" + move)
+                .machine;
+        const Position by_directions =
+            lowered("G68.2 P3 Q1 " + words("XYZ", origin) + " " + words("IJK", 3.0 * axes[0])
+                    + "\nG68.2 P3 Q2 " + words("IJK", axes[2]) + "\n" + move)
+                .machine;
+        for (size_t axis = 0; axis < 3; ++axis) {
+            ASSERT_NEAR(*by_points[axis], *by_angles[axis], 1e-7);
+            ASSERT_NEAR(*by_directions[axis], *by_angles[axis], 1e-7);
+        }
+    }
+}
+
+TEST(TiltedPlane, RefusesAnIncompletePlane) {
+    const std::string first = "G68.2 P2 Q1 X1\n", second = "G68.2 P2 Q2 X5\n";
+    EXPECT_THAT(error_of("G68.2 P2 Q2 X1"), HasSubstr("begins with Q1"));
+    EXPECT_THAT(error_of("G68.2 P2 X1"), HasSubstr("begins with Q1"));
+    EXPECT_THAT(error_of("G68.2 P3 Q0 X1"), HasSubstr("begins with Q1"));
+    EXPECT_THAT(error_of(first + "G68.2 P2 Q3 X1"), HasSubstr("Q2 must come next"));
+    EXPECT_THAT(error_of(first + "G68.2 P3 Q2 K1"), HasSubstr("P2 Q2 must come next"));
+    EXPECT_THAT(error_of(first + "G0 X1"), HasSubstr("Q2 must come before this block"));
+    EXPECT_THAT(error_of(first + second + "M30"), HasSubstr("Q3 must come before this block"));
+    EXPECT_THAT(error_of(first + "G69"), HasSubstr("must come before"));
+    EXPECT_THAT(error_of(first + "G68.2 X1 I20"), HasSubstr("must come before"));
+    EXPECT_THAT(error_of(first + second + "G68.2 P2 Q3 X9"), HasSubstr("on one line"));
+    EXPECT_THAT(error_of(first + first), HasSubstr("Q2 must come next"));
+    EXPECT_THAT(error_of("G68.2 P2 Q0 X2"), HasSubstr("not supported yet in this block"));
+    EXPECT_THAT(error_of("G68.2 P2 Q1 X2 I5"), HasSubstr("not supported yet in this block"));
+    EXPECT_THAT(error_of("G68.2 P3 Q1 I1\nG68.2 P3 Q2 I.1 K1"), HasSubstr("perpendicular"));
+    EXPECT_THAT(error_of("G68.2 P3 Q1\nG68.2 P3 Q2 K1"), HasSubstr("no length"));
+    EXPECT_THAT(error_of("G68.2 P4 I20"), HasSubstr("projected angles"));
+}
+
 TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
     expect_machine_at("G68.2 X10 Y20 Z30 I0 J0 K0\nG53.1\nG0 X1 Y2 Z3", 11, 22, 33, false);
     expect_machine_at("G68.2 X0 Y0 Z0 I90 J0 K0\nG0 X1 Y2 Z3", -2, 1, 3, false);
@@ -58,7 +135,6 @@ TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
 TEST(TiltedPlane, IsLeftWithG69) {
     expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG69\nG0 X1 Y2 Z3", 1, 2, 3, false);
     EXPECT_THAT(error_of("G53.1"), HasSubstr("program G68.2 first"));
-    EXPECT_THAT(error_of("G68.2 P2 Q0 X0 Y0 Z0"), HasSubstr("use Euler angles"));
 }
 
 TEST(ToolCentre, G434IsG43WithANote) {

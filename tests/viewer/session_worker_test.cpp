@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <future>
 
@@ -7,6 +9,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/check/setup_sheet.h"
+#include "app/view/model/axis_display.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/open_programs.h"
 #include "app/view/model/scene_of.h"
@@ -76,17 +79,29 @@ private:
     }};
 };
 
-/// The arrows at the zero of the program after the first block of a line.
-std::optional<render::Triad> zero_after(Watcher& watcher, const std::string& line) {
+/// Goes to the end of the first block of a line. Returns whether it can be seen.
+bool go_after(Watcher& watcher, const std::string& line) {
     const auto block = find_line(watcher.model, line);
-    if (!block) return {};
+    if (!block) return false;
     watcher.model.cursor = {*block, 1.0};
     watcher.worker().show({*block, true});
-    const auto is_there = [&] {
+    return watcher.wait_for([&] {
         const auto& state = watcher.model.block_state;
         return state && state->block == *block && state->at_end;
-    };
-    return watcher.wait_for(is_there) ? program_triad(watcher.model) : std::nullopt;
+    });
+}
+
+/// The arrows at the zero of the program after the first block of a line.
+std::optional<render::Triad> zero_after(Watcher& watcher, const std::string& line) {
+    return go_after(watcher, line) ? program_triad(watcher.model) : std::nullopt;
+}
+
+/// The program on a trunnion with tilted planes and tool centre point control.
+app::CheckJob tilted_faces() {
+    app::CheckJob job;
+    job.program = assets + "programs/tilted_faces.nc";
+    job.setup = assets + "setups/tilted_faces.toml";
+    return job;
 }
 
 TEST(SessionWorker, ShowsNothingOldAsCurrent) {
@@ -140,16 +155,106 @@ TEST(SessionWorker, KnowsWhereTheZeroOfTheProgramIs) {
 }
 
 TEST(SessionWorker, FollowsTheZeroIntoATiltedPlane) {
-    app::CheckJob job;
-    job.program = assets + "programs/tilted_faces.nc";
-    job.setup = assets + "setups/tilted_faces.toml";
     Watcher watcher;
-    watcher.open(job);
+    watcher.open(tilted_faces());
     ASSERT_TRUE(watcher.record());
     const auto triad = zero_after(watcher, "84"); // after G68.2 X-40. Y0 Z-20. I270. J90.
     ASSERT_TRUE(triad);
     EXPECT_LT(glm::distance(triad->origin, core::Vec3(-40, 0, -20)), 1e-6);
     EXPECT_LT(glm::distance(triad->axes[2], core::Vec3(-1, 0, 0)), 1e-6); // out of the left face
+}
+
+/// The coordinates of the program on the axis display: X, Y, Z.
+core::Vec3 program_position(const ViewModel& model) {
+    const auto rows = axis_rows(model);
+    core::Vec3 position(core::infinity);
+    for (size_t i = 0; i < std::min<size_t>(rows.size(), 3); ++i)
+        position[static_cast<int>(i)] = rows[i].program.value_or(core::infinity);
+    return position;
+}
+
+TEST(AxisDisplay, ShowsThePositionThatTheProgramStates) {
+    Watcher watcher;
+    watcher.open(tilted_faces());
+    ASSERT_TRUE(watcher.record());
+    struct Stated {
+        const char* line;
+        core::Vec3 position;
+        double a, c;
+    };
+    // In planes tilted by 45 degrees, the second turned by 90; with the tip kept on a ring.
+    const Stated all[] = {{"15", {-60, 0, -4.243}, -45, 0},
+                          {"26", {60, 0, -4.243}, -45, -90},
+                          {"98", {23.201, 2.03, -2.698}, -20, -85},
+                          {"115", {0, 23.29, -2.698}, -20, 0}};
+    for (const Stated& stated : all) {
+        ASSERT_TRUE(go_after(watcher, stated.line));
+        EXPECT_LT(glm::distance(program_position(watcher.model), stated.position), 1e-6)
+            << stated.line;
+        const auto rows = axis_rows(watcher.model);
+        ASSERT_EQ(rows.size(), 5u);
+        EXPECT_NEAR(std::abs(rows[3].machine), -stated.a, 1e-6) << stated.line;
+        EXPECT_NEAR(std::remainder(rows[4].machine - stated.c, 180.0), 0.0, 1e-6) << stated.line;
+        EXPECT_NEAR(*rows[3].below, rows[3].machine + 110.0, 1e-9);
+        EXPECT_NEAR(*rows[3].above, 30.0 - rows[3].machine, 1e-9);
+        EXPECT_FALSE(rows[4].below || rows[4].above) << "C turns endlessly";
+    }
+    const auto rows = axis_rows(watcher.model);
+    EXPECT_TRUE(rows[4].moves);
+    EXPECT_FALSE(rows[3].moves);
+}
+
+TEST(AxisDisplay, MovesAxesByHandWithoutChangingTheProgram) {
+    Watcher watcher;
+    watcher.open(tilted_faces());
+    ASSERT_TRUE(watcher.record());
+    ASSERT_TRUE(go_after(watcher, "15"));
+    ViewModel& model = watcher.model;
+    const auto planned = axis_rows(model);
+    const auto cradle = [&] {
+        const render::Scene scene = scene_of(model);
+        const auto found =
+            std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                         [](const auto& body) { return body.name == "bearing-left"; });
+        return found->stock_from_body;
+    };
+    const auto key = key_of(model, {});
+    const core::Transform before = cradle();
+    EXPECT_TRUE(witness_of(model));
+    jog(model, 3, 0.0);
+    EXPECT_TRUE(is_jogged(model));
+    EXPECT_FALSE(key_of(model, {}) == key) << "a new picture is drawn";
+    EXPECT_FALSE(witness_of(model)) << "it belongs to another position";
+    EXPECT_NE(cradle().rotation, before.rotation) << "the bearings stand, the work turns";
+    EXPECT_EQ(axis_rows(model)[3].machine, 0.0);
+    EXPECT_TRUE(axis_rows(model)[3].moves);
+    EXPECT_FALSE(axis_rows(model)[0].moves);
+    EXPECT_NE(axis_rows(model)[1].program, planned[1].program) << "the plane has turned away";
+    jog(model, 0, 1e4);
+    EXPECT_EQ(axis_rows(model)[0].machine, 300.0) << "as far as the axis goes";
+    jog(model, 5, 1e4);
+    EXPECT_EQ(axis_rows(model)[4].machine, 1e4);
+    perform(model, Command::close_popup, 0.0);
+    EXPECT_FALSE(is_jogged(model));
+    EXPECT_EQ(cradle().rotation, before.rotation);
+    jog(model, 3, 0.0);
+    model.cursor.fraction = 0.5;
+    EXPECT_FALSE(is_jogged(model));
+    EXPECT_NE(axis_rows(model)[3].machine, 0.0);
+}
+
+TEST(AxisDisplay, ShowsTheToolWhereTheTableTurns) {
+    Watcher watcher;
+    watcher.open(tilted_faces());
+    ASSERT_TRUE(watcher.record());
+    ASSERT_TRUE(go_after(watcher, "15")); // the tool is across the chamfer at Y-40
+    const render::Scene scene = scene_of(watcher.model);
+    const auto tool = std::find_if(scene.triads.begin(), scene.triads.end(),
+                                   [](const auto& triad) { return triad.name == "tool"; });
+    ASSERT_NE(tool, scene.triads.end());
+    const double half = std::sqrt(0.5);
+    EXPECT_LT(glm::distance(tool->axes[2], core::Vec3(0, -half, half)), 1e-9);
+    EXPECT_LT(glm::distance(tool->origin, *tip_now(watcher.model)), 1e-12);
 }
 
 TEST(SessionWorker, PublishesTheResultOfACheck) {

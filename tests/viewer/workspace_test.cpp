@@ -90,6 +90,31 @@ TEST(Workspace, StatesWhatIsAssumedWithOneClick) {
     EXPECT_EQ(text_of_setup(model), "");
 }
 
+TEST(Workspace, NamesToolsThatNothingDescribesBesideTheFirstStatedOne) {
+    ViewModel model = opened_model();
+    auto opened = std::make_shared<OpenedProgram>(*model.program);
+    auto sheet = std::make_shared<app::SetupSheet>(*opened->sheet);
+    app::SheetTool guess = sheet->tools.at(0), of_comment = guess;
+    guess.tool.number = core::ToolNumber{4};
+    guess.is_guess = true;
+    of_comment.tool.number = core::ToolNumber{5};
+    sheet->tools.insert(sheet->tools.end(), {guess, of_comment});
+    opened->sheet = sheet;
+    model.program = opened;
+    add_box(model);
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("[[tool]]")))
+        << "nothing is lost while no tool is stated";
+    state_item(model, {Kind::tool, {}, core::ToolNumber{3}});
+    EXPECT_THAT(text_of_setup(model), HasSubstr("[[tool]]\nnumber = 4\n"));
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("number = 5")));
+    model.workspace.selected = {Kind::tool, {}, core::ToolNumber{4}};
+    delete_selected(model);
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("number = 4")));
+    undo(model, 0.0);
+    undo(model, 0.0);
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("[[tool]]")));
+}
+
 TEST(Workspace, ShowsAToolThatTheSetupLacks) {
     ViewModel model = opened_model();
     auto opened = std::make_shared<OpenedProgram>(*model.program);

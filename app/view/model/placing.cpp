@@ -12,6 +12,7 @@
 
 #include "app/check/setup_sheet.h"
 #include "app/setup/setup_changes.h"
+#include "app/setup/setup_text.h"
 #include "app/setup/stated_setup.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/view_model.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/check/setup_sheet.h"
+#include "app/view/model/axis_display.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/program_zero.h"
 #include "app/view/model/view_model.h"
@@ -34,12 +35,6 @@ const BlockState* view_of(const ViewModel& model) {
     return model.block_state ? model.block_state.get() : nullptr;
 }
 
-std::optional<core::AxisValues> axes_now(const ViewModel& model, const BlockState& view) {
-    const double fraction = view.block == model.cursor.block ? model.cursor.fraction : 1.0;
-    if (const auto pose = pose_at(view.poses, fraction)) return pose;
-    return view.standing;
-}
-
 bool shows(const VisibleParts& shown, render::BodyRole role) {
     switch (role) {
     case render::BodyRole::fixture:
@@ -61,7 +56,7 @@ render::ClearanceState state_of_pair(const BlockRow& row, const PairWitness& pai
 }
 
 void mark_pair(const ViewModel& model, render::Scene& scene) {
-    if (!model.has_rows()) return;
+    if (!model.has_rows() || is_jogged(model)) return;
     const auto pair = witness_in(model.row(), model.shown_pair);
     if (!pair) return;
     const render::ClearanceState state = state_of_pair(model.row(), *pair);
@@ -95,7 +90,7 @@ void add_ghost(const ViewModel& model, const BlockState& view, const core::AxisV
 
 void add_bodies(const ViewModel& model, const BlockState& view, render::Scene& scene) {
     const core::Setup& setup = view.scene->setup;
-    const auto values = axes_now(model, view);
+    const auto values = shown_axes(model);
     const core::AxisValues standing = values.value_or(core::AxisValues{});
     scene.bodies = render::setup_bodies(setup, view.scene->meshes, standing, view.mounted_fixtures);
     if (!values)
@@ -154,7 +149,7 @@ void add_drag(const ViewModel& model, render::Scene& scene) {
 std::optional<core::Vec3> tip_now(const ViewModel& model) {
     const BlockState* view = view_of(model);
     if (!view || !view->tool || !view->scene->setup.tools.contains(*view->tool)) return {};
-    const auto values = axes_now(model, *view);
+    const auto values = shown_axes(model);
     if (!values) return {};
     const core::Setup& setup = view->scene->setup;
     return render::tip_in_stock(setup, setup.tools.at(*view->tool).length, *values);
@@ -163,15 +158,15 @@ std::optional<core::Vec3> tip_now(const ViewModel& model) {
 std::optional<render::Triad> program_triad(const ViewModel& model) {
     const BlockState* view = view_of(model);
     if (!view || !view->zero || !view->scene) return {};
-    render::Triad triad = triad_of(*view->zero, view->scene->setup,
-                                   axes_now(model, *view).value_or(core::AxisValues{}));
+    render::Triad triad =
+        triad_of(*view->zero, view->scene->setup, shown_axes(model).value_or(core::AxisValues{}));
     if (!core::is_finite(triad.origin)) return {};
     if (model.program && model.program->counts_blocks) triad.name = "datum"; // Klartext: no G54
     return triad;
 }
 
 std::optional<render::Witness> witness_of(const ViewModel& model) {
-    if (!model.has_rows() || !model.settings.shown.witness) return {};
+    if (!model.has_rows() || !model.settings.shown.witness || is_jogged(model)) return {};
     // Until the worker has made the new view, the tool is drawn at its position in the old one.
     if (model.block_state && model.block_state->block != model.cursor.block) return {};
     const auto pair = witness_in(model.row(), model.shown_pair);
@@ -200,14 +195,28 @@ std::optional<render::Triad> selected_triad(const ViewModel& model) {
         .name = selected.name, .origin = frame->second.translation, .axes = frame->second.rotation};
 }
 
+/// The arrows of the tool, at its tip, on a machine that can turn it relative to the work.
+std::optional<render::Triad> tool_triad(const ViewModel& model) {
+    const BlockState& view = *model.block_state;
+    const core::Setup& setup = view.scene->setup;
+    const auto values = shown_axes(model);
+    const auto tool = view.tool ? setup.tools.find(*view.tool) : setup.tools.end();
+    if (!values || tool == setup.tools.end() || !setup.machine.has_rotary()) return {};
+    const core::Transform pose = render::stock_from_tip(setup, tool->second.length, *values);
+    if (!core::is_finite(pose.translation)) return {};
+    return render::Triad{"tool", pose.translation, pose.rotation, true};
+}
+
 void add_triads(const ViewModel& model, render::Scene& scene) {
     const auto program = program_triad(model), selected = selected_triad(model);
     if (program) scene.triads.push_back(*program);
     if (selected && !(program && program->name == selected->name))
         scene.triads.push_back(*selected);
     const BlockState* view = view_of(model);
-    if (!view || !view->scene || !model.program || model.program->is_inferred) return;
-    const auto values = axes_now(model, *view).value_or(core::AxisValues{});
+    if (!view || !view->scene) return;
+    if (const auto tool = tool_triad(model)) scene.triads.push_back(*tool);
+    if (!model.program || model.program->is_inferred) return;
+    const auto values = shown_axes(model).value_or(core::AxisValues{});
     scene.triads.push_back(machine_triad(view->scene->setup, values));
 }
 
@@ -372,6 +381,7 @@ SceneKey key_of(const ViewModel& model, const render::Viewport& size) {
         key.section_cuts_tool = model.section->cuts_tool;
     }
     key.drag = model.placing.drag;
+    if (is_jogged(model)) key.jog = model.jog->values;
     key.measured = marked_points(model);
     key.inch = model.settings.inch;
     if (const auto selected = selected_triad(model)) key.work_offset = selected->name;

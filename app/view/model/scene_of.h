@@ -48,6 +48,7 @@ struct SceneKey {
     bool inch = false;                    // the unit of the grid
     std::optional<core::Overlap> overlap; // of the shown pair
     std::optional<core::Transform> drag;  // of a body that is placed
+    std::optional<core::AxisValues> jog;  // axes that were moved by hand
     std::vector<core::Vec3> measured;     // and the points of a section
     std::string work_offset;              // that is selected in the set-up
     int width = 0, height = 0;

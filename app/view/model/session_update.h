@@ -13,6 +13,7 @@
 #include "app/view/model/block_row.h"
 #include "core/motion/event.h"
 #include "core/sim/verdict.h"
+#include "gcode/language/modal_state.h"
 #include "render/stock_brick.h"
 #include "render/tool_path.h"
 
@@ -71,13 +72,14 @@ struct BlockState {
     size_t block = 0;
     bool at_end = true; // true: the stock after the block; false: before it
     std::shared_ptr<const SceneSetup> scene;
-    std::vector<Pose> poses;                  // of the block
-    std::optional<core::AxisValues> standing; // axis positions after the block
-    std::optional<core::ToolNumber> tool;     // used in the block
-    std::optional<ProgramZero> zero;          // after the block
+    std::vector<Pose> poses;                         // of the block
+    std::optional<core::AxisValues> standing;        // axis positions after the block
+    std::optional<core::ToolNumber> tool;            // used in the block
+    std::optional<ProgramZero> zero;                 // after the block
+    std::optional<gcode::Offsets> offsets_in_effect; // after the block; its machine: the scene's
     std::vector<bool> mounted_fixtures;
     render::StockBricks stock;
-    std::vector<ShownValue> modal, axes, offsets, parameters;
+    std::vector<ShownValue> modal, offsets, parameters;
     std::vector<ShownValue> watched;
     uint64_t serial = 0;      // consecutive number of the view
     bool is_outdated = false; // its stock is that of the set-up before

@@ -23,6 +23,7 @@
 #include "app/view/model/scene_of.h"
 #include "core/base/file_reads.h"
 #include "core/cad/cad_file.h"
+#include "gcode/exec/interpreter.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -52,14 +53,14 @@ std::optional<core::ToolNumber> tool_of(const std::vector<core::Event>& events,
 
 /// The values of the control that a view shows.
 struct ControlValues {
-    std::vector<NamedValue> modal, axes, offsets, parameters;
+    std::vector<NamedValue> modal, offsets, parameters;
 };
 
 /// The values at the position of a session.
 ControlValues values_of(const DebugSession& session) {
     const gcode::InterpreterState& control = session.control();
     const gcode::Environment& environment = session.environment();
-    return {modal_values(control, environment), axis_values(control), offset_values(control),
+    return {modal_values(control, environment), offset_values(control),
             parameter_values(control, environment)};
 }
 
@@ -210,9 +211,11 @@ void WorkerSession::show(const ShowRequest& request) {
     view->standing = known_values(view->scene->setup.machine, session_->position());
     view->mounted_fixtures = session_->mounted_fixtures();
     view->zero = program_zero(session_->control());
+    view->offsets_in_effect = session_->control().modal.offsets;
+    if (const core::Machine*& machine = view->offsets_in_effect->machine)
+        machine = &view->scene->setup.machine; // that of the session does not live as long
     const ControlValues after = values_of(*session_);
     view->modal = compared(before.modal, after.modal);
-    view->axes = compared(before.axes, after.axes);
     view->offsets = compared(before.offsets, after.offsets);
     view->parameters = compared(before.parameters, after.parameters);
     view->watched = watched_values();

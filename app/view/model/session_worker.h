@@ -10,6 +10,7 @@
 
 #include "app/debug/what_if.h"
 #include "app/view/model/session_update.h"
+#include "render/setup_scene.h"
 
 namespace app {
 struct CheckJob;

@@ -93,6 +93,13 @@ struct Playback {
     bool slow_near = false; // slower where the clearance is small
 };
 
+/// Axes that were moved by hand; they stay there until the cursor leaves `from`.
+struct Jog {
+    uint64_t opening = 0; // number of the program
+    Cursor from;
+    core::AxisValues values{}; // machine coordinates
+};
+
 /// The window that is open on top of the panels.
 enum class Popup : uint8_t {
     none,
@@ -193,6 +200,7 @@ struct ViewModel {
     Cursor cursor;
     BodyNames shown_pair; // of the finding that is shown; empty: the deciding pair of the block
     Playback playback;
+    std::optional<Jog> jog;
     std::string filter_text;
     RowFilter filter;             // parsed
     std::vector<size_t> filtered; // rows that pass the filter; only with a filter

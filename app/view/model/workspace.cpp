@@ -161,6 +161,26 @@ void open_document(ViewModel& model, SetupDocument document) {
     take_in_text(model.workspace);
 }
 
+namespace {
+
+/// Names in a set-up that describes tools the others that the program uses and that nothing
+/// describes. A set-up that describes a job is not completed by tools that it does not name: their
+/// motions would not be checked any more.
+core::Result<std::string> with_guessed_tools(const ViewModel& model, const std::string& before,
+                                             std::string text) {
+    const SetupSheet* sheet = sheet_of(model);
+    const StatedSetup stated = stated_in(text);
+    if (!sheet || (stated.tools.empty() && stated.tool_library.empty())) return text;
+    for (const SheetTool& shown : sheet->tools) {
+        const core::ToolNumber number = shown.tool.number;
+        if (!shown.is_guess || path_of_tool(before, number)) continue; // renamed or deleted
+        FEELER_TRY(text, with_bare_tool(text, number));
+    }
+    return text;
+}
+
+} // namespace
+
 bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument::Edit& edit,
                 const std::string& mark) {
     Workspace& workspace = model.workspace;
@@ -172,7 +192,7 @@ bool edit_setup(ViewModel& model, const std::string& title, const SetupDocument:
         [&](const std::string& text) -> core::Result<std::string> {
             const std::string begun = begun_in(text, unit);
             FEELER_TRY(std::string changed, edit(begun));
-            return changed == begun ? text : changed;
+            return changed == begun ? text : with_guessed_tools(model, begun, std::move(changed));
         },
         mark);
     if (!edited) {

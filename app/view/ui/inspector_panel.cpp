@@ -1,14 +1,18 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "app/view/model/axis_display.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/unit_words.h"
 #include "app/view/model/view_model.h"
 #include "app/view/ui/panels.h"
 #include "core/base/rule.h"
+#include "core/base/units.h"
 #include "core/sim/run/finding_text.h"
 
 namespace app::viewer {
@@ -287,6 +291,94 @@ void draw_whole(Frame& frame) {
     for (const core::Finding* finding : whole) draw_finding(frame, *finding);
 }
 
+/// A coordinate in the unit of the window, or an angle.
+std::string axis_text(const ViewModel& model, size_t axis, double value) {
+    return core::is_rotary(axis) ? fmt::format("{:.3f}", value) : length_text(model, value, 3);
+}
+
+/// The travel to the nearer limit of an axis.
+void draw_travel(Frame& frame, const AxisRow& row) {
+    if (!row.below && !row.above) {
+        text(frame.fonts.text, frame.palette.color(Role::dim), "no limit");
+        return;
+    }
+    const double below = row.below.value_or(core::infinity),
+                 above = row.above.value_or(core::infinity);
+    const double least = std::min(below, above);
+    const bool is_beyond = least < -core::resolution;
+    text(frame.fonts.mono, frame.palette.color(is_beyond ? Role::violation : Role::dim),
+         fmt::format("{}{}", below < above ? "\xE2\x88\x92" : "+",
+                     core::is_rotary(row.axis) ? fmt::format("{:.1f}", std::abs(least))
+                                               : length_text(frame.model, std::abs(least), 1)));
+    const auto words = [&](const char* limit, const std::optional<double>& travel) {
+        if (!travel) return std::string("no ") + limit + " limit";
+        return axis_text(frame.model, row.axis, std::abs(*travel))
+               + (*travel < 0.0 ? " beyond the " : " to the ") + limit + " limit";
+    };
+    tip(frame, words("lower", row.below) + ", " + words("upper", row.above));
+}
+
+/// The machine coordinate of an axis, to be dragged or typed.
+void draw_position(Frame& frame, const AxisRow& row) {
+    const bool is_angle = core::is_rotary(row.axis), is_inch = frame.model.settings.inch;
+    const double unit = is_inch && !is_angle ? core::mm_per_inch : 1.0;
+    double shown = row.machine / unit;
+    ImGui::SetNextItemWidth(frame.px(80));
+    const float speed = is_angle ? 0.5F : is_inch ? 0.01F : 0.2F;
+    const char* const format = is_inch && !is_angle ? "%.4f" : "%.3f";
+    ImGui::PushFont(frame.fonts.mono);
+    if (ImGui::DragScalar("##machine", ImGuiDataType_Double, &shown, speed, nullptr, nullptr,
+                          format)
+        && std::isfinite(shown))
+        jog(frame.model, row.axis, shown * unit);
+    ImGui::PopFont();
+    tip(frame, "Drag it to move the axis by hand, or double-click to type. The program stays as it "
+               "is");
+}
+
+void draw_axes(Frame& frame) {
+    ViewModel& model = frame.model;
+    const std::vector<AxisRow> rows = axis_rows(model);
+    if (rows.empty()) return;
+    heading(frame, "Axes");
+    const float left = ImGui::GetCursorPosX();
+    const std::array<float, 3> columns = {left + frame.px(22), left + frame.px(92),
+                                          left + frame.px(180)};
+    const auto at = [&](size_t column) {
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(columns[column]);
+    };
+    const ImU32 dim = frame.palette.color(Role::dim);
+    text(frame.fonts.small, dim, "");
+    at(0), text(frame.fonts.small, dim, "Program");
+    tip(frame, "In the coordinates of the program with all its offsets and planes, as the control "
+               "shows them");
+    at(1), text(frame.fonts.small, dim, "Machine");
+    tip(frame, "Machine coordinates of the gauge line");
+    at(2), text(frame.fonts.small, dim, "Travel");
+    tip(frame, "To the nearer limit of the axis");
+    for (const AxisRow& row : rows) {
+        ImGui::PushID(static_cast<int>(row.axis));
+        ImGui::AlignTextToFramePadding();
+        text(frame.fonts.strong, frame.palette.color(row.moves ? Role::accent : Role::text),
+             std::string(1, core::axis_letters[row.axis]));
+        at(0);
+        text(frame.fonts.mono, frame.palette.color(Role::text),
+             row.program ? axis_text(model, row.axis, *row.program) : "\xE2\x80\x94");
+        at(1);
+        draw_position(frame, row);
+        at(2);
+        draw_travel(frame, row);
+        ImGui::PopID();
+    }
+    if (!is_jogged(model)) return;
+    wrapped_text(frame.fonts.small, frame.palette.ink(Role::near),
+                 "Moved by hand: what is shown is no position of the program and was not checked.");
+    if (ImGui::Button("Back to the program", ImVec2(ImGui::GetContentRegionAvail().x, 0)))
+        end_jog(model);
+    tip(frame, "Esc");
+}
+
 } // namespace
 
 void InspectorPanel::draw(Frame& frame, const Area&) {
@@ -297,9 +389,9 @@ void InspectorPanel::draw(Frame& frame, const Area&) {
     draw_findings(frame);
     draw_pair(frame);
     draw_block(frame);
+    draw_axes(frame);
     if (frame.model.block_state) {
         const BlockState& block_state = *frame.model.block_state;
-        draw_values(frame, "Axes", block_state.axes);
         draw_values(frame, "Offsets", block_state.offsets);
         draw_values(frame, "Parameters", block_state.parameters);
         draw_watches(frame, watch_);

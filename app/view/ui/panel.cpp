@@ -338,9 +338,33 @@ void text(ImFont* font, ImU32 color, const std::string& words) {
     ImGui::PopFont();
 }
 
+namespace {
+
+/// Words with line breaks in place of spaces, so that lines are not wider than `width` where that
+/// is possible. ImGui also breaks lines after the points and commas in numbers.
+std::string broken_at_spaces(const ImFont& font, std::string words, float width) {
+    size_t line = 0, space = std::string::npos;
+    for (size_t i = 0; i <= words.size(); ++i) {
+        const bool is_end = i == words.size() || words[i] == '\n';
+        if (!is_end && words[i] != ' ') continue;
+        const float reach =
+            font.CalcTextSizeA(font.FontSize, 1e9F, 0.0F, &words[line], &words[line] + (i - line))
+                .x;
+        if (reach > width && space != std::string::npos) {
+            words[space] = '\n';
+            line = space + 1;
+        }
+        space = is_end ? std::string::npos : i;
+        if (is_end) line = i + 1;
+    }
+    return words;
+}
+
+} // namespace
+
 void wrapped_text(ImFont* font, ImU32 color, const std::string& words) {
-    ImGui::PushTextWrapPos(0.0F);
-    text(font, color, words);
+    ImGui::PushTextWrapPos(0.0F); // for words that are wider than the panel
+    text(font, color, broken_at_spaces(*font, words, ImGui::GetContentRegionAvail().x));
     ImGui::PopTextWrapPos();
 }
 

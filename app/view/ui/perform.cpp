@@ -1,6 +1,7 @@
 
 #include <algorithm>
 
+#include "app/view/model/axis_display.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/scene_of.h"
@@ -367,6 +368,10 @@ void perform(ViewModel& model, Command command, double now) {
         }
         if (model.popup == Popup::none && model.workspace.has_keys) {
             show_setup(model, false);
+            break;
+        }
+        if (model.popup == Popup::none && is_jogged(model)) {
+            end_jog(model);
             break;
         }
         if (model.popup == Popup::none && !end_picking(model)) model.section.reset();

@@ -7,6 +7,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "app/view/model/axis_display.h"
 #include "app/view/model/navigation.h"
 #include "app/view/model/scene_of.h"
 #include "app/view/model/section.h"
@@ -500,7 +501,8 @@ void ScenePanel::State::draw_labels(Frame& frame, const Area& area, const render
     draw_grid_note(frame, area, size);
     if (model.has_rows())
         draw_pill(frame, list, {area.x + frame.px(14), area.y + frame.px(14)},
-                  location_text(model));
+                  is_jogged(model) ? "Axes moved by hand: not checked (Esc)"
+                                   : location_text(model));
     draw_warning(frame, list, area);
     const Area free{area.x, area.y, area.width, area.height - foot_};
     draw_summary(frame, list, free);

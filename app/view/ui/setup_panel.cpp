@@ -161,12 +161,18 @@ void SetupPanel::State::draw_row(Frame& frame, const SetupRow& row, int index) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, height = frame.px(20);
     const float text_y = at.y + 0.5F * (height - frame.fonts.text->FontSize);
+    float indent = 0.0F;
     ImGui::PushID(index);
     if (row.item.kind == Kind::none) {
         ImGui::Dummy(ImVec2(width, height));
         list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
                      {at.x + frame.px(2), text_y + 2}, palette.color(Role::dim), row.title.c_str());
     } else {
+        const Kind kind = row.item.kind;
+        const bool is_below_heading =
+            kind == Kind::offset || kind == Kind::fixture || kind == Kind::tool;
+        indent = is_below_heading ? frame.px(12) : 0.0F;
+        const float left = at.x + indent;
         const bool is_selected = workspace.selected == row.item;
         if (is_selected && std::exchange(workspace.wants_focus, false))
             ImGui::SetKeyboardFocusHere();
@@ -179,19 +185,19 @@ void SetupPanel::State::draw_row(Frame& frame, const SetupRow& row, int index) {
         }
         if (row.is_missing || row.has_error)
             list.AddText(frame.fonts.small, frame.fonts.small->FontSize,
-                         {at.x + frame.px(2), text_y + 1},
+                         {left + frame.px(2), text_y + 1},
                          palette.color(row.has_error ? Role::violation : Role::near),
                          frame.fonts.icon(Icon::warning));
         else
-            draw_mark(frame, list, {at.x + frame.px(8), at.y + 0.5F * height}, row.source);
-        list.AddText(frame.fonts.text, frame.fonts.text->FontSize, {at.x + frame.px(20), text_y},
+            draw_mark(frame, list, {left + frame.px(8), at.y + 0.5F * height}, row.source);
+        list.AddText(frame.fonts.text, frame.fonts.text->FontSize, {left + frame.px(20), text_y},
                      palette.color(Role::text), row.title.c_str());
     }
     const float title =
         frame.fonts.text->CalcTextSizeA(frame.fonts.text->FontSize, 1e9F, 0.0F, row.title.c_str())
             .x;
     const std::string detail =
-        shortened(frame.fonts.small, row.detail, width - title - frame.px(36));
+        shortened(frame.fonts.small, row.detail, width - title - indent - frame.px(36));
     const float room =
         frame.fonts.small->CalcTextSizeA(frame.fonts.small->FontSize, 1e9F, 0.0F, detail.c_str()).x;
     list.AddText(frame.fonts.small, frame.fonts.small->FontSize,

@@ -52,7 +52,9 @@ void BlockRun::execute_motion(const ToolChange& change) {
         find(rule_id("tool-not-in-table"),
              fmt::format("Tool {} is called, but the set-up does not describe it.",
                          value_of(*change.tool)),
-             fmt::format("Add [[tool]] number = {} to the set-up.", value_of(*change.tool)));
+             fmt::format("Add [[tool]] number = {} to the set-up. Sizes that it does not state are "
+                         "assumed.",
+                         value_of(*change.tool)));
 }
 
 void BlockRun::execute_motion(const PathModeChange& change) {
