@@ -25,7 +25,7 @@ def along(point, direction, distance):
 def dome(follows_tip):
     """A dome of radius 20 on a bar of 24, in a spiral from its rim to its top. The ball end mill of 6
     leans 10 degrees outwards from the surface."""
-    radius, ball, rim, lean, step = 20.0, 3.0, 12.0, 10.0, 0.6
+    radius, ball, rim, lean, step = 20.0, 3.0, 12.0, 10.0, 1.0
     apex = 24.0  # above the rotary table
 
     def place(polar, azimuth):

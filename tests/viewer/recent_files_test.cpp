@@ -88,7 +88,7 @@ TEST(RecentFiles, TheLastOneIsNotTheCurrentOneAndNotMissing) {
 TEST(Samples, AreFoundInTheSourceTree) {
     const std::string folder = FEELER_SOURCE_DIR "/assets";
     EXPECT_EQ(samples_folder(), folder);
-    EXPECT_EQ(samples_in(folder).size(), 6u);
+    EXPECT_EQ(samples_in(folder).size(), 8u);
     EXPECT_TRUE(samples_in(folder + "/programs").empty());
     EXPECT_TRUE(samples_in("").empty());
 }

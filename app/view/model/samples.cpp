@@ -22,6 +22,8 @@ constexpr ShippedSample shipped_samples[] = {
      "4 axes; the table turns under the drill"},
     {"tilted_faces_lead_in.nc", "tilted_faces.toml", "Tilted faces",
      "5 axes; a lead-in into the cradle"},
+    {"dome_m428.ngc", "dome.toml", "Dome", "5 axes at once; the tip does not follow the work"},
+    {"flutes.ngc", "flutes.toml", "Spiral flutes", "5 axes at once; no mistake"},
     {"PARALLEL.NC", "parallel.toml", "Curved surface", "3 axes, inches; no mistake"},
     {"clamped_plate.nc", "clamped_plate.toml", "Plate, corrected", "3 axes; no mistake"},
 };
