@@ -25,11 +25,12 @@ void draw_number(Frame& frame) {
     const BlockRow& row = model.row();
     text(frame.fonts.small, frame.palette.color(Role::dim), "CLEARANCE");
     std::string number = "\xE2\x80\x94";
-    const bool is_touching = is_contact(row);
-    if (row.is_known && row.lower) number = clearance_words(model, row);
+    const bool is_touching = is_contact(row), is_moved = is_jogged(model);
+    if (row.is_known && row.lower && !is_moved) number = clearance_words(model, row);
     const ImVec2 at = ImGui::GetCursorPos();
-    text(frame.fonts.big, frame.palette.of(row, Role::text), number);
-    if (!row.lower || !row.is_known || is_touching) return;
+    text(frame.fonts.big,
+         is_moved ? frame.palette.color(Role::dim) : frame.palette.of(row, Role::text), number);
+    if (!row.lower || !row.is_known || is_touching || is_moved) return;
     const float width =
         frame.fonts.big->CalcTextSizeA(frame.fonts.big->FontSize, 1e9F, 0.0F, number.c_str()).x;
     ImGui::SameLine(at.x + width + frame.px(9));
@@ -44,6 +45,7 @@ void draw_number(Frame& frame) {
 }
 
 std::string sentence_of(const ViewModel& model, const BlockRow& row) {
+    if (is_jogged(model)) return "axes moved by hand: not checked";
     if (!row.is_known) return "not checked yet";
     if (!moves(row)) return "this block moves nothing";
     if (!row.is_judged) return "this motion cannot be checked";
@@ -75,7 +77,8 @@ void draw_scale(Frame& frame) {
                            {at.x + width * static_cast<float>(to), top + height},
                            frame.palette.color(role, 0.9));
     };
-    const bool has_scale = row.is_known && row.upper && *row.allowance > 0.0;
+    const bool has_scale =
+        row.is_known && row.upper && *row.allowance > 0.0 && !is_jogged(frame.model);
     if (has_scale) {
         part(0.0, 1.0 / 6.0, Role::violation);
         part(1.0 / 6.0, 2.0 / 6.0, Role::near);
@@ -106,8 +109,8 @@ void pair_row(Frame& frame, const char* name, const std::string& body, Role role
 void draw_pair(Frame& frame) {
     const BlockRow& row = frame.model.row();
     if (!row.has_pair() || !row.is_known) return;
-    heading(frame, "Closest pair");
-    const bool is_marked = state_of(row) >= render::ClearanceState::near;
+    heading(frame, is_jogged(frame.model) ? "Closest pair in the block" : "Closest pair");
+    const bool is_marked = state_of(row) >= render::ClearanceState::near && !is_jogged(frame.model);
     pair_row(frame, "Tool side", row.part, is_marked ? Role::pair_tool : Role::panel);
     pair_row(frame, "Obstacle", row.body, is_marked ? Role::pair_body : Role::panel);
     if (row.duration > 0.0)
@@ -291,8 +294,11 @@ void draw_whole(Frame& frame) {
     for (const core::Finding* finding : whole) draw_finding(frame, *finding);
 }
 
+constexpr double shown_as_zero = 5e-4; // mm or degrees
+
 /// A coordinate in the unit of the window, or an angle.
 std::string axis_text(const ViewModel& model, size_t axis, double value) {
+    if (std::abs(value) < shown_as_zero) value = 0.0; // not "-0.000"
     return core::is_rotary(axis) ? fmt::format("{:.3f}", value) : length_text(model, value, 3);
 }
 
@@ -322,7 +328,7 @@ void draw_travel(Frame& frame, const AxisRow& row) {
 void draw_position(Frame& frame, const AxisRow& row) {
     const bool is_angle = core::is_rotary(row.axis), is_inch = frame.model.settings.inch;
     const double unit = is_inch && !is_angle ? core::mm_per_inch : 1.0;
-    double shown = row.machine / unit;
+    double shown = std::abs(row.machine) < shown_as_zero ? 0.0 : row.machine / unit;
     ImGui::SetNextItemWidth(frame.px(80));
     const float speed = is_angle ? 0.5F : is_inch ? 0.01F : 0.2F;
     const char* const format = is_inch && !is_angle ? "%.4f" : "%.3f";
@@ -388,8 +394,8 @@ void InspectorPanel::draw(Frame& frame, const Area&) {
     draw_scale(frame);
     draw_findings(frame);
     draw_pair(frame);
-    draw_block(frame);
     draw_axes(frame);
+    draw_block(frame);
     if (frame.model.block_state) {
         const BlockState& block_state = *frame.model.block_state;
         draw_values(frame, "Offsets", block_state.offsets);
