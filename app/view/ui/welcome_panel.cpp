@@ -74,7 +74,7 @@ void WelcomePanel::draw(Frame& frame, const Area& area) {
         palette.color(Role::view_top), palette.color(Role::view_bottom),
         palette.color(Role::view_bottom));
     const float width = std::min(frame.px(860), area.width - frame.px(32));
-    const size_t rows = std::max<size_t>(6, frame.model.recent.size());
+    const size_t rows = std::max<size_t>({6, samples_->size(), frame.model.recent.size()});
     const float wanted = frame.px(200.0 + 23.0 * static_cast<double>(rows));
     const float height = std::min(wanted, area.height - frame.px(24));
     ImGui::SetCursorScreenPos(
