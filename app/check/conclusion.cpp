@@ -91,6 +91,14 @@ void put_in_order(std::vector<core::Finding>& findings) {
     });
 }
 
+/// Makes findings in a block that could not be run, the first one after --start-line, findings about
+/// the whole program.
+void take_from_missing_blocks(CheckRun& run) {
+    for (core::Finding& finding : run.findings)
+        if (finding.block && core::value_of(*finding.block) >= run.blocks.size())
+            finding.block.reset();
+}
+
 } // namespace
 
 void conclude(PreparedCheck& check, const core::SimulatorState& end,
@@ -105,6 +113,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     report_incomplete_setup(run, run);
     // A program that was checked only in part must not count as clear.
     if (run.stopped) run.verdict = std::max(run.verdict, core::Verdict::undecided);
+    take_from_missing_blocks(run);
     put_in_order(run.findings);
     report_not_judged(run, check.file.not_judged);
     run.stock = std::make_shared<const core::CutModel>(end.stock);

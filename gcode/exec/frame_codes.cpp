@@ -259,6 +259,13 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
     case g_code(68, 2):
     case g_code(268):
         if (auto checked = check_dynamic_offset_is_off(execution, entry); !checked) return checked;
+        for (const char letter : {'A', 'B', 'C', 'U', 'V', 'W'})
+            if (const Word* word = execution.statement.word(letter))
+                return core::fail(ErrorCode::unsupported,
+                                  fmt::format("{}: in a block with {} it is not supported yet: "
+                                              "program it in a block of its own",
+                                              written(*word), written(*entry.word)),
+                                  word->span);
         return set_tilted_plane(execution);
     case g_code(254):
         return set_dynamic_offset(execution, entry);

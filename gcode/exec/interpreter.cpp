@@ -641,12 +641,19 @@ bool has_other_meanings(const Block& block) {
     });
 }
 
+/// Whether a block sets a tilted plane: its Q is a number of a block or an order, and its I, J and
+/// K are angles or a direction.
+bool sets_plane(const Block& block) {
+    return has_code(block, 'G', [](double code) { return code == 68.2 || code == 268.0; });
+}
+
 } // namespace
 
 bool lacks_point(const Block& block) {
-    return std::any_of(block.words.begin(), block.words.end(), [](const Word& word) {
+    const bool is_plane = sets_plane(block);
+    return std::any_of(block.words.begin(), block.words.end(), [&](const Word& word) {
         return counts_increments(word.letter) && !word.has_point && !word.expression
-               && word.value != 0.0;
+               && word.value != 0.0 && !(is_plane && word.letter == 'Q');
     });
 }
 
@@ -864,11 +871,13 @@ void count_smallest_steps(Block& block, const ModalState& modal, DialectId diale
                        });
     const bool calls = has_code(block, 'M', [](double code) { return code >= 96.0; });
     const bool turns = has_code(block, 'G', [](double code) { return code == 68.0; });
+    const bool is_plane = sets_plane(block);
     for (Word& word : block.words) {
         if (word.has_point || word.expression || !counts_increments(word.letter)) continue;
-        if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && calls)) continue;
-        const bool angle =
-            (word.letter >= 'A' && word.letter <= 'C') || (word.letter == 'R' && turns);
+        if ((word.letter == 'K' && cycle) || (word.letter == 'Q' && (calls || is_plane))) continue;
+        const bool angle = (word.letter >= 'A' && word.letter <= 'C')
+                           || (word.letter == 'R' && turns)
+                           || (word.letter >= 'I' && word.letter <= 'K' && is_plane);
         word.value /= (inch && !angle ? 10000.0 : 1000.0) / scale;
     }
 }

@@ -787,6 +787,7 @@ void add(Digest& digest, const SiemensState& siemens) {
                          + 32 * int(siemens.length_follows_plane)
                          + 64 * int(siemens.length_axis_is_settled)));
     digest.add(uint64_t{siemens.swivels});
+    digest.add(siemens.swivel_data);
     digest.add(uint64_t(8 * siemens.smooths_turning + 4 * siemens.turns_by_axes
                         + 2 * siemens.turns_in_machine + siemens.turns_otherwise));
     for (int column = 0; column < 3; ++column)

@@ -54,6 +54,7 @@ struct SiemensState {
     ProgramFrame frame;                         // TRANS, ROT, SCALE, MIRROR
     ProgramFrame swivel;                        // CYCLE800, before `frame`
     bool swivels = false;                       // the plane of CYCLE800 is on
+    std::string swivel_data;                    // their name in the first CYCLE800 with one
     int edge = 1;                               // D; 0: none
     bool edge_is_assumed = false;               // selected by a tool change without D
     bool length_follows_plane = false;          // SD42940 is 0

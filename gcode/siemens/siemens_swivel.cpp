@@ -16,14 +16,16 @@ using core::ErrorCode;
 
 /// The parameters of CYCLE800; those that are left out are 0.
 struct Swivel {
-    int retract = 0;          // _FR
-    int state = 0;            // _ST
-    int mode = 57;            // _MODE
-    core::Vec3 before, after; // X0 Y0 Z0 and X1 Y1 Z1, mm
-    core::Vec3 angles;        // in the order of the mode
-    int direction = 0;        // _DIR
-    double way_back = 0.0;    // _FR_I, mm
-    size_t given = 0;         // parameters
+    double retract = 0.0;      // _FR
+    int state = 0;             // _ST
+    int mode = 57;             // _MODE
+    core::Vec3 before, after;  // X0 Y0 Z0 and X1 Y1 Z1, mm
+    core::Vec3 angles;         // in the order of the mode
+    int direction = 0;         // _DIR
+    double way_back = 0.0;     // _FR_I, mm
+    bool has_data = true;      // of the machine; false: _TC is "0"
+    bool is_first_data = true; // no other name was called before
+    size_t given = 0;          // parameters
 
     bool adds() const { return std::abs(state) % 10 == 1; }
     bool keeps_tip() const { return std::abs(state) / 10 % 10 == 1; }
@@ -37,7 +39,7 @@ Swivel swivel_of(const Execution& execution, const std::vector<std::optional<dou
         return core::Vec3(to_mm(value(i), unit), to_mm(value(i + 1), unit),
                           to_mm(value(i + 2), unit));
     };
-    Swivel swivel{.retract = whole(0),
+    Swivel swivel{.retract = value(0),
                   .state = whole(2),
                   .before = lengths(4),
                   .after = lengths(10),
@@ -75,55 +77,60 @@ core::Result<core::Mat3> rotation_of(const Swivel& swivel, core::SourceSpan wher
     return rotation;
 }
 
-/// The way that a retract takes through machine coordinates; empty if it is not known.
+/// The kinds of retract, _FR.
+constexpr double along_z = 1.0, along_z_then_xy = 2.0, along_tool = 4.0, along_tool_by = 5.0;
+
+/// The way that a retract takes through machine coordinates; empty if it is not known, or if it
+/// would lower the tool.
 ///
 /// Source: SINUMERIK 840D sl, Turning, Operating Manual 06/2019, swivel plane: the kinds of
 /// retract.
 ///         Commissioning Manual 12/2017, 15.7: where the machine builder states its positions.
 std::vector<Position> way_of_retract(const Execution& execution, const Swivel& swivel) {
-    constexpr int along_z = 1, along_z_then_xy = 2, along_tool = 4, along_tool_by = 5;
-    const Position& stated = execution.environment.swivel_retract;
     const Offsets& offsets = execution.modal().offsets;
     const Position now = machine_from_program(offsets, execution.modal().position);
-    Position above = now, aside = now;
-    switch (swivel.retract) {
-    case along_z:
-        above[2] = stated[2];
-        return above[2] ? std::vector{above} : std::vector<Position>{};
-    case along_z_then_xy:
-        above[2] = stated[2];
-        aside = stated;
-        std::copy(now.begin() + 3, now.end(), aside.begin() + 3);
-        if (!aside[0] || !aside[1] || !aside[2]) return {};
-        return {above, aside};
-    case along_tool: {
-        const auto limit = offsets.machine ? offsets.machine->axes[2].max : std::optional<double>();
-        if (!limit || !is_upright(*offsets.machine, now)) return {};
-        above[2] = limit;
-        return {above};
-    }
-    case along_tool_by: {
+    Position above = now;
+    if (swivel.retract == along_z || swivel.retract == along_z_then_xy) {
+        // The positions of the set-up are those of one set of swivel data.
+        if (!swivel.has_data || !swivel.is_first_data) return {};
+        above[2] = execution.environment.swivel_retract[2];
+    } else if (swivel.retract == along_tool || swivel.retract == along_tool_by) {
         if (!offsets.machine || !is_upright(*offsets.machine, now) || !now[2]) return {};
-        above[2] = *now[2] + swivel.way_back;
-        return {above};
-    }
-    default:
+        above[2] = offsets.machine->axes[2].max;
+        if (swivel.retract == along_tool_by) above[2] = *now[2] + swivel.way_back;
+    } else {
         return {};
     }
+    constexpr double farthest = 1e6; // mm; no machine has such a place
+    for (const auto& place : {above[2], execution.environment.swivel_retract[0],
+                              execution.environment.swivel_retract[1]})
+        if (place && !(std::abs(*place) < farthest)) return {};
+    if (!above[2] || (now[2] && *above[2] < *now[2])) return {};
+    if (swivel.retract == along_tool_by && !(swivel.way_back > 0.0)) return {};
+    if (swivel.retract != along_z_then_xy) return {above};
+    Position aside = above;
+    for (size_t axis = 0; axis < 2; ++axis) {
+        aside[axis] = execution.environment.swivel_retract[axis];
+        if (!aside[axis]) return {};
+    }
+    return {above, aside};
 }
 
 void retract(Execution& execution, const Swivel& swivel, core::SourceSpan where) {
     const std::vector<Position> way = way_of_retract(execution, swivel);
     for (const Position& machine : way)
         execution.traverse(program_from_machine(execution.modal().offsets, machine));
-    if (way.empty())
-        lose_positions(execution, where,
-                       "CYCLE800: where it retracts before the swivel is set at the machine. That "
-                       "move is not checked, nor are later ones until X, Y and Z have been "
-                       "programmed again",
-                       "State under [control] where it retracts: TC_CARR40 for Z, TC_CARR38 and "
-                       "TC_CARR39 for X and Y. Or retract before the cycle, and call it with 0 as "
-                       "its first parameter.");
+    if (!way.empty()) return;
+    const bool is_stated = swivel.retract == along_z || swivel.retract == along_z_then_xy;
+    lose_positions(execution, where,
+                   "CYCLE800: where it retracts before the swivel is not known. That move is not "
+                   "checked, nor are later ones until X, Y and Z have been programmed again",
+                   std::string(is_stated
+                                   ? "State under [control] to where it retracts, above where "
+                                     "the tool is: TC_CARR40 for Z, TC_CARR38 and TC_CARR39 "
+                                     "for X and Y. Or retract"
+                                   : "Retract")
+                       + " before the cycle, and call it with 0 as its first parameter.");
 }
 
 /// Turns the rotary axes to the plane.
@@ -152,8 +159,13 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     FEELER_TRY(const auto values, cycle_values(execution, use));
     Swivel swivel = swivel_of(execution, values);
     const auto& arguments = siemens_of(execution.block).arguments;
-    if (arguments.size() > 1 && arguments[1].text == "0") // _TC: no swivel data
-        swivel = {.retract = swivel.retract};
+    const std::string name(arguments.size() > 1 ? arguments[1].text : std::string_view());
+    std::string& known = writable_siemens(execution.state).swivel_data;
+    if (name == "0") // no swivel data
+        swivel = {.retract = swivel.retract, .has_data = false};
+    else if (known.empty())
+        known = name;
+    swivel.is_first_data = name.empty() || name == "0" || name == known;
     FEELER_TRY(const core::Mat3 rotation, rotation_of(swivel, use.span));
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::unsupported,
@@ -161,7 +173,6 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "cutter radius compensation first",
                           use.span);
     execution.column = use.span.column;
-    if (swivel.retract != 0) retract(execution, swivel, use.span);
     const bool deletes = !swivel.adds();
     if (!deletes && siemens_of(execution.state).frame != ProgramFrame{})
         return core::fail(ErrorCode::unsupported,
@@ -169,6 +180,7 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "not supported yet: give the whole plane in one call",
                           use.span);
     if (deletes) delete_siemens_frame(execution);
+    if (swivel.retract != 0.0) retract(execution, swivel, use.span);
     const ProgramFrame before = deletes ? ProgramFrame{} : siemens_of(execution.state).swivel;
     const ProgramFrame step{rotation, swivel.before + rotation * swivel.after};
     const ProgramFrame plane{before.linear * step.linear,

@@ -186,6 +186,15 @@ TEST(NamedTool, IsThatOfTheSetup) {
     EXPECT_EQ(check_called(setup, "5").at_line(7).tool, 5);
 }
 
+TEST(Restart, AtABlockThatCannotRunEndsWithAMessage) {
+    // A premise is open in the block, as X10 has no decimal point.
+    const Checked checked =
+        check(SetupWriter(), "G21 G90 G54\nT1 M6\nG68.2 P2 Q1 X0\nG68.2 P2 Q2 X10\nM30\n",
+              {"--start-line", "4"});
+    EXPECT_EQ(checked.status, 2);
+    EXPECT_NE(checked.err.find("G68.2: P2 begins with Q1"), std::string::npos) << checked.err;
+}
+
 TEST(NamedTool, IsUndecidedIfSeveralHaveTheName) {
     const Checked checked = check_called(two_tools("MILL", "MILL"), "MILL");
     EXPECT_EQ(checked.errors(), "undecided 2");

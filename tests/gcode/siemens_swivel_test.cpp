@@ -191,6 +191,55 @@ TEST(SiemensSwivel, IsUndecidedIfItRetractsToAnUnknownPlace) {
     EXPECT_FALSE(is_certain(3, {1.0, 2.0, 500.0})) << "no known kind";
     EXPECT_FALSE(is_certain(4, {1.0, 2.0, 500.0})) << "Z has no limit";
     EXPECT_TRUE(is_certain(5, {}));
+    EXPECT_FALSE(is_certain(1, {std::nullopt, std::nullopt, -900.0})) << "below the tool";
+    EXPECT_FALSE(is_certain(1, {std::nullopt, std::nullopt, 1e300}));
+}
+
+TEST(SiemensSwivel, RetractsByAPositiveDistanceOnly) {
+    const auto is_certain = [](const std::string& kind, const std::string& last) {
+        const Driven found =
+            driven("T1 M6 D1\nG17 G90 G54 G710\nG0 X3 Y-2 Z15\nCYCLE800(" + kind
+                       + ",\"T\",0,57,0,0,0,40,0,0,0,0,0,-1" + last + ")\nG0 X1 Y2\nM30\n",
+                   environment_of(trunnion(), DialectId::siemens));
+        return found.paths.back() == core::PathCertainty{};
+    };
+    EXPECT_TRUE(is_certain("5", ",70,1"));
+    EXPECT_FALSE(is_certain("5", ",-70,1"));
+    EXPECT_FALSE(is_certain("5", ",0,1"));
+    EXPECT_FALSE(is_certain("5", ",1EX300,1"));
+    EXPECT_FALSE(is_certain("5", ""));
+    EXPECT_FALSE(is_certain("5.5", ",70,1")) << "no kind of retract";
+}
+
+TEST(SiemensSwivel, RetractsAlongZOfTheMachineAfterARotation) {
+    Environment environment = environment_of(trunnion(), DialectId::siemens);
+    environment.swivel_retract[2] = 555.0;
+    const Driven found =
+        driven("T1 M6 D1\nG17 G90 G54 G710\nG0 X3 Y-2 Z15\nROT X20\n"
+               "CYCLE800(1,\"T\",0,57,0,0,0,40,0,0,0,0,0,-1,70,1)\nG0 X1 Y2\nM30\n",
+               environment);
+    core::AxisValues expected = values_of(found.motions[0].to);
+    expected[2] = 555.0;
+    const core::AxisValues retracted = values_of(found.motions[1].to);
+    for (size_t axis = 0; axis < 5; ++axis) EXPECT_NEAR(retracted[axis], expected[axis], 1e-9);
+}
+
+TEST(SiemensSwivel, RetractsToKnownPlacesWithOneSetOfSwivelDataOnly) {
+    const auto is_certain = [](const std::string& first, const std::string& second) {
+        Environment environment = environment_of(trunnion(), DialectId::siemens);
+        environment.swivel_retract[2] = 555.0;
+        const std::string rest = ",0,57,0,0,0,40,0,0,0,0,0,-1,70,1)\n";
+        const Driven found =
+            driven("T1 M6 D1\nG17 G90 G54 G710\nG0 X3 Y-2 Z15\nCYCLE800(0," + first + rest
+                       + "G0 X1 Y2 Z15\nCYCLE800(1," + second + rest + "G0 X1 Y2\nM30\n",
+                   environment);
+        return found.paths.back() == core::PathCertainty{};
+    };
+    EXPECT_TRUE(is_certain("\"TABLE\"", "\"TABLE\""));
+    EXPECT_TRUE(is_certain("\"TABLE\"", "\"\"")) << "the data that are active";
+    EXPECT_TRUE(is_certain("\"\"", "\"TABLE\"")) << "the machine has one";
+    EXPECT_FALSE(is_certain("\"TABLE\"", "\"HEAD\""));
+    EXPECT_FALSE(is_certain("\"TABLE\"", "\"0\"")) << "no data";
 }
 
 TEST(SiemensSwivel, IsUndecidedWithoutTheRotaryAxes) {

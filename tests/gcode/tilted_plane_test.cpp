@@ -107,6 +107,29 @@ TEST(TiltedPlane, ThroughRandomPointsIsTheSameAsByAngles) {
     }
 }
 
+TEST(TiltedPlane, CountsLeastIncrementsInLengthsAndAnglesOnly) {
+    Environment environment = known_environment(DialectId::fanuc);
+    environment.counts_smallest_steps = true;
+    const auto end = [&](const std::string& text) {
+        const Ran ran = run_text(text, environment);
+        EXPECT_FALSE(ran.run.error) << ran.run.error->message;
+        Lowering lowering = initial_lowering(environment);
+        for (const BlockCommands& block : ran.run.blocks) lower(block, lowering);
+        return lowering.machine;
+    };
+    const auto expect = [](const Position& at, double x, double y, double z) {
+        EXPECT_NEAR(*at[0], x, 1e-9);
+        EXPECT_NEAR(*at[1], y, 1e-9);
+        EXPECT_NEAR(*at[2], z, 1e-9);
+    };
+    expect(
+        end("G68.2 P2 Q1 X10000\nG68.2 P2 Q2 X10000 Y5.\nG68.2 P2 Q3 X10000 Z7000\nG0 X1. Y2. Z3."),
+        13, 1, 2);
+    expect(end("G68.2 P1 Q321 I90000 K90.\nG0 X1. Y2. Z3."), -2, -3, 1);
+    // Angles have the same increment in inches.
+    expect(end("G20 G68.2 I90000 J90000\nG0 X1. Y2. Z3."), 76.2, 25.4, 50.8);
+}
+
 TEST(TiltedPlane, RefusesAnIncompletePlane) {
     const std::string first = "G68.2 P2 Q1 X1\n", second = "G68.2 P2 Q2 X5\n";
     EXPECT_THAT(error_of("G68.2 P2 Q2 X1"), HasSubstr("begins with Q1"));
@@ -125,6 +148,7 @@ TEST(TiltedPlane, RefusesAnIncompletePlane) {
     EXPECT_THAT(error_of("G68.2 P3 Q1 I1\nG68.2 P3 Q2 I.1 K1"), HasSubstr("perpendicular"));
     EXPECT_THAT(error_of("G68.2 P3 Q1\nG68.2 P3 Q2 K1"), HasSubstr("no length"));
     EXPECT_THAT(error_of("G68.2 P4 I20"), HasSubstr("projected angles"));
+    EXPECT_THAT(error_of("G68.2 X0 Y0 Z0 I20 A5"), HasSubstr("in a block of its own"));
 }
 
 TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {

@@ -238,8 +238,11 @@ TEST(AxisDisplay, MovesAxesByHandWithoutChangingTheProgram) {
     EXPECT_FALSE(is_jogged(model));
     EXPECT_EQ(cradle().rotation, before.rotation);
     jog(model, 3, 0.0);
-    model.cursor.fraction = 0.5;
+    const Cursor here = model.cursor;
+    go_to(model, here.block + 1, 1.0);
     EXPECT_FALSE(is_jogged(model));
+    go_to(model, here.block, here.fraction);
+    EXPECT_FALSE(is_jogged(model)) << "another block has put the axes back";
     EXPECT_NE(axis_rows(model)[3].machine, 0.0);
 }
 

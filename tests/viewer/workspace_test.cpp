@@ -110,8 +110,9 @@ TEST(Workspace, NamesToolsThatNothingDescribesBesideTheFirstStatedOne) {
     model.workspace.selected = {Kind::tool, {}, core::ToolNumber{4}};
     delete_selected(model);
     EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("number = 4")));
-    undo(model, 0.0);
-    undo(model, 0.0);
+    state_item(model, {Kind::stock, {}, {}});
+    EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("number = 4"))) << "it was deleted";
+    for (int i = 0; i < 3; ++i) undo(model, 0.0);
     EXPECT_THAT(text_of_setup(model), testing::Not(HasSubstr("[[tool]]")));
 }
 

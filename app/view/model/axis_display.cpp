@@ -1,10 +1,12 @@
 #include "app/view/model/axis_display.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/view/model/scene_of.h"
 #include "app/view/model/view_model.h"
 #include "core/sim/setup.h"
+#include "gcode/language/modal_state.h"
 
 namespace app::viewer {
 namespace {
@@ -19,10 +21,11 @@ std::optional<core::AxisValues> axes_of_program(const ViewModel& model) {
     return view->standing;
 }
 
-/// Whether an axis moves in a block.
+/// Whether an axis moves in a block, by more than rounding.
 bool moves_in(const BlockState& view, size_t axis) {
+    constexpr double rounding = 1e-9;
     return std::any_of(view.poses.begin(), view.poses.end(), [&](const Pose& pose) {
-        return pose.values[axis] != view.poses.front().values[axis];
+        return std::abs(pose.values[axis] - view.poses.front().values[axis]) > rounding;
     });
 }
 

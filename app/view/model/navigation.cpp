@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/base/text.h"
+#include "app/view/model/axis_display.h"
 #include "app/view/model/placing.h"
 #include "app/view/model/view_model.h"
 #include "gcode/text/program_text.h"
@@ -46,6 +47,7 @@ size_t stepped(const ViewModel& model, int blocks) {
 void go_to(ViewModel& model, size_t block, double fraction) {
     if (!model.has_rows()) return;
     stay(model);
+    end_jog(model);
     model.cursor = {std::min(block, model.rows.size() - 1), std::clamp(fraction, 0.0, 1.0)};
     model.shown_pair = {};
     model.wanted = ShowRequest{model.cursor.block, model.cursor.fraction >= 1.0};
@@ -278,6 +280,7 @@ bool play(ViewModel& model, double seconds) {
     const bool is_same_stock =
         block == model.cursor.block && fraction < 1.0 && model.cursor.fraction < 1.0;
     if (block != model.cursor.block) model.shown_pair = {};
+    end_jog(model);
     model.cursor = {block, fraction};
     if (!is_same_stock) model.wanted = ShowRequest{block, fraction >= 1.0};
     model.list_follows = true;

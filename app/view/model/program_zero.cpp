@@ -53,6 +53,13 @@ std::optional<ProgramZero> program_zero(const gcode::InterpreterState& control) 
     return zero;
 }
 
+std::shared_ptr<const gcode::Offsets> offsets_in_effect(const gcode::InterpreterState& control,
+                                                        const core::Machine& machine) {
+    auto offsets = std::make_shared<gcode::Offsets>(control.modal.offsets);
+    if (offsets->machine) offsets->machine = &machine;
+    return offsets;
+}
+
 render::Triad triad_of(const ProgramZero& zero, const core::Setup& setup,
                        const core::AxisValues& now) {
     std::array<core::AxisValues, 4> positions = zero.positions;

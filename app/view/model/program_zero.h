@@ -1,15 +1,18 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/motion/event.h"
 
 namespace core {
+struct Machine;
 struct Setup;
 } // namespace core
 
 namespace gcode {
 struct InterpreterState;
+struct Offsets;
 } // namespace gcode
 
 namespace render {
@@ -22,6 +25,10 @@ struct ProgramZero;
 
 /// With the offsets, rotations and mirror images in effect; empty where they are unknown.
 std::optional<ProgramZero> program_zero(const gcode::InterpreterState& control);
+
+/// The offsets in effect, of a machine that lives as long as they do.
+std::shared_ptr<const gcode::Offsets> offsets_in_effect(const gcode::InterpreterState& control,
+                                                        const core::Machine& machine);
 
 /// The arrows at the zero of the program, frame of the stock. `now`: the axes of the machine.
 render::Triad triad_of(const ProgramZero& zero, const core::Setup& setup,

@@ -13,13 +13,15 @@
 #include "app/view/model/block_row.h"
 #include "core/motion/event.h"
 #include "core/sim/verdict.h"
-#include "gcode/language/modal_state.h"
 #include "render/stock_brick.h"
 #include "render/tool_path.h"
 
 namespace core {
 struct Machine;
 } // namespace core
+namespace gcode {
+struct Offsets;
+} // namespace gcode
 namespace render {
 class SurfaceMaker;
 } // namespace render
@@ -76,7 +78,8 @@ struct BlockState {
     std::optional<core::AxisValues> standing;        // axis positions after the block
     std::optional<core::ToolNumber> tool;            // used in the block
     std::optional<ProgramZero> zero;                 // after the block
-    std::optional<gcode::Offsets> offsets_in_effect; // after the block; its machine: the scene's
+    // After the block; null: unknown. Its machine is that of the scene.
+    std::shared_ptr<const gcode::Offsets> offsets_in_effect;
     std::vector<bool> mounted_fixtures;
     render::StockBricks stock;
     std::vector<ShownValue> modal, offsets, parameters;

@@ -23,7 +23,7 @@
 #include "app/view/model/scene_of.h"
 #include "core/base/file_reads.h"
 #include "core/cad/cad_file.h"
-#include "gcode/exec/interpreter.h"
+#include "render/setup_scene.h"
 #include "render/stock_surface.h"
 
 namespace app::viewer {
@@ -68,7 +68,8 @@ ControlValues values_of(const DebugSession& session) {
 
 WorkerSession::WorkerSession(std::function<bool()> is_interrupted)
     : is_interrupted_(std::move(is_interrupted)),
-      surface_(std::make_unique<render::StockSurface>()) {}
+      surface_(std::make_unique<render::StockSurface>()),
+      surfaces_(std::make_unique<render::SurfaceMaker>()) {}
 
 WorkerSession::~WorkerSession() = default;
 
@@ -121,7 +122,7 @@ void WorkerSession::open(const CheckJob& wanted, const std::function<void()>& pu
     }
     if (is_again) begin(job, true);
     job.is_stopped = wanted.is_stopped;
-    OpenedProgram opened = opened_program(job, *check, &surfaces_);
+    OpenedProgram opened = opened_program(job, *check, surfaces_.get());
     scenes_.emplace_back(0, opened.scene);
     show_early(track_of(*check, opened.scene->setup, is_superseded));
     news_.files.assign(read.begin(), read.end()); // also subprograms
@@ -177,7 +178,7 @@ std::shared_ptr<const SceneSetup> WorkerSession::scene_at(size_t block) {
         if (change.block <= block) first = std::max(first, change.block);
     for (const auto& [known, scene] : scenes_)
         if (known == first) return scene;
-    scenes_.emplace_back(first, make_scene_setup(session_->setup_at(block), &surfaces_));
+    scenes_.emplace_back(first, make_scene_setup(session_->setup_at(block), surfaces_.get()));
     return scenes_.back().second;
 }
 
@@ -211,9 +212,7 @@ void WorkerSession::show(const ShowRequest& request) {
     view->standing = known_values(view->scene->setup.machine, session_->position());
     view->mounted_fixtures = session_->mounted_fixtures();
     view->zero = program_zero(session_->control());
-    view->offsets_in_effect = session_->control().modal.offsets;
-    if (const core::Machine*& machine = view->offsets_in_effect->machine)
-        machine = &view->scene->setup.machine; // that of the session does not live as long
+    view->offsets_in_effect = offsets_in_effect(session_->control(), view->scene->setup.machine);
     const ControlValues after = values_of(*session_);
     view->modal = compared(before.modal, after.modal);
     view->offsets = compared(before.offsets, after.offsets);

@@ -10,7 +10,6 @@
 
 #include "app/debug/what_if.h"
 #include "app/view/model/session_update.h"
-#include "render/setup_scene.h"
 
 namespace app {
 struct CheckJob;
@@ -77,7 +76,7 @@ private:
     bool is_shown_ = false; // its path and set-up were published
     SessionPublisher publisher_;
     std::unique_ptr<render::StockSurface> surface_;
-    render::SurfaceMaker surfaces_;
+    std::unique_ptr<render::SurfaceMaker> surfaces_;
     std::vector<std::pair<size_t, std::shared_ptr<const SceneSetup>>> scenes_; // by first block
     std::vector<std::string> watched_;
     std::vector<Breakpoint> breakpoints_;

@@ -37,6 +37,7 @@ std::shared_ptr<const BlockState> with_bodies_of(const std::shared_ptr<const Blo
     auto state = std::make_shared<BlockState>(*before);
     state->scene = opened.scene;
     state->mounted_fixtures.clear();
+    state->offsets_in_effect.reset(); // of the machine in the old scene
     state->is_outdated = true;
     return state;
 }

@@ -163,17 +163,20 @@ void open_document(ViewModel& model, SetupDocument document) {
 
 namespace {
 
-/// Names in a set-up that describes tools the others that the program uses and that nothing
-/// describes. A set-up that describes a job is not completed by tools that it does not name: their
-/// motions would not be checked any more.
+/// Names beside the first tool that a set-up describes the others that the program uses and that
+/// nothing describes. A set-up that describes a job is not completed by tools that it does not
+/// name: their motions would not be checked any more.
 core::Result<std::string> with_guessed_tools(const ViewModel& model, const std::string& before,
                                              std::string text) {
     const SetupSheet* sheet = sheet_of(model);
-    const StatedSetup stated = stated_in(text);
-    if (!sheet || (stated.tools.empty() && stated.tool_library.empty())) return text;
+    const auto has_tools = [](const std::string& setup) {
+        const StatedSetup stated = stated_in(setup);
+        return !stated.tools.empty() || !stated.tool_library.empty();
+    };
+    if (!sheet || has_tools(before) || !has_tools(text)) return text;
     for (const SheetTool& shown : sheet->tools) {
         const core::ToolNumber number = shown.tool.number;
-        if (!shown.is_guess || path_of_tool(before, number)) continue; // renamed or deleted
+        if (!shown.is_guess) continue;
         FEELER_TRY(text, with_bare_tool(text, number));
     }
     return text;

@@ -294,11 +294,13 @@ void draw_whole(Frame& frame) {
     for (const core::Finding* finding : whole) draw_finding(frame, *finding);
 }
 
-constexpr double shown_as_zero = 5e-4; // mm or degrees
+/// In the unit of the display: such a value is not shown as "-0.000".
+constexpr double shown_as_zero = 5e-4;
 
 /// A coordinate in the unit of the window, or an angle.
 std::string axis_text(const ViewModel& model, size_t axis, double value) {
-    if (std::abs(value) < shown_as_zero) value = 0.0; // not "-0.000"
+    const bool is_inch = model.settings.inch && !core::is_rotary(axis);
+    if (std::abs(value) < shown_as_zero * (is_inch ? core::mm_per_inch : 1.0)) value = 0.0;
     return core::is_rotary(axis) ? fmt::format("{:.3f}", value) : length_text(model, value, 3);
 }
 
