@@ -518,9 +518,8 @@ core::Result<TiltedPlane> plane_along(const Execution& execution, const core::Ve
                        .origin = origin};
 }
 
-/// A block of G68.2 P2 or P3, of which the last one sets the plane.
-///
-/// Source: Fanuc 30i, tilted working plane command: the order and meaning of the blocks.
+/// A block of G68.2 P2 or P3, of which the last one sets the plane. Controls and programs agree on
+/// the meaning of the blocks, but not on that of a shift or a rotation, which are refused.
 core::Result<void> add_to_plane(Execution& execution, bool by_points) {
     const auto refuse_words = [&](std::string_view letters) -> core::Result<void> {
         for (const char letter : letters)
@@ -600,6 +599,13 @@ core::Result<void> check_dynamic_offset_is_off(const Execution& execution, const
 
 namespace {
 
+tl::unexpected<core::Error> fail_incomplete(const Execution& execution, const BegunPlane& begun) {
+    return core::fail(ErrorCode::invalid_value,
+                      fmt::format("G68.2 P{} is not complete: Q{} must come before this block",
+                                  begun.by_points ? 2 : 3, begun.next),
+                      {.line = execution.block.line, .column = 1});
+}
+
 bool is_turn_to_plane(const CodeWord& entry) {
     const CodeNumber code = entry.code->number;
     return code == g_code(53, 1) || code == g_code(53, 6) || code == g_code(253);
@@ -626,6 +632,8 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
                                   fmt::format("{}: {} is not supported yet: program {} without {}",
                                               written(*word), what, name, letter),
                                   word->span);
+        if (const auto& begun = execution.modal().transforms.begun_plane)
+            return fail_incomplete(execution, *begun);
         if (!execution.modal().transforms.tilt)
             return core::fail(
                 ErrorCode::invalid_value,
@@ -665,10 +673,11 @@ core::Result<void> check_dynamic_offset(const Execution& execution, const ModalS
 core::Result<void> check_plane_is_complete(const Execution& execution, const ModalState& before) {
     const auto& begun = before.transforms.begun_plane;
     if (!begun || execution.modal().transforms.begun_plane != begun) return {};
-    return core::fail(ErrorCode::invalid_value,
-                      fmt::format("G68.2 P{} is not complete: Q{} must come before this block",
-                                  begun->by_points ? 2 : 3, begun->next),
-                      {.line = execution.block.line, .column = 1});
+    const auto& words = execution.block.words;
+    const bool is_empty = std::all_of(words.begin(), words.end(),
+                                      [](const Word& word) { return word.letter == 'N'; });
+    if (is_empty) return {};
+    return fail_incomplete(execution, *begun);
 }
 
 AxisValues values_or_zero(const Position& position) {

@@ -705,19 +705,19 @@ constexpr ControlSetting settings[] = {
     {siemens, "MD30600", "first fixed point (G75), machine coordinates", SettingKind::position,
      [](Environment& to, const SettingValue& value) { to.fixed_point = whole(value); },
      "SINUMERIK 840D sl, Programming Manual Fundamentals, approaching a fixed point (G75)"},
-    {siemens, "TC_CARR38", "where CYCLE800 retracts along X, machine coordinate",
+    {siemens, "CYCLE800 X", "where CYCLE800 retracts along X, machine coordinate",
      SettingKind::length,
      [](Environment& to, const SettingValue& value) {
          to.swivel_retract[0] = std::get<double>(value);
      },
      swivel_data},
-    {siemens, "TC_CARR39", "where CYCLE800 retracts along Y, machine coordinate",
+    {siemens, "CYCLE800 Y", "where CYCLE800 retracts along Y, machine coordinate",
      SettingKind::length,
      [](Environment& to, const SettingValue& value) {
          to.swivel_retract[1] = std::get<double>(value);
      },
      swivel_data},
-    {siemens, "TC_CARR40", "where CYCLE800 retracts along Z, machine coordinate",
+    {siemens, "CYCLE800 Z", "where CYCLE800 retracts along Z, machine coordinate",
      SettingKind::length,
      [](Environment& to, const SettingValue& value) {
          to.swivel_retract[2] = std::get<double>(value);

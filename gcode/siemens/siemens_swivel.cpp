@@ -85,7 +85,7 @@ constexpr double along_z = 1.0, along_z_then_xy = 2.0, along_tool = 4.0, along_t
 ///
 /// Source: SINUMERIK 840D sl, Turning, Operating Manual 06/2019, swivel plane: the kinds of
 /// retract.
-///         Commissioning Manual 12/2017, 15.7: where the machine builder states its positions.
+///         Commissioning Manual 12/2017, 15.7: the machine builder states its positions.
 std::vector<Position> way_of_retract(const Execution& execution, const Swivel& swivel) {
     const Offsets& offsets = execution.modal().offsets;
     const Position now = machine_from_program(offsets, execution.modal().position);
@@ -122,15 +122,16 @@ void retract(Execution& execution, const Swivel& swivel, core::SourceSpan where)
         execution.traverse(program_from_machine(execution.modal().offsets, machine));
     if (!way.empty()) return;
     const bool is_stated = swivel.retract == along_z || swivel.retract == along_z_then_xy;
-    lose_positions(execution, where,
-                   "CYCLE800: where it retracts before the swivel is not known. That move is not "
-                   "checked, nor are later ones until X, Y and Z have been programmed again",
-                   std::string(is_stated
-                                   ? "State under [control] to where it retracts, above where "
-                                     "the tool is: TC_CARR40 for Z, TC_CARR38 and TC_CARR39 "
-                                     "for X and Y. Or retract"
-                                   : "Retract")
-                       + " before the cycle, and call it with 0 as its first parameter.");
+    lose_positions(
+        execution, where,
+        "CYCLE800: where it retracts before the swivel is not known. That move is not "
+        "checked, nor are later ones until X, Y and Z have been programmed again",
+        std::string(is_stated
+                        ? "State under [control] to where it retracts, above where the tool is: "
+                          "\"CYCLE800 Z\", and \"CYCLE800 X\" and \"CYCLE800 Y\" if it "
+                          "does along them. Or retract"
+                        : "Retract")
+            + " before the cycle, and call it with 0 as its first parameter.");
 }
 
 /// Turns the rotary axes to the plane.

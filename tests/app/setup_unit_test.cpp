@@ -147,9 +147,9 @@ file = "machine.toml"
 dialect = "siemens"
 [control]
 MD30600 = { X = <1>, Y = <2>, Z = <3>, B = 4 }
-TC_CARR38 = <5>
-TC_CARR39 = <6>
-TC_CARR40 = <7>
+"CYCLE800 X" = <5>
+"CYCLE800 Y" = <6>
+"CYCLE800 Z" = <7>
 [stock]
 margin = <0.25>
 tolerance = <0.01>

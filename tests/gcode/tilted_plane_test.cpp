@@ -140,6 +140,8 @@ TEST(TiltedPlane, RefusesAnIncompletePlane) {
     EXPECT_THAT(error_of(first + "G0 X1"), HasSubstr("Q2 must come before this block"));
     EXPECT_THAT(error_of(first + second + "M30"), HasSubstr("Q3 must come before this block"));
     EXPECT_THAT(error_of(first + "G69"), HasSubstr("must come before"));
+    EXPECT_THAT(error_of(first + second + "G53.1"), HasSubstr("Q3 must come before this block"));
+    EXPECT_EQ(error_of(first + "(A COMMENT)\nN10\n" + second + "\nG68.2 P2 Q3 Y5"), "");
     EXPECT_THAT(error_of(first + "G68.2 X1 I20"), HasSubstr("must come before"));
     EXPECT_THAT(error_of(first + second + "G68.2 P2 Q3 X9"), HasSubstr("on one line"));
     EXPECT_THAT(error_of(first + first), HasSubstr("Q2 must come next"));
