@@ -650,10 +650,9 @@ bool sets_plane(const Block& block) {
 } // namespace
 
 bool lacks_point(const Block& block) {
-    const bool is_plane = sets_plane(block);
     return std::any_of(block.words.begin(), block.words.end(), [&](const Word& word) {
         return counts_increments(word.letter) && !word.has_point && !word.expression
-               && word.value != 0.0 && !(is_plane && word.letter == 'Q');
+               && word.value != 0.0 && !(word.letter == 'Q' && sets_plane(block));
     });
 }
 

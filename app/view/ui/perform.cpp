@@ -312,6 +312,9 @@ void perform(ViewModel& model, Command command, double now) {
         model.playback.speed = next_speed(model.playback.speed, false);
         break;
     case Command::filter:
+        if (!model.has_rows()) break;
+        model.shows_findings = false;
+        if (model.shows_setup) show_setup(model, false);
         model.filter_wants_focus = true;
         break;
     case Command::go_to_line:

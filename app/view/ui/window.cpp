@@ -619,6 +619,7 @@ core::Result<void> Window::run() {
             glfwWaitEventsTimeout(answer_time);
             update();
         }
+        if (shown_model().filter_wants_focus) damage();
         if (frames_ > 0) {
             --frames_;
             draw();
