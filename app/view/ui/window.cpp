@@ -80,6 +80,8 @@ public:
     bool has_characters() const;
     /// Whether the focus is about to move. A key that may be meant as a character must then wait.
     bool moves_now() const;
+    /// The focus is about to move: what is typed now waits until it has.
+    void expect_move();
     /// Adds the command of a key with modifiers, to be taken after the frames of all that waits.
     void add_command(int code, int modifiers);
     /// The command that is due before the next frame, as code and modifiers.
@@ -508,6 +510,7 @@ void Window::perform_key(int code, int modifiers) {
         model.popup == Popup::none && model.workspace.has_keys && moves && (is_plain || moves_text);
     if ((popup_keeps || panel_keeps) && !closes) return;
     perform(model, *command, glfwGetTime());
+    if (model.filter_wants_focus) keys_.expect_move();
 }
 
 void Window::set_title() {
@@ -765,6 +768,11 @@ bool KeyQueue::moves_now() const {
            || std::any_of(events_.begin(), events_.end(), [](const Event& event) {
                   return event.is_down && moves_focus(event.code);
               });
+}
+
+void KeyQueue::expect_move() {
+    constexpr int frames_of_a_request = 6; // it may be repeated: see ProgramPanel
+    frames_to_wait_ = frames_of_a_request;
 }
 
 void KeyQueue::add_command(int code, int modifiers) {
