@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the programs for LinuxCNC's five-axis machines: python3 generate.py
 
-A turned post-processor in two functions: what the tool does relative to the work is computed here,
-and the positions of the rotary axes follow from the directions that the machine files state.
+Each function computes the path and the direction of the tool relative to the work, and from them the
+positions of the rotary axes, with the directions of the axes in the machine files.
 """
 
 import math
@@ -39,11 +39,12 @@ def dome(follows_tip):
         # A tilts the tool to -Y of the table, and C turns it from there the other way round.
         return along(centre, tool, -ball), tool, (("A", -(polar + lean)), ("C", -90.0 - azimuth))
 
-    turns = math.degrees(math.asin(rim / radius)) * math.radians(1.0) * radius / step
+    widest = math.asin(rim / radius)  # angle from the axis to the rim
+    turns = widest * radius / step
     points = []
     for i in range(int(turns * 36) + 1):
         done = i / (turns * 36)
-        points.append(place(math.degrees(math.asin(rim / radius)) * (1.0 - done), 10.0 * i))
+        points.append(place(math.degrees(widest) * (1.0 - done), 10.0 * i))
     start, tool, axes = points[0]
     text = [
         "(A DOME OF RADIUS 20 ON A BAR OF 24)",

@@ -471,10 +471,6 @@ core::Result<void> turn_rotary_axes(Execution& execution, const Word& word, bool
     return {};
 }
 
-} // namespace
-
-namespace {
-
 /// X, Y and Z of a block, which are absolute; 0 for missing words.
 core::Vec3 point_of(const Execution& execution) {
     core::Vec3 point(0.0);
@@ -518,8 +514,8 @@ core::Result<TiltedPlane> plane_along(const Execution& execution, const core::Ve
                        .origin = origin};
 }
 
-/// A block of G68.2 P2 or P3, of which the last one sets the plane. Controls and programs agree on
-/// the meaning of the blocks, but not on that of a shift or a rotation, which are refused.
+/// A block of G68.2 P2 or P3, of which the last one sets the plane. A shift or a rotation of the
+/// plane is refused: programs differ in what they mean by it.
 core::Result<void> add_to_plane(Execution& execution, bool by_points) {
     const auto refuse_words = [&](std::string_view letters) -> core::Result<void> {
         for (const char letter : letters)

@@ -673,6 +673,11 @@ AxisValues whole(const SettingValue& value) {
     return values;
 }
 
+template <size_t axis>
+void set_swivel_retract(Environment& to, const SettingValue& value) {
+    to.swivel_retract[axis] = std::get<double>(value);
+}
+
 constexpr std::string_view swivel_data =
     "SINUMERIK Operate (IM9), Commissioning Manual 12/2017, 15.7, parameters of tool carriers";
 
@@ -706,23 +711,11 @@ constexpr ControlSetting settings[] = {
      [](Environment& to, const SettingValue& value) { to.fixed_point = whole(value); },
      "SINUMERIK 840D sl, Programming Manual Fundamentals, approaching a fixed point (G75)"},
     {siemens, "CYCLE800 X", "where CYCLE800 retracts along X, machine coordinate",
-     SettingKind::length,
-     [](Environment& to, const SettingValue& value) {
-         to.swivel_retract[0] = std::get<double>(value);
-     },
-     swivel_data},
+     SettingKind::length, set_swivel_retract<0>, swivel_data},
     {siemens, "CYCLE800 Y", "where CYCLE800 retracts along Y, machine coordinate",
-     SettingKind::length,
-     [](Environment& to, const SettingValue& value) {
-         to.swivel_retract[1] = std::get<double>(value);
-     },
-     swivel_data},
+     SettingKind::length, set_swivel_retract<1>, swivel_data},
     {siemens, "CYCLE800 Z", "where CYCLE800 retracts along Z, machine coordinate",
-     SettingKind::length,
-     [](Environment& to, const SettingValue& value) {
-         to.swivel_retract[2] = std::get<double>(value);
-     },
-     swivel_data},
+     SettingKind::length, set_swivel_retract<2>, swivel_data},
     {klartext, "datum", "the row of the preset table that is the work offset of the set-up",
      SettingKind::number,
      [](Environment& to, const SettingValue& value) { to.datum = std::get<double>(value); },

@@ -16,16 +16,15 @@ using core::ErrorCode;
 
 /// The parameters of CYCLE800; those that are left out are 0.
 struct Swivel {
-    double retract = 0.0;      // _FR
-    int state = 0;             // _ST
-    int mode = 57;             // _MODE
-    core::Vec3 before, after;  // X0 Y0 Z0 and X1 Y1 Z1, mm
-    core::Vec3 angles;         // in the order of the mode
-    int direction = 0;         // _DIR
-    double way_back = 0.0;     // _FR_I, mm
-    bool has_data = true;      // of the machine; false: _TC is "0"
-    bool is_first_data = true; // no other name was called before
-    size_t given = 0;          // parameters
+    double retract = 0.0;     // _FR
+    int state = 0;            // _ST
+    int mode = 57;            // _MODE
+    core::Vec3 before, after; // X0 Y0 Z0 and X1 Y1 Z1, mm
+    core::Vec3 angles;        // in the order of the mode
+    int direction = 0;        // _DIR
+    double way_back = 0.0;    // _FR_I, mm
+    bool knows_places = true; // the set-up states the places of these swivel data
+    size_t given = 0;         // parameters
 
     bool adds() const { return std::abs(state) % 10 == 1; }
     bool keeps_tip() const { return std::abs(state) / 10 % 10 == 1; }
@@ -91,8 +90,7 @@ std::vector<Position> way_of_retract(const Execution& execution, const Swivel& s
     const Position now = machine_from_program(offsets, execution.modal().position);
     Position above = now;
     if (swivel.retract == along_z || swivel.retract == along_z_then_xy) {
-        // The positions of the set-up are those of one set of swivel data.
-        if (!swivel.has_data || !swivel.is_first_data) return {};
+        if (!swivel.knows_places) return {};
         above[2] = execution.environment.swivel_retract[2];
     } else if (swivel.retract == along_tool || swivel.retract == along_tool_by) {
         if (!offsets.machine || !is_upright(*offsets.machine, now) || !now[2]) return {};
@@ -163,10 +161,11 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     const std::string name(arguments.size() > 1 ? arguments[1].text : std::string_view());
     std::string& known = writable_siemens(execution.state).swivel_data;
     if (name == "0") // no swivel data
-        swivel = {.retract = swivel.retract, .has_data = false};
+        swivel = {.retract = swivel.retract, .knows_places = false};
     else if (known.empty())
         known = name;
-    swivel.is_first_data = name.empty() || name == "0" || name == known;
+    else if (!name.empty() && name != known)
+        swivel.knows_places = false; // they are those of the first data in the program
     FEELER_TRY(const core::Mat3 rotation, rotation_of(swivel, use.span));
     if (execution.modal().compensation != Side::none)
         return core::fail(ErrorCode::unsupported,

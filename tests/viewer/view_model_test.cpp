@@ -4,6 +4,7 @@
 #include "app/view/model/navigation.h"
 #include "app/view/model/open_programs.h"
 #include "app/view/model/view_model.h"
+#include "gcode/language/modal_state.h"
 #include "tests/viewer/rows.h"
 
 namespace viewer_test {
@@ -144,6 +145,23 @@ TEST(Unit, IsThatOfTheProgramUntilTheUserChooses) {
     model.settings.has_own_unit = true;
     open(model, true);
     EXPECT_FALSE(model.settings.inch);
+}
+
+TEST(BlockState, OfTheSetupBeforeHasNoOffsets) {
+    ViewModel model;
+    model.program = std::make_shared<const OpenedProgram>();
+    BlockState state;
+    state.offsets_in_effect = std::make_shared<const gcode::Offsets>();
+    model.block_state = std::make_shared<const BlockState>(state);
+    SessionUpdate news;
+    news.opening = model.opening + 1;
+    news.has_news = news.is_again = true;
+    news.opened = std::make_shared<const OpenedProgram>();
+    take_in(model, std::move(news), 0.0);
+    ASSERT_TRUE(model.block_state);
+    EXPECT_TRUE(model.block_state->is_outdated);
+    EXPECT_FALSE(model.block_state->offsets_in_effect)
+        << "their machine is gone with the old scene";
 }
 
 TEST(CoverageWords, SayWhatWasNotCheckedOfTheToolsThatFeed) {

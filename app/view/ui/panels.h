@@ -52,7 +52,6 @@ private:
     void draw_row(Frame& frame, size_t block, float width);
 
     float scroll_ = 0.0F, room_ = 0.0F; // pixels, of the rows in the last frame
-    int focus_asked_ = -10, focus_tries_ = 0; // for the filter: the frame; since it was wanted
 };
 
 /// The findings, grouped by rule and pair of bodies, with the notes on them.

@@ -169,18 +169,11 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
     draw_counts(frame, area);
 
     ImGui::SetNextItemWidth(area.width - frame.px(24));
-    // A dialog that has just been closed may give the keyboard back to what had it before.
-    constexpr int frames_to_wait = 1, most_tries = 6;
-    if (model.filter_wants_focus && ImGui::GetFrameCount() > focus_asked_ + frames_to_wait) {
-        ImGui::SetKeyboardFocusHere();
-        focus_asked_ = ImGui::GetFrameCount();
-        ++focus_tries_;
-    }
+    if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
+    model.filter_wants_focus = false;
     const std::string hint = std::string(frame.fonts.icon(Icon::search))
                              + "  Filter: text, T3, clearance < 1 \xE2\x80\xA6";
     if (ImGui::InputTextWithHint("##filter", hint.c_str(), &model.filter_text)) apply_filter(model);
-    if (ImGui::IsItemActive() || focus_tries_ == most_tries) model.filter_wants_focus = false;
-    if (!model.filter_wants_focus) focus_tries_ = 0;
     draw_filter_note(frame);
 }
 

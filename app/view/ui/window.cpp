@@ -622,7 +622,6 @@ core::Result<void> Window::run() {
             glfwWaitEventsTimeout(answer_time);
             update();
         }
-        if (shown_model().filter_wants_focus) damage();
         if (frames_ > 0) {
             --frames_;
             draw();
@@ -771,7 +770,7 @@ bool KeyQueue::moves_now() const {
 }
 
 void KeyQueue::expect_move() {
-    constexpr int frames_of_a_request = 6; // it may be repeated: see ProgramPanel
+    constexpr int frames_of_a_request = 6; // a dialog may have to give back the keyboard first
     frames_to_wait_ = frames_of_a_request;
 }
 
