@@ -91,8 +91,8 @@ void put_in_order(std::vector<core::Finding>& findings) {
     });
 }
 
-/// Makes findings in a block that could not be run, the first one after --start-line, findings about
-/// the whole program.
+/// Makes findings in a block that could not be run, the first one after --start-line, findings
+/// about the whole program.
 void take_from_missing_blocks(CheckRun& run) {
     for (core::Finding& finding : run.findings)
         if (finding.block && core::value_of(*finding.block) >= run.blocks.size())

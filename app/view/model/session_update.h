@@ -74,10 +74,10 @@ struct BlockState {
     size_t block = 0;
     bool at_end = true; // true: the stock after the block; false: before it
     std::shared_ptr<const SceneSetup> scene;
-    std::vector<Pose> poses;                         // of the block
-    std::optional<core::AxisValues> standing;        // axis positions after the block
-    std::optional<core::ToolNumber> tool;            // used in the block
-    std::optional<ProgramZero> zero;                 // after the block
+    std::vector<Pose> poses;                  // of the block
+    std::optional<core::AxisValues> standing; // axis positions after the block
+    std::optional<core::ToolNumber> tool;     // used in the block
+    std::optional<ProgramZero> zero;          // after the block
     // After the block; null: unknown. Its machine is that of the scene.
     std::shared_ptr<const gcode::Offsets> offsets_in_effect;
     std::vector<bool> mounted_fixtures;
