@@ -29,16 +29,16 @@ std::string version_text() {
     const bool has_view = !app::view_bundle().empty();
     const std::string_view library = core::cad_library();
     const bool reads_cad = core::has_cad_reader();
-    return fmt::format("feeler {}\nwith     window and pictures (OpenGL), database of results "
-                       "(SQLite {}), line editing ({}){}{}{}{}",
-                       app::version, sqlite3_libversion(), app::line_editor(),
-                       has_view ? ", 3D view in HTML reports" : "",
-                       reads_cad ? fmt::format(", STEP and IGES files ({})", library) : "",
-                       has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing",
-                       reads_cad ? ""
-                       : library.empty()
-                           ? "\nwithout  STEP and IGES files: Open CASCADE was missing"
-                           : "\nwithout  STEP and IGES files: feeler-cad is missing");
+    return fmt::format(
+        "feeler {}\nwith     window and pictures (OpenGL), database of results "
+        "(SQLite {}), line editing ({}){}{}{}{}",
+        app::version, sqlite3_libversion(), app::line_editor(),
+        has_view ? ", 3D view in HTML reports" : "",
+        reads_cad ? fmt::format(", CAD files: STEP, IGES, BREP, FreeCAD ({})", library) : "",
+        has_view ? "" : "\nwithout  3D view in HTML reports: npm was missing",
+        reads_cad         ? ""
+        : library.empty() ? "\nwithout  CAD files: Open CASCADE was missing"
+                          : "\nwithout  CAD files: feeler-cad is missing");
 }
 
 /// The arguments as CLI11 reads them: debuggers have an option -ex, which it would take for -e x.
@@ -68,6 +68,7 @@ int run(const std::vector<std::string>& words) {
     app::add_view(cli, exit_code);
     app::add_shot(cli, exit_code);
     app::add_sheet(cli, exit_code);
+    app::add_filter(cli, exit_code);
     app::add_merge(cli, exit_code);
     app::add_history(cli, exit_code);
     app::add_diff(cli, exit_code);

@@ -65,8 +65,7 @@ struct SetupSheet {
     std::optional<double> allowance; // the general one; empty: the defaults
     /// Poses of the named frames relative to the stock: "machine", "stock", work offsets, fixtures.
     std::map<std::string, core::Transform> frames;
-    std::shared_ptr<const core::CadNames>
-        cad_names;               // of the solids in STEP and IGES files; or null
+    std::shared_ptr<const core::CadNames> cad_names; // of the solids in CAD files; or null
     bool knows_fixtures = false; // it describes some, or states that there are none
     bool has_machine = false;    // it describes axes
 

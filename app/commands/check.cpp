@@ -356,13 +356,7 @@ void add_check(CLI::App& cli, ExitCode& exit_code) {
     command.footer(examples);
     {
         const OptionGroup group(command, "Set-up, clearances and limits");
-        command
-            .add_option("--require", options->required,
-                        "Status 1 if the verdict does not cover this; coverage: stock, holders, "
-                        "fixtures, work offsets, axis limits or start position are not described")
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->check(one_of({required_words.begin(), required_words.end()}));
+        add_require_option(command, *options);
     }
     CLI::Option* pairs = command.add_flag("--pairs", options->pairs,
                                           "JSON: list every pair of bodies in every block");

@@ -1,9 +1,11 @@
 #include "app/commands/check_options.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "app/check/check_run.h"
 #include "app/commands/output.h"
+#include "app/commands/suggestion.h"
 #include "app/setup/setup_file.h"
 
 namespace app {
@@ -41,6 +43,16 @@ std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets) {
     for (const ReportTarget& target : targets)
         if (!target.path.empty()) paths.push_back(target.path);
     return paths;
+}
+
+void add_require_option(CLI::App& command, CheckOptions& options) {
+    command
+        .add_option("--require", options.required,
+                    "Status 1 if the verdict does not cover this; coverage: stock, holders, "
+                    "fixtures, work offsets, axis limits or start position are not described")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(one_of({required_words.begin(), required_words.end()}));
 }
 
 core::Result<CheckJob> job_of(const CheckOptions& options) {

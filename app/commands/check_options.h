@@ -10,6 +10,10 @@
 #include "app/commands/program_arguments.h"
 #include "app/library/store/shard_number.h"
 
+namespace CLI {
+class App;
+}
+
 namespace app {
 
 class WatchedFiles;
@@ -62,6 +66,9 @@ using BatchPass = std::function<ExitCode(WatchedFiles*)>;
 /// Prepares the check of many programs. `options` and `targets` must outlive it.
 core::Result<BatchPass> batch_pass(const CheckOptions& options,
                                    const std::vector<ReportTarget>& targets);
+
+/// Adds the option --require to a command.
+void add_require_option(CLI::App& command, CheckOptions& options);
 
 /// The file paths of the targets.
 std::vector<std::string> paths_of(const std::vector<ReportTarget>& targets);

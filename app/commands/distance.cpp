@@ -106,7 +106,7 @@ void add_vector(CLI::App& command, const char* name, std::vector<double>& value,
 void add_distance(CLI::App& cli, ExitCode& exit_code) {
     const auto options = std::make_shared<DistanceOptions>();
     CLI::App& command = *cli.add_subcommand("distance", "Measure the distance between two bodies");
-    const char* body = "Mesh file; STEP or IGES file, or one of its solids, as in vise.step#jaw; "
+    const char* body = "Mesh file; CAD file, or one of its solids, as in vise.step#jaw; "
                        "sphere:R, box:X,Y,Z or cylinder:R,H, centred on the origin; or "
                        "preset:NAME,KEY=VALUE...";
     add_path(command, "a", options->a, body)->required();
@@ -116,7 +116,7 @@ void add_distance(CLI::App& cli, ExitCode& exit_code) {
         ->capture_default_str();
     command
         .add_option("--mesh-deviation", options->deviation,
-                    "How far the mesh of a STEP or IGES file may be from its surface, mm")
+                    "How far the mesh of a CAD file may be from its surface, mm")
         ->check(number_range(core::least_cad_deviation, core::largest_cad_deviation))
         ->capture_default_str();
     add_vector(command, "--move", options->move, "Move B by X,Y,Z, mm");
@@ -206,10 +206,8 @@ core::Result<NamedBody> cad_body(const std::string& argument, const CadArgument&
     FEELER_TRY(const auto file, core::read_cad(cad.file, deviation));
     auto body = core::body_of(*file, cad.solid);
     if (!body) return tl::unexpected(core::in_file(body.error(), cad.file));
-    NamedBody named{argument, core::solid_mesh(std::move(body->mesh)), file->notes,
+    NamedBody named{argument, core::solid_mesh(std::move(body->mesh)), core::remarks_on(*file),
                     body->deviation};
-    for (const core::CadSurfaces& surfaces : file->left_out)
-        named.repairs.push_back(fmt::format("{}; they are left out", surfaces.what));
     named.repairs.push_back(meshed_text(*body));
     return named;
 }

@@ -28,7 +28,7 @@ std::string name_of_file(const std::string& path) {
 
 /// Adds to a text what it lacks of an imported set-up: the tools that the program uses, the stock.
 core::Result<std::string> with_import(std::string text, const SetupFile& import,
-                                      std::vector<std::string>& added) {
+                                      const std::string& folder, std::vector<std::string>& added) {
     const StatedSetup stated = stated_in(text);
     if (!text.ends_with('\n')) text += '\n';
     for (const auto& [number, found] : import.library) {
@@ -37,10 +37,14 @@ core::Result<std::string> with_import(std::string text, const SetupFile& import,
         added.push_back(fmt::format("tool {}", core::value_of(number)));
     }
     const bool has_stock = import.stock_known == Known::described;
-    if (const std::string table = has_stock ? stock_text(import) : "";
+    if (const std::string table = has_stock ? stock_text(import, folder) : "";
         !stated.stock && !table.empty()) {
         text += table;
         added.emplace_back("the stock");
+    }
+    if (const std::string table = part_text(import, folder); !stated.part && !table.empty()) {
+        text += table;
+        added.emplace_back("the part");
     }
     FEELER_TRY(const toml::table read, parsed_toml(text));
     static_cast<void>(read);
@@ -53,15 +57,15 @@ core::Result<viewer::JobFileNews> import_job(const CheckJob& job, const std::str
     viewer::JobFileNews news;
     news.title = "Import " + name_of_file(path);
     const std::string before = job.setup_text.value_or("");
+    const std::string folder =
+        std::filesystem::path(setup_path(job)).parent_path().generic_string();
     std::vector<std::string> added;
     if (before.empty()) {
-        const std::string folder =
-            std::filesystem::path(setup_path(job)).parent_path().generic_string();
         news.setup_text = setup_text(import, {job.program, job.settings, folder});
         added.emplace_back("a set-up with what the program and the job state");
     } else {
         import.length_unit = stated_in(before).length_unit;
-        FEELER_TRY(news.setup_text, with_import(before, import, added));
+        FEELER_TRY(news.setup_text, with_import(before, import, folder, added));
     }
     news.text = added.empty() ? "The set-up states all of it already.\n"
                               : fmt::format("Added: {}.\n", fmt::join(added, ", "));

@@ -26,6 +26,12 @@ tl::unexpected<core::Error> refused(const std::string& path, const std::string& 
     return tl::unexpected<core::Error>({core::ErrorCode::io, {}, why, path});
 }
 
+/// Whether nobody may write a file. It could still be replaced, which is not what its owner wants.
+bool is_read_only(const std::filesystem::file_status& status) {
+    using enum std::filesystem::perms;
+    return (status.permissions() & (owner_write | group_write | others_write)) == none;
+}
+
 bool write_all(std::FILE* file, std::string_view text) {
     return std::fwrite(text.data(), 1, text.size(), file) == text.size();
 }
@@ -68,13 +74,16 @@ core::Result<OutputStream> OutputStream::open(const std::string& path) {
     if (path.empty()) return OutputStream(std::move(state));
     state->path = path;
     std::error_code failure;
-    const auto kind = std::filesystem::status(path, failure).type();
+    const std::filesystem::file_status status = std::filesystem::status(path, failure);
+    const auto kind = status.type();
     const std::filesystem::path target = resolved_path(path);
     if (kind == std::filesystem::file_type::none || target.empty())
         return refused(path,
                        "cannot be written: "
                            + (failure ? failure.message() : "its location cannot be determined"));
     if (kind == std::filesystem::file_type::directory) return refused(path, "is a folder");
+    if (kind == std::filesystem::file_type::regular && is_read_only(status))
+        return refused(path, "is read-only: choose another file, or make it writable");
     const bool is_file = kind == std::filesystem::file_type::regular
                          || kind == std::filesystem::file_type::not_found;
     const bool replace = is_file && !core::platform::is_device(path);

@@ -126,9 +126,10 @@ void add_setup(CLI::App& cli, ExitCode& exit_code) {
     command.add_flag("--force", options->force, "Replace the file if it is there already");
     command.add_flag("--update", options->update,
                      "Add to the set-up what the program says and the set-up lacks");
-    add_path(command, "--from", options->import,
-             "Take tools and stock from a FreeCAD job (.FCStd), or tools from a library (.tools, "
-             ".hsmlib, .json, .fctl, .fctb, .tbl)");
+    add_path(
+        command, "--from", options->import,
+        "Take tools, stock and part from a FreeCAD job (.FCStd), or tools from a library (.tools, "
+        ".hsmlib, .json, .fctl, .fctb, .tbl)");
     add_control_arguments(command, options->control);
     command.get_option("--from")->excludes(command.get_option("--control"));
     for (const char* other : {"--from", "--control"})

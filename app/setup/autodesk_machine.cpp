@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
-#include "app/base/xml.h"
 #include "app/setup/tools/json_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/math.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
+#include "core/formats/xml_document.h"
 #include "core/motion/event.h"
 
 namespace app {
@@ -140,7 +140,7 @@ std::optional<double> quantity_in(const std::string& text) {
 
 /// Reads the attributes of an axis.
 struct AxisElement {
-    const XmlDocument& xml;
+    const core::XmlDocument& xml;
     const pugi::xml_node& node;
 
     std::string text(const char* key) const { return trimmed(node.attribute(key).as_string()); }
@@ -196,7 +196,7 @@ core::Result<LibraryAxis> axis_of_element(const AxisElement& element) {
 }
 
 core::Result<AutodeskMachine> machine_of_xml(const std::string& text, const std::string& path) {
-    FEELER_TRY(const XmlDocument xml, XmlDocument::parse(text, path));
+    FEELER_TRY(const core::XmlDocument xml, core::XmlDocument::parse(text, path));
     const pugi::xml_node root = xml.root().child("machine");
     std::vector<LibraryAxis> axes;
     for (const pugi::xml_node& node : root.children("axis")) {

@@ -404,9 +404,8 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
         if (std::find(known.begin(), known.end(), text) == known.end())
             known.push_back(std::move(text));
     };
-    for (const std::string& repair : (*file)->notes) note(fmt::format("{}: {}", name, repair));
-    for (const core::CadSurfaces& surfaces : (*file)->left_out)
-        note(fmt::format("{}: {}; they are left out", name, surfaces.what));
+    for (const std::string& remark : core::remarks_on(**file))
+        note(fmt::format("{}: {}", name, remark));
     note(fmt::format("{}{}: {}", solid.empty() ? "" : solid + " of ", name, meshed_text(*body)));
     return BodyMesh{std::move(body->mesh), body->deviation};
 }
@@ -418,7 +417,7 @@ std::optional<core::Mesh> read_plain_mesh(TableReader& table, const char* key,
     const bool is_inch = table.word("mesh_unit", {"mm", "inch"}) == "inch";
     for (const char* of_cad : {"solid", "mesh_deviation"})
         if (table.has(of_cad)) {
-            table.refuse(of_cad, "applies only to STEP and IGES files");
+            table.refuse(of_cad, "applies only to CAD files (STEP, IGES, BREP, FreeCAD)");
             return std::nullopt;
         }
     const auto read = kept_mesh(source.folder / name);

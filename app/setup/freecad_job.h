@@ -18,11 +18,14 @@ struct FreeCadJob {
     std::vector<std::string> work_offsets;       // "G54" ...
     std::map<core::ToolNumber, FoundTool> tools; // of its tool controllers
     std::optional<core::Solid> stock;            // a box or a cylinder, in program coordinates, mm
-    std::vector<std::string> notes;              // what was not taken over, and the way out
+    std::string stock_body;         // otherwise its name in the document, where it has a shape
+    bool stock_is_its_box = false;  // it is the box of that shape, along the axes
+    std::string part_body;          // the name of the part in the document; empty: there is none
+    std::vector<std::string> notes; // what was not taken over, and the way out
 };
 
-/// Reads the first job of a document (.FCStd): its tools, its stock if that is a box or a cylinder,
-/// work offsets and post processor. The part is a BREP, which is not read.
+/// Reads the first job of a document (.FCStd): its tools, its stock and part, work offsets and post
+/// processor. The shapes of stock and part are those of bodies that core::read_cad reads.
 ///
 /// Source: documents of FreeCAD 0.20 with jobs that its Path module made (PathJob.py, PathStock.py,
 ///         PathToolBit.py); positions of a job are those of the document.

@@ -51,6 +51,12 @@ struct PartialTool {
     core::SourceSpan where;       // in the set-up file
 };
 
+/// The bodies of a document from which a set-up is made: what their tables state.
+struct ImportedBodies {
+    std::string document;    // its path
+    std::string stock, part; // names of bodies in it; or empty
+};
+
 /// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it
@@ -77,7 +83,8 @@ struct SetupFile {
     std::map<core::ToolNumber, std::string> inferred_tools; // with the reason, a sentence
     std::map<core::ToolNumber, FoundTool> found_tools;      // likewise, what their sources state
     std::vector<std::string> import_notes;                  // about the file of --from
-    std::string inferred_stock;                             // reason; empty: stated
+    ImportedBodies imported_bodies;
+    std::string inferred_stock;   // reason; empty: stated
     std::string stock_comment;    // the same with lengths in the unit of the file
     bool speed_by_hand = false;   // M3 starts the spindle without S
     bool allow_comments = false;  // (feeler: allow RULE) in the program has effect
@@ -100,7 +107,7 @@ struct SetupFile {
     std::string start_assumption;  // of a start position that nothing states; or empty
     std::string not_judged;        // why motions are not checked; empty if they are
     std::vector<std::string> assumptions; // facts that the file does not state, and mesh repairs
-    std::shared_ptr<core::CadNames> cad_names; // of the solids in STEP and IGES files; or null
+    std::shared_ptr<core::CadNames> cad_names; // of the solids in CAD files; or null
 };
 
 /// Reads a set-up (TOML) and every file that it names; relative paths are relative to the file.

@@ -311,8 +311,19 @@ std::string stock_frame(const SetupFile& setup) {
 
 namespace {
 
-/// A `[stock]` that gives the box or cylinder of a set-up; empty for a mesh, which needs a file.
-std::string stock_table(const SetupFile& setup) {
+/// The lines that name a body of the imported document.
+std::string imported_body_text(const SetupFile& setup, const std::string& name,
+                               const std::string& folder) {
+    return fmt::format("mesh = {}\nsolid = {}\nframe = {}\n",
+                       path_text(setup.imported_bodies.document, folder), toml_text(name),
+                       toml_text(stock_frame(setup)));
+}
+
+/// A `[stock]` that gives the stock of a set-up; empty for a mesh that is in no document.
+std::string stock_table(const SetupFile& setup, const std::string& folder) {
+    if (!setup.imported_bodies.stock.empty())
+        return "[stock]\n" + imported_body_text(setup, setup.imported_bodies.stock, folder);
+
     const core::Solid& stock = setup.setup.stock;
     const WrittenLength written = written_length(setup.stock_known == Known::described);
     const auto length = [&](double mm) { return written(mm, setup.length_unit); };
@@ -356,9 +367,14 @@ bool has_stock(const SetupFile& setup) {
 
 } // namespace
 
-std::string stock_text(const SetupFile& setup) {
+std::string part_text(const SetupFile& setup, const std::string& folder) {
+    const std::string& part = setup.imported_bodies.part;
+    return part.empty() ? "" : "\n[part]\n" + imported_body_text(setup, part, folder);
+}
+
+std::string stock_text(const SetupFile& setup, const std::string& folder) {
     if (!has_stock(setup)) return {};
-    const std::string table = stock_table(setup);
+    const std::string table = stock_table(setup, folder);
     const std::string& words =
         setup.stock_comment.empty() ? setup.inferred_stock : setup.stock_comment;
     const std::string why = words.empty() ? "" : comment(words);
@@ -516,7 +532,8 @@ std::string setup_text(const SetupFile& setup, const SetupOrigin& origin) {
     text += line(false, stated("mesh_size", setup_length(setup.setup.mesh_size, setup.length_unit)))
             + line(false, stated("fixtures", "\"none\""), "or describe them below");
     text += program_text(setup, origin) + machine_text(setup) + offsets_text(setup)
-            + stock_text(setup) + fixture_text(setup);
+            + stock_text(setup, origin.folder) + part_text(setup, origin.folder)
+            + fixture_text(setup);
     for (const auto& [number, tool] : setup.setup.tools) text += tool_text(setup, number);
     return text;
 }

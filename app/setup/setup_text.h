@@ -36,9 +36,12 @@ std::string tool_table(const core::ToolDescription& exact, gcode::LengthUnit uni
 std::string found_tool_lines(const FoundTool& listed, gcode::LengthUnit unit);
 
 /// Parts of a set-up file in its unit, each after an empty line, with assumed lines commented out.
-/// A tool or a stock of which the file is to state nothing gives only comments.
+/// A tool or a stock of which the file is to state nothing gives only comments; a part that no
+/// document has gives nothing. `folder`: of the set-up file; empty: the current one.
 std::string tool_text(const SetupFile& setup, core::ToolNumber number);
-std::string stock_text(const SetupFile& setup);
+std::string stock_text(const SetupFile& setup, const std::string& folder);
+std::string part_text(const SetupFile& setup, const std::string& folder);
+
 /// The name of a work offset on the control of the program: "G505" on a Siemens control, else
 /// "G58".
 std::string offset_name(const SetupFile& setup, size_t index);

@@ -116,7 +116,7 @@ void add_offsets(SetupUpdate& update, const SetupFile& file) {
 void add_stock(SetupUpdate& update, const SetupFile& file, const StatedSetup& stated) {
     const bool program_states_it = file.needs_stock && file.stock_known == Known::described;
     if (stated.stock || !program_states_it) return;
-    const std::string table = stock_text(file);
+    const std::string table = stock_text(file, {});
     if (table.empty()) return;
     update.text += with_line_ends_of(table, update.text);
     update.added.push_back("stock");

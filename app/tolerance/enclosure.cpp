@@ -428,7 +428,7 @@ std::optional<LimitingPair> Enclosure::judge_legs(Run& run, size_t event,
     if (tool == run.exact.tools.end() && run.exact.machine.bodies.empty()) return std::nullopt;
     core::CheckMemory memory;
     memory.off_path = off_path + run.state.corners.of_cuts;
-    std::vector<core::TrackedPair> pairs;
+    core::TrackedPairs pairs;
     core::LegCheck check(run.exact, tool == run.exact.tools.end() ? nothing : tool->second,
                          core::FluteUse::not_cutting,
                          motions_.blocks[motions_.block_of[event]].block,

@@ -39,17 +39,21 @@ const CadReadObserver* CadReadObserver::current() { return current_observer; }
 
 namespace {
 
-bool is_step(const std::filesystem::path& path) {
+/// The format that the extension of a path stands for.
+std::optional<cad::CadFormat> format_of(const std::filesystem::path& path) {
+    using enum cad::CadFormat;
     const std::string extension = lower_case(path.extension().generic_string());
-    return extension == ".step" || extension == ".stp" || extension == ".p21";
+    constexpr std::pair<std::string_view, cad::CadFormat> formats[] = {
+        {".step", step}, {".stp", step},  {".p21", step}, {".iges", iges},
+        {".igs", iges},  {".brep", brep}, {".brp", brep}, {".fcstd", freecad}};
+    for (const auto& [known, format] : formats)
+        if (extension == known) return format;
+    return std::nullopt;
 }
 
 } // namespace
 
-bool is_cad_file(const std::filesystem::path& path) {
-    const std::string extension = lower_case(path.extension().generic_string());
-    return is_step(path) || extension == ".iges" || extension == ".igs";
-}
+bool is_cad_file(const std::filesystem::path& path) { return format_of(path).has_value(); }
 
 #ifdef FEELER_OPENCASCADE
 
@@ -111,7 +115,28 @@ Result<bool> check_iges(std::string_view bytes) {
     return true;
 }
 
-Result<std::string> cad_bytes(const std::filesystem::path& path) {
+/// What can be said about the bytes of a shape of Open CASCADE before it is read.
+Result<bool> check_brep(std::string_view bytes) {
+    constexpr size_t head = 64;
+    if (bytes.substr(0, head).find("CASCADE Topology V") != std::string_view::npos) return true;
+    return fail(ErrorCode::syntax, "it is no BREP file: \"CASCADE Topology\" is not at its start");
+}
+
+Result<bool> check_bytes(std::string_view bytes, cad::CadFormat format) {
+    switch (format) {
+    case cad::CadFormat::step:
+        return check_step(bytes);
+    case cad::CadFormat::iges:
+        return check_iges(bytes);
+    case cad::CadFormat::brep:
+        return check_brep(bytes);
+    case cad::CadFormat::freecad:
+        break; // an archive, which is checked when it is opened
+    }
+    return true;
+}
+
+Result<std::string> cad_bytes(const std::filesystem::path& path, cad::CadFormat format) {
     if (const std::string why = why_no_file(path); !why.empty()) return fail(ErrorCode::io, why);
     std::optional<std::string> bytes = file_bytes(path, largest_cad_file);
     if (!bytes) return fail(ErrorCode::io, "it cannot be read");
@@ -121,8 +146,7 @@ Result<std::string> cad_bytes(const std::filesystem::path& path) {
     if (bytes->starts_with("\xEF\xBB\xBF") || bytes->starts_with("\xFF\xFE"))
         return fail(ErrorCode::syntax, "it begins with a byte-order mark, so a text editor has "
                                        "saved it: export it again, or save it as ASCII");
-    FEELER_TRY([[maybe_unused]] const bool is_plausible,
-               is_step(path) ? check_step(*bytes) : check_iges(*bytes));
+    FEELER_TRY([[maybe_unused]] const bool is_plausible, check_bytes(*bytes, format));
     return *std::move(bytes);
 }
 
@@ -219,35 +243,42 @@ Result<CadFile> Intake::result(cad::ReaderEnd end, unsigned seconds) && {
 /// The solids as checked bodies. What is repaired comes from the mesh, not from the file: two faces
 /// can have a triangle each between three points of their edge, which are a shell of no volume.
 Result<CadFile> checked(CadFile file) {
+    std::vector<CadSolid> solids;
     for (CadSolid& solid : file.solids) {
         std::vector<std::string> repairs;
         auto mesh = checked_solid(std::move(solid.mesh), repairs);
-        if (!mesh) {
-            mesh.error().message = fmt::format("{}: {}", solid.name(), mesh.error().message);
-            return tl::unexpected(mesh.error());
+        if (mesh) {
+            solid.mesh = *std::move(mesh);
+            solids.push_back(std::move(solid));
+            continue;
         }
-        solid.mesh = *std::move(mesh);
+        std::string what = fmt::format("{}: {}", solid.name(), mesh.error().message);
+        if (!file.bodies_are_apart) return fail(mesh.error().code, std::move(what));
+        file.left_out.push_back({std::move(solid.names), std::move(what)});
     }
+    file.solids = std::move(solids);
     return file;
 }
 
-Result<CadFile> read_fresh(const std::filesystem::path& path, double deviation, size_t size) {
+Result<CadFile> read_fresh(const std::filesystem::path& path, cad::CadFormat format,
+                           double deviation, size_t size) {
     const std::string name = path.generic_string();
     const unsigned seconds = seconds_for(size, deviation);
     Intake intake(name);
     const cad::ReaderEnd end =
-        cad::run_reader({reader_path().string(), path.string(), is_step(path) ? "step" : "iges",
+        cad::run_reader({reader_path().string(), path.string(), std::string(name_of(format)),
                          fmt::format("{}", deviation), fmt::format("{}", most_triangles),
                          fmt::format("{}", seconds)},
                         [&](std::string_view bytes) { return intake.take(bytes); });
     FEELER_TRY(CadFile file, std::move(intake).result(end, seconds));
+    file.bodies_are_apart = format == cad::CadFormat::freecad;
     return checked(std::move(file));
 }
 
 /// A file that was read, kept because a set-up is read again after each change.
 struct KeptFile {
     std::string bytes;
-    bool is_step = false;
+    cad::CadFormat format{};
     double deviation = 0.0;
     std::shared_ptr<const CadFile> file;
 };
@@ -266,7 +297,7 @@ std::shared_ptr<const CadFile> find_kept(const KeptFile& wanted) {
     KeptFiles& kept = kept_files();
     const std::lock_guard lock(kept.mutex);
     const auto same = [&](const KeptFile& file) {
-        return file.deviation == wanted.deviation && file.is_step == wanted.is_step
+        return file.deviation == wanted.deviation && file.format == wanted.format
                && file.bytes == wanted.bytes;
     };
     const auto found = std::find_if(kept.files.begin(), kept.files.end(), same);
@@ -297,10 +328,11 @@ void keep(KeptFile file) {
 
 Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path& path,
                                                     double deviation) {
-    FEELER_TRY(std::string bytes, cad_bytes(path));
-    KeptFile wanted{std::move(bytes), is_step(path), deviation, {}};
+    const cad::CadFormat format = *format_of(path);
+    FEELER_TRY(std::string bytes, cad_bytes(path, format));
+    KeptFile wanted{std::move(bytes), format, deviation, {}};
     if (auto file = find_kept(wanted)) return file;
-    FEELER_TRY(CadFile file, read_fresh(path, deviation, wanted.bytes.size()));
+    FEELER_TRY(CadFile file, read_fresh(path, format, deviation, wanted.bytes.size()));
     // The reader opened the file once more.
     if (file_bytes(path, largest_cad_file) != wanted.bytes)
         return fail(ErrorCode::io, "it changed while it was read: try again");
@@ -330,7 +362,8 @@ namespace {
 
 Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&, double) {
     return fail(ErrorCode::unsupported,
-                "this feeler was built without Open CASCADE, so it cannot read STEP and IGES: "
+                "this feeler was built without Open CASCADE, so it cannot read STEP, IGES, BREP "
+                "and FreeCAD: "
                 "export the body as STL, or build Feeler with the packages of "
                 ".ci/packages/cad.txt installed");
 }
@@ -341,6 +374,7 @@ Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&
 
 Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& path,
                                                 double deviation) {
+    assert(is_cad_file(path));
     assert(deviation >= least_cad_deviation && deviation <= largest_cad_deviation);
     return read_or_kept(path, deviation).map_error([&](const Error& error) {
         return in_file(error, path.generic_string());
@@ -378,6 +412,14 @@ void append(Mesh& mesh, const Mesh& other) {
 
 } // namespace
 
+std::vector<std::string> remarks_on(const CadFile& file) {
+    std::vector<std::string> remarks = file.notes;
+    if (file.bodies_are_apart) return remarks; // what is left out belongs to other bodies
+    for (const CadSurfaces& surfaces : file.left_out)
+        remarks.push_back(surfaces.what + "; they are left out");
+    return remarks;
+}
+
 std::vector<CadName> names_of(const CadFile& file) {
     std::vector<CadName> names;
     std::unordered_map<std::string_view, size_t> at;
@@ -391,15 +433,20 @@ std::vector<CadName> names_of(const CadFile& file) {
 }
 
 Result<CadBody> body_of(const CadFile& file, const std::string& name) {
+    if (name.empty() && file.bodies_are_apart && file.solids.size() > 1)
+        return fail(ErrorCode::missing_value,
+                    fmt::format("it has several bodies: name the one that is meant (solid = ...): "
+                                "{}",
+                                names_text(file)));
     std::vector<std::string> missing;
     for (const CadSurfaces& surfaces : file.left_out)
         if (!is_own_name(file, name) && is_in(surfaces.names, name))
             missing.push_back(surfaces.what);
     if (!missing.empty())
         return fail(ErrorCode::invalid_value,
-                    fmt::format("beside solids it has surfaces that enclose none, and could be "
-                                "part of the body: {}. Close them in the CAD system; or name each "
-                                "solid of the body: {}",
+                    fmt::format("beside solids it has what could be part of the body: {}. Close "
+                                "or repair it in the CAD system; or name each solid of the body: "
+                                "{}",
                                 fmt::join(missing, "; "), names_text(file)));
     CadBody body;
     for (const CadSolid& solid : file.solids) {

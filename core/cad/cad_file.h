@@ -38,7 +38,8 @@ struct CadSolid {
     const std::string& name() const { return names.back(); }
 };
 
-/// Surfaces of a part that enclose no solid.
+/// What could be part of a body and is not read: surfaces that enclose no solid, or of a FreeCAD
+/// document, what else is no solid that can be meshed.
 struct CadSurfaces {
     std::vector<std::string> names; // of the part, after those of the assemblies that contain it
     std::string what;               // a sentence: "jaw has 5 surfaces that enclose no solid"
@@ -49,6 +50,9 @@ struct CadFile {
     std::vector<CadSolid> solids;
     std::vector<std::string> notes;    // what was repaired, and curves that were left out
     std::vector<CadSurfaces> left_out; // what could be part of a body
+    // The solids are a body together only if they have a name in common: a FreeCAD document has the
+    // stock, the part and the bodies of which the part is made.
+    bool bodies_are_apart = false;
 };
 
 /// The reader of CAD files that this program has, such as "Open CASCADE 7.6.3"; empty if it was
@@ -58,22 +62,28 @@ std::string_view cad_library();
 /// Whether the program is there that reads CAD files for this one.
 bool has_cad_reader();
 
-/// Whether the extension of a path is that of a STEP or IGES file.
+/// Whether the extension of a path is that of a CAD file: .step .stp .p21 .iges .igs .brep .brp
+/// .FCStd
 bool is_cad_file(const std::filesystem::path& path);
 
-/// Reads the solids of a STEP or IGES file (.step .stp .iges .igs) with Open CASCADE.
+/// Reads the solids of a CAD file (`is_cad_file`) with Open CASCADE: STEP, IGES, shapes of Open
+/// CASCADE (BREP), documents of FreeCAD.
 ///
-/// Units:   the file states its own; the result is in mm.
+/// Units:   STEP and IGES state their own, the others are in mm; the result is in mm.
 /// Result:  all solids, each meshed within `deviation` (mm) of its surface. Where the file itself
 ///          has larger gaps between its faces, `CadSolid::deviation` is larger. The last files are
 ///          kept, so reading one of them again costs no more than comparing its bytes.
 /// Errors:  of the file: built without Open CASCADE, damaged, without solids, an open surface, a
 ///          face that cannot be meshed, stopped by a `CadReadObserver`. A file is never read in
-///          part, except that curves, and open surfaces beside solids, are left out and named.
+///          part, except that curves, and open surfaces beside solids, are left out and named;
+///          so is what cannot be read of a FreeCAD document.
 /// Cost:    about what Open CASCADE itself takes to read and mesh the file. It runs in a process of
 ///          its own, because damaged files can make it crash.
 Result<std::shared_ptr<const CadFile>> read_cad(const std::filesystem::path& path,
                                                 double deviation = default_cad_deviation);
+
+/// What a user of its bodies should know: repairs, and what was left out.
+std::vector<std::string> remarks_on(const CadFile& file);
 
 /// A name of solids of a CAD file, and their colour if they have one.
 struct CadName {
@@ -92,9 +102,9 @@ struct CadNames {
 /// Those solids of a file that have this name, or are in an assembly of this name, as one mesh;
 /// with an empty name, all. A mesh of several solids may overlap itself (checked_solid).
 ///
-/// Errors:  no solid has the name; the message lists the names there are. The file or the named
-///          assembly also has surfaces that enclose no solid, which would be missing from the body;
-///          they are left out only if the name is a solid's own.
+/// Errors:  no solid has the name, or there is no name and the bodies are apart; the message lists
+///          the names there are. The file or the named assembly also has what is not read, which
+///          would be missing from the body; it is left out only if the name is a solid's own.
 struct CadBody {
     Mesh mesh;
     double deviation = 0.0; // the greatest of its solids, mm

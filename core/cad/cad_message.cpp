@@ -50,6 +50,20 @@ void put_texts(Writer& writer, const std::vector<std::string>& texts) {
 
 } // namespace
 
+std::string_view name_of(CadFormat format) {
+    switch (format) {
+    case CadFormat::step:
+        return "step";
+    case CadFormat::iges:
+        return "iges";
+    case CadFormat::brep:
+        return "brep";
+    case CadFormat::freecad:
+        return "freecad";
+    }
+    return {};
+}
+
 std::string text_message(MessageKind kind, std::string_view text) {
     Writer writer;
     writer.put(kind);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,7 +10,14 @@
 
 namespace core::cad {
 
-// What the program that reads CAD files writes to its standard output.
+// What the program that reads CAD files is told, and what it writes to its standard output.
+
+enum class CadFormat : uint8_t { step, iges, brep, freecad };
+inline constexpr std::array all_cad_formats{CadFormat::step, CadFormat::iges, CadFormat::brep,
+                                            CadFormat::freecad};
+
+/// "step" ...: the word for a format in the arguments of the program.
+std::string_view name_of(CadFormat format);
 
 enum class MessageKind : uint8_t { progress = 1, note, left_out, error, solid, end };
 

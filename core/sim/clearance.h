@@ -95,10 +95,10 @@ void merge(PairClearance& known, const PairClearance& later);
 
 /// The pair that decides a block: the one with the worst verdict, or of those the one with the
 /// least margin. Null if all pairs are clear beyond the search limit.
-template <typename Clearance>
-const Clearance* deciding_pair(const std::vector<Clearance>& pairs) {
-    const Clearance* worst = nullptr;
-    for (const Clearance& pair : pairs) {
+template <typename Clearances>
+const typename Clearances::value_type* deciding_pair(const Clearances& pairs) {
+    const typename Clearances::value_type* worst = nullptr;
+    for (const typename Clearances::value_type& pair : pairs) {
         if (!pair.found() && pair.verdict == Verdict::clear) continue;
         if (!worst || pair.verdict > worst->verdict
             || (pair.verdict == worst->verdict && pair.margin() < worst->margin()))

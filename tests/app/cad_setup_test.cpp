@@ -40,8 +40,8 @@ protected:
 TEST_F(CadSetup, KeysOfCadFilesAreForCadFilesOnly) {
     folder_.write("a.stl", "solid a\nendsolid a\n");
     const std::string fixture = offsets + "[[fixture]]\nname = \"a\"\nmesh = \"a.stl\"\n";
-    EXPECT_THAT(error_of(fixture + "solid = \"jaw\"\n"), HasSubstr("only to STEP and IGES"));
-    EXPECT_THAT(error_of(fixture + "mesh_deviation = 0.1\n"), HasSubstr("only to STEP and IGES"));
+    EXPECT_THAT(error_of(fixture + "solid = \"jaw\"\n"), HasSubstr("only to CAD files"));
+    EXPECT_THAT(error_of(fixture + "mesh_deviation = 0.1\n"), HasSubstr("only to CAD files"));
 }
 
 #ifndef FEELER_CAD_READER

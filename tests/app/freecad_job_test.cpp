@@ -1,5 +1,6 @@
 #include <random>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "app/report/text/text_report.h"
@@ -7,8 +8,10 @@
 #include "app/setup/inference/imported_setup.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
+#include "app/setup/setup_text.h"
 #include "core/sim/tool_assembly.h"
 #include "gcode/text/source.h"
+#include "tests/support/cad_reader.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/zip_writer.h"
 
@@ -54,7 +57,7 @@ TEST(FreeCadJob, ReadsJobsThatFreeCadMade) {
         EXPECT_EQ(chamfer.shape, core::ToolShape::chamfer);
         EXPECT_EQ(chamfer.angle_deg, 22.5);
         EXPECT_EQ(chamfer.tip_diameter, 5.0);
-        EXPECT_TRUE(notes_say(job, "its part is a BREP"));
+        EXPECT_EQ(job.part_body, "Model");
     }
 }
 
@@ -69,7 +72,47 @@ TEST(FreeCadJob, ReadsTheStock) {
     EXPECT_EQ(std::get<core::SolidCylinder>(round->shape).base, core::Vec3(25, 20, 0));
     const FreeCadJob base = job_in(sample("base"));
     EXPECT_FALSE(base.stock.has_value());
-    EXPECT_TRUE(notes_say(base, "X -1 +4, Y -2 +5, Z -3 +6 mm"));
+    EXPECT_EQ(base.stock_body, "Stock001");
+    EXPECT_TRUE(base.stock_is_its_box);
+}
+
+/// The set-up of a program with tool 7, which FreeCAD's job completes, as a text.
+std::string text_with(const std::string& document) {
+    const auto program = gcode::read_program(job_folder().write(
+        "part.ngc", "G21 G90 G54\nT7 M6\nS3000 M3\nG43 H7\nG0 X0 Y0 Z20\nG1 Z9 F100\nM2\n"));
+    const auto setup = infer_setup_with(*program, {}, document);
+    EXPECT_TRUE(setup.has_value()) << error_text(setup.error());
+    return setup ? setup_text(*setup, {"part.ngc", {}, job_folder().path().string()}) : "";
+}
+
+TEST(FreeCadJob, TakesThePartAndTheBoxAroundIt) {
+    if (!test_support::use_cad_reader()) {
+        EXPECT_THAT(text_with(sample("base")), ::testing::HasSubstr("without Open CASCADE"));
+        return;
+    }
+    const std::string text = text_with(sample("base"));
+    EXPECT_THAT(text, ::testing::HasSubstr("tools, stock and part are those of the job"));
+    const auto setup = read_setup(job_folder().write("base.toml", text), {});
+    ASSERT_TRUE(setup.has_value()) << error_text(setup.error());
+    // The box of the part from 0 to (50, 40, 10), with the margins of the job.
+    EXPECT_EQ(core::bounds(setup->setup.stock).min, core::Vec3(-1, -2, -3));
+    EXPECT_EQ(core::bounds(setup->setup.stock).max, core::Vec3(54, 45, 16));
+    ASSERT_TRUE(setup->setup.part.has_value());
+    EXPECT_EQ(setup->setup.part->solid.mesh->bounds().max, core::Vec3(50, 40, 10));
+}
+
+TEST(FreeCadJob, TakesAStockThatIsABodyOfTheDocument) {
+    if (!test_support::use_cad_reader()) GTEST_SKIP() << "built without Open CASCADE";
+    const std::string text = text_with(sample("own"));
+    EXPECT_THAT(text, ::testing::HasSubstr("[stock]\nmesh = "));
+    const auto setup = read_setup(job_folder().write("own.toml", text), {});
+    ASSERT_TRUE(setup.has_value()) << error_text(setup.error());
+    // A bar of radius 12, along X.
+    const core::Aabb box = core::bounds(setup->setup.stock);
+    EXPECT_NEAR(box.min.x, -3.0, 1e-9);
+    EXPECT_NEAR(box.max.x, 57.0, 1e-9);
+    EXPECT_NEAR(box.max.z, 17.0, 0.01);
+    EXPECT_GT(setup->setup.stock.deviation, 0.0);
 }
 
 TEST(FreeCadJob, CompletesTheSetUpOfAProgram) {
@@ -84,7 +127,8 @@ TEST(FreeCadJob, CompletesTheSetUpOfAProgram) {
     EXPECT_EQ(setup->setup.tools.size(), 1u);
     EXPECT_NE(std::find_if(setup->assumptions.begin(), setup->assumptions.end(),
                            [](const std::string& text) {
-                               return text.starts_with("tools and stock are those of the job");
+                               return text.starts_with("tools, stock")
+                                      || text.starts_with("tools and stock");
                            }),
               setup->assumptions.end());
     const auto library = infer_setup_with(
@@ -136,7 +180,7 @@ TEST(FreeCadJob, SaysWhatItLeavesOut) {
     EXPECT_TRUE(notes_say(job, "it has no tool number"));
     EXPECT_TRUE(notes_say(job, "older kind than tool bits"));
     EXPECT_TRUE(notes_say(job, "its bit has no diameter"));
-    EXPECT_TRUE(notes_say(job, "its stock is a solid of its own"));
+    EXPECT_EQ(job.stock_body, "S");
     EXPECT_TRUE(notes_say(job, "the document has 2 jobs"));
     const std::string turned =
         property_of("Placement", "<PropertyPlacement Px=\"1\" Py=\"2\" Pz=\"3\" Q0=\"0\" Q1=\"0\" "
@@ -145,7 +189,10 @@ TEST(FreeCadJob, SaysWhatItLeavesOut) {
         return job_in(document_with(job_object + object_of("S", properties)));
     };
     const std::string size = number_of_property("Length", "1") + number_of_property("Width", "2");
-    EXPECT_TRUE(notes_say(stock(turned + size + number_of_property("Height", "3")), "is turned"));
+    const FreeCadJob askew = stock(turned + size + number_of_property("Height", "3"));
+    EXPECT_FALSE(askew.stock.has_value());
+    EXPECT_EQ(askew.stock_body, "S");
+    EXPECT_FALSE(askew.stock_is_its_box);
     for (const char* height : {"0", "-1", "nan", "inf", "1e300", "x", ""})
         EXPECT_TRUE(notes_say(stock(size + number_of_property("Height", height)), "has no size"))
             << height;

@@ -468,11 +468,14 @@ TEST(FusionLibrary, KnowsUnitsInAnyCaseAndRefusesOthers) {
     Json tool = tool_json("flat end mill", {{"DC", 0.5}});
     tool["unit"] = "Inch";
     EXPECT_EQ(only_tool(tool).tool.diameter, 12.7);
-    tool["unit"] = "centimeters";
-    const auto read =
-        library_in("cm.tools", test_support::packed_zip_of({{"tools.json", text_of({tool})}}));
-    ASSERT_FALSE(read);
-    EXPECT_NE(error_text(read.error()).find("centimeters"), std::string::npos);
+    for (const Json& unit : {Json("centimeters"), Json(25.4), Json(true)}) {
+        tool["unit"] = unit;
+        const auto read =
+            library_in("cm.tools", test_support::packed_zip_of({{"tools.json", text_of({tool})}}));
+        ASSERT_FALSE(read) << unit;
+        EXPECT_NE(error_text(read.error()).find(unit.is_string() ? "centimeters" : unit.dump()),
+                  std::string::npos);
+    }
 }
 
 TEST(FusionLibrary, TakesNumbersHoweverTheyAreWritten) {

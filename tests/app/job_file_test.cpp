@@ -5,6 +5,7 @@
 #include "app/check/check_run.h"
 #include "app/commands/job_file.h"
 #include "app/setup/stated_setup.h"
+#include "tests/support/cad_reader.h"
 #include "tests/support/scoped_folder.h"
 
 namespace app_test {
@@ -29,6 +30,7 @@ protected:
         return job;
     }
     ScopedFolder folder_;
+    const bool has_cad_ = test_support::use_cad_reader();
 };
 
 TEST_F(JobFileTest, OfFreeCadBecomesASetupWhereThereIsNone) {
@@ -37,7 +39,9 @@ TEST_F(JobFileTest, OfFreeCadBecomesASetupWhereThereIsNone) {
     const app::StatedSetup stated = app::stated_in(*news.setup_text);
     EXPECT_TRUE(stated.has_tool(core::ToolNumber{1}));
     EXPECT_TRUE(stated.stock);
-    EXPECT_THAT(news.text, HasSubstr("its part is a BREP"));
+    EXPECT_EQ(stated.part.has_value(), has_cad_);
+    EXPECT_THAT(news.text, HasSubstr(has_cad_ ? "tools, stock and part are those of the job"
+                                              : "its part, \"Model\", cannot be read"));
     EXPECT_TRUE(app::run_check(job(*news.setup_text)));
 }
 
@@ -53,7 +57,9 @@ TEST_F(JobFileTest, OfFreeCadAddsWhatIsLackingAndChangesNothing) {
     EXPECT_EQ(again.setup_text, news.setup_text);
     const std::string own = "[stock]\nbox = [[0, 0, -10], [50, 50, 0]]\n[[tool]]\nnumber = 1\n"
                             "shape = \"ball\"\ndiameter = 3\nflute_length = 9\n";
-    EXPECT_EQ(read_job_file(job(own), freecad).setup_text, own);
+    const auto with_own = read_job_file(job(own), freecad);
+    EXPECT_THAT(*with_own.setup_text, StartsWith(own));
+    EXPECT_EQ(with_own.text.find("Added: the part") == 0, has_cad_) << with_own.text;
 }
 
 TEST_F(JobFileTest, OfFreeCadIsWrittenInTheUnitOfTheSetup) {

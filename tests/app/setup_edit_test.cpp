@@ -622,6 +622,19 @@ TEST(SavedSetup, KeepsThePermissionsOfItsFile) {
 }
 #endif
 
+TEST(SavedSetup, LeavesAReadOnlyFileAlone) {
+    OwnProgram own;
+    const std::string path = own.folder.write("s.toml", "mesh_size = 1\n");
+    using std::filesystem::perms;
+    std::filesystem::permissions(path, perms{0444});
+    const auto written = app::write_output(path, "mesh_size = 2\n");
+    ASSERT_FALSE(written);
+    EXPECT_THAT(written.error().message, HasSubstr("is read-only"));
+    EXPECT_EQ(bytes_of(path), "mesh_size = 1\n");
+    std::filesystem::permissions(path, perms{0644});
+    EXPECT_TRUE(app::write_output(path, "mesh_size = 2\n"));
+}
+
 TEST(SavedSetup, NeverReplacesAFileUnasked) {
     OwnProgram own;
     const std::string path = own.folder.write("s.toml", "mine\n");

@@ -89,7 +89,7 @@ TEST(ToolLibrary, ReadsFreeCadsQuantitiesInAllUnits) {
                                                                    {"12", 12.0},
                                                                    {"+12 mm", 12.0},
                                                                    {"-12 mm", -12.0},
-                                                                   {"60.0 \u00b0", 60},
+                                                                   {"12 deg", {}},
                                                                    {"12 parsec", {}},
                                                                    {"mm", {}},
                                                                    {"12 mm 3", {}},
@@ -97,12 +97,17 @@ TEST(ToolLibrary, ReadsFreeCadsQuantitiesInAllUnits) {
                                                                    {"12 / 0 mm", {}},
                                                                    {"", {}}};
     for (const auto& [text, expected] : cases) {
-        const auto found = freecad_quantity(nlohmann::json(text));
+        const auto found = freecad_length(nlohmann::json(text));
         EXPECT_EQ(found.has_value(), expected.has_value()) << text;
         if (found && expected) {
             EXPECT_NEAR(*found, *expected, 1e-9) << text;
         }
     }
+    EXPECT_EQ(freecad_angle("60.0 \u00b0"), 60.0);
+    EXPECT_EQ(freecad_angle("60 deg"), 60.0);
+    EXPECT_NEAR(freecad_angle("0.5 rad").value_or(0.0), 28.6478897565, 1e-9);
+    EXPECT_EQ(freecad_angle(90), 90.0);
+    EXPECT_FALSE(freecad_angle("12 mm").has_value());
     EXPECT_FALSE(read("p.fctb", bit("endmill.fcstd", R"("Diameter": "-12 mm")")));
     EXPECT_FALSE(read("q.fctb", bit("endmill.fcstd", R"("Diameter": "12 parsec")")));
 }

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "app/base/zip_archive.h"
 #include "app/report/text/text_report.h"
+#include "core/formats/zip_archive.h"
 #include "tests/support/scoped_folder.h"
 #include "tests/support/zip_writer.h"
 
@@ -18,8 +18,8 @@ const test_support::ScopedFolder& zip_folder() {
     return kept;
 }
 
-core::Result<ZipArchive> opened(const std::string& bytes) {
-    return ZipArchive::open(zip_folder().write("a.zip", bytes));
+core::Result<core::ZipArchive> opened(const std::string& bytes) {
+    return core::ZipArchive::open(zip_folder().write("a.zip", bytes));
 }
 
 std::string refusal_of(const std::string& bytes, const std::string& name, size_t limit = 1 << 20) {
@@ -58,7 +58,7 @@ TEST(ZipArchive, RefusesWhatItMustNotUnpack) {
     std::string changed = zip_of({{"a", "hello"}});
     changed[changed.find("hello")] = 'j';
     EXPECT_NE(refusal_of(changed, "a").find("is damaged"), std::string::npos);
-    const auto missing = ZipArchive::open("none.zip");
+    const auto missing = core::ZipArchive::open("none.zip");
     ASSERT_FALSE(missing.has_value());
     EXPECT_EQ(missing.error().file, "none.zip");
 }

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -53,13 +56,73 @@ struct Bench {
 constexpr Pair flutes_and_stock{PartKind::flutes};
 constexpr Pair holder_and_stock{PartKind::holder};
 
+TEST(TrackedPairs, FindsAmongManyWhatWasAdded) {
+    std::mt19937 random(20261128);
+    for (const size_t fixtures : {1u, 3u, 60u, 400u}) {
+        std::vector<Pair> all;
+        for (size_t fixture = 0; fixture < fixtures; ++fixture)
+            for (const PartKind part : {PartKind::flutes, PartKind::shank, PartKind::holder})
+                all.push_back({part, fixture, fixture % 3});
+        all.push_back({PartKind::flutes});
+        std::shuffle(all.begin(), all.end(), random);
+        TrackedPairs pairs;
+        for (size_t i = 0; i < all.size(); ++i) {
+            EXPECT_EQ(pairs.find(all[i]), nullptr);
+            TrackedPair pair;
+            pair.pair = all[i];
+            pair.at_end = static_cast<double>(i);
+            EXPECT_EQ(pairs.add(pair).at_end, pair.at_end);
+        }
+        const auto expect_all = [&](size_t from) {
+            for (size_t i = 0; i < all.size(); ++i) {
+                const TrackedPair* found = pairs.find(all[i]);
+                ASSERT_EQ(found != nullptr, i >= from);
+                if (found) {
+                    EXPECT_EQ(found->at_end, static_cast<double>(i));
+                }
+            }
+        };
+        expect_all(0);
+        pairs.sort();
+        EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
+            return is_before(a.pair, b.pair);
+        }));
+        EXPECT_FALSE(pairs[0].pair.fixture) << "the stock is first";
+        expect_all(0);
+        pairs.remove_if([](const TrackedPair& pair) { return pair.at_end < 2.0; });
+        expect_all(2);
+        const TrackedPairs copy = pairs;
+        EXPECT_EQ(copy.find(all.back())->at_end, static_cast<double>(all.size() - 1));
+    }
+}
+
+TEST(PairBounds, FindsTheBoundsOfManyPairsInAnyOrder) {
+    core::Setup setup = block_setup();
+    setup.fixtures.resize(60);
+    CheckMemory memory;
+    for (size_t fixture = 0; fixture < 50; ++fixture)
+        memory.bounds.push_back({{PartKind::holder, fixture}, 1.0 + double(fixture), 0.0});
+    std::vector<size_t> order(60);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::mt19937 random(1128);
+    for (int round = 0; round < 5; ++round) {
+        PairBounds bounds(setup, memory);
+        TrackedPairs pairs;
+        for (const size_t fixture : order) {
+            const TrackedPair& begun = bounds.tracked_pair(pairs, {PartKind::holder, fixture});
+            EXPECT_EQ(begun.at_end, fixture < 50 ? 1.0 + double(fixture) : TrackedPair().at_end);
+        }
+        std::shuffle(order.begin(), order.end(), random);
+    }
+}
+
 TEST(PairBounds, CarriesABoundOverLegs) {
     core::Setup setup = block_setup();
     setup.detail = Detail::verdict;
     CheckMemory memory;
     memory.bounds = {{holder_and_stock, 30.0, 0.5}};
     PairBounds bounds(setup, memory);
-    std::vector<TrackedPair> pairs;
+    TrackedPairs pairs;
     bounds.begin_leg(4.0, true);
     TrackedPair& holder = bounds.tracked_pair(pairs, holder_and_stock);
     EXPECT_EQ(holder.at_end, 30.0);
@@ -101,7 +164,7 @@ TEST(PairBounds, SkipsOnlyPairsThatCannotDecide) {
     const Allowance allowance{1.0, 0.0};
     TrackedPair flutes;
     flutes.upper = 5.0; // with an allowance of 0: the margin is 5
-    const std::vector<TrackedPair> pairs = {flutes};
+    const TrackedPairs pairs = {flutes};
     const PairBounds bounds(setup, memory);
     setup.detail = Detail::every_pair;
     EXPECT_FALSE(bounds.cannot_decide(allowance, 40.0, pairs));
@@ -229,7 +292,7 @@ TEST(FixtureCheck, MeasuresFixturesThatAreThere) {
     Bench bench{setup};
     bench.there[1] = false;
     FixtureCheck check(bench.context, bench.bounds, bench.flutes);
-    std::vector<TrackedPair> pairs;
+    TrackedPairs pairs;
     check.check(bench.leg({130, 20, 2}, {130, 80, 2}), 3.0, pairs);
     check.resolve_doubts(pairs);
     for (const TrackedPair& pair : pairs) {

@@ -152,8 +152,8 @@ struct Kind {
 
 const Kind foreign_kinds[] = {
     {"is a mesh or a drawing",
-     {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs", "dxf", "dwg", "3mf", "f3d", "fcstd",
-      "sldprt", "sldasm", "ipt", "prt", "svg"}},
+     {"stl", "obj", "ply", "off", "step",  "stp",    "iges",   "igs", "brep", "brp",
+      "dxf", "dwg", "3mf", "f3d", "fcstd", "sldprt", "sldasm", "ipt", "prt",  "svg"}},
     {"is a picture or a video", {"png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "mp4"}},
     {"is an archive", {"zip", "gz", "bz2", "xz", "7z", "tar", "rar", "zst"}},
     {"is a document", {"pdf", "doc", "docx", "xls", "xlsx", "odt", "ods", "md", "html", "htm"}},

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/base/text.h"
-#include "app/base/xml.h"
 #include "app/setup/control/offset_store.h"
+#include "core/formats/xml_document.h"
 #include "gcode/language/modal_state.h"
 
 namespace app {
@@ -20,20 +20,31 @@ std::optional<int> tool_of_element(std::string_view name) {
     return number;
 }
 
+/// The number in an element; empty if it has no text.
+core::Result<std::optional<double>> number_of(const core::XmlDocument& xml,
+                                              const pugi::xml_node& element) {
+    const std::string text = trimmed(element.child_value());
+    if (text.empty()) return std::nullopt;
+    const auto number = number_in(text);
+    if (number) return number;
+    return xml.refuse(element,
+                      fmt::format("{}: '{}' is not a number", element.name(), clipped(text, 40)));
+}
+
 /// Reads one length of a tool; leaves `place` alone if the element is absent or empty.
-core::Result<void> take_length(const XmlDocument& xml, const pugi::xml_node& tool, const char* key,
-                               double factor, std::optional<ControlValue>& place,
+core::Result<void> take_length(const core::XmlDocument& xml, const pugi::xml_node& tool,
+                               const char* key, double factor, std::optional<ControlValue>& place,
                                const OffsetStore& store) {
     const pugi::xml_node element = tool.child(key);
     if (!element) return {};
-    FEELER_TRY(const std::optional<double> number, xml.number_in(element));
+    FEELER_TRY(const std::optional<double> number, number_of(xml, element));
     if (!number) return {};
     store.put(place, store.length(factor * *number, store.reading.unit, xml.line_of(element)),
               fmt::format("{} of {}", key, tool.name()));
     return {};
 }
 
-core::Result<void> take_tool(const XmlDocument& xml, const pugi::xml_node& tool, int number,
+core::Result<void> take_tool(const core::XmlDocument& xml, const pugi::xml_node& tool, int number,
                              const OffsetStore& store) {
     ControlToolOffset& entry = store.offsets.tools[core::OffsetNumber{number}];
     const double size = store.reading.sizes_are_radii ? 2.0 : 1.0;
@@ -62,7 +73,7 @@ pugi::xml_node tool_table_in(const pugi::xml_node& root) {
 } // namespace
 
 core::Result<void> read_haas_offsets(const std::string& text, const OffsetStore& store) {
-    FEELER_TRY(const XmlDocument xml, XmlDocument::parse(text, store.path));
+    FEELER_TRY(const core::XmlDocument xml, core::XmlDocument::parse(text, store.path));
     const pugi::xml_node table = tool_table_in(xml.root());
     if (!table)
         return tl::unexpected(core::Error{core::ErrorCode::syntax,

@@ -7,11 +7,13 @@
 
 #include "app/setup/freecad_job.h"
 #include "app/setup/inference/inferred_setup.h"
+#include "app/setup/kept_meshes.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "app/setup/tools/program_tools.h"
 #include "app/setup/tools/tool_library.h"
 #include "core/base/text.h"
+#include "core/cad/cad_file.h"
 #include "gcode/language/dialect.h"
 #include "gcode/text/source.h"
 
@@ -32,9 +34,46 @@ std::string facts_of(const FreeCadJob& job) {
     return text;
 }
 
+/// A body of a document; empty if it cannot be read, which a note then says.
+std::optional<core::CadBody> body_in(const std::string& path, const std::string& name,
+                                     std::string_view what, std::vector<std::string>& notes) {
+    auto body =
+        core::read_cad(path).and_then([&](const auto& file) { return core::body_of(*file, name); });
+    if (body) return *std::move(body);
+    notes.push_back(fmt::format("its {}, \"{}\", cannot be read, so state it yourself: {}", what,
+                                name, body.error().message));
+    return std::nullopt;
+}
+
+/// The stock of a job that does not state it in numbers.
+void take_stock_body(const std::string& path, FreeCadJob& job, ImportedBodies& bodies) {
+    auto body = body_in(path, job.stock_body, "stock", job.notes);
+    if (!body) return;
+    if (job.stock_is_its_box) {
+        job.stock = core::Solid{core::SolidBox{body->mesh.bounds().grown(body->deviation)}};
+        return;
+    }
+    job.stock = core::Solid{.shape = kept_solid(std::move(body->mesh)),
+                            .tolerance = body->deviation,
+                            .deviation = body->deviation};
+    bodies.stock = job.stock_body;
+}
+
+/// "tools, stock and part".
+std::string taken_text(const FreeCadJob& job, const ImportedBodies& bodies) {
+    const bool has_part = !bodies.part.empty();
+    if (!job.stock) return has_part ? "tools and part" : "tools";
+    return has_part ? "tools, stock and part" : "tools and stock";
+}
+
 void take_job(FreeCadJob job, const std::string& path, SetupFile& file) {
-    file.import_notes.push_back(fmt::format("tools{} are those of the job \"{}\" in {}",
-                                            job.stock ? " and stock" : "", job.name, path));
+    ImportedBodies& bodies = file.imported_bodies;
+    bodies.document = path;
+    if (!job.stock_body.empty()) take_stock_body(path, job, bodies);
+    if (!job.part_body.empty() && body_in(path, job.part_body, "part", job.notes))
+        bodies.part = job.part_body;
+    file.import_notes.push_back(fmt::format("{} are those of the job \"{}\" in {}",
+                                            taken_text(job, bodies), job.name, path));
     if (const std::string facts = facts_of(job); !facts.empty())
         file.import_notes.push_back("the job states " + facts);
     for (const std::string& note : job.notes)

@@ -18,30 +18,19 @@ using core::ToolDescription;
 using core::ToolShape;
 using nlohmann::json;
 
-std::optional<double> freecad_quantity(const json& value) {
+namespace {
+
+/// Units by their names, and their sizes.
+using Units = std::map<std::string, double, std::less<>>;
+
+/// A number or a quantity in one of these units.
+std::optional<double> quantity(const json& value, const Units& units) {
     if (value.is_number()) return value.get<double>();
     if (!value.is_string()) return std::nullopt;
     // A decimal number, or a fraction as in "1 1/2 in", and a unit.
     static const std::regex form(R"(\s*([+-]?)(?:(\d+[.,]?\d*(?:[eE][+-]?\d+)?|[.,]\d+))?)"
                                  R"((?:(?:^|[\s+-])\s*(\d+)/(\d+))?\s*([^\s\d.,/+-]\S*)?\s*)");
     static const std::regex fraction(R"(\s*([+-]?)()(\d+)/(\d+)\s*([^\s\d.,/+-]\S*)?\s*)");
-    static const std::map<std::string, double, std::less<>> units = {
-        {"", 1.0},
-        {"mm", 1.0},
-        {"cm", 10.0},
-        {"dm", 100.0},
-        {"m", 1000.0},
-        {"um", 0.001},
-        {"\xC2\xB5m", 0.001},
-        {"\xCE\xBCm", 0.001},
-        {"in", core::mm_per_inch},
-        {"\"", core::mm_per_inch},
-        {"ft", 12.0 * core::mm_per_inch},
-        {"'", 12.0 * core::mm_per_inch},
-        {"mil", 0.001 * core::mm_per_inch},
-        {"thou", 0.001 * core::mm_per_inch},
-        {"deg", 1.0},
-        {"\xC2\xB0", 1.0}};
     std::smatch match;
     const std::string text = value.get<std::string>();
     if (!std::regex_match(text, match, fraction) && !std::regex_match(text, match, form))
@@ -60,24 +49,59 @@ std::optional<double> freecad_quantity(const json& value) {
     return (match[1] == "-" ? -number : number) * unit->second;
 }
 
+} // namespace
+
+std::optional<double> freecad_length(const json& value) {
+    static const Units units = {{"", 1.0},
+                                {"mm", 1.0},
+                                {"cm", 10.0},
+                                {"dm", 100.0},
+                                {"m", 1000.0},
+                                {"um", 0.001},
+                                {"\xC2\xB5m", 0.001},
+                                {"\xCE\xBCm", 0.001},
+                                {"in", core::mm_per_inch},
+                                {"\"", core::mm_per_inch},
+                                {"ft", 12.0 * core::mm_per_inch},
+                                {"'", 12.0 * core::mm_per_inch},
+                                {"mil", 0.001 * core::mm_per_inch},
+                                {"thou", 0.001 * core::mm_per_inch}};
+    return quantity(value, units);
+}
+
+std::optional<double> freecad_angle(const json& value) {
+    static const Units units = {
+        {"", 1.0}, {"deg", 1.0}, {"\xC2\xB0", 1.0}, {"rad", core::degrees_per_radian}};
+    return quantity(value, units);
+}
+
 namespace {
 
 core::Error bit_error(const std::filesystem::path& path, const std::string& why) {
     return {core::ErrorCode::syntax, {}, why, path.generic_string()};
 }
 
-/// A parameter by any of its names, which differ between versions.
-std::optional<double> parameter(const json& parameters, std::initializer_list<const char*> names) {
-    if (!parameters.is_object()) return std::nullopt;
+/// The names of a parameter, which differ between versions.
+using Names = std::initializer_list<const char*>;
+
+/// A parameter by any of its names; null if there is none.
+const json& parameter(const json& parameters, Names names) {
     for (const char* name : names)
-        if (const auto found = parameters.find(name); found != parameters.end())
-            return freecad_quantity(*found);
-    return std::nullopt;
+        if (const json& found = member_at(parameters, name); !found.is_null()) return found;
+    return member_at(parameters, "");
 }
 
-/// A length by any of its names; empty if it is not above 0.
-std::optional<double> length(const json& parameters, std::initializer_list<const char*> names) {
-    const auto value = parameter(parameters, names);
+std::optional<double> angle(const json& parameters, Names names) {
+    return freecad_angle(parameter(parameters, names));
+}
+
+std::optional<double> length(const json& parameters, Names names) {
+    return freecad_length(parameter(parameters, names));
+}
+
+/// A length; empty if it is not above 0.
+std::optional<double> length_above_0(const json& parameters, Names names) {
+    const auto value = length(parameters, names);
     return value && *value > 0.0 ? value : std::nullopt;
 }
 
@@ -90,25 +114,25 @@ std::optional<ToolShape> shape_of_bit(std::string shape) {
 }
 
 void read_angles(const json& parameters, ToolDescription& tool) {
-    const auto cutting =
-        parameter(parameters, {"CuttingEdgeAngle", "cuttingAngle", "CuttingAngle"});
-    const auto tip = parameter(parameters, {"TipAngle"});
+    const auto cutting = angle(parameters, {"CuttingEdgeAngle", "cuttingAngle", "CuttingAngle"});
+    const auto tip = angle(parameters, {"TipAngle"});
     if (has_size(tool.shape, &ToolDescription::point_deg)) tool.point_deg = tip;
     if (tool.shape == ToolShape::chamfer && cutting) tool.angle_deg = 0.5 * *cutting;
     if (tool.shape == ToolShape::dovetail && cutting) tool.angle_deg = 90.0 - *cutting;
-    if (tool.shape == ToolShape::taper) tool.angle_deg = parameter(parameters, {"TaperAngle"});
+    if (tool.shape == ToolShape::taper) tool.angle_deg = angle(parameters, {"TaperAngle"});
 }
 
 /// A slitting saw is a T-slot cutter with a thin head. The length of a bit is that of the whole
 /// tool, of which a part is in the holder.
 void read_lengths(const json& parameters, ToolDescription& tool) {
     tool.flute_length =
-        length(parameters, {"CuttingEdgeHeight", "BladeThickness", "CuttingEdge"}).value_or(0.0);
-    tool.shank_diameter = length(parameters, {"ShankDiameter", "ShaftDiameter"});
+        length_above_0(parameters, {"CuttingEdgeHeight", "BladeThickness", "CuttingEdge"})
+            .value_or(0.0);
+    tool.shank_diameter = length_above_0(parameters, {"ShankDiameter", "ShaftDiameter"});
     const bool necked = tool.shape == ToolShape::dovetail || tool.shape == ToolShape::threadmill;
-    if (necked) tool.neck_diameter = length(parameters, {"NeckDiameter"});
+    if (necked) tool.neck_diameter = length_above_0(parameters, {"NeckDiameter"});
     if (necked && tool.neck_diameter)
-        tool.neck_length = length(parameters, {"NeckHeight", "NeckLength"});
+        tool.neck_length = length_above_0(parameters, {"NeckHeight", "NeckLength"});
     if (tool.shape == ToolShape::threadmill)
         tool.flute_length = 0.0; // "Crest" is the width of one tooth
 }
@@ -127,7 +151,7 @@ core::Result<FoundTool> tool_of_freecad_bit(const json& bit, int number,
     found.tool.shape = known.value_or(ToolShape::flat);
     if (!bit.is_object()) return tl::unexpected(bit_error(path, "is not a tool bit"));
     const json& parameters = bit.contains("parameter") ? bit["parameter"] : bit;
-    const auto diameter = parameter(parameters, {"Diameter"});
+    const auto diameter = length(parameters, {"Diameter"});
     if (!diameter || !(*diameter > 0.0))
         return tl::unexpected(
             bit_error(path, "the bit has no Diameter above 0 in a unit that is known"));
@@ -135,15 +159,15 @@ core::Result<FoundTool> tool_of_freecad_bit(const json& bit, int number,
     read_angles(parameters, found.tool);
     read_lengths(parameters, found.tool);
     if (found.tool.shape == ToolShape::chamfer)
-        found.tool.tip_diameter = parameter(parameters, {"TipDiameter"}).value_or(0.0);
+        found.tool.tip_diameter = length(parameters, {"TipDiameter"}).value_or(0.0);
     if (found.tool.shape == ToolShape::bull) {
-        const auto flat = parameter(parameters, {"FlatRadius"});
-        found.tool.corner_radius = parameter(parameters, {"CornerRadius", "TorusRadius"});
+        const auto flat = length(parameters, {"FlatRadius"});
+        found.tool.corner_radius = length(parameters, {"CornerRadius", "TorusRadius"});
         if (!found.tool.corner_radius && flat) found.tool.corner_radius = 0.5 * *diameter - *flat;
     }
     if (found.tool.shape == ToolShape::taper) // Diameter is that of the ball at the tip
         found.tool.corner_radius = 0.5 * *diameter,
-        found.tool.diameter = parameter(parameters, {"TaperDiameter"}).value_or(2.0 * *diameter);
+        found.tool.diameter = length(parameters, {"TaperDiameter"}).value_or(2.0 * *diameter);
     return found;
 }
 

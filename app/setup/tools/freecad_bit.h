@@ -10,8 +10,11 @@
 
 namespace app {
 
-/// "5.0000 mm", "1/4 in", "60 °" or a plain number; lengths in mm.
-std::optional<double> freecad_quantity(const nlohmann::json& value);
+/// A length in mm: "5.0000 mm", "1/4 in" or a plain number; empty for anything else.
+std::optional<double> freecad_length(const nlohmann::json& value);
+
+/// An angle in degrees: "60 °", "60 deg" or a plain number; empty for anything else.
+std::optional<double> freecad_angle(const nlohmann::json& value);
 
 /// A tool bit of FreeCAD: its `shape` and the sizes in `parameter`, as a .fctb holds them.
 ///

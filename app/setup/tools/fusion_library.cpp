@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/text.h"
-#include "app/base/xml.h"
-#include "app/base/zip_archive.h"
 #include "app/setup/tools/fusion_tool.h"
 #include "app/setup/tools/json_file.h"
 #include "app/setup/tools/tool_text.h"
 #include "core/base/file_reads.h"
 #include "core/base/text.h"
 #include "core/base/units.h"
+#include "core/formats/xml_document.h"
+#include "core/formats/zip_archive.h"
 
 namespace app {
 namespace {
@@ -104,15 +104,21 @@ double unit_of_part(const json& part, double unit_of_tool) {
     return unit.empty() ? unit_of_tool : unit_of(unit).value_or(unit_of_tool);
 }
 
+/// The `unit` of a tool or of a part of it; anything but a text as it is written.
+std::string stated_unit(const json& part) {
+    const json& unit = member_at(part, "unit");
+    return unit.is_null() || unit.is_string() ? text_at(part, "unit") : unit.dump();
+}
+
 std::string unit_of_tool(const json& tool) {
-    const std::string unit = text_at(tool, "unit");
+    const std::string unit = stated_unit(tool);
     return unit.empty() ? text_at(member_at(tool, "expressions"), "tool_unit") : unit;
 }
 
 /// A unit in a tool that is not known.
 std::optional<std::string> unknown_unit(const json& tool) {
-    for (const std::string& unit : {unit_of_tool(tool), text_at(member_at(tool, "holder"), "unit"),
-                                    text_at(member_at(tool, "shaft"), "unit")})
+    for (const std::string& unit : {unit_of_tool(tool), stated_unit(member_at(tool, "holder")),
+                                    stated_unit(member_at(tool, "shaft"))})
         if (!unit_of(unit)) return unit;
     return std::nullopt;
 }
@@ -272,7 +278,7 @@ tools_of_fusion_library(const nlohmann::json& library, const std::filesystem::pa
 
 core::Result<std::map<core::ToolNumber, FoundTool>>
 tools_of_fusion_archive(const std::string& path) {
-    FEELER_TRY(const ZipArchive archive, ZipArchive::open(path));
+    FEELER_TRY(const core::ZipArchive archive, core::ZipArchive::open(path));
     std::string name = "tools.json";
     for (const std::string& each : archive.names())
         if (!archive.contains(name) && core::lower_case(each).ends_with(".json")) name = each;
@@ -282,7 +288,7 @@ tools_of_fusion_archive(const std::string& path) {
                         {},
                         "is an archive without tools.json, so no library of Fusion 360",
                         path});
-    FEELER_TRY(const std::string text, archive.read(name, largest_member));
+    FEELER_TRY(const std::string text, archive.read(name, core::largest_member));
     FEELER_TRY(const json library, parse_json(text, path));
     return tools_of_fusion_library(library, path);
 }
@@ -290,11 +296,11 @@ tools_of_fusion_archive(const std::string& path) {
 core::Result<std::map<core::ToolNumber, FoundTool>> tools_of_hsm_library(const std::string& path) {
     if (std::string why = core::why_no_file(path); !why.empty())
         return tl::unexpected(core::Error{core::ErrorCode::io, {}, std::move(why), path});
-    const auto bytes = core::file_bytes(path, largest_member);
-    if (!bytes || bytes->size() > largest_member)
+    const auto bytes = core::file_bytes(path, core::largest_member);
+    if (!bytes || bytes->size() > core::largest_member)
         return tl::unexpected(core::Error{
             core::ErrorCode::io, {}, bytes ? "is larger than 64 MiB" : "cannot be read", path});
-    FEELER_TRY(const XmlDocument xml, XmlDocument::parse(*bytes, path));
+    FEELER_TRY(const core::XmlDocument xml, core::XmlDocument::parse(*bytes, path));
     NumberedTools tools(path);
     for (const pugi::xml_node& root : xml.root().children()) {
         if (!is_hsm_library(root)) continue;

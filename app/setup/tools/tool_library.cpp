@@ -167,8 +167,7 @@ std::optional<std::filesystem::path> find_bit(const std::filesystem::path& libra
 
 FoundTool freecad_tool(const json& entry, int number, const std::filesystem::path& path) {
     const auto size = [&](const char* key) {
-        const auto found = entry.find(key);
-        return found == entry.end() ? 0.0 : freecad_quantity(*found).value_or(0.0);
+        return freecad_length(member_at(entry, key)).value_or(0.0);
     };
     const std::string type = text_at(entry, "tooltype");
     FoundTool found;
@@ -182,7 +181,8 @@ FoundTool freecad_tool(const json& entry, int number, const std::filesystem::pat
     tool.shape = shape.value_or(ToolShape::flat);
     if (type == "CornerRound" || type == "Engraver") tool.shape = ToolShape::chamfer;
     if (tool.shape == ToolShape::tslot && type.starts_with("Slot")) tool.shape = ToolShape::flat;
-    const double corner = size("cornerRadius"), angle = size("cuttingEdgeAngle");
+    const double corner = size("cornerRadius");
+    const double angle = freecad_angle(member_at(entry, "cuttingEdgeAngle")).value_or(0.0);
     const bool flat = tool.shape == ToolShape::flat || tool.shape == ToolShape::bull;
     if (flat && corner > 0.0 && 2.0 * corner <= tool.diameter) {
         tool.shape = ToolShape::bull;

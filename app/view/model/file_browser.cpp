@@ -223,7 +223,8 @@ FileEndings endings_for(FileWish wish) {
     case FileWish::mesh:
     case FileWish::stock:
     case FileWish::part:
-        return {"Meshes, STEP, IGES", {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs"}};
+        return {"Meshes and CAD files",
+                {"stl", "obj", "ply", "off", "step", "stp", "iges", "igs", "brep", "brp", "FCStd"}};
     case FileWish::tools:
         return {"Tool libraries", {"tools", "json", "hsmlib", "fctl", "fctb", "tbl"}};
     case FileWish::machine:
@@ -278,7 +279,7 @@ const char* name_of(FileFilter filter) {
     case FileFilter::machines:
         return "Machines";
     case FileFilter::meshes:
-        return "Meshes, STEP, IGES";
+        return "Meshes and CAD files";
     case FileFilter::tools:
         return "Tool libraries";
     case FileFilter::pages:

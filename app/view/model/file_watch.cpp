@@ -18,7 +18,8 @@ bool has_ending(const std::string& path, std::initializer_list<const char*> endi
 } // namespace
 
 bool is_mesh_file(const std::string& path) {
-    return has_ending(path, {".stl", ".obj", ".ply", ".off"}) || core::is_cad_file(path);
+    return has_ending(path, {".stl", ".obj", ".ply", ".off"})
+           || (core::is_cad_file(path) && !is_cam_job(path));
 }
 
 bool is_setup_file(const std::string& path) { return has_ending(path, {".toml"}); }

@@ -6,7 +6,8 @@
 
 namespace app::viewer {
 
-/// Whether the extension of a path is that of a mesh or a set-up.
+/// Whether the extension of a path is that of a mesh or a CAD file, or of a set-up. A FreeCAD
+/// document counts as a job.
 bool is_mesh_file(const std::string& path);
 bool is_setup_file(const std::string& path);
 

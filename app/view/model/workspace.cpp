@@ -18,6 +18,7 @@
 #include "app/view/model/placing.h"
 #include "app/view/model/samples.h"
 #include "app/view/model/view_model.h"
+#include "core/base/file_reads.h"
 #include "core/dbm/solid.h"
 #include "gcode/language/modal_state.h"
 
@@ -618,6 +619,12 @@ bool save_document(ViewModel& model, const std::string& path, const FileWriter& 
         return false;
     }
     const bool may_replace = std::exchange(workspace.may_replace, false);
+    const SetupDocument& document = workspace.document;
+    if (target == document.path() && !document.is_modified()
+        && core::file_bytes(target) == document.saved_text()) {
+        say(model, target + " is saved already", now);
+        return true;
+    }
     if (!leave_samples(model, target)) return false;
     const auto saved = save_setup(workspace.document, target,
                                   may_replace ? Replacing::allowed : Replacing::refused,

@@ -110,7 +110,7 @@ bool ProgramTab::take_changed_files(double now) {
         }
     }
     reload();
-    say(model, "A file has changed: reloading", now);
+    if (!workspace.on_disk) say(model, "A file has changed: reloading", now);
     return true;
 }
 

@@ -242,7 +242,7 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
     if (ImGui::BeginPopup("add")) {
         if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere(); // Enter chooses the first
         if (ImGui::MenuItem("Fixture: block")) add_box(model);
-        if (ImGui::MenuItem("Fixture: mesh or STEP file \xE2\x80\xA6"))
+        if (ImGui::MenuItem("Fixture: mesh or CAD file \xE2\x80\xA6"))
             browse(model, FileWish::mesh);
         for (const PresetKind kind : preset_kinds) {
             if (!ImGui::BeginMenu(std::string(title_of(kind)).c_str())) continue;
@@ -256,11 +256,11 @@ void SetupPanel::State::draw_add_menu(Frame& frame) {
             }
             ImGui::EndMenu();
         }
-        if (ImGui::MenuItem("Finished part: mesh or STEP file \xE2\x80\xA6"))
+        if (ImGui::MenuItem("Finished part: mesh or CAD file \xE2\x80\xA6"))
             browse(model, FileWish::part);
         if (ImGui::MenuItem("Tool")) add_tool(model);
         if (ImGui::MenuItem("Tool library \xE2\x80\xA6")) browse(model, FileWish::tools);
-        if (ImGui::MenuItem("Tools and stock: FreeCAD job \xE2\x80\xA6"))
+        if (ImGui::MenuItem("Tools, stock, part: FreeCAD job \xE2\x80\xA6"))
             browse(model, FileWish::job);
         if (ImGui::MenuItem("Compare with the control \xE2\x80\xA6"))
             browse(model, FileWish::offsets);

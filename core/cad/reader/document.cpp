@@ -2,19 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
+#include <BinTools.hxx>
+#include <BinTools_ShapeSet.hxx>
 #include <IFSelect_ReturnStatus.hxx>
 #include <IGESCAFControl_Reader.hxx>
 #include <Interface_Static.hxx>
+#include <Message_ProgressScope.hxx>
 #include <Quantity_Color.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <Standard_Failure.hxx>
 #include <TCollection_AsciiString.hxx>
 #include <TDF_LabelSequence.hxx>
 #include <TDataStd_Name.hxx>
@@ -33,11 +40,15 @@
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
 
+#include "core/base/file_reads.h"
 #include "core/cad/reader/completeness.h"
+#include "core/formats/freecad_document.h"
 
 namespace core::cad {
 
 namespace {
+
+constexpr size_t largest_shape = size_t{256} << 20U; // of an object in an archive, bytes
 
 /// The name of a label; empty if it has none.
 std::string name_of(const TDF_Label& label) {
@@ -108,131 +119,72 @@ Sewn sewn(const TopoDS_Shape& shape, double tolerance) {
     return result;
 }
 
-/// Collects the solids of a document.
+/// Where a shape stands in the assembly.
+struct Context {
+    std::vector<std::string> names;
+    std::optional<Colour> colour;
+    TopLoc_Location place;
+    int depth = 0;
+};
+
+/// Collects the solids of shapes.
 class Collector {
 public:
-    Collector(const Handle(TDocStd_Document) & document, const SolidNames& names, double sewing)
-        : names_(names),
-          shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
-          colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
-          sewing_(sewing) {}
+    /// Completes what is known of a solid: its names, its colour.
+    using Finish = std::function<void(const TopoDS_Shape& solid, PlacedSolid& placed)>;
 
-    Result<Document> collect();
+    explicit Collector(double sewing) : sewing_(sewing) {}
+
+    /// Adds the solids of a shape, and those that its other faces enclose. `finish` may be empty.
+    void add(const TopoDS_Shape& shape, const Context& context, const Finish& finish);
+    void leave_out(CadSurfaces what) { document_.left_out.push_back(std::move(what)); }
+
+    Result<Document> result();
 
 private:
-    /// Where a label stands in the assembly.
-    struct Context {
-        std::vector<std::string> names;
-        std::optional<Colour> colour;
-        TopLoc_Location place;
-        int depth = 0;
-    };
-
-    void add(const TDF_Label& label, Context context);
-    void add_part(const TDF_Label& label, const Context& context);
-    void add_solids(const TDF_Label& label, const Context& context,
-                    const std::vector<TopoDS_Shape>& solids, bool is_sewn);
-    void take_names(const TDF_Label& label, Context& context) const;
-    template <typename Coloured> // a label or a shape
-    std::optional<Colour> colour_of(const Coloured& coloured) const;
+    void add_solids(const Context& context, const std::vector<TopoDS_Shape>& solids,
+                    const Finish& finish);
     void make_names_unique();
     Result<Document> nothing() const;
 
-    const SolidNames& names_;
-    Handle(XCAFDoc_ShapeTool) shapes_;
-    Handle(XCAFDoc_ColorTool) colours_;
     double sewing_;
     Document document_;
     std::string open_part_, open_edge_; // a part with an open surface
     size_t open_edges_ = 0;
     size_t curves_ = 0;
-    bool is_too_deep_ = false;
 };
 
-Colour bytes_of(const Quantity_Color& colour) {
-    double red = 0.0, green = 0.0, blue = 0.0;
-    colour.Values(red, green, blue, Quantity_TOC_sRGB);
-    const auto byte = [](double part) {
-        return static_cast<uint8_t>(std::clamp(255.0 * part + 0.5, 0.0, 255.0));
-    };
-    return {byte(red), byte(green), byte(blue)};
-}
-
-template <typename Coloured>
-std::optional<Colour> Collector::colour_of(const Coloured& coloured) const {
-    Quantity_Color colour;
-    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
-        if (colours_->GetColor(coloured, type, colour)) return bytes_of(colour);
-    return std::nullopt;
-}
-
-void Collector::take_names(const TDF_Label& label, Context& context) const {
-    const std::string name = name_of(label);
-    const auto known = std::find(context.names.begin(), context.names.end(), name);
-    if (!name.empty() && known == context.names.end()) context.names.push_back(name);
-}
-
-void Collector::add(const TDF_Label& label, Context context) {
-    constexpr int deepest = 100; // a file can nest an assembly in itself
-    if (context.depth > deepest) {
-        is_too_deep_ = true;
-        return;
-    }
-    ++context.depth;
-    take_names(label, context);
-    if (const auto colour = colour_of(label)) context.colour = colour;
-    TDF_Label part = label;
-    if (XCAFDoc_ShapeTool::IsReference(label)) {
-        context.place = context.place * XCAFDoc_ShapeTool::GetLocation(label);
-        XCAFDoc_ShapeTool::GetReferredShape(label, part);
-        take_names(part, context);
-        if (!context.colour) context.colour = colour_of(part);
-    }
-    if (!XCAFDoc_ShapeTool::IsAssembly(part)) return add_part(part, context);
-    TDF_LabelSequence components;
-    XCAFDoc_ShapeTool::GetComponents(part, components);
-    for (const TDF_Label& component : components) add(component, context);
-}
-
-void Collector::add_solids(const TDF_Label& label, const Context& context,
-                           const std::vector<TopoDS_Shape>& solids, bool is_sewn) {
+void Collector::add_solids(const Context& context, const std::vector<TopoDS_Shape>& solids,
+                           const Finish& finish) {
     for (const TopoDS_Shape& solid : solids) {
         PlacedSolid placed;
         placed.names = context.names;
         placed.colour = context.colour;
         placed.shape = solid.Located(TopLoc_Location());
         placed.place = (context.place * solid.Location()).Transformation();
-        for (const SolidName& own : names_)
-            if (solids.size() > 1 && own.solid.IsPartner(solid)) placed.names.push_back(own.name);
-        TDF_Label own;
-        if (!is_sewn && shapes_->FindSubShape(label, solid, own))
-            if (const auto colour = colour_of(own)) placed.colour = colour;
-        if (!placed.colour) placed.colour = colour_of(solid);
-        TopExp_Explorer face(solid, TopAbs_FACE);
-        if (!placed.colour && face.More()) placed.colour = colour_of(face.Current());
+        if (finish) finish(solid, placed);
         if (placed.names.empty()) placed.names.emplace_back("solid");
         document_.solids.push_back(std::move(placed));
     }
 }
 
-void Collector::add_part(const TDF_Label& label, const Context& context) {
-    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+void Collector::add(const TopoDS_Shape& shape, const Context& context, const Finish& finish) {
     if (shape.IsNull()) return;
     std::vector<TopoDS_Shape> solids;
     for (TopExp_Explorer e(shape, TopAbs_SOLID); e.More(); e.Next()) solids.push_back(e.Current());
-    add_solids(label, context, solids, false);
+    add_solids(context, solids, finish);
     curves_ += count_outside(shape, TopAbs_EDGE, TopAbs_FACE);
     const size_t faces = count_outside(shape, TopAbs_FACE, TopAbs_SOLID);
     if (faces == 0) return;
     const std::string name = context.names.empty() ? "the file" : context.names.back();
     const Sewn found = sewn(shape, sewing_);
-    add_solids(label, context, found.solids, true);
+    add_solids(context, found.solids, finish);
     if (!found.solids.empty())
         document_.notes.push_back(fmt::format(
             "{}: its surfaces are no solid and were joined, across gaps of up to {:g} mm", name,
             sewing_));
     if (found.open_pieces == 0 && !found.solids.empty()) return;
-    document_.left_out.push_back(
+    leave_out(
         {context.names, fmt::format("{} has {} that {} no solid", name,
                                     faces == 1 ? "a surface" : fmt::format("{} surfaces", faces),
                                     faces == 1 ? "encloses" : "enclose")});
@@ -280,18 +232,115 @@ Result<Document> Collector::nothing() const {
     return fail(ErrorCode::missing_value, "it has no bodies");
 }
 
-Result<Document> Collector::collect() {
-    TDF_LabelSequence roots;
-    shapes_->GetFreeShapes(roots);
-    for (const TDF_Label& root : roots) add(root, {});
-    if (is_too_deep_)
-        return fail(ErrorCode::invalid_value, "its assemblies are nested more than 100 deep");
+Result<Document> Collector::result() {
     if (document_.solids.empty()) return nothing();
     if (curves_ > 0)
         document_.notes.push_back(
             fmt::format("{} {} left out", curves_, curves_ == 1 ? "curve is" : "curves are"));
     make_names_unique();
     return std::move(document_);
+}
+
+/// The solids of a document of Open CASCADE, as its readers of STEP and IGES make it.
+class Assembly {
+public:
+    Assembly(const Handle(TDocStd_Document) & document, const SolidNames& names, double sewing)
+        : names_(names),
+          shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+          colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+          collector_(sewing) {}
+
+    Result<Document> collect();
+
+private:
+    void add(const TDF_Label& label, Context context);
+    void add_part(const TDF_Label& label, const Context& context);
+    void finish(const TDF_Label& label, const TopoDS_Shape& solid, bool is_alone,
+                PlacedSolid& placed) const;
+    void take_names(const TDF_Label& label, Context& context) const;
+    template <typename Coloured> // a label or a shape
+    std::optional<Colour> colour_of(const Coloured& coloured) const;
+
+    const SolidNames& names_;
+    Handle(XCAFDoc_ShapeTool) shapes_;
+    Handle(XCAFDoc_ColorTool) colours_;
+    Collector collector_;
+    bool is_too_deep_ = false;
+};
+
+Colour bytes_of(const Quantity_Color& colour) {
+    double red = 0.0, green = 0.0, blue = 0.0;
+    colour.Values(red, green, blue, Quantity_TOC_sRGB);
+    const auto byte = [](double part) {
+        return static_cast<uint8_t>(std::clamp(255.0 * part + 0.5, 0.0, 255.0));
+    };
+    return {byte(red), byte(green), byte(blue)};
+}
+
+template <typename Coloured>
+std::optional<Colour> Assembly::colour_of(const Coloured& coloured) const {
+    Quantity_Color colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+        if (colours_->GetColor(coloured, type, colour)) return bytes_of(colour);
+    return std::nullopt;
+}
+
+void Assembly::take_names(const TDF_Label& label, Context& context) const {
+    const std::string name = name_of(label);
+    const auto known = std::find(context.names.begin(), context.names.end(), name);
+    if (!name.empty() && known == context.names.end()) context.names.push_back(name);
+}
+
+void Assembly::add(const TDF_Label& label, Context context) {
+    constexpr int deepest = 100; // a file can nest an assembly in itself
+    if (context.depth > deepest) {
+        is_too_deep_ = true;
+        return;
+    }
+    ++context.depth;
+    take_names(label, context);
+    if (const auto colour = colour_of(label)) context.colour = colour;
+    TDF_Label part = label;
+    if (XCAFDoc_ShapeTool::IsReference(label)) {
+        context.place = context.place * XCAFDoc_ShapeTool::GetLocation(label);
+        XCAFDoc_ShapeTool::GetReferredShape(label, part);
+        take_names(part, context);
+        if (!context.colour) context.colour = colour_of(part);
+    }
+    if (!XCAFDoc_ShapeTool::IsAssembly(part)) return add_part(part, context);
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(part, components);
+    for (const TDF_Label& component : components) add(component, context);
+}
+
+void Assembly::finish(const TDF_Label& label, const TopoDS_Shape& solid, bool is_alone,
+                      PlacedSolid& placed) const {
+    for (const SolidName& own : names_)
+        if (!is_alone && own.solid.IsPartner(solid)) placed.names.push_back(own.name);
+    TDF_Label own;
+    if (shapes_->FindSubShape(label, solid, own))
+        if (const auto colour = colour_of(own)) placed.colour = colour;
+    if (!placed.colour) placed.colour = colour_of(solid);
+    TopExp_Explorer face(solid, TopAbs_FACE);
+    if (!placed.colour && face.More()) placed.colour = colour_of(face.Current());
+}
+
+void Assembly::add_part(const TDF_Label& label, const Context& context) {
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    if (shape.IsNull()) return;
+    const bool is_alone = count_outside(shape, TopAbs_SOLID, TopAbs_SHAPE) == 1;
+    collector_.add(shape, context, [&](const TopoDS_Shape& solid, PlacedSolid& placed) {
+        finish(label, solid, is_alone, placed);
+    });
+}
+
+Result<Document> Assembly::collect() {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) add(root, {});
+    if (is_too_deep_)
+        return fail(ErrorCode::invalid_value, "its assemblies are nested more than 100 deep");
+    return collector_.result();
 }
 
 tl::unexpected<Error> fail_reading(IFSelect_ReturnStatus status, const char* format) {
@@ -338,16 +387,107 @@ Result<SolidNames> read_iges(const std::string& path, Handle(TDocStd_Document) &
     return SolidNames{};
 }
 
+/// A binary shape. Which of the shapes in it is meant, Open CASCADE states in 9 bytes at its end,
+/// FreeCAD in 12: index, place and orientation as whole numbers.
+TopoDS_Shape binary_shape_in(std::istringstream& stream, size_t size,
+                             const Message_ProgressRange& progress) {
+    BinTools_ShapeSet shapes;
+    shapes.Read(stream, progress);
+    const auto at = static_cast<size_t>(std::max<std::streamoff>(stream.tellg(), 0));
+    TopoDS_Shape shape;
+    constexpr size_t of_freecad = 3 * sizeof(Standard_Integer);
+    if (at + of_freecad != size) {
+        shapes.ReadSubs(shape, stream, shapes.NbShapes());
+        return shape;
+    }
+    Standard_Integer index = 0, place = 0, orientation = 0;
+    for (Standard_Integer* number : {&index, &place, &orientation})
+        BinTools::GetInteger(stream, *number);
+    shape = shapes.Shape(index);
+    shape.Location(shapes.Locations().Location(place));
+    shape.Orientation(orientation == TopAbs_REVERSED ? TopAbs_REVERSED : TopAbs_FORWARD);
+    return shape;
+}
+
+/// A shape as Open CASCADE stores it, as text or binary; null if it is damaged.
+TopoDS_Shape shape_in(const std::string& bytes, const Message_ProgressRange& progress) {
+    constexpr size_t head = 64;
+    std::istringstream stream(bytes);
+    // Open CASCADE goes on reading after the end of a damaged file, billions of times.
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
+    try {
+        if (bytes.substr(0, head).find("Open CASCADE Topology") != std::string::npos)
+            return binary_shape_in(stream, bytes.size(), progress);
+        TopoDS_Shape shape;
+        BRepTools::Read(shape, stream, BRep_Builder(), progress);
+        return shape;
+    } catch (const Standard_Failure&) {
+        return {};
+    } catch (const std::ios_base::failure&) {
+        return {};
+    }
+}
+
+Result<Document> read_brep(const std::string& path, double sewing,
+                           const Message_ProgressRange& progress) {
+    const auto bytes = file_bytes(path);
+    if (!bytes) return fail(ErrorCode::io, "it cannot be read");
+    const TopoDS_Shape shape = shape_in(*bytes, progress);
+    if (shape.IsNull()) return fail(ErrorCode::syntax, "it is damaged: export it again");
+    Collector collector(sewing);
+    collector.add(shape, {}, {});
+    return collector.result();
+}
+
+gp_Trsf motion_of(const Transform& transform) {
+    const Mat3& r = transform.rotation;
+    const Vec3& t = transform.translation;
+    gp_Trsf motion;
+    motion.SetValues(r[0].x, r[1].x, r[2].x, t.x, r[0].y, r[1].y, r[2].y, t.y, r[0].z, r[1].z,
+                     r[2].z, t.z);
+    return motion;
+}
+
+Result<Document> read_freecad(const std::string& path, double sewing,
+                              const Message_ProgressRange& progress) {
+    FEELER_TRY(const FreeCadDocument document, FreeCadDocument::read(path));
+    const std::vector<FreeCadBody> bodies = document.bodies();
+    Message_ProgressScope scope(progress, "", static_cast<double>(bodies.size()));
+    Collector collector(sewing);
+    for (const FreeCadBody& body : bodies) {
+        const Message_ProgressRange part = scope.Next();
+        if (!body.why_left_out.empty()) {
+            collector.leave_out({body.names, body.why_left_out});
+            continue;
+        }
+        const auto bytes = document.archive().read(body.shape, largest_shape);
+        if (bytes && bytes->empty()) continue; // an object that has not been computed
+        const TopoDS_Shape shape = bytes ? shape_in(*bytes, part) : TopoDS_Shape();
+        if (shape.IsNull()) {
+            collector.leave_out({body.names, body.names.back() + " has a damaged shape"});
+            continue;
+        }
+        if (!TopExp_Explorer(shape, TopAbs_FACE).More()) continue; // a sketch
+        Context context;
+        context.names = body.names;
+        context.place = TopLoc_Location(motion_of(body.place));
+        collector.add(shape, context, {});
+    }
+    return collector.result();
+}
+
 } // namespace
 
 Result<Document> read_document(const std::string& path, CadFormat format, double sewing,
                                const Message_ProgressRange& progress) {
+    if (format == CadFormat::brep) return read_brep(path, sewing, progress);
+    if (format == CadFormat::freecad) return read_freecad(path, sewing, progress);
     Handle(TDocStd_Document) document;
     XCAFApp_Application::GetApplication()->NewDocument("BinXCAF", document);
     FEELER_TRY(const SolidNames names, format == CadFormat::step
                                            ? read_step(path, document, progress)
                                            : read_iges(path, document, progress));
-    return Collector(document, names, sewing).collect();
+    return Assembly(document, names, sewing).collect();
 }
 
 } // namespace core::cad

@@ -11,6 +11,7 @@
 
 #include "core/base/result.h"
 #include "core/cad/cad_file.h"
+#include "core/cad/cad_message.h"
 #include "core/geom/mesh.h"
 
 namespace core::cad {
@@ -29,8 +30,6 @@ struct Document {
     std::vector<std::string> notes; // as in CadFile
     std::vector<CadSurfaces> left_out;
 };
-
-enum class CadFormat : uint8_t { step, iges };
 
 /// Reads a file with Open CASCADE, which may throw a Standard_Failure.
 ///

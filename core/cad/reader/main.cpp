@@ -23,6 +23,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "core/base/text.h"
 #include "core/cad/cad_message.h"
 #include "core/cad/reader/document.h"
 #include "core/cad/reader/solid_mesher.h"
@@ -31,7 +32,7 @@
 // Reads a CAD file with Open CASCADE and writes its solids as messages (cad_message.h) to standard
 // output. A process of its own, because damaged files can make the library crash.
 //
-//     feeler-cad FILE step|iges DEVIATION MOST_TRIANGLES SECONDS
+//     feeler-cad FILE step|iges|brep|freecad DEVIATION MOST_TRIANGLES SECONDS
 
 namespace core::cad {
 
@@ -129,15 +130,26 @@ CadSolid placed(const MeshedSolid& solid, const PlacedSolid& at) {
     return result;
 }
 
-Error with_name(Error error, const std::string& name) {
-    error.message = fmt::format("{}: {}", name, error.message);
-    return error;
+/// Why a meshed solid cannot be used; empty if it can.
+std::string why_unusable(const MeshedSolid& solid, const MeshWish& wish) {
+    constexpr double largest_gap = 0.05; // of the size of a solid: it has no shape any more
+    if (solid.gap > largest_gap * glm::length(solid.mesh.bounds().size()))
+        return fmt::format("gaps of {:.3g} mm are between its faces: repair it in the CAD system",
+                           solid.gap);
+    if (solid.mesh.triangles.size() > wish.most_triangles)
+        return fmt::format("the solids have too many triangles within {:g} mm of their surfaces: "
+                           "allow a larger deviation (mesh_deviation)",
+                           wish.deviation);
+    return {};
 }
 
 /// Meshes each part once and writes it at all of its places.
-Result<bool> write_solids(const Document& document, MeshWish wish, const Output& output) {
+///
+/// `leaves_out`: a solid that cannot be used is left out; otherwise it is an error.
+Result<bool> write_solids(const Document& document, MeshWish wish, bool leaves_out,
+                          const Output& output) {
     TopTools_IndexedMapOfShape parts;
-    std::vector<MeshedSolid> meshed;
+    std::vector<Result<MeshedSolid>> meshed;
     const double count = static_cast<double>(document.solids.size());
     for (size_t i = 0; i < document.solids.size(); ++i) {
         const PlacedSolid& at = document.solids[i];
@@ -145,25 +157,17 @@ Result<bool> write_solids(const Document& document, MeshWish wish, const Output&
             progress_message(fmt::format("meshing solid {} of {}", i + 1, document.solids.size()),
                              static_cast<double>(i) / count));
         const auto number = static_cast<size_t>(parts.Add(at.shape));
-        if (number > meshed.size()) {
-            auto mesh = mesh_solid(at.shape, wish);
-            if (!mesh) return tl::unexpected(with_name(mesh.error(), at.names.back()));
-            meshed.push_back(*std::move(mesh));
+        if (number > meshed.size()) meshed.push_back(mesh_solid(at.shape, wish));
+        const Result<MeshedSolid>& solid = meshed[number - 1];
+        const std::string why = solid ? why_unusable(*solid, wish) : solid.error().message;
+        if (!why.empty()) {
+            const std::string what = fmt::format("{}: {}", at.names.back(), why);
+            if (!leaves_out) return fail(ErrorCode::invalid_value, what);
+            output.write(left_out_message({at.names, what}));
+            continue;
         }
-        const MeshedSolid& solid = meshed[number - 1];
-        constexpr double largest_gap = 0.05; // of the size of a solid: it has no shape any more
-        if (solid.gap > largest_gap * glm::length(solid.mesh.bounds().size()))
-            return fail(ErrorCode::invalid_value,
-                        fmt::format("{}: gaps of {:.3g} mm are between its faces: repair it in the "
-                                    "CAD system",
-                                    at.names.back(), solid.gap));
-        if (solid.mesh.triangles.size() > wish.most_triangles)
-            return fail(ErrorCode::unsupported,
-                        fmt::format("its solids have too many triangles within {:g} mm of their "
-                                    "surfaces: allow a larger deviation (mesh_deviation)",
-                                    wish.deviation));
-        wish.most_triangles -= solid.mesh.triangles.size();
-        output.write(solid_message(placed(solid, at)));
+        wish.most_triangles -= solid->mesh.triangles.size();
+        output.write(solid_message(placed(*solid, at)));
     }
     return true;
 }
@@ -176,7 +180,7 @@ Result<bool> run(const Arguments& arguments, const Output& output) {
     for (const std::string& note : document.notes)
         output.write(text_message(MessageKind::note, note));
     for (const CadSurfaces& surfaces : document.left_out) output.write(left_out_message(surfaces));
-    return write_solids(document, arguments.wish, output);
+    return write_solids(document, arguments.wish, arguments.format == CadFormat::freecad, output);
 }
 
 /// Runs and turns what Open CASCADE throws into an error.
@@ -214,7 +218,9 @@ int main(int count, char** words) {
     if (count != 6) return 2;
     core::cad::Arguments arguments;
     arguments.path = words[1];
-    if (std::string_view(words[2]) == "iges") arguments.format = core::cad::CadFormat::iges;
+    const auto format = core::find_named(core::cad::all_cad_formats, words[2]);
+    if (!format) return 2;
+    arguments.format = *format;
     arguments.wish.deviation = core::cad::number_of<double>(words[3]);
     arguments.wish.most_triangles = core::cad::number_of<size_t>(words[4]);
     arguments.seconds = core::cad::number_of<unsigned long>(words[5]);

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,11 @@
 #include "core/sim/clearance.h"
 
 namespace core {
+
+/// The order of pairs in reports and in the memory of a check: by fixture, the stock first.
+inline bool is_before(const Pair& a, const Pair& b) {
+    return std::tuple(a.fixture, a.part, a.carried) < std::tuple(b.fixture, b.part, b.carried);
+}
 
 /// Lower bound of a pair's distance at the machine's current position.
 struct PairBound {
@@ -24,7 +30,7 @@ struct PairBound {
 /// no verdict depends on it.
 struct CheckMemory {
     /// Cutting brings nothing nearer, and a motion brings a pair nearer by at most its length, so
-    /// bounds hold from block to block until a tool or a fixture is changed.
+    /// bounds hold from block to block until a tool or a fixture is changed. In order: is_before.
     std::vector<PairBound> bounds;
     std::optional<Pair> deciding; // of the last block; it probably decides the next one too
     double margin = 0.0;          // of the deciding pair

@@ -111,7 +111,7 @@ void FixtureCheck::resolve(const Doubt& doubt, PairClearance& known) {
         resolve({half, doubt.start, doubt.fixture, doubt.body, clearance_of(half)}, known);
 }
 
-void FixtureCheck::resolve_doubts(std::vector<TrackedPair>& pairs) {
+void FixtureCheck::resolve_doubts(TrackedPairs& pairs) {
     std::stable_sort(doubts_.begin(), doubts_.end(),
                      [](const Doubt& a, const Doubt& b) { return a.seen.lower < b.seen.lower; });
     for (const Doubt& doubt : doubts_) {
@@ -121,12 +121,18 @@ void FixtureCheck::resolve_doubts(std::vector<TrackedPair>& pairs) {
 }
 
 void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                              std::vector<TrackedPair>& pairs) {
+                              TrackedPairs& pairs) {
     const Pair pair = pair_of(body, fixture);
     TrackedPair& known = bounds_.tracked_pair(pairs, pair);
-    if (bounds_.can_skip(known, pairs)) return;
+    if (bounds_.can_skip(known, least_, bounds_.travel())) return;
+    measure_pair(leg, start, fixture, body, known);
+    if (known.found()) least_ = std::min(least_, known.margin());
+}
+
+void FixtureCheck::measure_pair(const Leg& leg, double start, size_t fixture,
+                                const MovingBody& body, TrackedPair& known) {
     const RelativeLeg relative = context_.against_fixture(body, fixture, leg);
-    if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
+    if (bounds_.can_skip(known, least_, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
     if (!relative.turns) return check_passage(leg, start, fixture, body, relative, known);
     // A body that turns: halve the leg until the body is far away or its error is small enough.
@@ -156,12 +162,15 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
             if (now.verdict == Verdict::collision) return merge(known, now);
         }
     }
-    check_pair(stretch(leg, 0.0, 0.5), start, fixture, body, pairs);
-    check_pair(stretch(leg, 0.5, 1.0), start, fixture, body, pairs);
+    for (const Leg& half : {stretch(leg, 0.0, 0.5), stretch(leg, 0.5, 1.0)}) {
+        if (known.found()) least_ = std::min(least_, known.margin());
+        if (!bounds_.can_skip(known, least_, bounds_.travel()))
+            measure_pair(half, start, fixture, body, known);
+    }
 }
 
 bool FixtureCheck::needs_clearance(const Leg& leg, const MovingBody& body, size_t fixture,
-                                   std::vector<TrackedPair>& pairs) {
+                                   TrackedPairs& pairs) {
     if (!context_.mounted_fixtures[fixture]
         || is_exempt(context_.setup.machine, body, context_.setup.fixtures[fixture]))
         return false;
@@ -174,14 +183,19 @@ bool FixtureCheck::needs_clearance(const Leg& leg, const MovingBody& body, size_
     return false;
 }
 
-void FixtureCheck::check(const Leg& leg, double start, std::vector<TrackedPair>& pairs) {
-    const std::optional<Pair> first = context_.memory.deciding;
-    for (const bool likely : {true, false})
-        for (size_t fixture = 0; fixture < context_.setup.fixtures.size(); ++fixture)
-            for (const MovingBody& body : context_.bodies)
-                if ((first == pair_of(body, fixture)) == likely
-                    && needs_clearance(leg, body, fixture, pairs))
-                    check_pair(leg, start, fixture, body, pairs);
+void FixtureCheck::check(const Leg& leg, double start, TrackedPairs& pairs) {
+    const std::optional<Pair> first = context_.memory.deciding; // the likely one of this leg, too
+    least_ = bounds_.least_margin(pairs);
+    const auto check_one = [&](size_t fixture, const MovingBody& body) {
+        if (needs_clearance(leg, body, fixture, pairs))
+            check_pair(leg, start, fixture, body, pairs);
+    };
+    if (first && first->fixture)
+        for (const MovingBody& body : context_.bodies)
+            if (*first == pair_of(body, *first->fixture)) check_one(*first->fixture, body);
+    for (size_t fixture = 0; fixture < context_.setup.fixtures.size(); ++fixture)
+        for (const MovingBody& body : context_.bodies)
+            if (first != pair_of(body, fixture)) check_one(fixture, body);
 }
 
 } // namespace core

@@ -26,8 +26,7 @@ LegCheck::LegCheck(const Setup& setup, const ToolAssembly& tool, FluteUse use, B
       fixtures_(context_, bounds_, flutes_),
       stock_(context_, bounds_, probe_, flutes_) {}
 
-double LegCheck::run(const Leg& leg, double start, CutModel& stock,
-                     std::vector<TrackedPair>& pairs) {
+double LegCheck::run(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
     bounds_.begin_leg(greatest_travel(context_.setup.machine, leg), leg.straight);
     const size_t tests_before = context_.statistics.box_tests;
     double removed = 0.0;
@@ -56,19 +55,18 @@ double LegCheck::travel_of(const Pair& pair, const Leg& leg) const {
 }
 
 void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
-                          std::vector<TrackedPair>& pairs) {
+                          TrackedPairs& pairs) {
     // Anything that the hull does not meet is safe. Anything that it meets need not happen, unless
     // a position that is certainly taken meets it too.
-    std::vector<TrackedPair> anywhere;
+    TrackedPairs anywhere;
     fixtures_.check(leg, start, anywhere);
     stock_.check_bodies(leg, start, stock, anywhere);
-    std::vector<TrackedPair> certain;
+    TrackedPairs certain;
     for (const AxisValues& position : leg.certain) rest(position, 0.0, stock, certain);
     for (const TrackedPair& pair : anywhere) {
         const bool safe = pair.verdict == Verdict::clear;
         PairClearance now{.pair = pair.pair, .allowance = pair.allowance, .lower = pair.lower};
-        for (const TrackedPair& there : certain)
-            if (there.pair == pair.pair) merge(now, there);
+        if (const TrackedPair* there = certain.find(pair.pair)) merge(now, *there);
         now.lower = pair.lower;
         now.time = start + leg.end;
         if (!safe) now.verdict = std::max(now.verdict, Verdict::undecided);
@@ -76,14 +74,13 @@ void LegCheck::check_hull(const Leg& leg, double start, const CutModel& stock,
     }
 }
 
-void LegCheck::pass(const Leg& leg, double start, const CutModel& stock,
-                    std::vector<TrackedPair>& pairs) {
+void LegCheck::pass(const Leg& leg, double start, const CutModel& stock, TrackedPairs& pairs) {
     fixtures_.check(leg, start, pairs);
     stock_.check_bodies(leg, start, stock, pairs);
 }
 
 FluteContact LegCheck::contact_of_flutes(const Leg& leg, const CutModel& stock) {
-    std::vector<TrackedPair> pairs;
+    TrackedPairs pairs;
     pass(leg, 0.0, stock, pairs);
     FluteContact contact;
     for (const TrackedPair& pair : pairs) {
@@ -116,7 +113,7 @@ double LegCheck::reach_into_raw_stock(const Pair& pair, const Leg& leg,
 }
 
 void LegCheck::rest(const AxisValues& position, double time, const CutModel& stock,
-                    std::vector<TrackedPair>& pairs) {
+                    TrackedPairs& pairs) {
     const Leg leg{.positions = {position}};
     // The body may have come from anywhere.
     for (TrackedPair& pair : pairs) pair.at_end = -infinity;

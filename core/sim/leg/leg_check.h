@@ -20,11 +20,11 @@ public:
 
     /// Adds the clearances over a leg, with times counted from `start`, seconds. A chord of an arc
     /// whose error leaves a pair undecided is kept for `resolve_doubts`.
-    void check(const Leg& leg, double start, std::vector<TrackedPair>& pairs);
+    void check(const Leg& leg, double start, TrackedPairs& pairs);
 
     /// Halves the undecided chords until all are decided or short enough. Call it after the last
     /// leg.
-    void resolve_doubts(std::vector<TrackedPair>& pairs);
+    void resolve_doubts(TrackedPairs& pairs);
 
 private:
     /// A chord of an arc with an undecided pair, and its clearance so far.
@@ -39,10 +39,12 @@ private:
     /// Whether the pair needs its minimum clearance on this leg. Flutes may cut expendable
     /// fixtures.
     bool needs_clearance(const Leg& leg, const MovingBody& body, size_t fixture,
-                         std::vector<TrackedPair>& pairs);
+                         TrackedPairs& pairs);
     void check_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
-                    std::vector<TrackedPair>& pairs);
-    /// check_pair on a leg on which the body does not turn.
+                    TrackedPairs& pairs);
+    void measure_pair(const Leg& leg, double start, size_t fixture, const MovingBody& body,
+                      TrackedPair& known);
+    /// measure_pair on a leg on which the body does not turn.
     void check_passage(const Leg& leg, double start, size_t fixture, const MovingBody& body,
                        const RelativeLeg& relative, TrackedPair& known);
     /// The clearance of a body from a fixture, measured once over the whole leg.
@@ -56,6 +58,7 @@ private:
     const PairBounds& bounds_;
     FluteCut& flutes_;
     std::vector<Doubt> doubts_;
+    double least_ = infinity; // margin of the pairs of the block that have been found
 };
 
 /// Checks moving bodies against the stock over legs, and cuts it. Refers to the constructor's
@@ -69,13 +72,12 @@ public:
     /// along it.
     ///
     /// Result: the volume removed, mm3.
-    double check(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
+    double check(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
 
     /// Adds the clearances of all bodies from the stock without cutting it.
     ///
     /// Result: whether the flutes collide with it.
-    bool check_bodies(const Leg& leg, double start, const CutModel& stock,
-                      std::vector<TrackedPair>& pairs);
+    bool check_bodies(const Leg& leg, double start, const CutModel& stock, TrackedPairs& pairs);
 
 private:
     /// A body before the stock is cut, and whether its lower bound already shows that it is clear.
@@ -87,12 +89,11 @@ private:
         double nearest; // least clearance of the pair so far in this block
     };
 
-    double check_turning(const Leg& leg, double start, CutModel& stock,
-                         std::vector<TrackedPair>& pairs);
+    double check_turning(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
     /// Checks a machine body over a leg on which rotary axes move against the stock before the cut.
     /// Only the lower bound is measured if the box of the raw stock is far enough away.
     void check_turning_body(const MovingBody& body, const Leg& leg, double start,
-                            const CutModel& stock, std::vector<TrackedPair>& pairs);
+                            const CutModel& stock, TrackedPairs& pairs);
     /// A piece of a leg on which a body is clear of the stock before the cut.
     struct ClearPiece {
         Leg leg;
@@ -106,28 +107,24 @@ private:
                              std::vector<ClearPiece>& pieces);
     /// Checks a tool that cuts over a leg on which rotary axes move, and cuts. Shank and holder
     /// are usually clear of the stock before the cut, and then need far fewer pieces than the cut.
-    double cut_turning(const Leg& leg, double start, CutModel& stock,
-                       std::vector<TrackedPair>& pairs);
+    double cut_turning(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
     /// Whether the tool stays clear on a leg on which rotary axes move, measured over the whole
     /// leg; if so, adds its clearances.
     bool is_clear_by_bound(const Leg& leg, double start, const CutModel& stock,
-                           std::vector<TrackedPair>& pairs);
-    double check_whole(const Leg& leg, double start, CutModel& stock,
-                       std::vector<TrackedPair>& pairs);
-    double check_cutting(const Leg& leg, double start, CutModel& stock,
-                         std::vector<TrackedPair>& pairs);
-    double check_not_cutting(const Leg& leg, double start, CutModel& stock,
-                             std::vector<TrackedPair>& pairs);
+                           TrackedPairs& pairs);
+    double check_whole(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
+    double check_cutting(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
+    double check_not_cutting(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
     /// How far any point of the body moves over a leg at most, as seen from the stock, mm.
     double travel_of(const MovingBody& body, const Leg& leg) const;
     /// Whether a body that is too near before the cut is clear of the stock after it.
     bool depends_on_time(const std::vector<BodyCheck>& checks, const Leg& leg, const CutModel& cut);
     /// Adds the clearance of a body, now that the stock is cut; `cut`: anything was removed.
     void conclude(const BodyCheck& check, const Leg& leg, double start, const CutModel& stock,
-                  bool cut, std::vector<TrackedPair>& pairs);
+                  bool cut, TrackedPairs& pairs);
     /// Checks a body that was skipped before the cut, if it can decide the block after all.
     void check_late(const MovingBody& body, const Leg& leg, double start, const CutModel& stock,
-                    std::vector<TrackedPair>& pairs);
+                    TrackedPairs& pairs);
     StockObservation observe_after(const BodyCheck& check, const Leg& leg, const CutModel& stock);
 
     const LegContext& context_;
@@ -164,17 +161,16 @@ public:
     /// does not matter.
     ///
     /// Result: the volume removed, mm3.
-    double run(const Leg& leg, double start, CutModel& stock, std::vector<TrackedPair>& pairs);
+    double run(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs);
 
     /// Decides the pairs that the legs have left undecided. Call it after the last leg.
-    void finish(std::vector<TrackedPair>& pairs) { fixtures_.resolve_doubts(pairs); }
+    void finish(TrackedPairs& pairs) { fixtures_.resolve_doubts(pairs); }
 
     /// Checks all bodies at rest, `time` seconds after the block's start, without cutting.
-    void rest(const AxisValues& position, double time, const CutModel& stock,
-              std::vector<TrackedPair>& pairs);
+    void rest(const AxisValues& position, double time, const CutModel& stock, TrackedPairs& pairs);
 
     /// Checks a straight leg without cutting, whatever is in the way.
-    void pass(const Leg& leg, double start, const CutModel& stock, std::vector<TrackedPair>& pairs);
+    void pass(const Leg& leg, double start, const CutModel& stock, TrackedPairs& pairs);
 
     /// How the flutes meet the stock and the fixtures on a straight leg, if they do not cut.
     FluteContact contact_of_flutes(const Leg& leg, const CutModel& stock);
@@ -214,8 +210,7 @@ private:
     /// How far any point of a pair's body moves over a leg at most, as seen from the other one, mm.
     double travel_of(const Pair& pair, const Leg& leg) const;
     /// Checks a leg of which only a hull of the possible paths is known.
-    void check_hull(const Leg& leg, double start, const CutModel& stock,
-                    std::vector<TrackedPair>& pairs);
+    void check_hull(const Leg& leg, double start, const CutModel& stock, TrackedPairs& pairs);
 
     LegContext context_;
     PairBounds bounds_;

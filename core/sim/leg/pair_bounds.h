@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <vector>
 
 #include "core/geom/gjk.h"
@@ -19,13 +21,57 @@ struct TrackedPair : PairClearance {
     double drift = 0.0;  // travel that was subtracted from it since the pair was measured, mm
 };
 
+/// The pairs of a block, each once. One of them is found in the same time however many there are.
+class TrackedPairs {
+public:
+    using value_type = TrackedPair;
+
+    TrackedPairs() = default;
+    TrackedPairs(std::initializer_list<TrackedPair> pairs);
+
+    /// The entry of a pair; null if it has none.
+    TrackedPair* find(const Pair& pair);
+    const TrackedPair* find(const Pair& pair) const;
+
+    /// Adds the entry of a pair that has none. References to other entries become invalid.
+    TrackedPair& add(const TrackedPair& pair);
+
+    /// Removes the pairs of which `is_unwanted(pair)`.
+    template <typename Predicate>
+    void remove_if(const Predicate& is_unwanted) {
+        std::erase_if(pairs_, is_unwanted);
+        make_slots();
+    }
+
+    /// Puts the pairs in order: is_before.
+    void sort();
+
+    bool empty() const { return pairs_.empty(); }
+    size_t size() const { return pairs_.size(); }
+    TrackedPair& operator[](size_t i) { return pairs_[i]; }
+    const TrackedPair& operator[](size_t i) const { return pairs_[i]; }
+    const TrackedPair* data() const { return pairs_.data(); }
+    auto begin() { return pairs_.begin(); }
+    auto begin() const { return pairs_.begin(); }
+    auto end() { return pairs_.end(); }
+    auto end() const { return pairs_.end(); }
+
+private:
+    void make_slots();
+    void take_slot(size_t index);
+
+    std::vector<TrackedPair> pairs_;
+    // With many pairs, a hash table of them: 1 + index, or 0. Empty with few.
+    std::vector<uint32_t> slots_;
+};
+
 /// Merges the clearance on a leg into `known`; its lower bound is also taken as that at the leg's
 /// end.
 void merge(TrackedPair& known, const PairClearance& later);
 
 /// The entry of a pair, added if it is missing. The reference is valid until the next entry is
 /// added.
-TrackedPair& entry(std::vector<TrackedPair>& pairs, const Pair& pair, const Setup& setup);
+TrackedPair& entry(TrackedPairs& pairs, const Pair& pair, const Setup& setup);
 
 /// Whether a leg cannot bring a pair nearer than it has been in this block. If so, updates its
 /// bound to the leg's end.
@@ -75,26 +121,35 @@ public:
     }
 
     /// The entry of a pair; a new entry starts with the bound from the last block.
-    TrackedPair& tracked_pair(std::vector<TrackedPair>& pairs, const Pair& pair) const;
+    TrackedPair& tracked_pair(TrackedPairs& pairs, const Pair& pair) const;
 
     /// Whether the pair stays clear over the leg, on which its bodies approach each other by at
     /// most `travel`, and another pair of the block has less margin. If so, updates its bound to
     /// the leg's end.
-    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs, double travel) const;
+    bool can_skip(TrackedPair& known, const TrackedPairs& pairs, double travel) const {
+        return can_skip(known, least_margin(pairs), travel);
+    }
     /// With the travel of the leg.
-    bool can_skip(TrackedPair& known, const std::vector<TrackedPair>& pairs) const {
+    bool can_skip(TrackedPair& known, const TrackedPairs& pairs) const {
         return can_skip(known, pairs, travel_);
     }
 
     /// Whether a pair with this lower bound is clear and cannot decide the block.
-    bool cannot_decide(const Allowance& allowance, double lower,
-                       const std::vector<TrackedPair>& pairs) const;
+    bool cannot_decide(const Allowance& allowance, double lower, const TrackedPairs& pairs) const {
+        return cannot_decide(allowance, lower, least_margin(pairs));
+    }
+
+    /// The least margin of the pairs that have been found; infinite if only the verdict counts.
+    double least_margin(const TrackedPairs& pairs) const;
+    /// The same, if `least` is the least margin of the block's pairs.
+    bool can_skip(TrackedPair& known, double least, double travel) const;
+    bool cannot_decide(const Allowance& allowance, double lower, double least) const;
 
     /// Whether the pair can be skipped if this block has about as much margin as the last one.
     bool can_probably_skip(const TrackedPair& known) const;
 
     /// Updates the bound of a pair that is not checked on this leg to the leg's end.
-    void carry_bound(const Pair& pair, std::vector<TrackedPair>& pairs) const;
+    void carry_bound(const Pair& pair, TrackedPairs& pairs) const;
 
     /// Amount that rounded corners subtract from a clearance, mm; 0 for a pair that may touch.
     double off_path(const Allowance& allowance) const {
@@ -102,8 +157,11 @@ public:
     }
 
 private:
+    const PairBound* find_bound(const Pair& pair) const;
+
     const Setup& setup_;
     CheckMemory& memory_;
+    mutable size_t last_bound_ = 0; // where the last one was found; saves time only
     double travel_ = infinity;
     bool goes_on_ = false;
 };

@@ -16,14 +16,14 @@ double length(const Leg& leg) {
 }
 
 /// Whether the flutes have run into the stock.
-bool has_crashed(const std::vector<TrackedPair>& pairs) {
+bool has_crashed(const TrackedPairs& pairs) {
     return std::any_of(pairs.begin(), pairs.end(), [](const TrackedPair& pair) {
         return pair.pair == Pair{PartKind::flutes} && pair.verdict == Verdict::collision;
     });
 }
 
 /// Whether it is already known that the leg is not clear, and nothing else is needed.
-bool is_enough(const Setup& setup, const std::vector<TrackedPair>& pairs) {
+bool is_enough(const Setup& setup, const TrackedPairs& pairs) {
     return setup.needs_only_verdict
            && std::any_of(pairs.begin(), pairs.end(),
                           [](const TrackedPair& pair) { return pair.verdict != Verdict::clear; });
@@ -40,7 +40,7 @@ bool is_settled(const TrackedPair& known, Verdict now) {
 } // namespace
 
 double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
-                                 std::vector<TrackedPair>& pairs) {
+                                 TrackedPairs& pairs) {
     bounds_.carry_bound({PartKind::flutes}, pairs);
     std::vector<BodyCheck> checks;
     std::vector<const MovingBody*> later;
@@ -81,7 +81,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
 }
 
 void StockCheck::conclude(const BodyCheck& check, const Leg& leg, double start,
-                          const CutModel& stock, bool cut, std::vector<TrackedPair>& pairs) {
+                          const CutModel& stock, bool cut, TrackedPairs& pairs) {
     TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(check.body));
     if (check.clear && !check.before.whole
         && bounds_.cannot_decide(known.allowance, check.before.plain.lower, pairs)) {
@@ -103,7 +103,7 @@ double StockCheck::travel_of(const MovingBody& body, const Leg& leg) const {
 }
 
 void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start,
-                            const CutModel& stock, std::vector<TrackedPair>& pairs) {
+                            const CutModel& stock, TrackedPairs& pairs) {
     TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
     if (bounds_.can_skip(known, pairs)) return;
     // The stock before the cut is no longer available. It was the remaining stock plus what the
@@ -155,7 +155,7 @@ StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& le
 }
 
 bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stock,
-                              std::vector<TrackedPair>& pairs) {
+                              TrackedPairs& pairs) {
     bool gouged = false;
     for (const MovingBody* body : context_.likely_first({})) {
         if (only_tool_ && body->body) continue;
@@ -173,7 +173,7 @@ bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stoc
 }
 
 double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& stock,
-                                     std::vector<TrackedPair>& pairs) {
+                                     TrackedPairs& pairs) {
     const bool gouged = check_bodies(leg, start, stock, pairs);
     if (gouged) {
         TrackedPair& flutes = entry(pairs, {PartKind::flutes}, context_.setup);
@@ -184,14 +184,13 @@ double StockCheck::check_not_cutting(const Leg& leg, double start, CutModel& sto
     return gouged ? flutes_.along(leg, stock) : 0.0;
 }
 
-double StockCheck::check_whole(const Leg& leg, double start, CutModel& stock,
-                               std::vector<TrackedPair>& pairs) {
+double StockCheck::check_whole(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
     return context_.use == FluteUse::cutting ? check_cutting(leg, start, stock, pairs)
                                              : check_not_cutting(leg, start, stock, pairs);
 }
 
 bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel& stock,
-                                   std::vector<TrackedPair>& pairs) {
+                                   TrackedPairs& pairs) {
     std::vector<PairClearance> seen;
     for (const MovingBody& body : context_.bodies) {
         if (body.body || (only_flutes_ && body.kind != PartKind::flutes)) continue;
@@ -229,7 +228,7 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
 }
 
 void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, double start,
-                                    const CutModel& stock, std::vector<TrackedPair>& pairs) {
+                                    const CutModel& stock, TrackedPairs& pairs) {
     if (is_enough(context_.setup, pairs)) return;
     TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
     const RelativeLeg relative = context_.against_stock(body, leg);
@@ -285,8 +284,7 @@ bool StockCheck::is_clear_before_cut(const MovingBody& body, const Leg& leg, dou
            && is_clear_before_cut(body, stretch(leg, 0.5, 1.0), start, stock, known, pieces);
 }
 
-double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock,
-                               std::vector<TrackedPair>& pairs) {
+double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
     std::vector<const MovingBody*> clear;
     std::vector<std::vector<ClearPiece>> pieces;
     for (const MovingBody* body : context_.likely_first({})) {
@@ -321,7 +319,7 @@ double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock,
 }
 
 double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
-                                 std::vector<TrackedPair>& pairs) {
+                                 TrackedPairs& pairs) {
     if (context_.use == FluteUse::not_cutting && has_crashed(pairs)) {
         // One crash is enough: later motion is not measured, and so not reported as clear.
         for (const MovingBody& body : context_.bodies) {
@@ -341,8 +339,7 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
     return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
 }
 
-double StockCheck::check(const Leg& leg, double start, CutModel& stock,
-                         std::vector<TrackedPair>& pairs) {
+double StockCheck::check(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
     const bool turns = context_.setup.machine.has_rotary() && leg.positions.size() == 2
                        && turn_of(context_.setup.machine, leg.positions[0], leg.positions[1]) > 0.0;
     if (turns) {

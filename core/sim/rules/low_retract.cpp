@@ -33,17 +33,17 @@ struct LinkCheck {
                 memory, statistics};
     }
 
-    std::vector<TrackedPair> at(const AxisValues& position) {
-        std::vector<TrackedPair> pairs;
+    TrackedPairs at(const AxisValues& position) {
+        TrackedPairs pairs;
         check().rest(position, 0.0, link.stock, pairs);
         return pairs;
     }
 
-    std::vector<TrackedPair> along(double higher) {
+    TrackedPairs along(double higher) {
         Leg leg = link.leg;
         for (AxisValues& position : leg.positions) position[2] += higher;
         CutModel stock = link.stock;
-        std::vector<TrackedPair> pairs;
+        TrackedPairs pairs;
         check().run(leg, 0.0, stock, pairs);
         return pairs;
     }
@@ -53,13 +53,13 @@ bool is_flutes_over_stock(const PairClearance& pair) {
     return !pair.pair.fixture && pair.pair.part == PartKind::flutes;
 }
 
-bool are_clear(const std::vector<TrackedPair>& pairs) {
+bool are_clear(const TrackedPairs& pairs) {
     return std::all_of(pairs.begin(), pairs.end(),
                        [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
 }
 
 /// Distance from the flutes to the stock, mm.
-double flutes_to_stock(const std::vector<TrackedPair>& pairs) {
+double flutes_to_stock(const TrackedPairs& pairs) {
     for (const TrackedPair& pair : pairs)
         if (is_flutes_over_stock(pair)) return pair.found() ? pair.upper : pair.lower;
     return infinity;
@@ -72,7 +72,7 @@ bool passes_over(const ExecutedLeg& link, const PairClearance& pair) {
 }
 
 /// The pair that the rapid brings too near; null if there is none.
-const PairClearance* in_the_way(const ExecutedLeg& link, const std::vector<TrackedPair>& pairs) {
+const PairClearance* in_the_way(const ExecutedLeg& link, const TrackedPairs& pairs) {
     const PairClearance* worst = deciding_pair(pairs);
     if (worst && worst->verdict != Verdict::clear) return worst;
     for (const TrackedPair& pair : pairs)
@@ -83,7 +83,7 @@ const PairClearance* in_the_way(const ExecutedLeg& link, const std::vector<Track
 }
 
 /// Whether any pair is below its allowance on the link, or the flutes pass close to the stock.
-bool is_doubtful(const ExecutedLeg& link, const std::vector<TrackedPair>& known) {
+bool is_doubtful(const ExecutedLeg& link, const TrackedPairs& known) {
     if (!are_clear(known)) return true;
     CheckMemory memory;
     Statistics statistics;
@@ -115,7 +115,7 @@ std::optional<double> lift(LinkCheck& probe) {
 /// The cure: the rapid at a height, rounded up, at which it was tried and is clear.
 std::string cure_by(LinkCheck& probe, const Pair& pair, double higher, const std::string& body) {
     const double tried = std::ceil(10.0 * higher - 1e-9) / 10.0;
-    const std::vector<TrackedPair> above = probe.along(tried);
+    const TrackedPairs above = probe.along(tried);
     if (!are_clear(above) || flutes_to_stock(above) < room)
         return "Retract higher before moving across.";
     double keeps = probe.setup.search_limit;
@@ -140,10 +140,10 @@ bool goes_across(const Leg& leg) {
     return core::hypot(to[0] - from[0], to[1] - from[1]) > 1.0;
 }
 
-std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<TrackedPair>& known) {
+std::optional<Finding> low_retract(const ExecutedLeg& link, const TrackedPairs& known) {
     if (!is_doubtful(link, known)) return std::nullopt;
     LinkCheck probe{link};
-    const std::vector<TrackedPair> pairs = probe.along(0.0);
+    const TrackedPairs pairs = probe.along(0.0);
     const PairClearance* near = in_the_way(link, pairs);
     if (!near) return std::nullopt;
     for (const AxisValues& position : {link.leg.positions.front(), link.leg.positions.back()}) {

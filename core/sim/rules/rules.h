@@ -20,7 +20,7 @@ struct Setup;
 struct RelativeLeg;
 struct ToolAssembly;
 struct ToolDescription;
-struct TrackedPair;
+class TrackedPairs;
 
 /// Flutes farther than this from the stock are in air, mm; nearer ones may be on a spring pass.
 constexpr double air_gap = 0.5;
@@ -69,8 +69,7 @@ struct ExecutedLeg {
 ///
 /// Cost: none for a leg on which they are clear; about ten checks of the leg if they must be higher
 /// than for any leg before.
-void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
-                const std::vector<TrackedPair>& pairs);
+void note_reach(ToolReaches& reaches, const ExecutedLeg& cut, const TrackedPairs& pairs);
 
 /// The findings `stick-out-short` and `over-engagement`, at most one of each per tool, with the
 /// first block concerned and the length that is enough for all blocks. The caller sets severities,
@@ -96,7 +95,7 @@ bool goes_across(const Leg& leg);
 /// on the leg. The caller sets its severity.
 ///
 /// Cost: none if the rapid is well clear; else about twenty checks of the leg.
-std::optional<Finding> low_retract(const ExecutedLeg& link, const std::vector<TrackedPair>& known);
+std::optional<Finding> low_retract(const ExecutedLeg& link, const TrackedPairs& known);
 
 /// The pieces of a stock while it is cut. A plain value.
 struct PieceTracker {

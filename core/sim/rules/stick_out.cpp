@@ -61,7 +61,7 @@ public:
         // The flutes have cut the leg already: nothing more is removed on it.
         if (!turns_) return check.keeps_clear(from_, cut_.leg, cut_.stock);
         CutModel stock = cut_.stock;
-        std::vector<TrackedPair> pairs;
+        TrackedPairs pairs;
         check.run(cut_.leg, 0.0, stock, pairs);
         return std::all_of(pairs.begin(), pairs.end(), [&](const TrackedPair& pair) {
             return pair.pair.part == PartKind::flutes || pair.verdict == Verdict::clear;
@@ -202,8 +202,7 @@ bool goes_sideways(const Leg& leg) {
 
 } // namespace
 
-void note_reach(ToolReaches& reaches, const ExecutedLeg& cut,
-                const std::vector<TrackedPair>& pairs) {
+void note_reach(ToolReaches& reaches, const ExecutedLeg& cut, const TrackedPairs& pairs) {
     constexpr double touch = 0.02; // mm
     for (const TrackedPair& pair : pairs) {
         const bool is_shank = pair.pair.part == PartKind::shank;

@@ -65,7 +65,7 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     // The start position is unknown: report, once, a motion that is not clear from every possible
     // start.
     if (!block.judgement && !path.legs.empty()) {
-        std::vector<TrackedPair> here;
+        TrackedPairs here;
         for (const Leg& leg : path.legs)
             leg_check(use(motion)).run(leg, result.duration, state.stock, here);
         const TrackedPair* worst = deciding_pair(here);
@@ -130,7 +130,7 @@ bool BlockRun::is_clear_from_anywhere(const Motion& motion) {
     if (block.judgement || path.legs.empty()) return false;
     CutModel stock = state.stock;
     const CheckMemory memory = state.memory;
-    std::vector<TrackedPair> here;
+    TrackedPairs here;
     for (const Leg& leg : path.legs) leg_check(use(motion)).run(leg, result.duration, stock, here);
     state.memory = memory;
     const TrackedPair* worst = deciding_pair(here);
@@ -267,7 +267,7 @@ void BlockRun::check_path(const Motion& motion, const Path& path, bool is_spread
 
 double BlockRun::check_leg(LegCheck& check, const Leg& leg, bool cuts) {
     if (!state.certain_stock) return check.run(leg, result.duration, state.stock, pairs);
-    const std::vector<TrackedPair> before = pairs;
+    const TrackedPairs before = pairs;
     const size_t cuts_before = state.stock.log.size();
     const double removed = check.run(leg, result.duration, state.stock, pairs);
     // What flutes removed in a crash was there; what they cut may have been gone when another body
@@ -278,13 +278,11 @@ double BlockRun::check_leg(LegCheck& check, const Leg& leg, bool cuts) {
     return removed;
 }
 
-void BlockRun::doubt_clearances(LegCheck& check, const Leg& leg,
-                                const std::vector<TrackedPair>& before) {
+void BlockRun::doubt_clearances(LegCheck& check, const Leg& leg, const TrackedPairs& before) {
     for (TrackedPair& pair : pairs) {
         if (pair.pair.fixture || pair.verdict < Verdict::violation) continue;
         PairClearance known{.pair = pair.pair, .allowance = pair.allowance};
-        for (const TrackedPair& one : before)
-            if (one.pair == pair.pair) known = one;
+        if (const TrackedPair* one = before.find(pair.pair)) known = *one;
         if (pair.verdict <= known.verdict) continue;
         PairClearance sure =
             check.certain_clearance(pair.pair, leg, result.duration, *state.certain_stock);
@@ -341,7 +339,7 @@ void BlockRun::check_rapid(const Motion& motion, const Path& path, const CutMode
     unbent.style = RapidStyle::straight;
     CutModel stock = before;
     CheckMemory memory; // the bounds of the run only hold along its own path
-    std::vector<TrackedPair> along_the_line;
+    TrackedPairs along_the_line;
     for (const Leg& leg : path_of(unbent, setup.machine, chord_error(setup.mesh_size)).legs)
         leg_check(FluteUse::not_cutting, memory).run(leg, 0.0, stock, along_the_line);
     for (const size_t i : worsened) {
@@ -379,7 +377,7 @@ void BlockRun::doubt_empty_spindle(const Path& path) {
         if (held.reach_is_assumed) continue;
         CheckMemory memory; // the bounds of the run hold for its own bodies
         CutModel stock = state.stock;
-        std::vector<TrackedPair> here;
+        TrackedPairs here;
         state.tool = number;
         for (const Leg& leg : path.legs)
             leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, here);

@@ -78,9 +78,9 @@ void BlockRun::check_tool_change() {
     const Motion stay{.from = state.position, .to = state.position};
     const Path path = path_of(stay, state.spread, state.spread, setup.machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return;
-    std::vector<TrackedPair> of_last_tool = std::exchange(pairs, {});
+    TrackedPairs of_last_tool = std::exchange(pairs, {});
     check_rest(path);
-    const std::vector<TrackedPair> there = std::exchange(pairs, std::move(of_last_tool));
+    const TrackedPairs there = std::exchange(pairs, std::move(of_last_tool));
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;
@@ -192,7 +192,7 @@ std::vector<ShiftStart> BlockRun::shifts_to_try(const PairClearance& pair, const
 
 bool BlockRun::overlaps_at_start(const Pair& pair, const CutModel& before) {
     if (legs[0].leg.positions.empty()) return false;
-    std::vector<TrackedPair> there;
+    TrackedPairs there;
     CheckMemory nothing_known;
     leg_check(FluteUse::not_cutting, nothing_known)
         .rest(legs[0].leg.positions[0], 0.0, before, there);
@@ -282,10 +282,7 @@ bool BlockRun::only_touches_raw_stock(const PairClearance& pair) {
 }
 
 void BlockRun::conclude() {
-    std::sort(pairs.begin(), pairs.end(), [](const TrackedPair& a, const TrackedPair& b) {
-        return std::tuple(a.pair.fixture, a.pair.part, a.pair.carried)
-               < std::tuple(b.pair.fixture, b.pair.part, b.pair.carried);
-    });
+    pairs.sort();
     const bool rise = std::all_of(legs.begin(), legs.end(),
                                   [](const TimedLeg& timed) { return rises(timed.leg); });
     const bool follows =

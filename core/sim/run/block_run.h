@@ -27,7 +27,7 @@ struct BlockRun {
     const BlockEvents& block;
     SimulatorState& state;
     BlockResult result = {};
-    std::vector<TrackedPair> pairs = {};
+    TrackedPairs pairs = {};
     std::vector<TimedLeg> legs = {};
     std::vector<WorstMotion> worst_motions = {};
     Verdict at_change = Verdict::clear; // of the new tool at the tool change
@@ -122,7 +122,7 @@ struct BlockRun {
     /// Runs the check of a leg. A pair that becomes worse on it only because of stock that an
     /// undecided block may have removed is undecided.
     double check_leg(LegCheck& check, const Leg& leg, bool cuts);
-    void doubt_clearances(LegCheck& check, const Leg& leg, const std::vector<TrackedPair>& before);
+    void doubt_clearances(LegCheck& check, const Leg& leg, const TrackedPairs& before);
     /// Makes the cuts of the stock from this number of its log on in the certain stock, too.
     void repeat_cuts(size_t first);
     /// If it is undecided whether the flutes met the stock in a motion: the stock on their way is

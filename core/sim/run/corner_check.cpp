@@ -10,7 +10,7 @@ namespace {
 
 /// The check of the region of a corner: its hull, and the programmed path within it.
 struct CornerCheck {
-    std::vector<TrackedPair> anywhere, along;
+    TrackedPairs anywhere, along;
     double deviation; // of the rounded path from the programmed one
     double of_cuts;   // deviation of the cuts in the stock
 

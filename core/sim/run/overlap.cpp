@@ -146,7 +146,7 @@ private:
     /// Whether the check finds the pair clear on a leg on which nothing is cut. It knows what
     /// is_apart does not: flutes that leave their own cut are clear.
     bool is_clear(const Leg& leg, const CutModel& stock) const {
-        std::vector<TrackedPair> pairs;
+        TrackedPairs pairs;
         CheckMemory memory;
         Statistics statistics;
         const std::vector<bool> no_fixtures(query_.setup.fixtures.size(), false);

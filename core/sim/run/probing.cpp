@@ -111,7 +111,7 @@ Path BlockRun::take_path(const Motion& motion) {
 }
 
 void BlockRun::check_probing(const Motion& motion, const Path& path) {
-    std::vector<TrackedPair> here;
+    TrackedPairs here;
     if (!path.legs[0].straight) {
         LegCheck check = leg_check(FluteUse::not_cutting);
         for (const Leg& leg : path.legs) check.run(leg, result.duration, state.stock, here);
@@ -145,7 +145,7 @@ void BlockRun::check_probing(const Motion& motion, const Path& path) {
         }
     }
     // The flutes are to make contact.
-    std::erase_if(here, [](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
+    here.remove_if([](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
     for (TrackedPair& pair : here) {
         if (state.certain_stock && !pair.pair.fixture && pair.verdict > Verdict::undecided) {
             pair.verdict = Verdict::undecided;
@@ -158,7 +158,7 @@ void BlockRun::check_probing(const Motion& motion, const Path& path) {
 }
 
 void BlockRun::check_rest(const Path& path) {
-    const std::vector<TrackedPair> before = pairs;
+    const TrackedPairs before = pairs;
     LegCheck check = leg_check(FluteUse::not_cutting);
     Leg here = path.legs[0];
     if (here.straight) {

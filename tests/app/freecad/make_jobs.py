@@ -16,10 +16,16 @@ def stock_of(kind, job):
         return PathStock.CreateBox(job, VECTOR(60, 50, 20), FreeCAD.Placement(VECTOR(-5, -5, -8), TURN))
     if kind == "cylinder":
         return PathStock.CreateCylinder(job, 40, 25, FreeCAD.Placement(VECTOR(25, 20, 0), TURN))
+    if kind == "own":
+        bar = job.Document.addObject("Part::Cylinder", "Bar")
+        bar.Radius, bar.Height = 12, 60
+        bar.Placement = FreeCAD.Placement(VECTOR(-3, 20, 5), FreeCAD.Rotation(VECTOR(0, 1, 0), 90))
+        job.Document.recompute()
+        return PathJob.createResourceClone(job, bar, "Stock", "Stock")
     return PathStock.CreateFromBase(job, VECTOR(1, 2, 3), VECTOR(4, 5, 6))
 
 
-for kind in ("box", "cylinder", "base"):
+for kind in ("box", "cylinder", "base", "own"):
     document = FreeCAD.newDocument("job_" + kind)
     part = document.addObject("Part::Box", "Box")
     part.Length, part.Width, part.Height = 50, 40, 10

@@ -1,13 +1,13 @@
-#include "app/base/xml.h"
+#include "core/formats/xml_document.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "app/base/text.h"
 #include "core/base/text.h"
 
-namespace app {
+namespace core {
 namespace {
 
 std::vector<size_t> line_ends_of(const std::string& text) {
@@ -17,7 +17,7 @@ std::vector<size_t> line_ends_of(const std::string& text) {
     return ends;
 }
 
-core::SourceSpan place_of(const std::vector<size_t>& line_ends, size_t offset) {
+SourceSpan place_of(const std::vector<size_t>& line_ends, size_t offset) {
     const auto next = std::lower_bound(line_ends.begin(), line_ends.end(), offset);
     const size_t begin = next == line_ends.begin() ? 0 : *std::prev(next) + 1;
     return {.line = static_cast<uint32_t>(next - line_ends.begin() + 1),
@@ -66,7 +66,7 @@ std::string as_utf8(const std::string& text) {
 
 } // namespace
 
-core::Result<XmlDocument> XmlDocument::parse(const std::string& bytes, const std::string& path) {
+Result<XmlDocument> XmlDocument::parse(const std::string& bytes, const std::string& path) {
     const std::string text = as_utf8(bytes);
     XmlDocument xml;
     xml.path_ = path;
@@ -76,9 +76,9 @@ core::Result<XmlDocument> XmlDocument::parse(const std::string& bytes, const std
     if (parsed) return xml;
     const auto at =
         std::min(static_cast<size_t>(std::max<ptrdiff_t>(parsed.offset, 0)), text.size());
-    return tl::unexpected<core::Error>(
-        {core::ErrorCode::syntax, place_of(xml.line_ends_, at),
-         fmt::format("is not valid XML: {}", core::lower_case(parsed.description())), path});
+    return tl::unexpected<Error>(
+        {ErrorCode::syntax, place_of(xml.line_ends_, at),
+         fmt::format("is not valid XML: {}", lower_case(parsed.description())), path});
 }
 
 uint32_t XmlDocument::line_of(const pugi::xml_node& node) const {
@@ -86,17 +86,9 @@ uint32_t XmlDocument::line_of(const pugi::xml_node& node) const {
     return offset < 0 ? 0 : place_of(line_ends_, static_cast<size_t>(offset)).line;
 }
 
-tl::unexpected<core::Error> XmlDocument::refuse(const pugi::xml_node& node,
-                                                std::string message) const {
-    return tl::unexpected(line_error(path_, line_of(node), std::move(message)));
+tl::unexpected<Error> XmlDocument::refuse(const pugi::xml_node& node, std::string message) const {
+    return tl::unexpected<Error>(
+        {ErrorCode::syntax, {.line = line_of(node)}, std::move(message), path_});
 }
 
-core::Result<std::optional<double>> XmlDocument::number_in(const pugi::xml_node& node) const {
-    const std::string text = trimmed(node.child_value());
-    if (text.empty()) return std::nullopt;
-    const auto number = app::number_in(text);
-    if (number) return number;
-    return refuse(node, fmt::format("{}: '{}' is not a number", node.name(), clipped(text, 40)));
-}
-
-} // namespace app
+} // namespace core

@@ -1,4 +1,4 @@
-#include "app/base/zip_archive.h"
+#include "core/formats/zip_archive.h"
 
 #include <algorithm>
 #include <array>
@@ -8,10 +8,9 @@
 #include <fmt/format.h>
 #include <unzip.h> // minizip
 
-#include "app/base/text.h"
 #include "core/base/file_reads.h"
 
-namespace app {
+namespace core {
 namespace {
 
 constexpr size_t largest_archive = size_t(256) << 20; // bytes
@@ -54,8 +53,16 @@ long seek_bytes(void*, void* file, ZPOS64_T offset, int origin) {
 int close_bytes(void*, void*) { return 0; }
 int no_failure(void*, void*) { return 0; }
 
-core::Error refused_archive(const std::string& path, core::ErrorCode code, std::string why) {
+Error refused_archive(const std::string& path, ErrorCode code, std::string why) {
     return {code, {}, std::move(why), path};
+}
+
+/// At most 80 bytes of a name, without half a character of UTF-8 at its end.
+std::string shown_name(const std::string& name) {
+    size_t size = 80;
+    if (name.size() <= size) return name;
+    while (size > 0 && (static_cast<unsigned char>(name[size]) & 0xc0U) == 0x80U) --size;
+    return name.substr(0, size) + "...";
 }
 
 /// An open archive.
@@ -128,11 +135,11 @@ bool ZipArchive::contains(const std::string& name) const {
     return std::find(names().begin(), names().end(), name) != names().end();
 }
 
-core::Result<ZipArchive> ZipArchive::open(const std::string& path) {
-    using enum core::ErrorCode;
-    if (std::string why = core::why_no_file(path); !why.empty())
+Result<ZipArchive> ZipArchive::open(const std::string& path) {
+    using enum ErrorCode;
+    if (std::string why = why_no_file(path); !why.empty())
         return tl::unexpected(refused_archive(path, io, std::move(why)));
-    auto bytes = core::file_bytes(path, largest_archive);
+    auto bytes = file_bytes(path, largest_archive);
     if (!bytes) return tl::unexpected(refused_archive(path, io, "cannot be read"));
     if (bytes->size() > largest_archive)
         return tl::unexpected(refused_archive(path, invalid_value, "is larger than 256 MiB"));
@@ -157,11 +164,11 @@ core::Result<ZipArchive> ZipArchive::open(const std::string& path) {
     return ZipArchive(std::move(contents));
 }
 
-core::Result<std::string> ZipArchive::read(const std::string& name, size_t limit) const {
-    using enum core::ErrorCode;
-    const auto refuse = [&](core::ErrorCode code, std::string_view why) {
+Result<std::string> ZipArchive::read(const std::string& name, size_t limit) const {
+    using enum ErrorCode;
+    const auto refuse = [&](ErrorCode code, std::string_view why) {
         return tl::unexpected(refused_archive(
-            path(), code, fmt::format("{} in the archive {}", clipped(printable(name), 80), why)));
+            path(), code, fmt::format("{} in the archive {}", shown_name(name), why)));
     };
     const Unzip zip(contents_->bytes);
     if (!zip.get() || unzLocateFile(zip.get(), name.c_str(), 1) != UNZ_OK)
@@ -180,4 +187,4 @@ core::Result<std::string> ZipArchive::read(const std::string& name, size_t limit
     return *std::move(text);
 }
 
-} // namespace app
+} // namespace core

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,14 +8,14 @@
 
 #include "core/base/result.h"
 
-namespace app {
+namespace core {
 
 /// An XML document, in UTF-8 or UTF-16, that knows the lines of its elements. Entities of a DTD are
 /// not expanded.
 class XmlDocument {
 public:
     /// Errors: syntax, with file, line and column.
-    static core::Result<XmlDocument> parse(const std::string& bytes, const std::string& path);
+    static Result<XmlDocument> parse(const std::string& bytes, const std::string& path);
 
     pugi::xml_node root() const { return document_; }
     const std::string& path() const { return path_; }
@@ -25,12 +24,7 @@ public:
     uint32_t line_of(const pugi::xml_node& node) const;
 
     /// An error about an element.
-    tl::unexpected<core::Error> refuse(const pugi::xml_node& node, std::string message) const;
-
-    /// The number in an element; empty if it has no text.
-    ///
-    /// Errors: syntax, with its line, for any other text.
-    core::Result<std::optional<double>> number_in(const pugi::xml_node& node) const;
+    tl::unexpected<Error> refuse(const pugi::xml_node& node, std::string message) const;
 
 private:
     pugi::xml_document document_;
@@ -38,4 +32,4 @@ private:
     std::vector<size_t> line_ends_; // positions in the text
 };
 
-} // namespace app
+} // namespace core

@@ -7,7 +7,7 @@
 
 #include "core/base/result.h"
 
-namespace app {
+namespace core {
 
 /// A zip archive in memory. Nothing is ever unpacked to the disk, so the names in it cannot lead
 /// anywhere.
@@ -16,7 +16,7 @@ public:
     /// Errors: io if the file cannot be read; syntax if it is no zip archive; invalid_value if it
     /// is
     ///         larger than 256 MiB or has more than 10,000 files.
-    static core::Result<ZipArchive> open(const std::string& path);
+    static Result<ZipArchive> open(const std::string& path);
 
     ZipArchive(ZipArchive&&) noexcept;
     ZipArchive& operator=(ZipArchive&&) noexcept;
@@ -32,7 +32,7 @@ public:
     ///
     /// Errors: syntax if there is no such file, or it is damaged; unsupported if it is encrypted or
     ///         packed in an unknown way; invalid_value if it is larger than `limit`.
-    core::Result<std::string> read(const std::string& name, size_t limit) const;
+    Result<std::string> read(const std::string& name, size_t limit) const;
 
 private:
     struct Contents;
@@ -44,4 +44,4 @@ private:
 /// The largest file that the readers of archives unpack, bytes.
 constexpr size_t largest_member = size_t(64) << 20;
 
-} // namespace app
+} // namespace core
