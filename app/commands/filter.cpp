@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -60,70 +61,110 @@ std::unique_ptr<ResultStore> opened_store(const FilterOptions& options) {
     return {};
 }
 
-/// The program that the control is to get.
-struct FilteredProgram {
+/// The program that the control is to get: the file, or what another filter makes of it.
+class FilteredProgram {
+public:
+    /// Errors: io and those of the other filter.
+    static core::Result<FilteredProgram> of_file(const std::string& program);
+    static core::Result<FilteredProgram> of_filter(const std::string& program,
+                                                   const std::string& command);
+
+    FilteredProgram(FilteredProgram&& other) noexcept
+        : path(std::move(other.path)),
+          bytes(std::move(other.bytes)),
+          copy_(std::exchange(other.copy_, {})) {}
+    FilteredProgram& operator=(FilteredProgram&&) = delete;
+    ~FilteredProgram() {
+        std::error_code ignored;
+        if (!copy_.empty()) std::filesystem::remove_all(copy_, ignored);
+    }
+
     std::string path; // of the file that is checked
     std::string bytes;
+
+private:
+    FilteredProgram(std::string file, std::string contents, std::filesystem::path copy)
+        : path(std::move(file)), bytes(std::move(contents)), copy_(std::move(copy)) {}
+
+    std::filesystem::path copy_; // the folder of that file, if it is a copy
 };
 
-core::Result<FilteredProgram> read_program_file(const std::string& path) {
-    if (const std::string why = core::why_no_file(path); !why.empty())
-        return tl::unexpected(core::Error{core::ErrorCode::io, {}, why, path});
-    auto bytes = core::file_bytes(path);
-    if (bytes) return FilteredProgram{path, *std::move(bytes)};
-    return tl::unexpected(core::Error{core::ErrorCode::io, {}, "cannot be read", path});
+core::Result<FilteredProgram> FilteredProgram::of_file(const std::string& program) {
+    if (const std::string why = core::why_no_file(program); !why.empty())
+        return tl::unexpected(core::Error{core::ErrorCode::io, {}, why, program});
+    auto bytes = core::file_bytes(program);
+    if (bytes) return FilteredProgram(program, *std::move(bytes), {});
+    return tl::unexpected(core::Error{core::ErrorCode::io, {}, "cannot be read", program});
 }
 
-/// Runs the other filter, and keeps what it writes as a file of the same name: each program has a
-/// folder of its own for it, so that an unchanged one is known again.
-core::Result<FilteredProgram> filtered_before(const std::string& program,
-                                              const std::string& command) {
+/// What the other filter writes becomes a file of the same name in a folder of its own, as in the
+/// window: subprograms next to the program are not next to it.
+core::Result<FilteredProgram> FilteredProgram::of_filter(const std::string& program,
+                                                         const std::string& command) {
+    const auto refuse = [&](core::ErrorCode code, const std::string& why) {
+        return tl::unexpected(core::Error{code, {}, why, command});
+    };
     auto output = run_in_shell(command, program);
     if (!output) return tl::unexpected(core::in_file(output.error(), command));
     if (output->status != 0)
-        return tl::unexpected(core::Error{core::ErrorCode::invalid_value,
-                                          {},
-                                          fmt::format("failed with status {}", output->status),
-                                          command});
+        return refuse(core::ErrorCode::invalid_value,
+                      fmt::format("failed with status {}", output->status));
+    if (output->bytes.empty())
+        return refuse(core::ErrorCode::invalid_value,
+                      fmt::format("has written nothing for {}", program));
     const std::filesystem::path base = filter_folder();
-    const std::filesystem::path folder =
-        base / sha256_of(absolute_path(program)).substr(0, 16) / "";
+    const std::filesystem::path folder = base / sha256_of(absolute_path(program)).substr(0, 16);
     std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
+    if (!base.empty()) std::filesystem::create_directories(folder, failure);
     if (base.empty() || failure)
-        return tl::unexpected(core::Error{core::ErrorCode::io,
-                                          {},
-                                          "there is no folder for the program that it has written",
-                                          command});
+        return refuse(core::ErrorCode::io, "there is no folder for what it has written: set HOME "
+                                           "or XDG_STATE_HOME to one that can be written");
     const std::string path = (folder / std::filesystem::path(program).filename()).string();
-    if (auto written = write_output(path, output->bytes); !written)
+    FilteredProgram filtered(path, std::move(output->bytes), folder);
+    if (auto written = write_output(path, filtered.bytes); !written)
         return tl::unexpected(written.error());
-    return FilteredProgram{path, std::move(output->bytes)};
+    return filtered;
 }
 
 /// The check of what the control is to get. LinuxCNC names its ini file in the environment.
 core::Result<CheckJob> filter_job(const FilterOptions& options, const FilteredProgram& program) {
     CheckOptions check = options.check;
-    const std::string original = check.what.program;
-    check.what.program = program.path;
     if (const char* ini = std::getenv("INI_FILE_NAME"); ini && check.what.reading.ini.empty())
         check.what.reading.ini = ini;
-    if (program.path != original) {
-        if (check.what.setup.empty()) check.what.setup = setup_next_to(original);
-        const auto folder = std::filesystem::path(absolute_path(original)).parent_path();
-        check.what.reading.search_path.push_back(folder.string());
-    }
+    const bool is_copy = program.path != check.what.program;
+    if (is_copy && check.what.setup.empty()) check.what.setup = setup_next_to(check.what.program);
+    check.what.program = program.path;
     FEELER_TRY(CheckJob job, job_of(check));
     job.threads = std::max(1U, std::thread::hardware_concurrency());
     job.is_stopped = is_interrupted;
     return job;
 }
 
+/// The text with the program's own path in place of that of its copy.
+std::string with_own_path(std::string text, const std::string& copy, const std::string& own) {
+    for (size_t at = text.find(copy); copy != own && at != std::string::npos;
+         at = text.find(copy, at + own.size()))
+        text.replace(at, copy.size(), own);
+    return text;
+}
+
+core::Result<ExitCode> pass_on(const FilteredProgram& program, const ProgramResult& result,
+                               const std::string& original) {
+    if (result.sha256 != sha256_of(program.bytes))
+        return tl::unexpected(core::Error{
+            core::ErrorCode::io, {}, "changed while it was checked: load it again", original});
+    FEELER_TRY(OutputStream output, OutputStream::open({}));
+    if (auto written = output.write(program.bytes); !written)
+        return tl::unexpected(written.error());
+    if (auto written = output.finish(); !written) return tl::unexpected(written.error());
+    return ExitCode::clear;
+}
+
 core::Result<ExitCode> filter_program(const FilterOptions& options) {
     const std::string& original = options.check.what.program;
-    FEELER_TRY(const FilteredProgram program, options.then.empty()
-                                                  ? read_program_file(original)
-                                                  : filtered_before(original, options.then));
+    FEELER_TRY(const FilteredProgram program,
+               options.then.empty() ? FilteredProgram::of_file(original)
+                                    : FilteredProgram::of_filter(original, options.then));
     FEELER_TRY(CheckJob job, filter_job(options, program));
     FilterProgress progress;
     job.after_block = [&progress](const CheckProgress& now) {
@@ -132,20 +173,18 @@ core::Result<ExitCode> filter_program(const FilterOptions& options) {
         return !is_interrupted();
     };
     const std::unique_ptr<ResultStore> store = opened_store(options);
-    FEELER_TRY(const ProgramResult result, filter_result(job, store.get()));
-    if (!may_load(result)) {
-        std::fputs(printable(refusal_text(result)).c_str(), stderr);
-        return status_of(result) == 1 ? ExitCode::findings : ExitCode::failed;
+    auto result = filter_result(job, store.get());
+    if (!result) {
+        core::Error error = result.error();
+        error.message = with_own_path(std::move(error.message), program.path, original);
+        if (error.file == program.path) error.file = original;
+        return tl::unexpected(std::move(error));
     }
-    if (result.sha256 != sha256_of(program.bytes))
-        return tl::unexpected(core::Error{
-            core::ErrorCode::io, {}, "changed while it was checked: load it again", original});
-    std::fputs(printable(passing_text(result)).c_str(), stderr);
-    FEELER_TRY(OutputStream output, OutputStream::open({}));
-    if (auto written = output.write(program.bytes); !written)
-        return tl::unexpected(written.error());
-    if (auto written = output.finish(); !written) return tl::unexpected(written.error());
-    return ExitCode::clear;
+    const bool passes = may_load(*result);
+    const std::string text = passes ? passing_text(*result) : refusal_text(*result);
+    std::fputs(printable(with_own_path(text, program.path, original)).c_str(), stderr);
+    if (passes) return pass_on(program, *result, original);
+    return status_of(*result) == 1 ? ExitCode::findings : ExitCode::failed;
 }
 
 ExitCode filter(const FilterOptions& options) {
@@ -153,7 +192,7 @@ ExitCode filter(const FilterOptions& options) {
     const auto done = filter_program(options);
     if (done) return *done;
     const ExitCode code = failed(done.error());
-    print_note("The program is not loaded.\n");
+    print_note(not_loaded);
     return code;
 }
 

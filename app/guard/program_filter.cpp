@@ -68,7 +68,7 @@ std::string refusal_text(const ProgramResult& result) {
     if (errors > most)
         text +=
             fmt::format("\n{} in all; \"feeler check\" lists them.\n", counted(errors, "error"));
-    return text + "\nThe program is not loaded.\n";
+    return text + "\n" + not_loaded;
 }
 
 std::string passing_text(const ProgramResult& result) {

@@ -36,6 +36,10 @@ core::Result<ProgramResult> filter_result(const CheckJob& job, ResultStore* stor
 /// Whether the control may load a program with this result: it was run to its end without an error.
 bool may_load(const ProgramResult& result);
 
+/// The end of what an operator is told of a program that the control must not load.
+inline constexpr const char* not_loaded =
+    "The program is not loaded. One that was loaded before still is.\n";
+
 /// Why the control must not load it, for its operator: the verdict and the first errors, each with
 /// its line, the block and the cure. UTF-8, with line ends.
 std::string refusal_text(const ProgramResult& result);

@@ -26,7 +26,9 @@ core::Result<ShellOutput> run_in_shell(const std::string& command, const std::st
         count = std::fread(block.data(), 1, block.size(), pipe);
         output.bytes.append(block.data(), count);
     }
+    const bool is_whole = std::feof(pipe) != 0;
     const int status = ::pclose(pipe);
+    if (!is_whole) return core::fail(core::ErrorCode::io, "cannot be read to its end");
     output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
     return output;
 }

@@ -380,7 +380,7 @@ std::optional<BodyMesh> read_cad_file(TableReader& table, const char* key, const
         table.number_or("mesh_deviation", Measure::length, core::default_cad_deviation);
     const std::string solid = table.string("solid").value_or("");
     if (table.has("mesh_unit")) {
-        table.refuse("mesh_unit", fmt::format("does not apply to {}, which states its unit", name));
+        table.refuse("mesh_unit", fmt::format("does not apply to {}, whose unit is known", name));
         return std::nullopt;
     }
     if (!(wanted >= core::least_cad_deviation && wanted <= core::largest_cad_deviation)) {

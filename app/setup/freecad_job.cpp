@@ -65,9 +65,6 @@ void read_job_tools(const core::FreeCadDocument& document, const std::string& ob
     for (const std::string& controller : controllers) add_controller(document, controller, job);
 }
 
-// --- stock
-// ----------------------------------------------------------------------------------------
-
 bool is_stock_size(const std::optional<double>& size) {
     constexpr double largest = 1e5; // mm
     return size && *size > 0.0 && *size <= largest;
@@ -94,11 +91,10 @@ void read_cylinder(const core::FreeCadDocument& document, const std::string& sto
         core::Solid{core::SolidCylinder{.base = place, .radius = *radius, .height = *height}};
 }
 
-/// What the set-up takes from the shape of the stock, because the job does not state it in numbers.
-void take_shape(const core::FreeCadDocument& document, const std::string& stock, bool is_box,
-                FreeCadJob& job) {
-    job.stock_body = document.label(stock);
-    job.stock_is_its_box = is_box;
+/// Whether a body of a job is in a part that is placed elsewhere. Paths of FreeCAD ignore that, and
+/// shapes that are read from the document do not.
+bool is_moved_by_part(const core::FreeCadDocument& document, const std::string& object) {
+    return document.frame(object).place != core::Transform{};
 }
 
 void read_job_stock(const core::FreeCadDocument& document, const std::string& object,
@@ -106,15 +102,33 @@ void read_job_stock(const core::FreeCadDocument& document, const std::string& ob
     const std::string stock = document.link(object, "Stock");
     if (stock.empty())
         return job.notes.push_back("it has no stock, so the stock is inferred from the program");
+    if (is_moved_by_part(document, stock))
+        return job.notes.push_back("its stock is in a part that is placed elsewhere, and is not "
+                                   "taken over: state it under [stock]");
+    const std::string kind =
+        document.property(stock, "Proxy").child("Python").attribute("class").as_string();
     const auto place = document.placement(stock);
     const bool is_straight = place && place->rotation == core::Mat3(1.0);
-    const bool is_box = document.has(stock, "Length"), is_round = document.has(stock, "Radius");
-    if (!is_straight || (!is_box && !is_round))
-        return take_shape(document, stock, is_straight && document.has(stock, "ExtXneg"), job);
-    if (is_round)
-        read_cylinder(document, stock, place->translation, job);
-    else
-        read_box(document, stock, place->translation, job);
+    if (is_straight && kind == "StockCreateBox")
+        return read_box(document, stock, place->translation, job);
+    if (is_straight && kind == "StockCreateCylinder")
+        return read_cylinder(document, stock, place->translation, job);
+    job.stock_body = document.label(stock);
+    job.stock_is_its_box = is_straight && kind == "StockFromBase";
+}
+
+void read_job_part(const core::FreeCadDocument& document, const std::string& object,
+                   FreeCadJob& job) {
+    const std::string model = document.link(object, "Model");
+    const std::vector<std::string> members = document.links(model, "Group");
+    if (members.empty()) return;
+    const auto is_moved = [&](const std::string& member) {
+        return is_moved_by_part(document, member);
+    };
+    if (std::any_of(members.begin(), members.end(), is_moved))
+        return job.notes.push_back("its part is in a part that is placed elsewhere, and is not "
+                                   "taken over: state it under [part]");
+    job.part_body = document.label(model);
 }
 
 /// The objects that are jobs.
@@ -145,8 +159,7 @@ core::Result<FreeCadJob> read_freecad_job(const std::string& path) {
                         jobs.size(), job.name));
     read_job_tools(document, object, job);
     read_job_stock(document, object, job);
-    const std::string model = document.link(object, "Model");
-    if (!document.links(model, "Group").empty()) job.part_body = document.label(model);
+    read_job_part(document, object, job);
     return job;
 }
 

@@ -361,11 +361,10 @@ void set_cad_reader(const std::filesystem::path&) {}
 namespace {
 
 Result<std::shared_ptr<const CadFile>> read_or_kept(const std::filesystem::path&, double) {
-    return fail(ErrorCode::unsupported,
-                "this feeler was built without Open CASCADE, so it cannot read STEP, IGES, BREP "
-                "and FreeCAD: "
-                "export the body as STL, or build Feeler with the packages of "
-                ".ci/packages/cad.txt installed");
+    return fail(
+        ErrorCode::unsupported,
+        "this feeler was built without Open CASCADE, so it cannot read CAD files: export the "
+        "body as STL, or build Feeler with the packages of .ci/packages/cad.txt installed");
 }
 
 } // namespace
@@ -396,7 +395,12 @@ bool is_own_name(const CadFile& file, const std::string& name) {
 std::string names_text(const CadFile& file) {
     constexpr size_t most = 30;
     std::vector<std::string> names;
-    for (CadName& each : names_of(file)) names.push_back(std::move(each.name));
+    for (CadName& each : names_of(file)) {
+        for (char& c : each.name)
+            if (static_cast<unsigned char>(c) < ' ') c = ' ';
+        names.push_back(std::move(each.name));
+    }
+    if (names.empty()) return "none";
     const size_t count = names.size();
     names.resize(std::min(count, most));
     return fmt::format("\"{}\"{}", fmt::join(names, "\", \""),
@@ -439,14 +443,19 @@ Result<CadBody> body_of(const CadFile& file, const std::string& name) {
                                 "{}",
                                 names_text(file)));
     std::vector<std::string> missing;
+    // A FreeCAD object has the name of its solid even if more of it is not read.
+    const bool is_whole = !file.bodies_are_apart && is_own_name(file, name);
     for (const CadSurfaces& surfaces : file.left_out)
-        if (!is_own_name(file, name) && is_in(surfaces.names, name))
-            missing.push_back(surfaces.what);
+        if (!is_whole && is_in(surfaces.names, name)) missing.push_back(surfaces.what);
+    if (!missing.empty() && file.bodies_are_apart)
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("not all of it can be read: {}. There are {}",
+                                fmt::join(missing, "; "), names_text(file)));
     if (!missing.empty())
         return fail(ErrorCode::invalid_value,
-                    fmt::format("beside solids it has what could be part of the body: {}. Close "
-                                "or repair it in the CAD system; or name each solid of the body: "
-                                "{}",
+                    fmt::format("beside solids it has surfaces that enclose none, and could be "
+                                "part of the body: {}. Close them in the CAD system; or name each "
+                                "solid of the body: {}",
                                 fmt::join(missing, "; "), names_text(file)));
     CadBody body;
     for (const CadSolid& solid : file.solids) {

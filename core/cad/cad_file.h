@@ -104,7 +104,8 @@ struct CadNames {
 ///
 /// Errors:  no solid has the name, or there is no name and the bodies are apart; the message lists
 ///          the names there are. The file or the named assembly also has what is not read, which
-///          would be missing from the body; it is left out only if the name is a solid's own.
+///          would be missing from the body; it is left out only if the name is a solid's
+///          own, and the bodies are not apart.
 struct CadBody {
     Mesh mesh;
     double deviation = 0.0; // the greatest of its solids, mm

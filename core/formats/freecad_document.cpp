@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,17 +33,33 @@ Result<FreeCadDocument> FreeCadDocument::read(const std::string& path) {
     FEELER_TRY(const std::string bytes, archive.read("Document.xml", largest_member));
     FEELER_TRY(XmlDocument xml, XmlDocument::parse(bytes, path));
     FreeCadDocument document(std::move(archive), std::move(xml));
-    const pugi::xml_node data = document.xml_.root().child("Document").child("ObjectData");
-    for (const pugi::xml_node& object : data.children("Object")) {
-        const std::string name = object.attribute("name").as_string();
-        document.names_.push_back(name);
-        for (const pugi::xml_node& property : object.child("Properties").children("Property"))
-            document.properties_[name].emplace(property.attribute("name").as_string(), property);
-    }
-    for (const std::string& group : document.names_)
-        for (const std::string& member : document.links(group, "Group"))
-            document.group_of_.emplace(member, group);
+    document.take_objects();
     return document;
+}
+
+void FreeCadDocument::take_objects() {
+    const pugi::xml_node root = xml_.root().child("Document");
+    for (const pugi::xml_node& object : root.child("Objects").children("Object"))
+        types_.emplace(object.attribute("name").as_string(), object.attribute("type").as_string());
+    for (const pugi::xml_node& object : root.child("ObjectData").children("Object")) {
+        const std::string name = object.attribute("name").as_string();
+        names_.push_back(name);
+        for (const pugi::xml_node& property : object.child("Properties").children("Property"))
+            properties_[name].emplace(property.attribute("name").as_string(), property);
+    }
+    for (const std::string& object : names_) {
+        ++label_count_[plain_label(object)];
+        for (const std::string& member : links(object, "Group"))
+            groups_of_[member].push_back(object);
+        for (const std::string& member : links(object, "ElementList")) link_members_.insert(member);
+        if (!has(object, "Shape")) continue;
+        for (const char* key : {"Base", "Tool", "Source"}) {
+            operands_.insert(link(object, key));
+            operands_.insert(property(object, key).child("LinkSub").attribute("value").as_string());
+        }
+        for (const char* key : {"Shapes", "Links"})
+            for (const std::string& operand : links(object, key)) operands_.insert(operand);
+    }
 }
 
 pugi::xml_node FreeCadDocument::property(const std::string& object, const char* name) const {
@@ -113,53 +128,117 @@ std::optional<Transform> FreeCadDocument::placement(const std::string& object) c
     return Transform{glm::mat3_cast(turn / size), position};
 }
 
-std::string FreeCadDocument::label(const std::string& object) const {
-    const std::string label = text(object, "Label");
+std::string FreeCadDocument::plain_label(const std::string& object) const {
+    const std::string label =
+        property(object, "Label").child("String").attribute("value").as_string();
     return label.empty() ? object : label;
+}
+
+std::string FreeCadDocument::label(const std::string& object) const {
+    const std::string label = plain_label(object);
+    const auto count = label_count_.find(label);
+    const bool is_shared = count != label_count_.end() && count->second > 1;
+    return is_shared ? fmt::format("{} ({})", label, object) : label;
 }
 
 std::string FreeCadDocument::shape_file(const std::string& object) const {
     return property(object, "Shape").child("Part").attribute("file").as_string();
 }
 
+bool FreeCadDocument::is_link(const std::string& object) const {
+    return has(object, "LinkedObject")
+           || (has(object, "ElementList") && shape_file(object).empty());
+}
+
+bool FreeCadDocument::is_hidden(const std::string& object) const {
+    return attribute(property(object, "Visibility").child("Bool"), "value") == "false";
+}
+
+void FreeCadDocument::take_parent(const std::string& parent, int depth, Frame& frame) const {
+    const Frame& outer = this->frame(parent, depth + 1);
+    if (frame.why.empty()) frame.why = outer.why;
+    std::vector<std::string> names = outer.names;
+    names.push_back(label(parent));
+    for (std::string& name : names)
+        if (std::find(frame.names.begin(), frame.names.end(), name) == frame.names.end())
+            frame.names.push_back(std::move(name));
+    const bool is_part = has(parent, "Placement");
+    if (!is_part && !outer.is_in_part) return; // a mere group
+    const auto own = placement(parent);
+    if (!own && frame.why.empty())
+        frame.why = fmt::format("the place of {} cannot be read", label(parent));
+    const Transform place = outer.place * own.value_or(Transform{});
+    if (frame.is_in_part && !(frame.place == place) && frame.why.empty())
+        frame.why = "it is in several parts";
+    frame.is_in_part = true;
+    frame.place = place;
+}
+
+const FreeCadDocument::Frame& FreeCadDocument::frame(const std::string& object, int depth) const {
+    constexpr int deepest = 100;
+    const auto [known, is_new] = frames_.try_emplace(object);
+    Frame& frame = known->second; // stays where it is while others are added
+    if (!is_new) return frame;
+    frame.why = depth > deepest ? "its groups are nested more than 100 deep"
+                                : "its groups contain each other"; // if it is asked for meanwhile
+    const auto groups = groups_of_.find(object);
+    Frame found;
+    if (depth > deepest)
+        found.why = frame.why;
+    else if (groups != groups_of_.end())
+        for (const std::string& parent : groups->second) take_parent(parent, depth, found);
+    frame = std::move(found);
+    return frame;
+}
+
+const FreeCadDocument::Frame& FreeCadDocument::frame(const std::string& object) const {
+    return frame(object, 0);
+}
+
+bool FreeCadDocument::can_be_body(const std::string& object) const {
+    const bool has_mesh = !property(object, "Mesh").child("Mesh").attribute("file").empty();
+    if (!has(object, "Shape") && !is_link(object) && !has_mesh) return false;
+    const auto groups = groups_of_.find(object);
+    if (groups != groups_of_.end())
+        for (const std::string& group : groups->second)
+            if (has(group, "Shape")) return false; // a step of a PartDesign body
+    for (const char* of_tool_bit : {"BitShape", "BitBody", "ShapeID", "ToolBitID"})
+        if (has(object, of_tool_bit)) return false;
+    const auto type = types_.find(object);
+    if (type == types_.end()) return true;
+    for (const char* flat : {"Sketcher::", "Part::Part2D", "Part::Datum", "PartDesign::Plane",
+                             "PartDesign::Line", "PartDesign::Point", "PartDesign::Coordinate"})
+        if (type->second.starts_with(flat)) return false;
+    return true;
+}
+
+std::string FreeCadDocument::why_left_out(const std::string& object) const {
+    const std::string name = label(object);
+    if (is_link(object)) return fmt::format("{} is a link to other objects: not read", name);
+    if (!has(object, "Shape")) return fmt::format("{} is a mesh: not read", name);
+    if (link_members_.contains(object))
+        return fmt::format("{} is in a group of links: not read", name);
+    if (const std::string& why = frame(object).why; !why.empty())
+        return fmt::format("{}: {}", name, why);
+    if (shape_file(object).empty())
+        return fmt::format("{} has no shape: recompute the document in FreeCAD", name);
+    return {};
+}
+
 FreeCadBody FreeCadDocument::body(const std::string& object) const {
     FreeCadBody body;
     body.shape = shape_file(object);
-    std::set<std::string> seen{object};
-    std::vector<std::string> names;
-    for (auto group = group_of_.find(object); group != group_of_.end();
-         group = group_of_.find(group->second)) {
-        const std::string& container = group->second;
-        if (!seen.insert(container).second) break; // a damaged file can have groups in circles
-        names.insert(names.begin(), label(container));
-        const auto place = placement(container);
-        if (!place)
-            body.why_left_out = fmt::format("the place of {} cannot be read", label(container));
-        else
-            body.place = *place * body.place;
-    }
-    names.push_back(label(object));
-    for (std::string& name : names)
-        if (std::find(body.names.begin(), body.names.end(), name) == body.names.end())
-            body.names.push_back(std::move(name));
-    if (body.shape.empty())
-        body.why_left_out =
-            fmt::format("{} is {}, which is not read", label(object),
-                        has(object, "LinkedObject") ? "a link to another object" : "a mesh");
+    body.place = frame(object).place;
+    if (!operands_.contains(object) || !is_hidden(object)) body.names = frame(object).names;
+    body.names.push_back(label(object));
+    body.why_left_out = why_left_out(object);
     return body;
 }
 
 std::vector<FreeCadBody> FreeCadDocument::bodies() const {
     std::vector<FreeCadBody> bodies;
-    for (const std::string& object : names_) {
-        const bool has_others = has(object, "LinkedObject") || has(object, "Mesh");
-        if (shape_file(object).empty() && !has_others) continue;
-        const auto group = group_of_.find(object);
-        const bool is_step = group != group_of_.end() && !shape_file(group->second).empty();
-        const bool is_bit = has(object, "BitShape") || has(object, "BitBody")
-                            || has(object, "ShapeID") || has(object, "ToolBitID");
-        if (!is_step && !is_bit) bodies.push_back(body(object));
-    }
+    for (const std::string& object : names_)
+        if (can_be_body(object)) bodies.push_back(body(object));
     return bodies;
 }
 

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,25 +49,48 @@ public:
     /// Its Placement; none if it has numbers that are none.
     std::optional<Transform> placement(const std::string& object) const;
 
-    /// Its label, or its name if it has none.
+    /// Its label, or its name if it has none. Of several objects with one label, each has its name
+    /// after it: "jaw (Box001)".
     std::string label(const std::string& object) const;
 
-    /// All objects that have a shape of their own, without tool bits and without the steps from
-    /// which a PartDesign body is made. Links to other objects and meshes are among them, left out.
+    /// The place of the parts that contain it; none if it is not known, with the reason in `why`.
+    struct Frame {
+        std::vector<std::string> names; // of its groups and parts, the outermost first
+        Transform place;
+        bool is_in_part = false;
+        std::string why;
+    };
+    const Frame& frame(const std::string& object) const;
+
+    /// All objects that can be bodies, without tool bits, sketches and the steps from which a
+    /// PartDesign body is made. What cannot be read is among them, left out: links, meshes, objects
+    /// without a shape. An operand that its feature hides is in no group.
     std::vector<FreeCadBody> bodies() const;
 
 private:
     FreeCadDocument(ZipArchive archive, XmlDocument xml)
         : archive_(std::move(archive)), xml_(std::move(xml)) {}
 
+    void take_objects();
+    const Frame& frame(const std::string& object, int depth) const;
+    void take_parent(const std::string& parent, int depth, Frame& frame) const;
+    std::string plain_label(const std::string& object) const;
     std::string shape_file(const std::string& object) const;
+    bool is_link(const std::string& object) const;
+    bool is_hidden(const std::string& object) const;
+    bool can_be_body(const std::string& object) const;
+    std::string why_left_out(const std::string& object) const;
     FreeCadBody body(const std::string& object) const;
 
     ZipArchive archive_;
     XmlDocument xml_;
     std::vector<std::string> names_;
     std::map<std::string, std::map<std::string, pugi::xml_node>> properties_;
-    std::map<std::string, std::string> group_of_; // the object in whose group another one is
+    std::map<std::string, std::string> types_;
+    std::map<std::string, std::vector<std::string>> groups_of_; // in which an object is
+    std::map<std::string, int> label_count_;
+    std::set<std::string> operands_, link_members_;
+    mutable std::map<std::string, Frame> frames_; // those that were asked for
 };
 
 } // namespace core

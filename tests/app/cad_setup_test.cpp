@@ -83,7 +83,7 @@ TEST_F(CadBodies, AreFixturesWithTheirDeviation) {
     EXPECT_NEAR(core::bounds(base->setup.fixtures.at(0).body).max.x, 50.0, 1e-9);
     EXPECT_THAT(error_of(fixture + "solid = \"nut\"\n"),
                 AllOf(HasSubstr("\"nut\""), HasSubstr("\"jaw\"")));
-    EXPECT_THAT(error_of(fixture + "mesh_unit = \"inch\"\n"), HasSubstr("states its unit"));
+    EXPECT_THAT(error_of(fixture + "mesh_unit = \"inch\"\n"), HasSubstr("whose unit is known"));
     EXPECT_THAT(error_of(fixture + "mesh_deviation = 1e-9\n"), HasSubstr("must lie between"));
 }
 

@@ -1,3 +1,5 @@
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -116,10 +118,29 @@ TEST_F(Filter, ChecksWhatAnotherFilterWrites) {
         EXPECT_EQ(ran.out, expected);
         EXPECT_EQ(ran.err.find("FILTER_PROGRESS") != std::string::npos, pass == 0);
     }
+    EXPECT_THAT(filter(harmless_, {"--then", "true"}).err, HasSubstr("true: has written nothing"));
+    EXPECT_THAT(crash.err, AllOf(HasSubstr(harmless_ + ": COLLISION"), Not(HasSubstr("state"))));
     const Ran failed = filter(harmless_, {"--then", "false"});
     EXPECT_EQ(failed.status, 2);
     EXPECT_EQ(failed.out, "");
     EXPECT_THAT(failed.err, HasSubstr("failed with status 1"));
+}
+
+TEST_F(Filter, SearchesSubprogramsWhereTheSetUpSaysAlsoAfterAnotherFilter) {
+    std::filesystem::create_directory(folder_.path() / "subs");
+    std::string call = harmless;
+    call.replace(call.find("X90"), 3, "O<way> CALL");
+    const std::string program = folder_.write("call.ngc", call);
+    folder_.write("way.ngc", "O<way> SUB\nG1 X90\nO<way> ENDSUB\nM2\n");
+    folder_.write("subs/way.ngc", "O<way> SUB\nG1 X50 Y50\nO<way> ENDSUB\nM2\n");
+    EXPECT_EQ(filter(program).status, 0);
+    folder_.write("mill.toml", "program.search_path = [\"subs\"]\n" + setup_text);
+    EXPECT_EQ(filter(program).status, 1) << "the set-up names another folder";
+    EXPECT_EQ(filter(program, {"--then", "cat"}).status, 1);
+    folder_.write("mill.toml", setup_text);
+    const Ran unknown = filter(program, {"--then", "cat"});
+    EXPECT_EQ(unknown.status, 2) << "LinuxCNC runs the copy, next to which there is none";
+    EXPECT_EQ(unknown.out, "");
 }
 
 TEST_F(Filter, TakesTheIniFileOfLinuxCnc) {

@@ -189,14 +189,30 @@ TEST(FreeCadJob, SaysWhatItLeavesOut) {
         return job_in(document_with(job_object + object_of("S", properties)));
     };
     const std::string size = number_of_property("Length", "1") + number_of_property("Width", "2");
-    const FreeCadJob askew = stock(turned + size + number_of_property("Height", "3"));
+    const auto made = [](const std::string& kind) {
+        return property_of("Proxy", "<Python class=\"" + kind + "\"/>");
+    };
+    const std::string box = made("StockCreateBox"), round = made("StockCreateCylinder");
+    const FreeCadJob askew = stock(box + turned + size + number_of_property("Height", "3"));
     EXPECT_FALSE(askew.stock.has_value());
     EXPECT_EQ(askew.stock_body, "S");
     EXPECT_FALSE(askew.stock_is_its_box);
     for (const char* height : {"0", "-1", "nan", "inf", "1e300", "x", ""})
-        EXPECT_TRUE(notes_say(stock(size + number_of_property("Height", height)), "has no size"))
+        EXPECT_TRUE(
+            notes_say(stock(box + size + number_of_property("Height", height)), "has no size"))
             << height;
-    EXPECT_TRUE(notes_say(stock(number_of_property("Radius", "-1")), "cylinder of its stock"));
+    const FreeCadJob pad = stock(size + number_of_property("Height", "3"));
+    EXPECT_FALSE(pad.stock.has_value())
+        << "only a stock that FreeCAD's jobs make is one by numbers";
+    EXPECT_EQ(pad.stock_body, "S");
+    const FreeCadJob moved = job_in(document_with(
+        job_object + object_of("S", box + size + number_of_property("Height", "3"))
+        + object_of("P", property_of("Group", "<LinkList><Link value=\"S\"/></LinkList>")
+                             + property_of("Placement", "<PropertyPlacement Px=\"100\"/>"))));
+    EXPECT_FALSE(moved.stock.has_value());
+    EXPECT_TRUE(notes_say(moved, "in a part that is placed elsewhere"));
+    EXPECT_TRUE(
+        notes_say(stock(round + number_of_property("Radius", "-1")), "cylinder of its stock"));
 }
 
 TEST(FreeCadJob, RefusesOtherFiles) {

@@ -108,6 +108,7 @@ TEST(ToolLibrary, ReadsFreeCadsQuantitiesInAllUnits) {
     EXPECT_NEAR(freecad_angle("0.5 rad").value_or(0.0), 28.6478897565, 1e-9);
     EXPECT_EQ(freecad_angle(90), 90.0);
     EXPECT_FALSE(freecad_angle("12 mm").has_value());
+    EXPECT_FALSE(freecad_length(std::string(100000, '1') + " mm").has_value());
     EXPECT_FALSE(read("p.fctb", bit("endmill.fcstd", R"("Diameter": "-12 mm")")));
     EXPECT_FALSE(read("q.fctb", bit("endmill.fcstd", R"("Diameter": "12 parsec")")));
 }

@@ -88,7 +88,7 @@ TEST_F(FreeCad, WantsANameOfItsBodies) {
 }
 
 TEST_F(FreeCad, RefusesANameThatIncludesALink) {
-    EXPECT_THAT(refusal_of("copies"), HasSubstr("Link is a link to another object"));
+    EXPECT_THAT(refusal_of("copies"), HasSubstr("Link is a link to other objects"));
     EXPECT_EQ(body("spare").solids, 1u);
 }
 
@@ -144,28 +144,132 @@ std::string group_property(const std::string& member) {
     return "<Property name='Group'><LinkList><Link value='" + member + "'/></LinkList></Property>";
 }
 
+std::string property(const std::string& name, const std::string& value) {
+    return "<Property name='" + name + "'>" + value + "</Property>";
+}
+
+std::string place_property(const std::string& x) {
+    return property("Placement", "<PropertyPlacement Px='" + x + "'/>");
+}
+
+std::string label_property(const std::string& label) {
+    return property("Label", "<String value='" + label + "'/>");
+}
+
+std::vector<std::string> left_out_of(const CadFile& file) {
+    std::vector<std::string> left_out;
+    for (const CadSurfaces& each : file.left_out) left_out.push_back(each.what);
+    return left_out;
+}
+
+const std::string good_shape = shape_property("good.brp");
+
 TEST_F(FreeCad, LeavesOutWhatCannotBeReadAndReadsTheRest) {
     const std::string shape = bytes_of(sample("cut.brep"));
-    const std::string strange_place = "<Property name='Placement'><PropertyPlacement Px='x'/>"
-                                      "</Property>";
     const CadFile file = read(document_with(
         folder_,
-        object_of("Good", shape_property("good.brp")) + object_of("Bad", shape_property("bad.brp"))
+        object_of("Good", good_shape) + object_of("Bad", shape_property("bad.brp"))
             + object_of("None", shape_property("none.brp"))
-            + object_of("Lost", group_property("In") + strange_place)
-            + object_of("In", shape_property("good.brp"))
-            + object_of("Bit", shape_property("good.brp") + "<Property name='BitShape'/>")
-            + object_of("Empty", shape_property("empty.brp")) + object_of("A", group_property("B"))
-            + object_of("B", group_property("A")),
+            + object_of("Lost", group_property("In") + place_property("x"))
+            + object_of("In", good_shape)
+            + object_of("Bit", good_shape + "<Property name='BitShape'/>")
+            + object_of("Empty", shape_property("empty.brp"))
+            + object_of("Null", "<Property name='Shape'><Part file=''/></Property>")
+            + object_of("A", group_property("B")) + object_of("B", group_property("A"))
+            + object_of("Round", good_shape) + object_of("C", group_property("D"))
+            + object_of("D", property("Group", "<LinkList><Link value='C'/><Link value='Round'/>"
+                                               "</LinkList>")),
         {{"good.brp", shape}, {"bad.brp", shape.substr(0, 2000)}, {"empty.brp", ""}}));
     ASSERT_EQ(file.solids.size(), 1u);
     EXPECT_THAT(file.solids[0].names, ElementsAre("Good"));
-    std::vector<std::string> left_out;
-    for (const CadSurfaces& each : file.left_out) left_out.push_back(each.what);
-    EXPECT_THAT(left_out, ElementsAre("Bad has a damaged shape", "None has a damaged shape",
-                                      "the place of Lost cannot be read"));
+    EXPECT_THAT(left_out_of(file),
+                ElementsAre("Bad has a damaged shape", "None has a damaged shape",
+                            "In: the place of Lost cannot be read",
+                            "Empty has no shape: recompute the document in FreeCAD",
+                            "Null has no shape: recompute the document in FreeCAD",
+                            "Round: its groups contain each other"));
     EXPECT_FALSE(body_of(file, "Bad").has_value());
+    EXPECT_FALSE(body_of(file, "Lost").has_value());
     EXPECT_TRUE(body_of(file, "Good").has_value());
+}
+
+TEST_F(FreeCad, ABodyThatIsReadInPartIsRefusedByEachOfItsNames) {
+    const std::string shape = bytes_of(sample("cut.brep"));
+    const auto group = [](const std::string& members) {
+        return property("Group", "<LinkList>" + members + "</LinkList>");
+    };
+    const std::string links = "<Link value='Jaw'/><Link value='Array'/>";
+    const CadFile file = read(document_with(
+        folder_,
+        object_of("Part", label_property("vise") + group(links) + place_property("0"))
+            + object_of("Jaw", label_property("jaw") + good_shape)
+            + object_of("Array", "<Property name='Shape'><Part file=''/></Property>"
+                                     + property("ElementList", "<LinkList/>"))
+            + object_of("Links", property("ElementList", "<LinkList><Link value='Far'/></LinkList>")
+                                     + place_property("500"))
+            + object_of("Far", good_shape),
+        {{"good.brp", shape}}));
+    EXPECT_THAT(left_out_of(file), ElementsAre("Array is a link to other objects: not read",
+                                               "Links is a link to other objects: not read",
+                                               "Far is in a group of links: not read"));
+    EXPECT_THAT(body_of(file, "vise").error().message, HasSubstr("Array is a link"));
+    EXPECT_TRUE(body_of(file, "jaw").has_value());
+    EXPECT_FALSE(body_of(file, "Far").has_value());
+}
+
+TEST_F(FreeCad, TellsObjectsOfOneLabelApart) {
+    const std::string shape = bytes_of(sample("cut.brep"));
+    const CadFile file =
+        read(document_with(folder_,
+                           object_of("Box", label_property("jaw") + good_shape)
+                               + object_of("Box001", label_property("jaw") + good_shape)
+                               + object_of("Box002", label_property("jaw ") + good_shape),
+                           {{"good.brp", shape}}));
+    EXPECT_FALSE(body_of(file, "jaw").has_value());
+    for (const char* name : {"jaw (Box)", "jaw (Box001)", "jaw "})
+        EXPECT_EQ(body_of(file, name)->solids, 1u) << name;
+}
+
+TEST_F(FreeCad, APartCountsWhateverGroupsItsBodiesAreIn) {
+    const std::string shape = bytes_of(sample("cut.brep"));
+    const std::string document = object_of("Early", group_property("Box"))
+                                 + object_of("Part", group_property("Box") + place_property("100"))
+                                 + object_of("Box", good_shape);
+    const CadFile file = read(document_with(folder_, document, {{"good.brp", shape}}));
+    ASSERT_EQ(file.solids.size(), 1u);
+    EXPECT_THAT(file.solids[0].names, ElementsAre("Early", "Part", "Box"));
+    expect_box(file.solids[0].mesh, {96, -3, -37}, {106, 7, -17}, 0.1);
+    const auto twice = read_cad(document_with(
+        folder_, document + object_of("Other", group_property("Box") + place_property("50")),
+        {{"good.brp", shape}}));
+    EXPECT_THAT(twice.error().message, HasSubstr("Box: it is in several parts"));
+}
+
+TEST_F(FreeCad, AnOperandThatItsFeatureHidesIsInNoPart) {
+    const std::string shape = bytes_of(sample("cut.brep"));
+    const auto document = [&](const char* visible) {
+        return read(document_with(
+            folder_,
+            object_of("Part", property("Group", "<LinkList><Link value='Cut'/><Link value='Base'/>"
+                                                "</LinkList>"))
+                + object_of("Base", good_shape
+                                        + property("Visibility",
+                                                   std::string("<Bool value='") + visible + "'/>"))
+                + object_of("Cut", good_shape + property("Base", "<Link value='Base'/>")),
+            {{"good.brp", shape}}));
+    };
+    EXPECT_EQ(body_of(document("false"), "Part")->solids, 1u);
+    EXPECT_EQ(body_of(document("false"), "Base")->solids, 1u);
+    EXPECT_EQ(body_of(document("true"), "Part")->solids, 2u);
+}
+
+TEST_F(FreeCad, DeepGroupsEndSoon) {
+    std::string document;
+    for (int i = 0; i < 20000; ++i)
+        document += object_of("G" + std::to_string(i), group_property("G" + std::to_string(i + 1)));
+    const auto file = read_cad(document_with(folder_, document + object_of("G20000", good_shape),
+                                             {{"good.brp", bytes_of(sample("cut.brep"))}}));
+    EXPECT_THAT(file.error().message, HasSubstr("nested more than 100 deep"));
 }
 
 } // namespace

@@ -33,6 +33,8 @@ std::optional<double> quantity(const json& value, const Units& units) {
     static const std::regex fraction(R"(\s*([+-]?)()(\d+)/(\d+)\s*([^\s\d.,/+-]\S*)?\s*)");
     std::smatch match;
     const std::string text = value.get<std::string>();
+    constexpr size_t longest = 64; // std::regex calls itself for each character
+    if (text.size() > longest) return std::nullopt;
     if (!std::regex_match(text, match, fraction) && !std::regex_match(text, match, form))
         return std::nullopt;
     const auto unit = units.find(match[5].str());
@@ -165,9 +167,10 @@ core::Result<FoundTool> tool_of_freecad_bit(const json& bit, int number,
         found.tool.corner_radius = length(parameters, {"CornerRadius", "TorusRadius"});
         if (!found.tool.corner_radius && flat) found.tool.corner_radius = 0.5 * *diameter - *flat;
     }
-    if (found.tool.shape == ToolShape::taper) // Diameter is that of the ball at the tip
-        found.tool.corner_radius = 0.5 * *diameter,
+    if (found.tool.shape == ToolShape::taper) { // Diameter is that of the ball at the tip
+        found.tool.corner_radius = 0.5 * *diameter;
         found.tool.diameter = length(parameters, {"TaperDiameter"}).value_or(2.0 * *diameter);
+    }
     return found;
 }
 

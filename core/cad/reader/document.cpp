@@ -39,6 +39,7 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/base/file_reads.h"
 #include "core/cad/reader/completeness.h"
@@ -229,6 +230,11 @@ Result<Document> Collector::nothing() const {
     if (curves_ > 0)
         return fail(ErrorCode::invalid_value,
                     "it has curves and no surfaces: export the body as a solid");
+    std::vector<std::string> reasons;
+    for (const CadSurfaces& surfaces : document_.left_out) reasons.push_back(surfaces.what);
+    if (!reasons.empty())
+        return fail(ErrorCode::invalid_value,
+                    fmt::format("it has no bodies that can be read: {}", fmt::join(reasons, "; ")));
     return fail(ErrorCode::missing_value, "it has no bodies");
 }
 
@@ -461,10 +467,12 @@ Result<Document> read_freecad(const std::string& path, double sewing,
             continue;
         }
         const auto bytes = document.archive().read(body.shape, largest_shape);
-        if (bytes && bytes->empty()) continue; // an object that has not been computed
         const TopoDS_Shape shape = bytes ? shape_in(*bytes, part) : TopoDS_Shape();
         if (shape.IsNull()) {
-            collector.leave_out({body.names, body.names.back() + " has a damaged shape"});
+            const char* const why = bytes && bytes->empty()
+                                        ? " has no shape: recompute the document in FreeCAD"
+                                        : " has a damaged shape";
+            collector.leave_out({body.names, body.names.back() + why});
             continue;
         }
         if (!TopExp_Explorer(shape, TopAbs_FACE).More()) continue; // a sketch
