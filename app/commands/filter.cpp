@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -97,6 +98,27 @@ core::Result<FilteredProgram> FilteredProgram::of_file(const std::string& progra
     return tl::unexpected(core::Error{core::ErrorCode::io, {}, "cannot be read", program});
 }
 
+/// An empty folder for the copy of a program; empty if there is none. It is the same each time, so
+/// that the result of an unchanged copy is found again, unless another filter of the program runs.
+std::filesystem::path fresh_folder(const std::string& program) {
+    namespace fs = std::filesystem;
+    constexpr std::chrono::hours longest(24); // a filter that was killed leaves its folder
+    const fs::path base = filter_folder();
+    std::error_code failure;
+    if (base.empty()) return {};
+    fs::create_directories(base, failure);
+    if (failure) return {};
+    const fs::path usual = base / sha256_of(absolute_path(program)).substr(0, 16);
+    const auto made_at = fs::last_write_time(usual, failure);
+    if (!failure && fs::file_time_type::clock::now() - made_at > longest)
+        fs::remove_all(usual, failure);
+    if (fs::create_directory(usual, failure)) return usual;
+    fs::path other = usual;
+    other += fmt::format("-{}", core::platform::process_id());
+    fs::remove_all(other, failure);
+    return fs::create_directory(other, failure) ? other : fs::path();
+}
+
 /// What the other filter writes becomes a file of the same name in a folder of its own, as in the
 /// window: subprograms next to the program are not next to it.
 core::Result<FilteredProgram> FilteredProgram::of_filter(const std::string& program,
@@ -112,11 +134,8 @@ core::Result<FilteredProgram> FilteredProgram::of_filter(const std::string& prog
     if (output->bytes.empty())
         return refuse(core::ErrorCode::invalid_value,
                       fmt::format("has written nothing for {}", program));
-    const std::filesystem::path base = filter_folder();
-    const std::filesystem::path folder = base / sha256_of(absolute_path(program)).substr(0, 16);
-    std::error_code failure;
-    if (!base.empty()) std::filesystem::create_directories(folder, failure);
-    if (base.empty() || failure)
+    const std::filesystem::path folder = fresh_folder(program);
+    if (folder.empty())
         return refuse(core::ErrorCode::io, "there is no folder for what it has written: set HOME "
                                            "or XDG_STATE_HOME to one that can be written");
     const std::string path = (folder / std::filesystem::path(program).filename()).string();
@@ -146,6 +165,15 @@ std::string with_own_path(std::string text, const std::string& copy, const std::
          at = text.find(copy, at + own.size()))
         text.replace(at, copy.size(), own);
     return text;
+}
+
+/// The result with the program's own path in place of that of its copy.
+ProgramResult with_own_path(ProgramResult result, const std::string& copy, const std::string& own) {
+    result.program = own;
+    if (!result.error) return result;
+    if (result.error->file == copy) result.error->file = own;
+    result.error->message = with_own_path(std::move(result.error->message), copy, own);
+    return result;
 }
 
 core::Result<ExitCode> pass_on(const FilteredProgram& program, const ProgramResult& result,
@@ -181,8 +209,9 @@ core::Result<ExitCode> filter_program(const FilterOptions& options) {
         return tl::unexpected(std::move(error));
     }
     const bool passes = may_load(*result);
-    const std::string text = passes ? passing_text(*result) : refusal_text(*result);
-    std::fputs(printable(with_own_path(text, program.path, original)).c_str(), stderr);
+    const ProgramResult shown = with_own_path(*result, program.path, original);
+    const std::string text = passes ? passing_text(shown) : refusal_text(shown);
+    std::fputs(printable(text).c_str(), stderr);
     if (passes) return pass_on(program, *result, original);
     return status_of(*result) == 1 ? ExitCode::findings : ExitCode::failed;
 }

@@ -29,7 +29,7 @@ core::Result<ShellOutput> run_in_shell(const std::string& command, const std::st
     const bool is_whole = std::feof(pipe) != 0;
     const int status = ::pclose(pipe);
     if (!is_whole) return core::fail(core::ErrorCode::io, "cannot be read to its end");
-    output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    output.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     return output;
 }
 

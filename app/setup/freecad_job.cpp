@@ -91,10 +91,11 @@ void read_cylinder(const core::FreeCadDocument& document, const std::string& sto
         core::Solid{core::SolidCylinder{.base = place, .radius = *radius, .height = *height}};
 }
 
-/// Whether a body of a job is in a part that is placed elsewhere. Paths of FreeCAD ignore that, and
-/// shapes that are read from the document do not.
+/// Whether a body of a job is in a part that is placed elsewhere, or where is not known. Paths of
+/// FreeCAD ignore that, and shapes that are read from the document do not.
 bool is_moved_by_part(const core::FreeCadDocument& document, const std::string& object) {
-    return document.frame(object).place != core::Transform{};
+    const core::FreeCadDocument::Frame& frame = document.frame(object);
+    return !frame.why.empty() || frame.place != core::Transform{};
 }
 
 void read_job_stock(const core::FreeCadDocument& document, const std::string& object,

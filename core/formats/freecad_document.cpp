@@ -52,13 +52,6 @@ void FreeCadDocument::take_objects() {
         for (const std::string& member : links(object, "Group"))
             groups_of_[member].push_back(object);
         for (const std::string& member : links(object, "ElementList")) link_members_.insert(member);
-        if (!has(object, "Shape")) continue;
-        for (const char* key : {"Base", "Tool", "Source"}) {
-            operands_.insert(link(object, key));
-            operands_.insert(property(object, key).child("LinkSub").attribute("value").as_string());
-        }
-        for (const char* key : {"Shapes", "Links"})
-            for (const std::string& operand : links(object, key)) operands_.insert(operand);
     }
 }
 
@@ -150,26 +143,36 @@ bool FreeCadDocument::is_link(const std::string& object) const {
            || (has(object, "ElementList") && shape_file(object).empty());
 }
 
-bool FreeCadDocument::is_hidden(const std::string& object) const {
-    return attribute(property(object, "Visibility").child("Bool"), "value") == "false";
+/// Whether an object is a PartDesign body, of which the members of its group are the steps.
+bool FreeCadDocument::is_body_in_steps(const std::string& object) const {
+    const auto type = types_.find(object);
+    return type != types_.end() && type->second == "PartDesign::Body";
 }
 
 void FreeCadDocument::take_parent(const std::string& parent, int depth, Frame& frame) const {
     const Frame& outer = this->frame(parent, depth + 1);
-    if (frame.why.empty()) frame.why = outer.why;
+    const auto refuse = [&frame](const std::string& why) {
+        if (frame.why.empty()) frame.why = why;
+    };
+    refuse(outer.why);
+    if (link_members_.contains(parent)) refuse("it is in a group of links");
     std::vector<std::string> names = outer.names;
     names.push_back(label(parent));
     for (std::string& name : names)
         if (std::find(frame.names.begin(), frame.names.end(), name) == frame.names.end())
             frame.names.push_back(std::move(name));
-    const bool is_part = has(parent, "Placement");
-    if (!is_part && !outer.is_in_part) return; // a mere group
+    const auto type = types_.find(parent);
+    const bool is_part = type != types_.end()
+                         && (type->second == "App::Part" || type->second == "PartDesign::Body"
+                             || type->second == "Assembly::AssemblyObject");
     const auto own = placement(parent);
-    if (!own && frame.why.empty())
-        frame.why = fmt::format("the place of {} cannot be read", label(parent));
-    const Transform place = outer.place * own.value_or(Transform{});
-    if (frame.is_in_part && !(frame.place == place) && frame.why.empty())
-        frame.why = "it is in several parts";
+    if (!own)
+        refuse(fmt::format("the place of {} cannot be read", label(parent)));
+    else if (!is_part && *own != Transform{}) // an Arch floor moves its members itself
+        refuse(fmt::format("{} has a place and is no part", label(parent)));
+    if (!is_part && !outer.is_in_part) return;
+    const Transform place = is_part ? outer.place * own.value_or(Transform{}) : outer.place;
+    if (frame.is_in_part && frame.place != place) refuse("it is in several parts");
     frame.is_in_part = true;
     frame.place = place;
 }
@@ -201,7 +204,7 @@ bool FreeCadDocument::can_be_body(const std::string& object) const {
     const auto groups = groups_of_.find(object);
     if (groups != groups_of_.end())
         for (const std::string& group : groups->second)
-            if (has(group, "Shape")) return false; // a step of a PartDesign body
+            if (is_body_in_steps(group)) return false;
     for (const char* of_tool_bit : {"BitShape", "BitBody", "ShapeID", "ToolBitID"})
         if (has(object, of_tool_bit)) return false;
     const auto type = types_.find(object);
@@ -229,7 +232,7 @@ FreeCadBody FreeCadDocument::body(const std::string& object) const {
     FreeCadBody body;
     body.shape = shape_file(object);
     body.place = frame(object).place;
-    if (!operands_.contains(object) || !is_hidden(object)) body.names = frame(object).names;
+    body.names = frame(object).names;
     body.names.push_back(label(object));
     body.why_left_out = why_left_out(object);
     return body;

@@ -64,7 +64,8 @@ public:
 
     /// All objects that can be bodies, without tool bits, sketches and the steps from which a
     /// PartDesign body is made. What cannot be read is among them, left out: links, meshes, objects
-    /// without a shape. An operand that its feature hides is in no group.
+    /// without a shape or whose place is not known. Hidden objects, and those from which others are
+    /// made, are bodies, too.
     std::vector<FreeCadBody> bodies() const;
 
 private:
@@ -77,7 +78,7 @@ private:
     std::string plain_label(const std::string& object) const;
     std::string shape_file(const std::string& object) const;
     bool is_link(const std::string& object) const;
-    bool is_hidden(const std::string& object) const;
+    bool is_body_in_steps(const std::string& object) const;
     bool can_be_body(const std::string& object) const;
     std::string why_left_out(const std::string& object) const;
     FreeCadBody body(const std::string& object) const;
@@ -89,7 +90,7 @@ private:
     std::map<std::string, std::string> types_;
     std::map<std::string, std::vector<std::string>> groups_of_; // in which an object is
     std::map<std::string, int> label_count_;
-    std::set<std::string> operands_, link_members_;
+    std::set<std::string> link_members_;
     mutable std::map<std::string, Frame> frames_; // those that were asked for
 };
 

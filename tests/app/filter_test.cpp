@@ -120,6 +120,11 @@ TEST_F(Filter, ChecksWhatAnotherFilterWrites) {
     }
     EXPECT_THAT(filter(harmless_, {"--then", "true"}).err, HasSubstr("true: has written nothing"));
     EXPECT_THAT(crash.err, AllOf(HasSubstr(harmless_ + ": COLLISION"), Not(HasSubstr("state"))));
+    // A filter within a filter, of the same program.
+    const Ran both = filter(harmless_, {"--then", FEELER_BINARY " filter --setup '"
+                                                      + (folder_ / "mill.toml") + "' --then cat"});
+    EXPECT_EQ(both.status, 0) << both.err;
+    EXPECT_EQ(both.out, harmless);
     const Ran failed = filter(harmless_, {"--then", "false"});
     EXPECT_EQ(failed.status, 2);
     EXPECT_EQ(failed.out, "");

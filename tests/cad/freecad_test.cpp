@@ -127,8 +127,12 @@ TEST_F(FreeCad, FilesThatEndEarlyAreRefused) {
 /// A document with these objects, and files.
 std::string document_with(const test_support::ScopedFolder& folder, const std::string& objects,
                           std::vector<std::pair<std::string, std::string>> files = {}) {
-    files.insert(files.begin(),
-                 {"Document.xml", "<Document><ObjectData>" + objects + "</ObjectData></Document>"});
+    const std::string types = "<Objects><Object type='App::Part' name='Part'/>"
+                              "<Object type='App::Part' name='Other'/>"
+                              "<Object type='App::Part' name='Lost'/>"
+                              "<Object type='PartDesign::Body' name='Body'/></Objects>";
+    files.insert(files.begin(), {"Document.xml", "<Document>" + types + "<ObjectData>" + objects
+                                                     + "</ObjectData></Document>"});
     return folder.write("made.FCStd", test_support::packed_zip_of(files));
 }
 
@@ -245,22 +249,34 @@ TEST_F(FreeCad, APartCountsWhateverGroupsItsBodiesAreIn) {
     EXPECT_THAT(twice.error().message, HasSubstr("Box: it is in several parts"));
 }
 
-TEST_F(FreeCad, AnOperandThatItsFeatureHidesIsInNoPart) {
+TEST_F(FreeCad, APlaceThatIsNotKnownIsRefused) {
     const std::string shape = bytes_of(sample("cut.brep"));
-    const auto document = [&](const char* visible) {
-        return read(document_with(
-            folder_,
-            object_of("Part", property("Group", "<LinkList><Link value='Cut'/><Link value='Base'/>"
-                                                "</LinkList>"))
-                + object_of("Base", good_shape
-                                        + property("Visibility",
-                                                   std::string("<Bool value='") + visible + "'/>"))
-                + object_of("Cut", good_shape + property("Base", "<Link value='Base'/>")),
-            {{"good.brp", shape}}));
+    const auto refusal = [&](const std::string& objects) {
+        const auto file = read_cad(
+            document_with(folder_, objects + object_of("Box", good_shape), {{"good.brp", shape}}));
+        return file ? "it was read" : file.error().message;
     };
-    EXPECT_EQ(body_of(document("false"), "Part")->solids, 1u);
-    EXPECT_EQ(body_of(document("false"), "Base")->solids, 1u);
-    EXPECT_EQ(body_of(document("true"), "Part")->solids, 2u);
+    // A part in a group of links, which has a place of its own.
+    EXPECT_THAT(refusal(object_of("Links", property("ElementList", "<LinkList><Link value='Part'/>"
+                                                                   "</LinkList>"))
+                        + object_of("Part", group_property("Box"))),
+                HasSubstr("Box: it is in a group of links"));
+    // A floor of Arch, which has moved its members already.
+    EXPECT_THAT(refusal(object_of("Floor", group_property("Box") + place_property("100"))),
+                HasSubstr("Box: Floor has a place and is no part"));
+    EXPECT_EQ(refusal(object_of("Floor", group_property("Box") + place_property("0"))),
+              "it was read");
+}
+
+TEST_F(FreeCad, OnlyMembersOfAPartDesignBodyAreSteps) {
+    const std::string shape = bytes_of(sample("cut.brep"));
+    const std::string members = object_of("Site", good_shape + group_property("Box"))
+                                + object_of("Body", good_shape + group_property("Pad"))
+                                + object_of("Box", good_shape) + object_of("Pad", good_shape);
+    const CadFile file = read(document_with(folder_, members, {{"good.brp", shape}}));
+    EXPECT_EQ(body_of(file, "Site")->solids, 2u);
+    EXPECT_EQ(body_of(file, "Body")->solids, 1u);
+    EXPECT_FALSE(body_of(file, "Pad").has_value());
 }
 
 TEST_F(FreeCad, DeepGroupsEndSoon) {

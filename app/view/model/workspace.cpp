@@ -619,13 +619,13 @@ bool save_document(ViewModel& model, const std::string& path, const FileWriter& 
         return false;
     }
     const bool may_replace = std::exchange(workspace.may_replace, false);
+    if (!leave_samples(model, target)) return false;
     const SetupDocument& document = workspace.document;
     if (target == document.path() && !document.is_modified()
         && core::file_bytes(target) == document.saved_text()) {
         say(model, target + " is saved already", now);
         return true;
     }
-    if (!leave_samples(model, target)) return false;
     const auto saved = save_setup(workspace.document, target,
                                   may_replace ? Replacing::allowed : Replacing::refused,
                                   model.program ? model.program->program : "", write);
