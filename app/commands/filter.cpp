@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -38,10 +37,14 @@ struct FilterOptions {
     std::string then;
 };
 
-/// The folder for what filters keep; empty if this user has none.
+/// The folder for what filters keep, made if it is not there; empty if this user can have none.
 std::filesystem::path filter_folder() {
-    const std::filesystem::path folder = core::platform::state_folder();
-    return folder.empty() ? folder : folder / "feeler" / "filter";
+    const std::filesystem::path state = core::platform::state_folder();
+    if (state.empty()) return {};
+    const std::filesystem::path folder = state / "feeler" / "filter";
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    return failure ? std::filesystem::path() : folder;
 }
 
 /// The results of earlier filters; null without a folder for them, and if they cannot be used.
@@ -50,9 +53,7 @@ std::unique_ptr<ResultStore> opened_store(const FilterOptions& options) {
     std::string path = options.check.cache;
     if (path.empty()) {
         const std::filesystem::path folder = filter_folder();
-        std::error_code failure;
-        if (!folder.empty()) std::filesystem::create_directories(folder, failure);
-        if (folder.empty() || failure) return {};
+        if (folder.empty()) return {};
         path = (folder / "results.db").string();
     }
     auto store =
@@ -104,10 +105,8 @@ std::filesystem::path fresh_folder(const std::string& program) {
     namespace fs = std::filesystem;
     constexpr std::chrono::hours longest(24); // a filter that was killed leaves its folder
     const fs::path base = filter_folder();
-    std::error_code failure;
     if (base.empty()) return {};
-    fs::create_directories(base, failure);
-    if (failure) return {};
+    std::error_code failure;
     const fs::path usual = base / sha256_of(absolute_path(program)).substr(0, 16);
     const auto made_at = fs::last_write_time(usual, failure);
     if (!failure && fs::file_time_type::clock::now() - made_at > longest)
@@ -154,7 +153,6 @@ core::Result<CheckJob> filter_job(const FilterOptions& options, const FilteredPr
     if (is_copy && check.what.setup.empty()) check.what.setup = setup_next_to(check.what.program);
     check.what.program = program.path;
     FEELER_TRY(CheckJob job, job_of(check));
-    job.threads = std::max(1U, std::thread::hardware_concurrency());
     job.is_stopped = is_interrupted;
     return job;
 }

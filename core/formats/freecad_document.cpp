@@ -143,10 +143,9 @@ bool FreeCadDocument::is_link(const std::string& object) const {
            || (has(object, "ElementList") && shape_file(object).empty());
 }
 
-/// Whether an object is a PartDesign body, of which the members of its group are the steps.
-bool FreeCadDocument::is_body_in_steps(const std::string& object) const {
-    const auto type = types_.find(object);
-    return type != types_.end() && type->second == "PartDesign::Body";
+std::string FreeCadDocument::type(const std::string& object) const {
+    const auto found = types_.find(object);
+    return found == types_.end() ? std::string() : found->second;
 }
 
 void FreeCadDocument::take_parent(const std::string& parent, int depth, Frame& frame) const {
@@ -161,10 +160,9 @@ void FreeCadDocument::take_parent(const std::string& parent, int depth, Frame& f
     for (std::string& name : names)
         if (std::find(frame.names.begin(), frame.names.end(), name) == frame.names.end())
             frame.names.push_back(std::move(name));
-    const auto type = types_.find(parent);
-    const bool is_part = type != types_.end()
-                         && (type->second == "App::Part" || type->second == "PartDesign::Body"
-                             || type->second == "Assembly::AssemblyObject");
+    const std::string kind = type(parent);
+    const bool is_part =
+        kind == "App::Part" || kind == "PartDesign::Body" || kind == "Assembly::AssemblyObject";
     const auto own = placement(parent);
     if (!own)
         refuse(fmt::format("the place of {} cannot be read", label(parent)));
@@ -204,14 +202,13 @@ bool FreeCadDocument::can_be_body(const std::string& object) const {
     const auto groups = groups_of_.find(object);
     if (groups != groups_of_.end())
         for (const std::string& group : groups->second)
-            if (is_body_in_steps(group)) return false;
+            if (type(group) == "PartDesign::Body") return false; // a step of it
     for (const char* of_tool_bit : {"BitShape", "BitBody", "ShapeID", "ToolBitID"})
         if (has(object, of_tool_bit)) return false;
-    const auto type = types_.find(object);
-    if (type == types_.end()) return true;
+    const std::string kind = type(object);
     for (const char* flat : {"Sketcher::", "Part::Part2D", "Part::Datum", "PartDesign::Plane",
                              "PartDesign::Line", "PartDesign::Point", "PartDesign::Coordinate"})
-        if (type->second.starts_with(flat)) return false;
+        if (kind.starts_with(flat)) return false;
     return true;
 }
 

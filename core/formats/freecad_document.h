@@ -78,7 +78,7 @@ private:
     std::string plain_label(const std::string& object) const;
     std::string shape_file(const std::string& object) const;
     bool is_link(const std::string& object) const;
-    bool is_body_in_steps(const std::string& object) const;
+    std::string type(const std::string& object) const;
     bool can_be_body(const std::string& object) const;
     std::string why_left_out(const std::string& object) const;
     FreeCadBody body(const std::string& object) const;

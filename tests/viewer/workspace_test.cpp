@@ -1,4 +1,5 @@
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -389,6 +390,17 @@ TEST(Workspace, SavesUnderItsNameOrAsksForOne) {
     model.workspace.may_replace = true;
     EXPECT_TRUE(save_document(model, "", app::write_output, 0.0));
     EXPECT_EQ(bytes_of(folder / "s.toml"), text_of_setup(model));
+    // Nothing has changed, so nothing is written, unless the file is gone.
+    size_t written = 0;
+    const auto count = [&](const std::string& path, const std::string& text) {
+        ++written;
+        return app::write_output(path, text);
+    };
+    EXPECT_TRUE(save_document(model, "", count, 0.0));
+    EXPECT_EQ(written, 0u);
+    std::filesystem::remove(folder / "s.toml");
+    EXPECT_TRUE(save_document(model, "", count, 0.0));
+    EXPECT_EQ(written, 1u);
 }
 
 TEST(Workspace, SavesNothingAmongTheSamples) {
