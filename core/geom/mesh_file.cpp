@@ -424,7 +424,7 @@ Result<MeshFormat> format_of(const std::filesystem::path& path, std::string_view
     return fail(
         ErrorCode::unsupported,
         fmt::format("'{}' is not the ending of a mesh or CAD file (stl, obj, ply, off, step, "
-                    "stp, iges, igs)",
+                    "stp, p21, iges, igs, brep, brp, FCStd)",
                     extension));
 }
 
@@ -477,9 +477,11 @@ Result<MeshFile> read_solid(const std::filesystem::path& path, std::string bytes
 
 namespace {
 
+/// With the file in the message, which contains the line already.
 Error about(Error error, const std::filesystem::path& path) {
     error.message = fmt::format("{}: {}", path.generic_string(), error.message);
     error.file = path.generic_string();
+    error.where = {};
     return error;
 }
 

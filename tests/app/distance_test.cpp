@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -180,6 +181,17 @@ TEST(Distance, RefusesInvalidBodies) {
         EXPECT_EQ(ran.out, "") << body;
         EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << body << ": " << ran.err;
     }
+}
+
+TEST(Distance, NamesTheFileAndTheLineOfAMistakeOnce) {
+    const ScopedFolder folder;
+    const std::string path = folder.write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    const Ran ran = feeler({"distance", path, "sphere:5"});
+    EXPECT_EQ(ran.status, 2);
+    EXPECT_EQ(
+        ran.err,
+        fmt::format("feeler: {}: line 4: a face refers to vertex 9, but there are 3 vertices\n",
+                    path));
 }
 
 TEST(Distance, RefusesAnUnknownEngine) {
