@@ -194,7 +194,22 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
     }
 }
 
-/// A path of the tip as legs with constant axis rates.
+/// Whether a rotary axis changes the direction of a linear one.
+bool turns_linear_axes(const Machine& machine) {
+    for (size_t i = 0; i < 3; ++i) {
+        LinkId link = machine.axes[i].carrier;
+        while (link != LinkId::base) {
+            const MachineAxis& by = machine.axes[static_cast<size_t>(link)];
+            const Vec3 across = glm::cross(by.direction, machine.axes[i].direction);
+            if (is_rotary(static_cast<size_t>(link)) && glm::length(across) > 1e-12) return true;
+            link = by.carrier;
+        }
+    }
+    return false;
+}
+
+/// A path of the tip as legs with constant axis rates, on a machine whose linear axes keep their
+/// directions relative to each other.
 ///
 /// Between two moments the linear axes deviate from constant rates by an eighth of their
 /// acceleration. The tip is at most r from every rotary axis and moves by v relative to the work
@@ -322,7 +337,8 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     } else if (motion.arc) {
         add_arc(path, motion, *from, *to, max_error);
     } else if (motion.tip) {
-        add_tip_path(path, machine, motion, *from, *to, max_error);
+        if (turn_of(machine, *from, *to) == 0.0 || !turns_linear_axes(machine))
+            add_tip_path(path, machine, motion, *from, *to, max_error);
     } else if (motion.kind != MotionKind::rapid) {
         add_straight(path, *from, *to,
                      motion.feed > 0.0 ? feed_length(*from, *to) / motion.feed * seconds_per_minute
@@ -332,6 +348,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }
+    for (Leg& leg : path.legs) leg.path_error += motion.path_error;
     return path;
 }
 

@@ -67,7 +67,8 @@ bool is_dogleg(const Motion& motion, const Machine& machine);
 ///          rapid is one leg for each change of direction, or, if speeds are unknown, one box of
 ///          the moving axes. A motion from an unknown position is the hull of the limits. A path of
 ///          the tip becomes legs on which the axes stay within `max_error` of the control's path.
-///          If a rotary axis starts or ends at an unknown angle, the path is empty.
+///          If a rotary axis starts or ends at an unknown angle, the path is empty; also that of a
+///          tip while rotary axes turn, if one of these carries a linear axis.
 Path path_of(const Motion& motion, const Machine& machine, double max_error);
 
 /// The legs of a motion after a probing move, whose start and end may deviate by these spreads:

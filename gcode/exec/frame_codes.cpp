@@ -748,7 +748,13 @@ core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan whe
     const auto tilt = core::tilting_axis(*offsets.machine);
     auto ways = core::ways_to_point_tool(*offsets.machine, values,
                                          in_table(offsets, core::Vec3(0.0, 0.0, 1.0)));
-    const auto is_other = [&](const AxisValues& way) { return tilt && sign * way[*tilt] < 0.0; };
+    // An axis without limits may stand whole turns away from the position that is meant.
+    const auto is_other = [&](const AxisValues& way) {
+        if (!tilt) return false;
+        const core::MachineAxis& axis = offsets.machine->axes[*tilt];
+        const bool is_limited = axis.min && axis.max;
+        return sign * (is_limited ? way[*tilt] : std::remainder(way[*tilt], 360.0)) < 0.0;
+    };
     if (!may_be_other || !std::all_of(ways.begin(), ways.end(), is_other))
         std::erase_if(ways, is_other);
     if (ways.empty()) return fail_to_tilt(what, where);

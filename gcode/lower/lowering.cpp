@@ -69,9 +69,14 @@ core::ArcPath arc_path(const ArcFeed& command, const Offsets& offsets, ArcAxis a
     return path;
 }
 
-/// The end points of chords that approximate an arc to within `chord_error`, in program
-/// coordinates.
-std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
+/// Chords that approximate an arc, in program coordinates.
+struct Chords {
+    std::vector<Position> ends;
+    double error = 0.0; // largest distance of a chord from the arc, mm
+};
+
+/// About as many chords as their error needs to be `chord_error`.
+Chords chords_of(const ArcFeed& command, const Position& from) {
     const PlaneAxes axes = axes_of(command.plane);
     const double angle = angle_of(command, from);
     const double u = *from[axes.first] - command.centre[0];
@@ -81,7 +86,13 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
                                           *command.end[axes.second] - command.centre[1]);
     const double step = std::sqrt(8.0 * chord_error / std::max({radius, end_radius, chord_error}));
     const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
-    std::vector<Position> ends;
+    // An eighth of the second derivative by the angle, times the square of the step; 1 % for
+    // rounding.
+    const double drift = angle != 0.0 ? 2.0 * (end_radius - radius) / angle : 0.0;
+    const double turned = angle / count;
+    Chords chords;
+    chords.error =
+        1.01 * 0.125 * core::hypot(std::max(radius, end_radius), drift) * turned * turned;
     for (int i = 1; i < count; ++i) {
         const double fraction = static_cast<double>(i) / count;
         const double turn = angle * fraction;
@@ -94,10 +105,24 @@ std::vector<Position> chords_of(const ArcFeed& command, const Position& from) {
             command.centre[0] + reach * (u * core::cos(turn) - v * core::sin(turn));
         position[axes.second] =
             command.centre[1] + reach * (u * core::sin(turn) + v * core::cos(turn));
-        ends.push_back(position);
+        chords.ends.push_back(position);
     }
-    ends.push_back(command.end);
-    return ends;
+    chords.ends.push_back(command.end);
+    return chords;
+}
+
+/// The factor by which distances in program coordinates grow at most in those of the machine.
+double largest_scale(const Offsets& offsets) {
+    if (!offsets.has_frame) return 1.0;
+    const core::Mat3& linear = offsets.frame.linear;
+    double apart = 0.0, sum = 0.0;
+    const core::Mat3 square = glm::transpose(linear) * linear;
+    for (int i = 0; i < 3; ++i) {
+        sum += glm::dot(linear[i], linear[i]);
+        for (int j = 0; j < 3; ++j)
+            apart = std::max(apart, std::abs(square[i][j] - (i == j ? 1.0 : 0.0)));
+    }
+    return apart < 1e-9 ? 1.0 + 1e-9 : std::sqrt(sum);
 }
 
 /// One overload for each command that affects the machine or the offsets.
@@ -220,8 +245,12 @@ struct Visitor {
             is_known(from) && is_known(command.end) && from[axes.first] && from[axes.second];
         const auto axis = arc_axis(lowering.offsets, axes);
         if (known && !axis) {
-            for (const Position& end : chords_of(command, from))
-                events.emplace_back(motion_to(end, core::MotionKind::feed, command.feed));
+            const Chords chords = chords_of(command, from);
+            for (const Position& end : chords.ends) {
+                core::Motion chord = motion_to(end, core::MotionKind::feed, command.feed);
+                chord.path_error = chords.error * largest_scale(lowering.offsets);
+                events.emplace_back(chord);
+            }
             return;
         }
         core::Motion motion = motion_to(command.end, core::MotionKind::feed, command.feed);

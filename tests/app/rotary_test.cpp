@@ -1,6 +1,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/app/checked.h"
@@ -8,6 +10,8 @@
 namespace app_test {
 namespace {
 
+using test_support::Ran;
+using test_support::ScopedFolder;
 using test_support::SetupWriter;
 
 constexpr double pi = std::numbers::pi;
@@ -107,6 +111,108 @@ TEST(Rotary, ATurnThatEndsExactlyAtTheMinimumClearanceIsMeasured) {
     const PairLine pair = checked.at_line(8).pair("flutes plate");
     EXPECT_NEAR(pair.lower, 2.0, 0.01);
     EXPECT_NEAR(pair.upper.value_or(0.0), 2.0, 0.01);
+}
+
+TEST(Rotary, AnArcUnderTipControlIsNotFartherThanItIs) {
+    // The tip runs round the middle of a post, at a distance of 20 from its wall.
+    const Checked checked = check(
+        SetupWriter()
+            .machine(SetupWriter::mill()
+                     + SetupWriter::axis("A", "side = \"table\"\npoint = [-350, -200, -440]\n")
+                     + SetupWriter::axis("C", "side = \"table\"\npoint = [-350, -200, -440]\n"))
+            .stock("box = [[-200, -200, -300], [-190, -190, -290]]")
+            .fixture("post",
+                     "cylinder = { radius = 10, height = 80 }\nat = [0, 0, -40]\nframe = \"G54\"\n")
+            .also("[control]\n\"1008#0\" = 0\n"),
+        text("G43.4 H1\nG0 X-35. Y0\nZ0\nG3 X35. Y0 I35. J0 F1000.\nG0 Z60.\nG49"));
+    const PairLine flutes = checked.at_line(8).pair("flutes post");
+    EXPECT_LE(flutes.lower, 20.0 + 1e-9);
+    EXPECT_GE(flutes.lower, 20.0 - 0.003);
+    ASSERT_TRUE(flutes.upper.has_value());
+    EXPECT_GE(*flutes.upper, 20.0 - 1e-9);
+    EXPECT_LE(*flutes.upper, 20.0 + 0.003);
+}
+
+TEST(Rotary, ATipThatATurnedSlideMovesIsNotChecked) {
+    const std::string axes = SetupWriter::axis("X", "side = \"table\"\n")
+                             + SetupWriter::axis("C", "side = \"tool\"\npoint = [0, 0, 100]\n")
+                             + SetupWriter::axis("Z", "side = \"tool\"\n")
+                             + SetupWriter::axis("Y", "side = \"tool\"\n")
+                             + SetupWriter::axis("A", "side = \"tool\"\npoint = [0, 0, 100]\n");
+    const auto checked_with = [&](const std::string& blocks) {
+        return check(SetupWriter()
+                         .machine("rapid = \"straight\"\n" + axes)
+                         .stock("box = [[-200, -200, -300], [-190, -190, -290]]")
+                         .also("[control]\n\"1008#0\" = 0\n"),
+                     text(blocks));
+    };
+    const Checked turned = checked_with("G43.4 H1\nG0 X0 Y0 Z0\nG1 X10. A20. C30. F500.");
+    EXPECT_NE(turned.verdict, "clear");
+    EXPECT_THAT(turned.finding("undecided").message, testing::HasSubstr("carries a linear axis"));
+    EXPECT_EQ(checked_with("G43.4 H1\nG0 X0 Y0 Z0\nG1 X10. F500.").errors(), "nothing-cut 7");
+}
+
+// The tool is turned in a plane, which the axes of the head follow within an error that shorter
+// legs do not reduce.
+TEST(Rotary, AToolThatIsTurnedInAPlaneIsCheckedToItsEnd) {
+    const ScopedFolder folder;
+    const std::string setup = folder.write(
+        "setup.toml",
+        "mesh_size = 2\n"
+        "[[machine.axis]]\nname = \"A\"\nside = \"table\"\npoint = [-383.589, -221.249, -420.516]\n"
+        "[[machine.axis]]\nname = \"C\"\nside = \"table\"\n"
+        "direction = [0.00047143609324274609, 0.0005259128210104955, 0.99999975058182633]\n"
+        "point = [-11.337, 103.126, -265.795]\n"
+        "[stock]\nbox = [[-90000, -90000, 0], [-89990, -89990, 10]]\nframe = \"machine\"\n"
+        "[offsets]\nG54 = { X = 6088.518, Y = -3219.499, Z = 760.694 }\n"
+        "[[fixture]]\nname = \"jaw\"\nframe = \"G54\"\nat = [9.232, 0.77, -1.811]\n"
+        "box = [[-11.532, -1.738, -5.126], [2.296, 12.254, 10.264]]\n");
+    const std::string program =
+        folder.write("turned.mpf", "TRAORI\nG1 X11.5377 Y-7.5969 Z-48.3412 A92.9371 C-5.1823 F789\n"
+                                   "G1 X-14.0128 Y42.1730 Z-52.1880 A3=-0.128693576 B3=0.780580217 "
+                                   "C3=0.611663706 F1361\n");
+    EXPECT_EQ(check_files(program, setup).status, 1);
+}
+
+/// Where A stands at the end of a program on a table with A and C without limits, from its trace.
+double a_at_end(const std::string& ending, const std::string& dialect, const std::string& program) {
+    const ScopedFolder folder;
+    const std::string setup = folder.write(
+        "setup.toml",
+        "[program]\ndialect = \"" + dialect
+            + "\"\nstart = { X = 0, Y = 0, Z = 0, A = 0, C = 0 }\n"
+              "[[machine.axis]]\nname = \"A\"\nside = \"table\"\npoint = [0, 0, -500]\n"
+              "[[machine.axis]]\nname = \"C\"\nside = \"table\"\npoint = [0, 0, 0]\n"
+              "[offsets]\nG54 = { X = 0, Y = 0, Z = -400 }\n"
+              "[[tool]]\nnumber = 1\nshape = \"flat\"\ndiameter = 2\nflute_length = 30\n"
+              "holder = [[3, 3, 41]]\n");
+    const Ran ran = feeler({"trace", folder.write("program" + ending, program), "--setup", setup});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    const size_t last = ran.out.rfind(" a=");
+    return last == std::string::npos ? std::nan("") : std::stod(ran.out.substr(last + 3));
+}
+
+TEST(Rotary, TheSignOfATiltIsThatOfTheAngleWhereverTheAxisStands) {
+    for (const double stands : {-150.0, 0.0, 170.0, 350.0, -700.0}) {
+        for (const double wanted : {50.0, -50.0}) {
+            const bool positive = wanted > 0.0;
+            const std::string siemens =
+                fmt::format("G710 G90 G40 G17 G94 G54 G60\nT1\nM6\nD1\nS5000 M3\n"
+                            "G0 X0 Y0 Z200 A={} C=0\n"
+                            "CYCLE800(0,\"T\",0,57,0,0,0,50,0,0,0,0,0,{},100,1)\nM30\n",
+                            stands, positive ? "1" : "-1");
+            EXPECT_NEAR(std::remainder(a_at_end(".mpf", "siemens", siemens) - wanted, 360.0), 0.0,
+                        1e-6)
+                << siemens;
+            const std::string heidenhain = fmt::format(
+                "BEGIN PGM Q MM\nTOOL CALL 1 Z S5000\nL X+0 Y+0 Z+200 A{:+} C+0 FMAX M3\n"
+                "PLANE SPATIAL SPA+50 SPB+0 SPC+0 TURN FMAX SEQ{}\nEND PGM Q MM\n",
+                stands, positive ? "+" : "-");
+            EXPECT_NEAR(std::remainder(a_at_end(".h", "heidenhain", heidenhain) - wanted, 360.0),
+                        0.0, 1e-6)
+                << heidenhain;
+        }
+    }
 }
 
 TEST(Rotary, LimitsOfRotaryAxesAreInDegrees) {

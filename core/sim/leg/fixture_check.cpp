@@ -11,7 +11,7 @@ bool is_open_for_turning(const PairClearance& now, const PairClearance& known,
                          const RelativeLeg& relative, const Leg& leg) {
     constexpr double sharp = 5e-4; // mm: bounds that decide meet within twice that
     // The error of the path is the same for all parts of it.
-    const double lasting = relative.lasting_error + leg.path_error;
+    const double lasting = relative.lasting_error + (leg.turn_error > 0.0 ? 0.0 : leg.path_error);
     return now.verdict == Verdict::undecided && known.verdict < Verdict::violation
            && relative.error - lasting > std::max(sharp, 0.1 * lasting);
 }
@@ -131,6 +131,7 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
 
 void FixtureCheck::measure_pair(const Leg& leg, double start, size_t fixture,
                                 const MovingBody& body, TrackedPair& known) {
+    if (stays_undecided(known, leg)) return;
     const RelativeLeg relative = context_.against_fixture(body, fixture, leg);
     if (bounds_.can_skip(known, least_, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;

@@ -58,14 +58,18 @@ const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& 
     return relative;
 }
 
-double LegContext::finest_error(const MovingBody& body) const {
+double LegContext::finest_error(const MovingBody& body, const RelativeLeg& relative) const {
     const double cut = std::clamp(setup.mesh_size / 50.0, 0.002, 0.01);
-    if (body.kind == PartKind::flutes) return cut;
-    return body.kind == PartKind::shank ? 2.0 * cut : 10.0 * cut;
+    const double own = body.kind == PartKind::flutes  ? cut
+                       : body.kind == PartKind::shank ? 2.0 * cut
+                                                      : 10.0 * cut;
+    // Much less than what stays makes no difference.
+    return std::max(own, 0.2 * relative.lasting_error);
 }
 
 bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
-    return relative.reducible_error() <= std::max(finest_error(body), sharp_fraction * lower);
+    return relative.reducible_error()
+           <= std::max(finest_error(body, relative), sharp_fraction * lower);
 }
 
 bool LegContext::is_too_vague(const RelativeLeg& relative) const {
@@ -77,7 +81,8 @@ bool LegContext::turns_too_far(const Leg& leg, bool only_flutes) const {
     for (const MovingBody& body : bodies) {
         if (body.body || (only_flutes && body.kind != PartKind::flutes)) continue;
         const RelativeLeg relative = against_stock(body, leg);
-        if (relative.turns && relative.reducible_error() > finest_error(body)) return true;
+        if (relative.turns && relative.reducible_error() > finest_error(body, relative))
+            return true;
     }
     return false;
 }

@@ -54,7 +54,7 @@ struct LegContext {
     const RelativeLeg& against_stock(const MovingBody& body, const Leg& leg) const;
 
     /// Error of a turning body that is small enough for any clearance, mm.
-    double finest_error(const MovingBody& body) const;
+    double finest_error(const MovingBody& body, const RelativeLeg& relative) const;
 
     /// Whether the error of a leg is small enough for a body with this lower bound.
     bool is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const;

@@ -84,6 +84,12 @@ TrackedPair& entry(TrackedPairs& pairs, const Pair& pair, const Setup& setup) {
     return pairs.add(begun);
 }
 
+bool stays_undecided(TrackedPair& known, const Leg& leg) {
+    if (leg.turn_error <= 0.0 || known.lower > 0.0 || known.verdict == Verdict::clear) return false;
+    known.at_end = -infinity;
+    return true;
+}
+
 bool stays_away(TrackedPair& known, const Leg& leg, const RelativeLeg& relative) {
     if (!leg.straight || known.at_end - relative.travel < known.upper) return false;
     known.at_end -= relative.travel;

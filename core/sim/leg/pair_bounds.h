@@ -73,6 +73,10 @@ void merge(TrackedPair& known, const PairClearance& later);
 /// added.
 TrackedPair& entry(TrackedPairs& pairs, const Pair& pair, const Setup& setup);
 
+/// Whether a pair is undecided in this block and shorter legs will not decide it, because an error
+/// of the rotary axes stays the same. If so, nothing is known of it at the leg's end.
+bool stays_undecided(TrackedPair& known, const Leg& leg);
+
 /// Whether a leg cannot bring a pair nearer than it has been in this block. If so, updates its
 /// bound to the leg's end.
 bool stays_away(TrackedPair& known, const Leg& leg, const RelativeLeg& relative);

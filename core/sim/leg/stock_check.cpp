@@ -48,6 +48,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
     for (const MovingBody* body : context_.likely_first({})) {
         if (body->kind == PartKind::flutes || only_flutes_ || (only_tool_ && body->body)) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
+        if (stays_undecided(known, leg)) continue;
         if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
         if (bounds_.can_probably_skip(known)) {
             later.push_back(body);
@@ -160,6 +161,7 @@ bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stoc
     for (const MovingBody* body : context_.likely_first({})) {
         if (only_tool_ && body->body) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
+        if (body->kind != PartKind::flutes && stays_undecided(known, leg)) continue;
         if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
         if (stays_away(known, leg, context_.against_stock(*body, leg))) continue;
         const StockObservation seen = probe_.observe(*body, leg, stock, known.upper);
@@ -231,6 +233,7 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
                                     const CutModel& stock, TrackedPairs& pairs) {
     if (is_enough(context_.setup, pairs)) return;
     TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
+    if (stays_undecided(known, leg)) return;
     const RelativeLeg relative = context_.against_stock(body, leg);
     if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
@@ -278,7 +281,8 @@ bool StockCheck::is_clear_before_cut(const MovingBody& body, const Leg& leg, dou
         // A sharper bound does not help; the order of events may.
         if (seen.plain.upper < now.allowance.distance) return false;
     }
-    if (!relative.turns || relative.reducible_error() <= 2.0 * context_.finest_error(body))
+    if (!relative.turns
+        || relative.reducible_error() <= 2.0 * context_.finest_error(body, relative))
         return false;
     return is_clear_before_cut(body, stretch(leg, 0.0, 0.5), start, stock, known, pieces)
            && is_clear_before_cut(body, stretch(leg, 0.5, 1.0), start, stock, known, pieces);
@@ -290,6 +294,7 @@ double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock, Tr
     for (const MovingBody* body : context_.likely_first({})) {
         if (body->kind == PartKind::flutes || body->body) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
+        if (stays_undecided(known, leg)) continue;
         const RelativeLeg relative = context_.against_stock(*body, leg);
         if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) continue;
         const TrackedPair before = known;

@@ -82,6 +82,11 @@ void BlockRun::check_from_unknown(const Motion& motion, const Path& path) {
     }
     result.checked = false;
     if (std::exchange(state.reported_unknown_start, true)) return;
+    if (motion.tip && path.legs.empty())
+        return find(rule_id("undecided"),
+                    "The control follows the tip while rotary axes turn, one of which carries a "
+                    "linear axis: such motions cannot be checked.",
+                    "Program the machine's axes, without tip control.");
     if (state.time > 0.0)
         return find(rule_id("first-move"),
                     "The position of the machine is not known any more, so this motion cannot be "
