@@ -477,7 +477,7 @@ Result<MeshFile> read_solid(const std::filesystem::path& path, std::string bytes
 
 namespace {
 
-/// With the file in the message, which contains the line already.
+/// The error with the file in its message, which has the line already: `where` would repeat it.
 Error about(Error error, const std::filesystem::path& path) {
     error.message = fmt::format("{}: {}", path.generic_string(), error.message);
     error.file = path.generic_string();

@@ -355,8 +355,7 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
     const double tilt = mover.is_revolved
                             ? tilt_of_axis(machine, axes, leg, middle, mover_pose.rotation, turn)
                             : turn;
-    // What errors of the rotary axes add to the path is the same for every part of it.
-    relative.lasting_error = mover.form_error + (leg.turn_error > 0.0 ? leg.path_error : 0.0);
+    relative.lasting_error = mover.form_error + leg.lasting_error;
     relative.deviation = mover.deviation;
     relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
     // The centre stays within `curve` of its chord, and the body turns about it. While the linear

@@ -240,11 +240,13 @@ void add_tip_path(Path& path, const Machine& machine, const Motion& motion, cons
         const double fraction = static_cast<double>(i) / count;
         const AxisValues next = i == count ? to : at(fraction);
         // The linear axes compensate for the error of the rotary ones.
+        const double compensation = 1.01 * tip.turn_error * farthest;
         path.legs.push_back({{here, next},
                              path.duration * (i - 1) / count,
                              path.duration * fraction,
-                             (turn > 0.0 ? max_error : 0.0) + 1.01 * tip.turn_error * farthest,
-                             tip.turn_error});
+                             (turn > 0.0 ? max_error : 0.0) + compensation,
+                             tip.turn_error,
+                             compensation});
         here = next;
     }
 }
@@ -296,7 +298,8 @@ Leg stretch(const Leg& leg, double first, double last) {
             time(first),
             time(last),
             leg.path_error,
-            leg.turn_error};
+            leg.turn_error,
+            leg.lasting_error};
 }
 
 std::array<Leg, 2> halves(const Leg& leg) {
@@ -348,7 +351,8 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }
-    for (Leg& leg : path.legs) leg.path_error += motion.path_error;
+    for (Leg& leg : path.legs)
+        for (double* error : {&leg.path_error, &leg.lasting_error}) *error += motion.path_error;
     return path;
 }
 

@@ -26,8 +26,9 @@ struct Leg {
     std::vector<AxisValues> positions;
     double begin = 0.0; // seconds from the motion's start
     double end = 0.0;
-    double path_error = 0.0; // bound on the distance of the tool from its real position, mm
-    double turn_error = 0.0; // bound on the sum of the errors of all rotary axes, radians
+    double path_error = 0.0;    // bound on the distance of the tool from its real position, mm
+    double turn_error = 0.0;    // bound on the sum of the errors of all rotary axes, radians
+    double lasting_error = 0.0; // the part of `path_error` that shorter chords do not reduce, mm
     bool straight = true;
     bool start_known = true; // false: the machine may start anywhere within its limits
     std::vector<AxisValues> certain = {};

@@ -174,6 +174,29 @@ TEST(Rotary, AToolThatIsTurnedInAPlaneIsCheckedToItsEnd) {
     EXPECT_EQ(check_files(program, setup).status, 1);
 }
 
+// Scaled eight times, the chords of the arc may leave it by more than a turn is measured to.
+TEST(Rotary, AScaledArcOnWhichTheTableTurnsIsCheckedToItsEnd) {
+    const Checked checked = check(
+        SetupWriter()
+            .root("mesh_size = 0.2\nallowance = 7\n")
+            .program("dialect = \"fanuc\"\nstart = { X = 0, Y = 0, Z = 0, A = 0, C = 0 }\n")
+            .machine("rapid = \"straight\"\n" + SetupWriter::axis("A", "point = [0, 0, -500]\n")
+                     + SetupWriter::axis("C", "point = [0, 0, 0]\n"))
+            .offsets("G54 = { X = 0, Y = 0, Z = -400 }\n")
+            .stock("box = [[-90000, -90000, 0], [-89990, -89990, 10]]\nframe = \"machine\"")
+            .tool("number = 1\nshape = \"flat\"\ndiameter = 2\nflute_length = 30\n"
+                  "shank = [[2, 2, 8]]\nholder = [[3, 3, 41]]\n")
+            .fixture("post", "cylinder = { radius = 2, height = 50 }\nframe = \"G54\"\n"
+                             "at = [-28.136668, -10.40807, -10]\n")
+            .also("[control]\n\"5006#6\" = 1\n\"1008#0\" = 0\n"),
+        "G21 G90 G40 G49 G80 G17 G94 G54\nT1 M6\nS5000 M3\nG51 X0. Y0. Z0. P8.\nG43.4 H1\n"
+        "G0 X-3.5 Y0. Z0. A0. C0.\nG3 X3.5 Y0. I3.5 J0. C20. F1000.\nM30\n");
+    const PairLine flutes = checked.at_line(7).pair("flutes post");
+    EXPECT_LT(flutes.lower, 7.0);
+    ASSERT_TRUE(flutes.upper.has_value());
+    EXPECT_GE(*flutes.upper, flutes.lower);
+}
+
 /// Where A stands at the end of a program on a table with A and C without limits, from its trace.
 double a_at_end(const std::string& ending, const std::string& dialect, const std::string& program) {
     const ScopedFolder folder;

@@ -11,7 +11,7 @@ bool is_open_for_turning(const PairClearance& now, const PairClearance& known,
                          const RelativeLeg& relative, const Leg& leg) {
     constexpr double sharp = 5e-4; // mm: bounds that decide meet within twice that
     // The error of the path is the same for all parts of it.
-    const double lasting = relative.lasting_error + (leg.turn_error > 0.0 ? 0.0 : leg.path_error);
+    const double lasting = relative.lasting_error + leg.path_error - leg.lasting_error;
     return now.verdict == Verdict::undecided && known.verdict < Verdict::violation
            && relative.error - lasting > std::max(sharp, 0.1 * lasting);
 }

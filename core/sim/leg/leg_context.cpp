@@ -48,12 +48,13 @@ const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& 
     auto& [known, relative] = last_legs[place];
     const bool same = place < bodies.size() && known.positions == leg.positions
                       && known.path_error == leg.path_error && known.turn_error == leg.turn_error
-                      && known.straight == leg.straight;
+                      && known.lasting_error == leg.lasting_error && known.straight == leg.straight;
     if (same) return relative;
     relative = leg_against(setup, {}, body, leg);
     known.positions = leg.positions;
     known.path_error = leg.path_error;
     known.turn_error = leg.turn_error;
+    known.lasting_error = leg.lasting_error;
     known.straight = leg.straight;
     return relative;
 }

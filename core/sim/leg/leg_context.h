@@ -53,7 +53,8 @@ struct LegContext {
     /// The leg of a body in the stock's frame. Valid until that of another leg is asked for.
     const RelativeLeg& against_stock(const MovingBody& body, const Leg& leg) const;
 
-    /// Error of a turning body that is small enough for any clearance, mm.
+    /// Error of a turning body that is small enough for any clearance, mm; more if the error that
+    /// stays is much greater.
     double finest_error(const MovingBody& body, const RelativeLeg& relative) const;
 
     /// Whether the error of a leg is small enough for a body with this lower bound.
