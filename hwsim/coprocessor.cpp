@@ -378,7 +378,7 @@ void clear(CoprocessorState& s) {
 }
 
 void reset(CoprocessorState& s, const DeviceConfig& config) {
-    std::vector<Line> lines = std::move(s.memory.lines);
+    DeviceMemory lines = std::move(s.memory.lines);
     DeviceConfig without_memory = config;
     without_memory.memory_lines = 1;
     const bool is_stalled = s.memory.stalled;

@@ -42,7 +42,7 @@ void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
 
 MemoryUnit memory_unit(const DeviceConfig& config) {
     MemoryUnit unit;
-    unit.lines.resize(config.memory_lines);
+    unit.lines = DeviceMemory(config.memory_lines);
     unit.asked = Ring<MemoryUnit::Pending>(config.memory_queue);
     unit.under_way = Ring<MemoryUnit::Pending>(config.memory_queue);
     unit.writes = Ring<MemoryUnit::Write>(config.write_queue);

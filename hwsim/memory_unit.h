@@ -2,6 +2,10 @@
 
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <utility>
 #include <vector>
 
 #include "hwsim/memory_line.h"
@@ -66,6 +70,40 @@ struct ReadResponse {
     bool operator==(const ReadResponse&) const = default;
 };
 
+/// Gives memory whose bytes are 0, for types of which that is the default value. The system makes a
+/// page when it is first used: a device has far more memory than most programs need.
+template <typename T>
+struct ZeroedAllocator {
+    using value_type = T;
+
+    ZeroedAllocator() = default;
+    template <typename U>
+    explicit ZeroedAllocator(const ZeroedAllocator<U>&) {}
+
+    T* allocate(size_t count) {
+        static_assert(alignof(T) >= sizeof(void*));
+        void* whole = std::calloc(1, count * sizeof(T) + alignof(T));
+        if (whole == nullptr) throw std::bad_alloc();
+        // calloc knows no alignment. What it gave stands before the first item.
+        auto* const first = static_cast<char*>(whole) + alignof(T)
+                            - reinterpret_cast<uintptr_t>(whole) % alignof(T);
+        reinterpret_cast<void**>(first)[-1] = whole;
+        return reinterpret_cast<T*>(first);
+    }
+    void deallocate(T* first, size_t) noexcept { std::free(reinterpret_cast<void**>(first)[-1]); }
+
+    template <typename U>
+    void construct(U*) noexcept {}
+    template <typename U, typename... Values>
+    void construct(U* place, Values&&... values) {
+        ::new (static_cast<void*>(place)) U(std::forward<Values>(values)...);
+    }
+
+    bool operator==(const ZeroedAllocator&) const = default;
+};
+
+using DeviceMemory = std::vector<Line, ZeroedAllocator<Line>>;
+
 /// The memory and its port. Reads are in order, each after the latency, limited by the bandwidth.
 /// Lines written by DMA are interleaved: when no read waits, or alternating with reads while the
 /// write queue is full.
@@ -82,7 +120,7 @@ struct MemoryUnit {
         bool operator==(const Write&) const = default;
     };
 
-    std::vector<Line> lines;
+    DeviceMemory lines;
     Ring<Pending> asked, under_way;
     Ring<Write> writes;
     uint64_t free_at = 0;        // cycle in which the port is free
