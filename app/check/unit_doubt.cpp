@@ -130,20 +130,21 @@ bool is_only_an_inch_size(double size) {
 
 void add_clue_of_diameters(const CommentSizes& sizes, std::vector<UnitClue>& clues) {
     if (sizes.bare.empty()) return;
-    const auto [least, most] = std::minmax_element(sizes.bare.begin(), sizes.bare.end());
+    const auto ends = std::minmax_element(sizes.bare.begin(), sizes.bare.end());
+    const double least = *ends.first, most = *ends.second;
     constexpr double most_inches = 8.0; // face mills in inches
     constexpr double small_inches = 1.0, usual_inches = 2.0;
     const bool fractions = std::any_of(sizes.bare.begin(), sizes.bare.end(), is_only_an_inch_size);
     const auto reason = [&](const char* which) {
-        return fmt::format("comments give tools of {:g}{} without a unit, {} (line {})", *least,
-                           *least < *most ? fmt::format(" to {:g}", *most) : "", which,
+        return fmt::format("comments give tools of {:g}{} without a unit, {} (line {})", least,
+                           least < most ? fmt::format(" to {:g}", most) : "", which,
                            sizes.bare_line);
     };
-    if (*most > most_inches)
+    if (most > most_inches)
         clues.push_back({LengthUnit::mm, 2, reason("too large for inches")});
-    else if (fractions && *most <= usual_inches)
+    else if (fractions && most <= usual_inches)
         clues.push_back({LengthUnit::inch, 2, reason("sizes of tools in inches")});
-    else if (*most <= small_inches)
+    else if (most <= small_inches)
         clues.push_back({LengthUnit::inch, 1, reason("small for millimetres")});
 }
 

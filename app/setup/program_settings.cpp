@@ -93,13 +93,12 @@ void take_kinematics(const IniFile& ini, const ProgramSettings& settings,
 void add_folder_of_remaps(const IniFile& ini, const std::string& path,
                           std::vector<std::string>& search_path, std::vector<std::string>& notes) {
     const std::filesystem::path own = std::filesystem::path(path).parent_path();
-    const auto is_in = [](const std::filesystem::path& folder, const std::string& name) {
-        return core::is_there((folder / (name + ".ngc")).generic_string());
-    };
     for (const auto& [code, name] : ini.remaps) {
-        const auto has_it = [&](const std::string& folder) { return is_in(folder, name); };
+        const auto has_it = [file = name + ".ngc"](const std::filesystem::path& folder) {
+            return core::is_there((folder / file).generic_string());
+        };
         if (std::any_of(search_path.begin(), search_path.end(), has_it)) continue;
-        if (is_in(own, name)) {
+        if (has_it(own)) {
             notes.push_back(
                 fmt::format("{}: {}.ngc, which runs in place of {}, is beside this file "
                             "and not in SUBROUTINE_PATH",

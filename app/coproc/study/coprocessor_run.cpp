@@ -136,9 +136,10 @@ std::vector<DeviceFit> least_clocks(const CoprocessorRun& run, const ControlConf
         timed_with_permits(run.plan, at_once, control).blocks;
     std::vector<DeviceFit> fits;
     for (const auto& [elements, cycles] : run.cycles_by_elements) {
-        const auto enough = std::find_if(clocks.begin(), clocks.end(), [&](uint32_t clock) {
-            return keeps_up(undisturbed, cycles, clock);
-        });
+        const auto enough =
+            std::find_if(clocks.begin(), clocks.end(), [&, &cycles = cycles](uint32_t clock) {
+                return keeps_up(undisturbed, cycles, clock);
+            });
         fits.push_back({elements, enough == clocks.end() ? std::nullopt : std::optional(*enough)});
     }
     return fits;

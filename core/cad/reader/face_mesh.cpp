@@ -223,12 +223,11 @@ double FaceMesh::bow_on_cone(const FaceNode& a, const FaceNode& b) const {
 FaceMesh::Judged FaceMesh::judge_measured(const std::array<uint32_t, 3>& triangle,
                                           const std::vector<Vec3>& points) const {
     constexpr int steps = 3;
-    const auto& [a, b, c] = triangle;
+    const FaceNode &a = nodes[triangle[0]], &b = nodes[triangle[1]], &c = nodes[triangle[2]];
     const auto off = [&](double x, double y, double z) {
-        const Vec3 flat =
-            x * points[nodes[a].point] + y * points[nodes[b].point] + z * points[nodes[c].point];
-        return glm::distance(flat, point_at(x * nodes[a].u + y * nodes[b].u + z * nodes[c].u,
-                                            x * nodes[a].v + y * nodes[b].v + z * nodes[c].v));
+        const Vec3 flat = x * points[a.point] + y * points[b.point] + z * points[c.point];
+        return glm::distance(flat,
+                             point_at(x * a.u + y * b.u + z * c.u, x * a.v + y * b.v + z * c.v));
     };
     Judged judged;
     for (int i = 0; i <= steps; ++i)
