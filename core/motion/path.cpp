@@ -313,7 +313,8 @@ std::array<Leg, 2> halves(const Leg& leg) {
     parts[0].arc = {leg.arc.motion, leg.arc.first, middle};
     parts[1].arc = {leg.arc.motion, middle, leg.arc.last};
     for (Leg& part : parts)
-        part.path_error = std::min(leg.path_error, bend(*motion.arc, from, to) * step * step);
+        part.path_error =
+            std::min(leg.path_error, bend(*motion.arc, from, to) * step * step + leg.lasting_error);
     return parts;
 }
 
@@ -322,7 +323,7 @@ Leg still_half_way(const Leg& leg) {
     Leg still = first_half;
     still.positions = {first_half.positions[1]};
     still.begin = first_half.end;
-    if (leg.arc.motion) still.path_error = 0.0;
+    if (leg.arc.motion) still.path_error = leg.lasting_error;
     still.arc = {};
     return still;
 }
@@ -351,8 +352,10 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     } else {
         add_straight(path, *from, *to, longest_time(axis_times(*from, *to, machine, path)));
     }
-    for (Leg& leg : path.legs)
-        for (double* error : {&leg.path_error, &leg.lasting_error}) *error += motion.path_error;
+    for (Leg& leg : path.legs) {
+        leg.path_error += motion.path_error;
+        leg.lasting_error += motion.path_error;
+    }
     return path;
 }
 

@@ -172,6 +172,20 @@ TEST(ArcPath, StaysWithinItsErrorOfEveryChordThoughTheRadiusChanges) {
     }
 }
 
+TEST(ArcPath, KeepsTheErrorOfItsMotionInShorterChords) {
+    Motion motion{.kind = MotionKind::arc, .from = {10.0, 0, 0}, .to = {0, 10.0, 0}, .feed = 100.0};
+    motion.arc = ArcPath{2, Vec3(0.0), 1.5707963267948966};
+    motion.path_error = 0.02;
+    const Path path = path_of(motion, Machine(), 0.0025);
+    const Leg& leg = path.legs.front();
+    EXPECT_EQ(leg.lasting_error, 0.02);
+    const Leg part = halves(halves(leg)[0])[1];
+    EXPECT_EQ(part.lasting_error, 0.02);
+    EXPECT_GT(part.path_error, 0.02);
+    EXPECT_LT(part.path_error, 0.02 + 0.1 * (leg.path_error - 0.02));
+    EXPECT_EQ(still_half_way(leg).path_error, 0.02);
+}
+
 TEST(ArcPath, HasABoundedNumberOfChordsWhoseErrorIsStated) {
     for (const double radius : {1e6, 1e9, 1e20, 1e40}) {
         Motion motion{.kind = MotionKind::arc,

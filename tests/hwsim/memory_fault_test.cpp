@@ -53,5 +53,17 @@ TEST(MemoryFault, ALineThatWaitsForReadsIsNoStall) {
     EXPECT_EQ(device.reason(), Stop::none);
 }
 
+TEST(DeviceMemory, IsZeroAndAlignedWhereOthersWroteBefore) {
+    for (int round = 0; round < 20; ++round)
+        for (const size_t count : {size_t{1}, size_t{16}, size_t{4096}}) {
+            DeviceMemory memory(count);
+            ASSERT_EQ(reinterpret_cast<uintptr_t>(memory.data()) % alignof(Line), 0U);
+            for (Line& line : memory) {
+                ASSERT_EQ(line, Line());
+                line.word.fill(0xffffffff);
+            }
+        }
+}
+
 } // namespace
 } // namespace hwsim

@@ -101,7 +101,7 @@ void FixtureCheck::resolve(const Doubt& doubt, PairClearance& known) {
         return measure(leg, doubt.start, relative, *doubt.body, known);
     };
     constexpr double finest = 1e-5; // mm, of a chord's error
-    if (is_settled(doubt.seen, known) || doubt.leg.path_error <= finest)
+    if (is_settled(doubt.seen, known) || doubt.leg.path_error - doubt.leg.lasting_error <= finest)
         return merge(known, doubt.seen);
     if (doubt.seen.lower <= 0.0) {
         const PairClearance there = clearance_of(still_half_way(doubt.leg));
