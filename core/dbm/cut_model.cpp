@@ -201,6 +201,17 @@ bool comes_to(const LoggedSweep& logged, const TiltedBox* box, const Square& squ
     return comes_to(logged, square, heights) && (!box || box->comes_to(square, heights));
 }
 
+/// From the lowest to the highest of some intervals; empty if there are none.
+template <typename Intervals>
+Interval hull(const Intervals& all) {
+    Interval heights{infinity, -infinity};
+    for (const Interval& one : all) {
+        heights.lower = std::min(heights.lower, one.lower);
+        heights.upper = std::max(heights.upper, one.upper);
+    }
+    return heights;
+}
+
 /// The part of the intervals between two heights.
 IntervalList clipped(IntervalList all, const Interval& heights) {
     all.subtract({-infinity, heights.lower});
@@ -214,7 +225,9 @@ TiltedBox::TiltedBox(const CutterSweep& sweep) {
     const Vec3& axis = sweep.orientation[2];
     const double level = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     const Vec3 across = level > 0.0 ? Vec3(-axis.y, axis.x, 0.0) / level : Vec3(1.0, 0.0, 0.0);
-    axes_ = {axis, across, glm::cross(axis, across)};
+    const Vec3 third = glm::cross(axis, across);
+    const double diagonal = std::sqrt(0.5);
+    axes_ = {axis, across, third, diagonal * (across + third), diagonal * (across - third)};
     const Aabb& body = sweep.cutter->body;
     const double radius = std::max({body.max.x, body.max.y, -body.min.x, -body.min.y});
     for (size_t i = 0; i < axes_.size(); ++i) {
@@ -240,29 +253,52 @@ bool TiltedBox::comes_to(const Square& square, const Interval& heights) const {
 }
 
 CellSweeps sweeps_near_cell(const CutModel& model, int i, int j) {
-    const Square cell = cell_square(model, i, j);
-    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
     CellSweeps near;
-    for (size_t k = 0; k < runs.size(); ++k)
-        for (uint32_t number = runs[k].first; number <= runs[k].last; ++number) {
-            if (!overlaps(model.log.box(number), cell)) continue;
-            const LoggedSweep sweep = model.log[number];
-            if (!comes_to(sweep, cell, any_height)) continue;
-            std::optional<TiltedBox> box;
-            if (!is_upright(sweep.sweep.orientation)) box.emplace(sweep.sweep);
-            if (box && !box->comes_to(cell, {sweep.box.min.z, sweep.box.max.z})) continue;
-            near.sweeps.push_back(sweep);
-            near.boxes.push_back(box);
-        }
+    near.add(model, i, j, 0);
     return near;
+}
+
+void CellSweeps::add(const CutModel& model, int i, int j, size_t first) {
+    const Square cell = cell_square(model, i, j);
+    const auto is_near = [&](const NearSweep& sweep) {
+        const LoggedSweep& logged = sweep.logged;
+        return comes_to(logged, cell, any_height)
+               && (!sweep.box || sweep.box->comes_to(cell, {logged.box.min.z, logged.box.max.z}));
+    };
+    const auto add = [&](size_t number) {
+        if (!overlaps(model.log.box(number), cell)) return;
+        if (pool_) {
+            const auto known = pool_->find(number);
+            if (known != pool_->end()) {
+                if (is_near(known->second)) sweeps_.push_back(&known->second);
+                return;
+            }
+        }
+        NearSweep sweep{model.log[number], {}};
+        if (!is_upright(sweep.logged.sweep.orientation)) sweep.box.emplace(sweep.logged.sweep);
+        if (!is_near(sweep)) return;
+        sweeps_.push_back(pool_ ? &pool_->emplace(number, std::move(sweep)).first->second
+                                : &own_.emplace_back(std::move(sweep)));
+    };
+    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
+    size_t run = runs.size();
+    while (run > 0 && runs[run - 1].last >= first) --run;
+    for (; run < runs.size(); ++run)
+        for (size_t number = std::max<size_t>(runs[run].first, first); number <= runs[run].last;
+             ++number)
+            add(number);
 }
 
 SquareCuts::SquareCuts(const CutModel& model, const CellSweeps& near, const Square& square,
                        const Interval& heights)
     : SquareCuts(model, square, heights) {
-    for (size_t i = 0; i < near.sweeps.size(); ++i) {
-        const LoggedSweep& sweep = near.sweeps[i];
-        const TiltedBox* const box = near.boxes[i] ? &*near.boxes[i] : nullptr;
+    add(near, 0);
+}
+
+void SquareCuts::add(const CellSweeps& near, size_t first) {
+    for (size_t i = first; i < near.size(); ++i) {
+        const LoggedSweep& sweep = near[i].logged;
+        const TiltedBox* const box = near[i].box ? &*near[i].box : nullptr;
         if (comes_to(sweep, box, square_, heights_))
             for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
                 cuts_.push_back({&sweep, box, &piece, {}, {}});
@@ -335,61 +371,115 @@ std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number, const Int
 }
 
 IntervalList SquareCuts::column(int number) {
-    const Square part = quarter(number);
-    IntervalList column = clipped(column_of(model_->solid, part), heights_);
-    for (PieceCut& cut : cuts_) {
-        if (column.empty()) return column;
-        const Interval left{column[0].lower, column[column.size() - 1].upper};
-        if (!comes_to(*cut.sweep, cut.box, part, left)) continue;
-        if (const auto gone = covered(cut, number, left)) column.subtract(*gone);
-    }
+    IntervalList column = clipped(column_of(model_->solid, quarter(number)), heights_);
+    subtract_from_column(column, number, 0);
     return column;
 }
 
+void SquareCuts::subtract_from_column(IntervalList& column, int number, size_t first) {
+    const Square part = quarter(number);
+    for (size_t i = first; i < cuts_.size() && !column.empty(); ++i) {
+        const Interval left = hull(column);
+        if (!comes_to(*cuts_[i].sweep, cuts_[i].box, part, left)) continue;
+        // Most moves of a tilted tool pass where the material is gone already.
+        const TiltedBox* const box = cuts_[i].box;
+        const auto is_met = [&](const Interval& matter) { return box->comes_to(part, matter); };
+        if (box && column.size() > 1 && std::none_of(column.begin(), column.end(), is_met))
+            continue;
+        if (const auto gone = covered(cuts_[i], number, left)) column.subtract(*gone);
+    }
+}
+
 IntervalList SquareCuts::line_at_centre() const {
+    IntervalList line = clipped(line_of(model_->solid, 2, x(1), y(1)), heights_);
+    subtract_from_line(line, 0);
+    return line;
+}
+
+void SquareCuts::subtract_from_line(IntervalList& line, size_t first) const {
     const double at_x = x(1), at_y = y(1);
-    IntervalList line = clipped(line_of(model_->solid, 2, at_x, at_y), heights_);
-    for (const PieceCut& cut : cuts_) {
-        if (line.empty()) return line;
+    for (size_t i = first; i < cuts_.size() && !line.empty(); ++i) {
+        const PieceCut& cut = cuts_[i];
         if (!comes_to(*cut.sweep, cut.box, {at_x, at_x, at_y, at_y}, heights_)) continue;
         if (const auto gone = line_interval(cut.piece->around, cut.sweep->sweep, 2, at_x, at_y))
             line.subtract(*gone);
     }
-    return line;
+}
+
+KeptSquare::KeptSquare(SquareCuts cuts, const CellSweeps& near, size_t& kept)
+    : cuts_(std::move(cuts)), near_(&near), seen_(near.size()), kept_(&kept) {
+    *kept_ += 1 + cuts_.cuts_.size();
+}
+
+void KeptSquare::catch_up() {
+    if (seen_ == near_->size()) return;
+    const size_t known = cuts_.cuts_.size();
+    cuts_.add(*near_, seen_);
+    seen_ = near_->size();
+    *kept_ += cuts_.cuts_.size() - known;
+    if (line_) cuts_.subtract_from_line(*line_, known);
+    for (int quarter = 0; quarter < 4; ++quarter)
+        if (auto& column = columns_[static_cast<size_t>(quarter)])
+            cuts_.subtract_from_column(*column, quarter, known);
 }
 
 const IntervalList& KeptSquare::line_at_centre() {
+    catch_up();
     if (!line_) line_ = cuts_.line_at_centre();
     return *line_;
 }
 
 const IntervalList& KeptSquare::column(int quarter) {
+    catch_up();
     std::optional<IntervalList>& column = columns_[static_cast<size_t>(quarter)];
     if (!column) column = cuts_.column(quarter);
     return *column;
 }
 
-KeptSquare& KeptSquare::within(int quarter) {
+namespace {
+
+/// Squares, moves and pieces of moves in squares that may be kept, some 300 bytes each.
+constexpr size_t most_kept = 40'000;
+
+} // namespace
+
+KeptSquare* KeptSquare::within(int quarter) {
+    catch_up();
     std::unique_ptr<KeptSquare>& part = quarters_[static_cast<size_t>(quarter)];
-    if (!part) part = std::make_unique<KeptSquare>(cuts_.within(quarter, any_height));
-    return *part;
+    if (!part && *kept_ > most_kept) return nullptr;
+    if (!part)
+        part = std::make_unique<KeptSquare>(cuts_.within(quarter, hull(column(quarter))), *near_,
+                                            *kept_);
+    return part.get();
+}
+
+SquareCuts KeptSquare::loose_within(int quarter, const Interval& heights) {
+    catch_up();
+    return cuts_.within(quarter, heights);
 }
 
 KeptSquare* KeptSquares::of_cell(int i, int j) {
-    constexpr size_t most = 200'000;
+    if (model_->is_on_trial) return nullptr;
     const auto known = cells_.find({i, j});
-    if (known != cells_.end()) return &*known->second.square;
-    if (kept_ > most) return nullptr;
-    Cell& cell = cells_[{i, j}];
-    cell.sweeps = sweeps_near_cell(*model_, i, j);
-    cell.square.emplace(SquareCuts(*model_, cell.sweeps, cell_square(*model_, i, j), any_height));
-    kept_ += cell.sweeps.sweeps.size();
+    if (known == cells_.end() && kept_ > most_kept) return nullptr;
+    Cell& cell =
+        known != cells_.end() ? known->second : cells_.try_emplace({i, j}, &pool_).first->second;
+    const size_t pooled = pool_.size();
+    cell.sweeps.add(*model_, i, j, std::exchange(cell.logged, model_->log.size()));
+    kept_ += pool_.size() - pooled;
+    if (!cell.square) {
+        const Interval heights = hull(model_->columns.line(i, j));
+        cell.square.emplace(SquareCuts(*model_, cell.sweeps, cell_square(*model_, i, j), heights),
+                            cell.sweeps, kept_);
+    }
     return &*cell.square;
 }
 
 IntervalList fresh_column(const CutModel& model, int i, int j, const Square& square) {
     IntervalList column = column_of(model.solid, square);
-    for (const LoggedSweep& one : sweeps_near_cell(model, i, j).sweeps) {
+    const CellSweeps near = sweeps_near_cell(model, i, j);
+    for (size_t k = 0; k < near.size(); ++k) {
+        const LoggedSweep& one = near[k].logged;
         if (!comes_to(one, square, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (column.empty()) return column;
@@ -402,7 +492,9 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
     IntervalList line = line_of(model.solid, 2, x, y);
-    for (const LoggedSweep& one : sweeps_near_cell(model, i, j).sweeps) {
+    const CellSweeps near = sweeps_near_cell(model, i, j);
+    for (size_t k = 0; k < near.size(); ++k) {
+        const LoggedSweep& one = near[k].logged;
         if (!comes_to(one, {x, x, y, y}, any_height)) continue;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
             if (line.empty()) return line;

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <bitset>
+#include <deque>
 #include <map>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "core/dbm/cutter.h"
@@ -64,8 +66,8 @@ struct LoggedSweep {
     Aabb box;
 };
 
-/// A box around everything that a tilted cutter may remove on one move. It stands along the tool
-/// axis, so a line along Z that passes beside the cutter mostly misses it.
+/// A prism with eight sides around everything that a tilted cutter may remove on one move. It
+/// stands along the tool axis, so a line along Z that passes beside the cutter mostly misses it.
 class TiltedBox {
 public:
     explicit TiltedBox(const CutterSweep& sweep);
@@ -74,8 +76,10 @@ public:
     bool comes_to(const Square& square, const Interval& heights) const;
 
 private:
-    std::array<Vec3, 3> axes_; // unit vectors: the tool axis, one across it and level, and a third
-    std::array<double, 3> least_, most_; // along each
+    // Unit vectors: the tool axis, one across it and level, one across both, and those between
+    // these two.
+    std::array<Vec3, 5> axes_;
+    std::array<double, 5> least_, most_; // along each
 };
 
 /// The executed moves in order. A move that continues where the last one ended, with the same
@@ -162,6 +166,7 @@ struct CutModel {
     CutterSweep last;                         // last of all moves, also those away from the stock
     double volume_owed = 0.0;                 // removed but not yet reported (see cut), mm3
     size_t loose_tests = 0;                   // box tests by searches since all boxes were fitted
+    bool is_on_trial = false;                 // the last cut may be taken back (TrialCut)
 
     // Positions of the lines and of the corners of cells, along X, Y, Z.
     std::array<std::vector<double>, 3> positions;
@@ -242,10 +247,33 @@ void note_search(CutModel& model, size_t box_tests);
 /// The square of a column, clipped to the extent of the stock.
 Square cell_square(const CutModel& model, int i, int j);
 
+/// A logged move near some cells.
+struct NearSweep {
+    LoggedSweep logged;
+    std::optional<TiltedBox> box; // none if the cutter is upright
+};
+
+/// Logged moves by their index, shared by the cells that they come near.
+using SweepPool = std::unordered_map<size_t, NearSweep>;
+
 /// The logged moves that may have cut a cell, in order.
-struct CellSweeps {
-    std::vector<LoggedSweep> sweeps;
-    std::vector<std::optional<TiltedBox>> boxes; // of each; none if the cutter is upright
+class CellSweeps {
+public:
+    /// With a pool, moves are kept there; it must outlive this.
+    explicit CellSweeps(SweepPool* pool = nullptr) : pool_(pool) {}
+    CellSweeps(CellSweeps&&) = default;
+    CellSweeps& operator=(CellSweeps&&) = default;
+
+    size_t size() const { return sweeps_.size(); }
+    const NearSweep& operator[](size_t i) const { return *sweeps_[i]; }
+
+    /// Adds those near cell (i, j) from index `first` of the log on.
+    void add(const CutModel& model, int i, int j, size_t first);
+
+private:
+    std::vector<const NearSweep*> sweeps_;
+    std::deque<NearSweep> own_; // without a pool
+    SweepPool* pool_;
 };
 
 CellSweeps sweeps_near_cell(const CutModel& model, int i, int j);
@@ -274,6 +302,8 @@ public:
     SquareCuts within(int quarter, const Interval& heights) const;
 
 private:
+    friend class KeptSquare;
+
     /// A convex piece of a cutter on one move. `at`: the segments that it sweeps on lines along Z
     /// through the corners of the quarters, by X and then Y; computed on demand.
     struct PieceCut {
@@ -291,6 +321,12 @@ private:
     const std::optional<Interval>& segment(PieceCut& cut, int column, int row) const;
     /// What a cut covers in a whole quarter; none if it covers nothing between the heights `left`.
     std::optional<Interval> covered(PieceCut& cut, int quarter, const Interval& left) const;
+    /// Adds the moves near the cell from number `first` on.
+    void add(const CellSweeps& near, size_t first);
+    /// Removes from the line through the centre, or from the column of a quarter, what the cuts
+    /// from number `first` on remove there.
+    void subtract_from_line(IntervalList& line, size_t first) const;
+    void subtract_from_column(IntervalList& column, int quarter, size_t first);
 
     const CutModel* model_;
     Square square_;
@@ -298,42 +334,64 @@ private:
     std::vector<PieceCut> cuts_;
 };
 
-/// As SquareCuts between all heights, with all answers kept.
+/// As SquareCuts between all heights, with all answers kept. Moves that come near the cell later
+/// are taken into account when the square is asked next.
 class KeptSquare {
 public:
-    explicit KeptSquare(SquareCuts cuts) : cuts_(std::move(cuts)) {}
+    /// `near`: the moves near the cell, all of which are in `cuts`; more may be added to its end.
+    /// `kept`: counts the squares and the pieces of moves in them. Both must outlive this.
+    KeptSquare(SquareCuts cuts, const CellSweeps& near, size_t& kept);
 
     const Square& square() const { return cuts_.square(); }
     const IntervalList& line_at_centre();
     Square quarter(int number) const { return cuts_.quarter(number); }
     const IntervalList& column(int quarter);
-    KeptSquare& within(int quarter);
+    /// The square of a quarter; null if so much is kept that no more squares are.
+    KeptSquare* within(int quarter);
+    /// A quarter that is not kept: SquareCuts::within().
+    SquareCuts loose_within(int quarter, const Interval& heights);
 
 private:
+    /// Takes the moves into account that were added since the last call.
+    void catch_up();
+
     SquareCuts cuts_;
+    const CellSweeps* near_;
+    size_t seen_; // moves of `near_` that `cuts_` knows
+    size_t* kept_;
     std::optional<IntervalList> line_;
     std::array<std::optional<IntervalList>, 4> columns_;
     std::array<std::unique_ptr<KeptSquare>, 4> quarters_;
 };
 
-/// The squares that searches against the same stock have recomputed. Not for several threads.
+/// The squares that searches against the same stock have recomputed, also while more is cut from
+/// it. Not for several threads.
 class KeptSquares {
 public:
-    /// The model must outlive this, unchanged.
+    /// The model must outlive this; it may be cut, but cuts must not be taken back between two
+    /// calls.
     explicit KeptSquares(const CutModel& model) : model_(&model) {}
+    KeptSquares(const KeptSquares&) = delete;
+    KeptSquares& operator=(const KeptSquares&) = delete;
 
-    /// Null if so much is kept that no more cells are.
+    /// Null if the last cut may be taken back, or if so much is kept that no more cells are.
     KeptSquare* of_cell(int i, int j);
+
+    const CutModel& model() const { return *model_; }
 
 private:
     struct Cell {
+        explicit Cell(SweepPool* pool) : sweeps(pool) {}
+
         CellSweeps sweeps;
+        size_t logged = 0; // size of the log when `sweeps` were last taken from it
         std::optional<KeptSquare> square;
     };
 
     const CutModel* model_;
+    SweepPool pool_;
     std::map<std::pair<int, int>, Cell> cells_;
-    size_t kept_ = 0; // pieces of sweeps, some 300 bytes each
+    size_t kept_ = 0; // squares, moves and pieces of moves in squares, some 300 bytes each
 };
 
 /// The heights at which the part `square` of cell (i, j) may contain material, recomputed from the

@@ -460,6 +460,7 @@ TrialCut::TrialCut(CutModel& model, const CutterSweep& sweep)
       last_before_(model.last),
       log_before_(model.log.sizes()),
       marks_before_(model.marks) {
+    model.is_on_trial = true;
     const std::optional<ReadySweep> ready = begin(model, sweep);
     if (!ready) return;
     is_near_ = true;
@@ -481,6 +482,7 @@ TrialCut::TrialCut(CutModel& model, const CutterSweep& sweep)
 TrialCut::~TrialCut() {
     if (!model_) return;
     CutModel& model = *model_;
+    model.is_on_trial = false;
     model.last = last_before_;
     model.marks = marks_before_;
     if (!is_near_) return;
@@ -497,6 +499,7 @@ TrialCut::~TrialCut() {
 
 double TrialCut::keep() {
     CutModel& model = *std::exchange(model_, nullptr);
+    model.is_on_trial = false;
     if (is_near_) fit_when_many_are_stale(model);
     return reported(model, {beyond_, points_});
 }

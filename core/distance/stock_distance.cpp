@@ -513,7 +513,12 @@ private:
             const Near left = near_part(part, cuts.column(quarter), ends_refining());
             if (left.bound >= near_enough() || keeps_whole(part, left)) continue;
             if constexpr (std::is_same_v<Cuts, KeptSquare>) {
-                refine(cuts.within(quarter));
+                if (KeptSquare* const within = cuts.within(quarter)) {
+                    refine(*within);
+                } else {
+                    SquareCuts loose = cuts.loose_within(quarter, left.heights);
+                    refine(loose);
+                }
             } else {
                 SquareCuts within = cuts.within(quarter, left.heights);
                 refine(within);

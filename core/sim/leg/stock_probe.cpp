@@ -21,6 +21,10 @@ double StockProbe::exact_within(const Allowance& allowance) const {
     return 2.0 * (deciding_distance(allowance) + bounds_.off_path(allowance));
 }
 
+void StockProbe::keep_squares(const CutModel& stock) {
+    if (!kept_ || &kept_->model() != &stock) kept_.emplace(stock);
+}
+
 Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
                                 const CutModel& stock, StockGoal goal, double shrink) {
     // Most machine bodies are far away and have many triangles.
@@ -37,6 +41,7 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
     goal.threshold = std::min(goal.threshold, goal.limit);
     size_t& futile_left = futile_left_[static_cast<size_t>(body.kind)];
     goal.futile_limit = std::min({goal.futile_limit, futile_left, size_t{500}});
+    if (kept_ && &kept_->model() == &stock) goal.kept = &*kept_;
     const StockSeparation found = separation(shapes, stock, goal);
     futile_left -= std::min(futile_left, found.futile);
     if (found.line) hint = found.line;
@@ -142,7 +147,19 @@ PairClearance StockProbe::certain_clearance(const MovingBody& body, const Leg& l
 void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
                                   const CutModel& stock, double nearest) {
     // The body is certainly at this position at one moment.
-    const StockObservation here = observe(body, still_half_way(leg), stock, nearest);
+    const Leg still = still_half_way(leg);
+    StockObservation here;
+    const bool is_clear_of_contact = body.profile && seen.shrunk.lower > 0.0;
+    if (is_clear_of_contact && allowance_of(context_.setup, pair_of(body)).distance <= resolution) {
+        // Lower bounds are known, and the shrunk body overlaps nothing.
+        const RelativeLeg& relative = context_.against_stock(body, still);
+        const double limit = std::min(context_.setup.search_limit, nearest);
+        here.plain =
+            widened(to_stock(body, relative, stock, {.limit = limit, .bound = StockBound::upper}),
+                    relative);
+    } else {
+        here = observe(body, still, stock, nearest);
+    }
     seen.shrunk.upper = here.shrunk.upper;
     if (here.plain.upper >= seen.plain.upper) return;
     const double lower = seen.plain.lower;

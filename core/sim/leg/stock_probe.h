@@ -27,6 +27,10 @@ public:
         futile_left_.fill(2'000);
     }
 
+    /// From here on, keeps what searches against `stock` recompute; it may be cut meanwhile. Worth
+    /// it for a motion that is checked in many pieces.
+    void keep_squares(const CutModel& stock);
+
     /// Measures both bounds, up to a distance of `nearest`.
     StockObservation observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
                              double nearest);
@@ -92,6 +96,7 @@ private:
     // Squares that may still be recomputed in this motion for material near a body of each kind
     // that cannot be proven clear any more.
     std::array<size_t, 5> futile_left_;
+    std::optional<KeptSquares> kept_;
 };
 
 } // namespace core
