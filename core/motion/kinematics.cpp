@@ -299,6 +299,20 @@ double tilt_of_axis(const Machine& machine, const std::vector<size_t>& axes, con
     return tilt;
 }
 
+/// How far the surface of a body gets along its own normal while its axis tilts to either side by
+/// half of this angle, mm.
+///
+/// Proof:   core/sim/README.md, "Flutes in parts".
+double tilt_error(const Mover& mover, double tilt) {
+    const double half = 0.5 * tilt;
+    const double of_points = half * mover.reach;
+    if (mover.arm == infinity) return of_points;
+    if (mover.overlap == 0.0) return std::min(of_points, half * mover.arm);
+    const double needed = 1.6 * of_points; // of the overlap
+    if (needed > 0.5 * mover.overlap) return of_points;
+    return std::min(of_points, half * (mover.arm + needed));
+}
+
 /// Adds to a leg what the errors of the rotary axes between its links turn the body by. No point of
 /// the body is farther from these axes than `reach`.
 void add_turn_error(RelativeLeg& relative, const Leg& leg, double reach) {
@@ -357,7 +371,7 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
                             : turn;
     relative.lasting_error = mover.form_error + leg.lasting_error;
     relative.deviation = mover.deviation;
-    relative.error = leg.path_error + mover.form_error + curve + 0.5 * tilt * mover.reach;
+    relative.error = leg.path_error + mover.form_error + curve + tilt_error(mover, tilt);
     // The centre stays within `curve` of its chord, and the body turns about it. While the linear
     // axes follow the rotary ones, that is far less than what the axes travel.
     const double chord = glm::distance(relative.positions[0], relative.positions[1]);

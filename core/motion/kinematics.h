@@ -73,6 +73,12 @@ struct Mover {
     // A body of revolution about the Z axis of its frame, on which `centre` is: turning about this
     // axis does not change it.
     bool is_revolved = false;
+    // Of a convex body of revolution: while it tilts about `centre`, its surface moves along its
+    // own normal by at most the angle times this; not known if infinite.
+    double arm = infinity;
+    // Its ends are within a larger body, which extends over them by at least this, mm. The normals
+    // of these ends are not counted in `arm`. 0: there are no such ends.
+    double overlap = 0.0;
 };
 
 /// Adds displacements to the motion of a body: its origin may be displaced by any vector of the

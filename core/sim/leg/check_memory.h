@@ -14,6 +14,8 @@
 
 namespace core {
 
+struct FlutePart;
+
 /// The order of pairs in reports and in the memory of a check: by fixture, the stock first.
 inline bool is_before(const Pair& a, const Pair& b) {
     return std::tuple(a.fixture, a.part, a.carried) < std::tuple(b.fixture, b.part, b.carried);
@@ -40,8 +42,13 @@ struct CheckMemory {
     /// Scan line that was nearest to each kind of body in the last search; the next search starts
     /// there.
     std::array<std::optional<LineId>, 5> hints;
-    /// Prepared cutters, by tool number and path error.
-    std::map<std::pair<ToolNumber, double>, std::shared_ptr<const Cutter>> cutters;
+    /// A tool with the spindle as it is, or stopped in its orientation: a boring bar has other
+    /// flutes then.
+    using ToolState = std::pair<ToolNumber, bool>;
+    /// Prepared cutters, by tool, part of the flutes (0: the whole) and path error.
+    std::map<std::tuple<ToolState, size_t, double>, std::shared_ptr<const Cutter>> cutters;
+    /// The parts in which flutes cut while they turn.
+    std::map<ToolState, std::shared_ptr<const std::vector<FlutePart>>> flute_parts;
     /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's
     /// frame. Without them a rapid within such a cut would be a false alarm.
     std::map<size_t, SweepLog> cuts;

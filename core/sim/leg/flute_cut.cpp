@@ -4,7 +4,9 @@
 
 #include "core/dbm/covered_path.h"
 #include "core/dbm/cut_ahead.h"
+#include "core/distance/stock_distance.h"
 #include "core/motion/path.h"
+#include "core/sim/leg/flute_parts.h"
 #include "core/sim/setup.h"
 
 namespace core {
@@ -16,6 +18,11 @@ double rounded_up(double error) {
     double step = 1e-5;
     while (step < error) step *= 1.25;
     return step;
+}
+
+/// Of a tool with two assemblies, only one knows the other.
+CheckMemory::ToolState state_of(const ToolAssembly& tool) {
+    return {tool.description.number, tool.oriented != nullptr};
 }
 
 /// The box of a fixture in the stock's frame; empty if it moves relative to the stock.
@@ -63,22 +70,67 @@ Transform stock_from_fixture(const Setup& setup, size_t fixture, const AxisValue
     return target_from_mover(setup.machine, setup.stock_mount, mount, values);
 }
 
-std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg) {
+const RevolvedProfile& FluteCut::cutting_profile() const {
+    const auto& certain = context_.tool.certain_flutes;
+    return certain ? *certain : context_.tool.parts[0].profile;
+}
+
+std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg, size_t part,
+                                                   const RevolvedProfile& profile) {
     const double error = (leg.turns ? rounded_up(leg.error) : leg.error) + context_.setup.cut_error;
-    auto& cutter = context_.memory.cutters[{context_.tool.description.number, error}];
+    auto& cutter = context_.memory.cutters[{state_of(context_.tool), part, error}];
     if (cutter) return cutter;
-    const RevolvedProfile& flutes = context_.tool.parts[0].profile;
-    Cutter made = make_cutter(context_.tool.certain_flutes.value_or(flutes), error);
-    made.flutes = flutes;
+    Cutter made = make_cutter(profile, error);
+    if (part == 0) made.flutes = context_.tool.parts[0].profile;
     return cutter = std::make_shared<const Cutter>(std::move(made));
+}
+
+const std::vector<FlutePart>& FluteCut::parts() {
+    auto& parts = context_.memory.flute_parts[state_of(context_.tool)];
+    if (!parts)
+        parts = std::make_shared<const std::vector<FlutePart>>(
+            flute_parts(cutting_profile(), context_.bodies[0].mover, context_.setup.mesh_size));
+    return *parts;
 }
 
 double FluteCut::along(const Leg& leg, CutModel& stock) {
     assert(leg.straight);
     if (context_.tool.parts.empty()) return 0.0;
+    if (!context_.flutes_turn_too_far(leg)) return cut_with(sweep_on(leg), stock);
+    if (is_away(context_.tool.parts[0].profile, context_.against_stock(context_.bodies[0], leg),
+                stock))
+        return 0.0;
+    double removed = 0.0;
+    for (size_t part = 0; part < parts().size(); ++part) removed += along(leg, part, stock);
+    return removed;
+}
+
+double FluteCut::along(const Leg& leg, size_t part, CutModel& stock) {
+    const FlutePart& flutes = parts()[part];
+    const RelativeLeg way = context_.against_stock(flutes.mover, leg);
+    if (!way.turns || way.reducible_error() <= context_.finest_error(context_.bodies[0], way))
+        return cut_with(sweep_on(way, cutter_for(way, part + 1, flutes.profile)), stock);
+    if (is_away(flutes.profile, way, stock)) return 0.0;
+    const double removed = along(stretch(leg, 0.0, 0.5), part, stock);
+    return removed + along(stretch(leg, 0.5, 1.0), part, stock);
+}
+
+double FluteCut::cut_with(const CutterSweep& sweep, CutModel& stock) {
     ++context_.statistics.sweeps;
-    if (context_.replay) return context_.replay->cut(stock, sweep_on(leg), context_.threads);
-    return cut(stock, sweep_on(leg), context_.threads);
+    if (context_.replay) return context_.replay->cut(stock, sweep, context_.threads);
+    return cut(stock, sweep, context_.threads);
+}
+
+bool FluteCut::is_away(const RevolvedProfile& profile, const RelativeLeg& way,
+                       const CutModel& stock) {
+    const double needed = way.error + context_.setup.cut_error + resolution;
+    const bool has_columns = stock.columns.u_count() > 0;
+    if (!has_columns || !(needed < context_.setup.search_limit)) return false;
+    const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
+    const StockSeparation found = separation(shapes_of(profile, way), stock, goal);
+    context_.statistics.box_tests += found.box_tests;
+    context_.statistics.shape_tests += found.shape_tests;
+    return found.separation.lower >= needed;
 }
 
 std::unique_ptr<TrialCut> FluteCut::try_along(const Leg& leg, CutModel& stock) {
@@ -98,22 +150,15 @@ CutterSweep FluteCut::sweep_on(const Leg& leg) {
 }
 
 CutterSweep FluteCut::sweep_on(const RelativeLeg& way) {
-    return {.cutter = cutter_for(way),
+    return sweep_on(way, cutter_for(way, 0, cutting_profile()));
+}
+
+CutterSweep FluteCut::sweep_on(const RelativeLeg& way, std::shared_ptr<const Cutter> cutter) const {
+    return {.cutter = std::move(cutter),
             .from = way.positions.front(),
             .to = way.positions.back(),
             .orientation = way.orientation,
             .block = value_of(context_.block)};
-}
-
-double FluteCut::along_turning(const Leg& leg, CutModel& stock) {
-    if (!leg.straight || context_.tool.parts.empty()) return 0.0;
-    const MovingBody& body = context_.bodies[0];
-    const RelativeLeg flutes = context_.against_stock(body, leg);
-    const bool far = distance(bounds(body, flutes), stock.outer_box) > flutes.error;
-    if (flutes.turns && far) return 0.0;
-    if (!context_.turns_too_far(leg, true)) return along(leg, stock);
-    const double removed = along_turning(stretch(leg, 0.0, 0.5), stock);
-    return removed + along_turning(stretch(leg, 0.5, 1.0), stock);
 }
 
 void FluteCut::note_cut(const Leg& leg, size_t fixture) {
@@ -131,7 +176,7 @@ void FluteCut::may_cut(const Leg& leg, CutModel& certain) {
         cut(certain, around(context_.tool.parts[0].profile, way));
         return;
     }
-    along_turning(leg, certain);
+    along(leg, certain);
     if (!way.turns) context_.memory.passages.push_back(sweep_on(way));
 }
 

@@ -7,27 +7,27 @@
 
 namespace core {
 
+struct FlutePart;
+
 /// Cuts the stock with the flutes along legs, and records the cuts through expendable fixtures.
 /// Refers to the context.
 class FluteCut {
 public:
     explicit FluteCut(const LegContext& context) : context_(context) {}
 
-    /// Cuts the stock along a straight leg on which the tool hardly turns.
+    /// Cuts the stock along a straight leg. If the tool turns, the flutes are cut in parts, each in
+    /// as many halves of the leg as it needs.
     ///
     /// Result: the volume removed, mm3.
     double along(const Leg& leg, CutModel& stock);
 
-    /// The same as a trial; none without a tool.
+    /// The same as a trial; none without a tool. The tool must hardly turn.
     std::unique_ptr<TrialCut> try_along(const Leg& leg, CutModel& stock);
     /// Keeps such a trial; the volume removed, mm3.
     double keep(TrialCut& trial, const Leg& leg, const CutModel& stock);
 
     /// The move that the flutes make on a straight leg. There must be a tool.
     CutterSweep sweep_on(const Leg& leg);
-
-    /// Cuts the stock along any leg; halves the leg while the tool turns too far.
-    double along_turning(const Leg& leg, CutModel& stock);
 
     /// Removes everything from `certain` that the flutes may have removed on a leg whose contact
     /// with the stock is undecided, and records a straight one as a passage.
@@ -40,8 +40,19 @@ public:
     bool is_in_own_cut(const Leg& leg, size_t fixture) const;
 
 private:
-    std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg);
+    /// The profile that cuts.
+    const RevolvedProfile& cutting_profile() const;
+    /// `part`: 0 is the whole.
+    std::shared_ptr<const Cutter> cutter_for(const RelativeLeg& leg, size_t part,
+                                             const RevolvedProfile& profile);
     CutterSweep sweep_on(const RelativeLeg& way);
+    CutterSweep sweep_on(const RelativeLeg& way, std::shared_ptr<const Cutter> cutter) const;
+    const std::vector<FlutePart>& parts();
+    /// Cuts with one part.
+    double along(const Leg& leg, size_t part, CutModel& stock);
+    double cut_with(const CutterSweep& sweep, CutModel& stock);
+    /// Whether a profile certainly stays away from the stock on a leg.
+    bool is_away(const RevolvedProfile& profile, const RelativeLeg& way, const CutModel& stock);
 
     const LegContext& context_;
 };

@@ -176,7 +176,9 @@ public:
     FluteContact contact_of_flutes(const Leg& leg, const CutModel& stock);
 
     /// Cuts the stock along a leg without a check; the volume removed, mm3.
-    double only_cut(const Leg& leg, CutModel& stock) { return flutes_.along_turning(leg, stock); }
+    double only_cut(const Leg& leg, CutModel& stock) {
+        return leg.straight ? flutes_.along(leg, stock) : 0.0;
+    }
 
     /// FluteCut::may_cut.
     void may_cut(const Leg& leg, CutModel& certain) { flutes_.may_cut(leg, certain); }

@@ -40,6 +40,12 @@ RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
     return relative;
 }
 
+RelativeLeg LegContext::against_stock(const Mover& mover, const Leg& leg) const {
+    RelativeLeg relative = relative_leg(setup.machine, setup.stock_mount, mover, leg);
+    if (leg.path_error < infinity) relative.lasting_error += leg.path_error - leg.lasting_error;
+    return relative;
+}
+
 const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
     last_legs.resize(bodies.size() + 1);
     // Bodies that are not in the list, such as a shrunk part, share the last place.
@@ -50,7 +56,7 @@ const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& 
                       && known.path_error == leg.path_error && known.turn_error == leg.turn_error
                       && known.lasting_error == leg.lasting_error && known.straight == leg.straight;
     if (same) return relative;
-    relative = leg_against(setup, {}, body, leg);
+    relative = against_stock(body.mover, leg);
     known.positions = leg.positions;
     known.path_error = leg.path_error;
     known.turn_error = leg.turn_error;
@@ -77,15 +83,29 @@ bool LegContext::is_too_vague(const RelativeLeg& relative) const {
     return relative.turns && relative.reducible_error() > sharp_fraction * setup.search_limit;
 }
 
-bool LegContext::turns_too_far(const Leg& leg, bool only_flutes) const {
-    if (!setup.machine.has_rotary() || leg.positions.size() != 2) return false;
-    for (const MovingBody& body : bodies) {
-        if (body.body || (only_flutes && body.kind != PartKind::flutes)) continue;
-        const RelativeLeg relative = against_stock(body, leg);
-        if (relative.turns && relative.reducible_error() > finest_error(body, relative))
-            return true;
-    }
-    return false;
+namespace {
+
+/// Whether a part of the tool of which `is_asked` turns too far on a leg.
+template <typename Asked>
+bool turns_too_far(const LegContext& context, const Leg& leg, const Asked& is_asked) {
+    if (!context.setup.machine.has_rotary() || leg.positions.size() != 2) return false;
+    return std::any_of(context.bodies.begin(), context.bodies.end(), [&](const MovingBody& body) {
+        if (body.body || !is_asked(body)) return false;
+        const RelativeLeg& relative = context.against_stock(body, leg);
+        return relative.turns && relative.reducible_error() > context.finest_error(body, relative);
+    });
+}
+
+} // namespace
+
+bool LegContext::flutes_turn_too_far(const Leg& leg) const {
+    return turns_too_far(*this, leg,
+                         [](const MovingBody& body) { return body.kind == PartKind::flutes; });
+}
+
+bool LegContext::others_turn_too_far(const Leg& leg) const {
+    return turns_too_far(*this, leg,
+                         [](const MovingBody& body) { return body.kind != PartKind::flutes; });
 }
 
 } // namespace core

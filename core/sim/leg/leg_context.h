@@ -50,6 +50,10 @@ struct LegContext {
     /// The leg of a body in the frame of a fixture, with the fixture's play.
     RelativeLeg against_fixture(const MovingBody& body, size_t fixture, const Leg& leg) const;
 
+    /// The leg of anything that is mounted in the stock's frame. The error of its path counts as
+    /// one that lasts: shorter parts of a leg keep it.
+    RelativeLeg against_stock(const Mover& mover, const Leg& leg) const;
+
     /// The leg of a body in the stock's frame. Valid until that of another leg is asked for.
     const RelativeLeg& against_stock(const MovingBody& body, const Leg& leg) const;
 
@@ -63,8 +67,11 @@ struct LegContext {
     /// Whether the error of a leg is too large for any clearance within the search limit.
     bool is_too_vague(const RelativeLeg& relative) const;
 
-    /// Whether the tool, or only its flutes, turns so far on a leg that the leg must be halved.
-    bool turns_too_far(const Leg& leg, bool only_flutes = false) const;
+    /// Whether the flutes turn so far on a leg that they must cut or be checked in halves.
+    bool flutes_turn_too_far(const Leg& leg) const;
+
+    /// Whether one of the other parts of the tool turns so far that the leg must be halved.
+    bool others_turn_too_far(const Leg& leg) const;
 };
 
 } // namespace core

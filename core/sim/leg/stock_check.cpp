@@ -62,8 +62,13 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         checks.push_back({*body, before, verdict == Verdict::clear, open, known.upper});
     }
     std::unique_ptr<TrialCut> trial;
-    if (!settled && length(leg) > context_.setup.mesh_size) trial = flutes_.try_along(leg, stock);
-    if (trial && depends_on_time(checks, leg, stock)) {
+    bool needs_halves = false;
+    if (!settled && length(leg) > context_.setup.mesh_size) {
+        // A trial is one cut.
+        needs_halves = context_.flutes_turn_too_far(leg);
+        if (!needs_halves) trial = flutes_.try_along(leg, stock);
+    }
+    if (needs_halves || (trial && depends_on_time(checks, leg, stock))) {
         trial.reset();
         bounds_.scale_leg(0.5);
         double removed = check_cutting(stretch(leg, 0.0, 0.5), start, stock, pairs);
@@ -338,7 +343,11 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
     if (is_enough(context_.setup, pairs)) return 0.0;
     // Flutes that cut may not be measured at all.
     if (context_.use == FluteUse::cutting) bounds_.carry_bound({PartKind::flutes}, pairs);
-    if (!context_.turns_too_far(leg, only_flutes_)) return check_whole(leg, start, stock, pairs);
+    // Flutes that cut are halved by themselves.
+    const bool turns_too_far =
+        (context_.use != FluteUse::cutting && context_.flutes_turn_too_far(leg))
+        || (!only_flutes_ && context_.others_turn_too_far(leg));
+    if (!turns_too_far) return check_whole(leg, start, stock, pairs);
     if (is_clear_by_bound(leg, start, stock, pairs)) return 0.0;
     const double removed = check_turning(stretch(leg, 0.0, 0.5), start, stock, pairs);
     return removed + check_turning(stretch(leg, 0.5, 1.0), start, stock, pairs);
@@ -348,6 +357,7 @@ double StockCheck::check(const Leg& leg, double start, CutModel& stock, TrackedP
     const bool turns = context_.setup.machine.has_rotary() && leg.positions.size() == 2
                        && turn_of(context_.setup.machine, leg.positions[0], leg.positions[1]) > 0.0;
     if (turns) {
+        probe_.keep_squares(stock);
         // Machine bodies are large: they would divide the leg far more finely than the tool needs.
         for (const MovingBody& body : context_.bodies)
             if (body.body) check_turning_body(body, leg, start, stock, pairs);
