@@ -163,6 +163,7 @@ TEST(FluteParts, KeepTheirBoundsWhileTheAxesTurn) {
 
 struct Bench {
     Setup setup;
+    std::vector<bool> no_fixtures = {};
     CheckMemory memory = {};
     Statistics statistics = {};
     CutModel stock = *make_cut_model(setup.stock, setup.mesh_size);
@@ -170,7 +171,7 @@ struct Bench {
                        setup.tools.at(ToolNumber{1}),
                        FluteUse::cutting,
                        BlockIndex{7},
-                       {},
+                       no_fixtures,
                        memory,
                        statistics,
                        moving_bodies(setup, setup.tools.at(ToolNumber{1}))};
@@ -193,16 +194,20 @@ Setup turning_setup(ToolShape shape) {
     return setup;
 }
 
+const Leg tilting_leg(double length) {
+    return {.positions = {AxisValues{-24, 3, length - 20, 10, 0, 0},
+                          AxisValues{10, 8, length - 24, 35, 0, 50}},
+            .end = 1.0};
+}
+
 /// The same cut in many short legs on which the whole flutes hardly turn.
 TEST(FluteCut, RemovesInPartsWhatTheWholeFlutesRemoveInShortLegs) {
     for (const ToolShape shape : {ToolShape::flat, ToolShape::ball}) {
         Bench once{turning_setup(shape)}, shortly{turning_setup(shape)};
-        const double length = once.context.tool.length;
-        const AxisValues from{-24, 3, length - 20, 10, 0, 0}, to{10, 8, length - 24, 35, 0, 50};
-        const Leg leg{.positions = {from, to}, .end = 1.0};
+        const Leg leg = tilting_leg(once.context.tool.length);
         ASSERT_TRUE(once.context.flutes_turn_too_far(leg));
         const double removed = once.flutes.along(leg, once.stock);
-        constexpr int count = 20'000;
+        constexpr int count = 5'000;
         double reference = 0.0;
         for (int i = 0; i < count; ++i) {
             const Leg part = stretch(leg, double(i) / count, double(i + 1) / count);
@@ -212,6 +217,36 @@ TEST(FluteCut, RemovesInPartsWhatTheWholeFlutesRemoveInShortLegs) {
         EXPECT_GT(reference, 1000.0);
         EXPECT_NEAR(removed, reference, 0.004 * reference);
     }
+}
+
+/// Shorter legs do not reduce the error of the path, so halving must not wait for it.
+TEST(FluteCut, EndsWhereThePathIsLessAccurateThanFlutesNeed) {
+    Bench bench{turning_setup(ToolShape::ball)};
+    Leg leg = tilting_leg(bench.context.tool.length);
+    leg.path_error = 0.05;
+    EXPECT_GT(bench.flutes.along(leg, bench.stock), 1000.0);
+    EXPECT_LT(bench.statistics.sweeps, 20'000U);
+}
+
+TEST(FluteCut, KnowsABoringBarThatIsStoppedByItsFlutes) {
+    core::Setup setup = turning_setup(ToolShape::flat);
+    ToolDescription bar = setup.tools.at(ToolNumber{1}).description;
+    bar.single_point = true;
+    bar.shank = {{4, 4, 20}};
+    setup.tools.at(ToolNumber{1}) = *assemble(bar);
+    Bench turning{setup};
+    const ToolAssembly& stopped = *turning.context.tool.oriented;
+    LegContext context{turning.setup,         stopped,
+                       FluteUse::not_cutting, BlockIndex{7},
+                       turning.no_fixtures,   turning.memory,
+                       turning.statistics,    moving_bodies(turning.setup, stopped)};
+    FluteCut bar_alone{context};
+    const Leg still{.positions = {AxisValues{0, 0, 100, 0, 0, 0}}};
+    const auto radius = [&](FluteCut& flutes) {
+        return bounds(flutes.sweep_on(still).cutter->pieces[0].within).max.x;
+    };
+    EXPECT_EQ(radius(turning.flutes), 3.0);
+    EXPECT_EQ(radius(bar_alone), 2.0);
 }
 
 } // namespace
