@@ -62,12 +62,10 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         checks.push_back({*body, before, verdict == Verdict::clear, open, known.upper});
     }
     std::unique_ptr<TrialCut> trial;
-    bool needs_halves = false;
-    if (!settled && length(leg) > context_.setup.mesh_size) {
-        // A trial is one cut.
-        needs_halves = context_.flutes_turn_too_far(leg);
-        if (!needs_halves) trial = flutes_.try_along(leg, stock);
-    }
+    // A trial is one cut.
+    const bool needs_halves = !settled && context_.flutes_turn_too_far(leg);
+    if (!settled && !needs_halves && length(leg) > context_.setup.mesh_size)
+        trial = flutes_.try_along(leg, stock);
     if (needs_halves || (trial && depends_on_time(checks, leg, stock))) {
         trial.reset();
         bounds_.scale_leg(0.5);
