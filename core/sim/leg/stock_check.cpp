@@ -62,7 +62,7 @@ double StockCheck::check_cutting(const Leg& leg, double start, CutModel& stock,
         checks.push_back({*body, before, verdict == Verdict::clear, open, known.upper});
     }
     std::unique_ptr<TrialCut> trial;
-    // A trial is one cut.
+    // A trial is a single cut of the whole flutes, so they must hardly turn.
     const bool needs_halves = !settled && context_.flutes_turn_too_far(leg);
     if (!settled && !needs_halves && length(leg) > context_.setup.mesh_size)
         trial = flutes_.try_along(leg, stock);
@@ -341,7 +341,7 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
     if (is_enough(context_.setup, pairs)) return 0.0;
     // Flutes that cut may not be measured at all.
     if (context_.use == FluteUse::cutting) bounds_.carry_bound({PartKind::flutes}, pairs);
-    // Flutes that cut are halved by themselves.
+    // FluteCut::along halves the leg of flutes that cut.
     const bool turns_too_far =
         (context_.use != FluteUse::cutting && context_.flutes_turn_too_far(leg))
         || (!only_flutes_ && context_.others_turn_too_far(leg));
