@@ -28,7 +28,7 @@ void forget_bounds(core::SimulatorState& machine) {
     memory.margin = 0.0;
     memory.hints = {};
     memory.cutters.clear();
-    memory.flute_parts.clear();
+    memory.turning_parts.clear();
 }
 
 std::string numbers_of(const auto& map) {

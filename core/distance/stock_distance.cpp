@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/dbm/cut_model.h"
-#include "core/distance/upright_sweep.h"
+#include "core/distance/shape_outline.h"
 
 namespace core {
 namespace {

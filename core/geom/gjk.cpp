@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/base/math.h"
 #include "core/geom/mesh.h"
@@ -11,7 +12,7 @@ namespace {
 
 /// Farthest point of an upright truncated cone about Z.
 Vec3 cone_support(const ProfileElement& cone, const Vec3& direction) {
-    const double across = core::hypot(direction.x, direction.y);
+    const double across = std::sqrt(direction.x * direction.x + direction.y * direction.y);
     const double lower = cone.r0 * across + cone.z0 * direction.z;
     const double upper = cone.r1 * across + cone.z1 * direction.z;
     const double r = upper > lower ? cone.r1 : cone.r0;

@@ -30,12 +30,58 @@ Mat3 rotation_about(const Vec3& axis, double angle_deg) {
     return turn;
 }
 
-Transform joint(const MachineAxis& axis, bool rotary, double value) {
-    const double way = axis.side == Side::tool ? value : -value;
-    if (!rotary) return translation(way * axis.direction);
-    const Mat3 turn = rotation_about(axis.direction, way);
-    return {turn, axis.point - turn * axis.point};
-}
+/// A machine with its axes at some values. What the rotary axes turn is computed once.
+class Posture {
+public:
+    Posture(const Machine& machine, const AxisValues& values) : machine_(machine), values_(values) {
+        for (size_t i = 0; i < turns_.size(); ++i) {
+            const MachineAxis& axis = machine.axes[first_rotary + i];
+            if (!axis.present) continue;
+            const Mat3 turn = rotation_about(axis.direction, way_of(first_rotary + i));
+            turns_[i] = {turn, axis.point - turn * axis.point};
+        }
+    }
+
+    void set_linear(size_t axis, double value) { values_[axis] = value; }
+
+    /// The pose of a link.
+    Transform of_link(LinkId link) const {
+        Transform pose;
+        while (link != LinkId::base) {
+            const auto i = static_cast<size_t>(link);
+            if (is_rotary(i))
+                pose = turns_[i - first_rotary] * pose;
+            else
+                pose.translation += way_of(i) * machine_.axes[i].direction;
+            link = machine_.axes[i].carrier;
+        }
+        return pose;
+    }
+
+    /// The pose of one mounted body relative to another.
+    Transform target_from_mover(const Mount& target, const Mount& mover) const {
+        return (of_link(target.link) * target.link_from_body).inverse()
+               * (of_link(mover.link) * mover.link_from_body);
+    }
+
+    /// The position of the tool tip in the frame of the table link.
+    Vec3 tip(double tool_length) const {
+        return of_link(machine_.table).inverse()
+               * (of_link(machine_.spindle) * Vec3(0.0, 0.0, -tool_length));
+    }
+
+private:
+    static constexpr size_t first_rotary = 3;
+
+    /// How far an axis moves what it carries, in its direction.
+    double way_of(size_t axis) const {
+        return machine_.axes[axis].side == Side::tool ? values_[axis] : -values_[axis];
+    }
+
+    const Machine& machine_;
+    AxisValues values_;
+    std::array<Transform, 3> turns_;
+};
 
 /// The rotary axes between a link and the base, starting at the base.
 std::vector<size_t> rotary_chain(const Machine& machine, LinkId link) {
@@ -134,12 +180,12 @@ std::vector<size_t> axes_between(const Machine& machine, LinkId a, LinkId b) {
 
 /// The largest distance of a point from the given axes of rotation. Frame: the machine's.
 double reach_from_axes(const Machine& machine, const std::vector<size_t>& axes,
-                       const AxisValues& values, const Vec3& point) {
+                       const Posture& posture, const Vec3& point) {
     double reach = 0.0;
     for (const size_t i : axes) {
         if (!is_rotary(i)) continue;
         const MachineAxis& axis = machine.axes[i];
-        const Transform pose = machine_from_link(machine, axis.carrier, values);
+        const Transform pose = posture.of_link(axis.carrier);
         const Vec3 away = point - pose * axis.point;
         reach = std::max(reach, glm::length(glm::cross(pose.rotation * axis.direction, away)));
     }
@@ -215,13 +261,7 @@ RelativeLeg without_turning(const Machine& machine, const Mount& target, const M
 } // namespace
 
 Transform machine_from_link(const Machine& machine, LinkId link, const AxisValues& values) {
-    Transform pose;
-    while (link != LinkId::base) {
-        const auto i = static_cast<size_t>(link);
-        pose = joint(machine.axes[i], is_rotary(i), values[i]) * pose;
-        link = machine.axes[i].carrier;
-    }
-    return pose;
+    return Posture(machine, values).of_link(link);
 }
 
 bool is_turned_by_axes(const Machine& machine, LinkId link) {
@@ -234,35 +274,30 @@ bool is_on_table_side(const Machine& machine, LinkId link) {
 
 Transform target_from_mover(const Machine& machine, const Mount& target, const Mount& mover,
                             const AxisValues& values) {
-    const Transform machine_from_target =
-        machine_from_link(machine, target.link, values) * target.link_from_body;
-    const Transform machine_from_mover =
-        machine_from_link(machine, mover.link, values) * mover.link_from_body;
-    return machine_from_target.inverse() * machine_from_mover;
+    return Posture(machine, values).target_from_mover(target, mover);
 }
 
 Vec3 tip_position(const Machine& machine, const AxisValues& values, double tool_length) {
-    const Transform table = machine_from_link(machine, machine.table, values);
-    const Transform spindle = machine_from_link(machine, machine.spindle, values);
-    return table.inverse() * (spindle * Vec3(0.0, 0.0, -tool_length));
+    return Posture(machine, values).tip(tool_length);
 }
 
 std::optional<AxisValues> reach_tip(const Machine& machine, const AxisValues& values,
                                     const Vec3& tip, double tool_length) {
-    AxisValues base = values;
-    base[0] = base[1] = base[2] = 0.0;
+    AxisValues reached = values;
+    reached[0] = reached[1] = reached[2] = 0.0;
     // With the rotary axes held, the tip is an affine function of X, Y and Z.
-    const Vec3 origin = tip_position(machine, base, tool_length);
+    Posture posture(machine, reached);
+    const Vec3 origin = posture.tip(tool_length);
     Mat3 by_axis(0.0);
-    for (int i = 0; i < 3; ++i) {
-        AxisValues unit = base;
-        unit[static_cast<size_t>(i)] = 1.0;
-        by_axis[i] = tip_position(machine, unit, tool_length) - origin;
+    for (size_t i = 0; i < 3; ++i) {
+        posture.set_linear(i, 1.0);
+        by_axis[static_cast<int>(i)] = posture.tip(tool_length) - origin;
+        posture.set_linear(i, 0.0);
     }
     if (std::abs(glm::determinant(by_axis)) < 1e-9) return std::nullopt;
     const Vec3 linear = glm::inverse(by_axis) * (tip - origin);
-    for (int i = 0; i < 3; ++i) base[static_cast<size_t>(i)] = linear[i];
-    return base;
+    for (size_t i = 0; i < 3; ++i) reached[i] = linear[static_cast<int>(i)];
+    return reached;
 }
 
 double turn_of(const Machine& machine, const AxisValues& from, const AxisValues& to) {
@@ -284,15 +319,14 @@ namespace {
 ///
 /// Proof:   core/sim/README.md, "Turning".
 double tilt_of_axis(const Machine& machine, const std::vector<size_t>& axes, const Leg& leg,
-                    const AxisValues& middle, const Mat3& mover_pose, double turn) {
+                    const Posture& middle, const Mat3& mover_pose, double turn) {
     constexpr double rounding = 1e-12;
     double tilt = 0.0;
     for (const size_t i : axes) {
         if (!is_rotary(i)) continue;
         const double by = std::abs(leg.positions[1][i] - leg.positions[0][i]) / degrees_per_radian;
         const MachineAxis& axis = machine.axes[i];
-        const Vec3 about =
-            machine_from_link(machine, axis.carrier, middle).rotation * axis.direction;
+        const Vec3 about = middle.of_link(axis.carrier).rotation * axis.direction;
         const double sine = glm::length(glm::cross(about, mover_pose[2])) + 0.5 * (turn - by);
         tilt += by * std::min(1.0, sine + rounding);
     }
@@ -339,25 +373,24 @@ RelativeLeg rigid_leg(const Machine& machine, const Mount& target, const Mover& 
         if (leg.turn_error == 0.0) return relative;
         double reach = 0.0;
         for (const AxisValues& position : leg.positions) {
-            const Vec3 centre = machine_from_link(machine, mover.mount.link, position)
-                                * (mover.mount.link_from_body * mover.centre);
-            reach = std::max(reach, reach_from_axes(machine, axes, position, centre));
+            const Posture posture(machine, position);
+            const Vec3 centre =
+                posture.of_link(mover.mount.link) * (mover.mount.link_from_body * mover.centre);
+            reach = std::max(reach, reach_from_axes(machine, axes, posture, centre));
         }
         const bool turns = std::any_of(axes.begin(), axes.end(), is_rotary);
         if (turns) add_turn_error(relative, leg, reach + mover.reach);
         return relative;
     }
 
-    const auto pose = [&](const AxisValues& values) {
-        return target_from_mover(machine, target, mover.mount, values);
-    };
-    const AxisValues middle = half_way(leg);
-    RelativeLeg relative{.orientation = pose(middle).rotation, .turns = true};
+    const Posture middle(machine, half_way(leg));
+    RelativeLeg relative{.orientation = middle.target_from_mover(target, mover.mount).rotation,
+                         .turns = true};
     for (const AxisValues& position : leg.positions)
-        relative.positions.push_back(pose(position) * mover.centre
+        relative.positions.push_back(target_from_mover(machine, target, mover.mount, position)
+                                         * mover.centre
                                      - relative.orientation * mover.centre);
-    const Transform mover_pose =
-        machine_from_link(machine, mover.mount.link, middle) * mover.mount.link_from_body;
+    const Transform mover_pose = middle.of_link(mover.mount.link) * mover.mount.link_from_body;
     const Vec3 centre = mover_pose * mover.centre;
     const double bound = 1.0 - 0.5 * turn;
     if (bound < 0.75) {

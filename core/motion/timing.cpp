@@ -241,19 +241,25 @@ std::optional<PathMotion> along_arc(const Motion& motion, const AxisValues& by) 
 /// values between the steps, too.
 PathMotion along_tip(const Motion& motion, const Machine& machine, const AxisValues& by,
                      double length) {
-    constexpr int steps = 64;
+    constexpr int most_steps = 64;
+    AxisValues from{};
+    for (size_t i = 0; i < by.size(); ++i) from[i] = motion.from[i].value_or(0.0);
+    AxisValues to = from;
+    for (size_t i = 0; i < by.size(); ++i) to[i] += by[i];
+    const double turn = turn_of(machine, from, to);
+    // So that no axis seems faster than it is by more than 0.5 %.
+    const int steps = std::clamp(static_cast<int>(std::ceil(200.0 * turn)), 8, most_steps);
     const TipPath& tip = *motion.tip;
-    std::array<AxisValues, steps + 1> at;
+    std::array<AxisValues, most_steps + 1> at;
     for (int k = 0; k <= steps; ++k) {
         const double fraction = static_cast<double>(k) / steps;
         for (size_t i = 0; i < by.size(); ++i)
-            at[static_cast<size_t>(k)][i] = motion.from[i].value_or(0.0) + fraction * by[i];
+            at[static_cast<size_t>(k)][i] = from[i] + fraction * by[i];
         const auto reached = reach_tip(machine, at[static_cast<size_t>(k)],
                                        tip.from + fraction * (tip.to - tip.from), tip.tool_length);
         if (!reached) return along_line(by, length);
         at[static_cast<size_t>(k)] = *reached;
     }
-    const double turn = turn_of(machine, at.front(), at.back());
     const double reach = std::max(tip_reach(machine, tip.from, tip.tool_length),
                                   tip_reach(machine, tip.to, tip.tool_length));
     const double unseen =

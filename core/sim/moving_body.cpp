@@ -1,7 +1,7 @@
 #include "core/sim/moving_body.h"
 
 #include "core/base/math.h"
-#include "core/distance/upright_sweep.h"
+#include "core/distance/shape_outline.h"
 #include "core/motion/machine.h"
 #include "core/sim/setup.h"
 
@@ -137,6 +137,19 @@ std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg
     std::vector<ConvexShape> shapes;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         shapes.push_back(moved(convex(mesh.triangle(i)), leg));
+    return shapes;
+}
+
+std::vector<ConvexShape> shapes_of(const MovingBody& body, const BodyLeg& leg, double shrink) {
+    if (!body.profile) return shapes_of(*body.body, leg);
+    const auto moved = [&](const RevolvedProfile& profile, const RelativeLeg& way) {
+        return shrink > 0.0 ? shapes_of(shrunk_around(profile, shrink), way)
+                            : shapes_of(profile, way);
+    };
+    if (leg.parts.empty()) return moved(*body.profile, leg);
+    std::vector<ConvexShape> shapes;
+    for (const BodyLeg::Part& part : leg.parts)
+        for (const ConvexShape& shape : moved(*part.profile, part.leg)) shapes.push_back(shape);
     return shapes;
 }
 

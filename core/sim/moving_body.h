@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -20,6 +21,31 @@ struct MovingBody {
     const RevolvedProfile* profile = nullptr; // set for parts of the tool
     const ExactBody* body = nullptr;          // set for machine bodies
     Mover mover;
+};
+
+/// The leg of a body, and those of the parts of which it consists (core/sim/leg/turning_parts.h) if
+/// these follow it more closely.
+struct BodyLeg : RelativeLeg {
+    struct Part {
+        const RevolvedProfile* profile;
+        RelativeLeg leg;
+    };
+    std::vector<Part> parts = {};
+    double overlap = 0.0; // of neighbouring parts, mm
+
+    /// Whether the parts may be shrunk instead of the body: no gaps open between them.
+    bool can_shrink(const RevolvedProfile& profile, double by) const {
+        return parts.empty() || (is_convex(profile) && by <= 0.25 * overlap);
+    }
+
+    /// How far the body may be from shapes_of(body, leg), mm: at most `error`.
+    double shape_error() const {
+        double most = parts.empty() ? error : 0.0;
+        for (const Part& part : parts) most = std::max(most, part.leg.error);
+        return most;
+    }
+    /// The part of it that shorter legs reduce, mm.
+    double reducible_shape_error() const { return shape_error() - lasting_error; }
 };
 
 /// All moving bodies whose place is known; first the parts of the tool, from the flutes up. The
@@ -44,6 +70,9 @@ std::vector<ConvexShape> shapes_of(const RevolvedProfile& profile, const Relativ
 
 /// Convex shapes, swept along a leg, that contain the swept surface of a machine body.
 std::vector<ConvexShape> shapes_of(const ExactBody& body, const RelativeLeg& leg);
+
+/// The same for a body, with its parts; a profile is shrunk by `shrink` first.
+std::vector<ConvexShape> shapes_of(const MovingBody& body, const BodyLeg& leg, double shrink = 0.0);
 
 /// Distance from the body to a fixture over a leg, without the leg's error, mm.
 Separation distance_over(const RelativeLeg& leg, const MovingBody& body, const ExactBody& fixture,

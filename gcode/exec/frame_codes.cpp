@@ -257,6 +257,8 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
     case g_code(68):
         return set_rotation(execution, entry);
     case g_code(68, 2):
+    case g_code(68, 3):
+    case g_code(68, 4):
     case g_code(268):
         if (auto checked = check_dynamic_offset_is_off(execution, entry); !checked) return checked;
         for (const char letter : {'A', 'B', 'C', 'U', 'V', 'W'})
@@ -481,8 +483,28 @@ core::Vec3 point_of(const Execution& execution) {
 }
 
 tl::unexpected<core::Error> refuse_plane(const Execution& execution, const std::string& why) {
-    return core::fail(ErrorCode::invalid_value, "G68.2: " + why,
-                      execution.statement.of(ModalGroup::rotation)->word->span);
+    const Word& code = *execution.statement.of(ModalGroup::rotation)->word;
+    return core::fail(ErrorCode::invalid_value, fmt::format("{}: {}", written(code), why),
+                      code.span);
+}
+
+/// G68.4: a plane in the coordinates of the one that is on.
+bool adds_to_plane(const Execution& execution) {
+    return execution.statement.of(ModalGroup::rotation)->code->number == g_code(68, 4);
+}
+
+/// Switches a plane on, which G68.4 states in the coordinates of the one before.
+void use_plane(Execution& execution, const TiltedPlane& plane) {
+    std::optional<TiltedPlane>& tilt = execution.modal().transforms.tilt;
+    tilt = tilt && adds_to_plane(execution)
+               ? TiltedPlane{.axes = tilt->axes * plane.axes,
+                             .origin = tilt->origin + tilt->axes * plane.origin}
+               : plane;
+}
+
+/// The block of a plane that must come next: "G68.2 P2 Q3".
+std::string name_of_next(const BegunPlane& begun) {
+    return fmt::format("G68.{} P{} Q{}", begun.adds ? 4 : 2, begun.by_points ? 2 : 3, begun.next);
 }
 
 /// A plane through three points: X points from the first to the second, and the third is on the
@@ -514,18 +536,21 @@ core::Result<TiltedPlane> plane_along(const Execution& execution, const core::Ve
                        .origin = origin};
 }
 
-/// A block of G68.2 P2 or P3, of which the last one sets the plane. A shift or a rotation of the
-/// plane is refused: programs differ in what they mean by it.
+/// A block of G68.2 or G68.4 with P2 or P3, of which the last one sets the plane. A shift or a
+/// rotation of the plane is refused: programs differ in what they mean by it.
 core::Result<void> add_to_plane(Execution& execution, bool by_points) {
     const auto refuse_words = [&](std::string_view letters) -> core::Result<void> {
         for (const char letter : letters)
             if (const Word* word = execution.statement.word(letter); word && word->value != 0.0)
-                return core::fail(ErrorCode::unsupported,
-                                  fmt::format("{}: not supported yet in this block of G68.2 P{}",
-                                              written(*word), by_points ? 2 : 3),
-                                  word->span);
+                return core::fail(
+                    ErrorCode::unsupported,
+                    fmt::format("{}: not supported yet in this block of {} P{}", written(*word),
+                                written(*execution.statement.of(ModalGroup::rotation)->word),
+                                by_points ? 2 : 3),
+                    word->span);
         return {};
     };
+    const bool adds = adds_to_plane(execution);
     std::optional<BegunPlane>& begun = execution.modal().transforms.begun_plane;
     const Word* which = execution.statement.word('Q');
     int block = 0;
@@ -533,12 +558,11 @@ core::Result<void> add_to_plane(Execution& execution, bool by_points) {
         FEELER_TRY(block, whole_number(*which, 0, by_points ? 3 : 2));
     }
     const bool begins = !begun && (block == 1 || (block == 0 && by_points && which));
-    if (!begins && (!begun || begun->by_points != by_points || begun->next != block))
-        return refuse_plane(execution, begun
-                                           ? fmt::format("P{} Q{} must come next",
-                                                         begun->by_points ? 2 : 3, begun->next)
-                                           : fmt::format("P{} begins with Q1", by_points ? 2 : 3));
-    if (begins) begun = BegunPlane{.by_points = by_points};
+    if (!begins && !begun)
+        return refuse_plane(execution, fmt::format("P{} begins with Q1", by_points ? 2 : 3));
+    if (!begins && (begun->by_points != by_points || begun->adds != adds || begun->next != block))
+        return refuse_plane(execution, name_of_next(*begun) + " must come next");
+    if (begins) begun = BegunPlane{.by_points = by_points, .adds = adds};
     begun->next = block + 1;
     const core::Vec3 point = point_of(execution), direction = angles_of(execution);
     if (by_points) {
@@ -548,30 +572,140 @@ core::Result<void> add_to_plane(Execution& execution, bool by_points) {
             begun->points[static_cast<size_t>(block) - 1] = point;
             return {};
         }
-        FEELER_TRY(execution.modal().transforms.tilt,
+        FEELER_TRY(const TiltedPlane plane,
                    plane_through(execution, begun->points[0], begun->points[1], point));
+        use_plane(execution, plane);
     } else {
         if (auto done = refuse_words(block == 1 ? "R" : "XYZR"); !done) return done;
         if (block == 1) {
             begun->points = {point, direction};
             return {};
         }
-        FEELER_TRY(execution.modal().transforms.tilt,
+        FEELER_TRY(const TiltedPlane plane,
                    plane_along(execution, begun->points[0], begun->points[1], direction));
+        use_plane(execution, plane);
     }
     begun.reset();
+    return {};
+}
+
+/// X, Y and Z of the plane of G68.3, whose Z is the direction of the tool, in work coordinates.
+///
+/// Source: Fanuc 30i, A-79976E, "Specifying tilted working plane based on the tool axis direction":
+///         X is the product of the vertical axis (parameter 12321) and Z. Within the angle of
+///         parameter 12322 the tool counts as parallel to the vertical axis, and X, Y and Z are
+///         then the axes of the work in a fixed order.
+core::Result<core::Mat3> axes_by_tool(Execution& execution, const CodeWord& entry,
+                                      const core::Vec3& tool) {
+    const auto axis =
+        static_cast<int>(number_for(execution.state, execution.environment,
+                                    ControlQuestion::vertical_axis, execution.block.line))
+        - 1;
+    core::Vec3 vertical(0.0);
+    vertical[axis] = 1.0;
+    const core::Vec3 x = glm::cross(vertical, tool);
+    const double angle =
+        core::degrees_per_radian * core::atan2(glm::length(x), std::abs(glm::dot(vertical, tool)));
+    constexpr double rounding = 1e-7, most_unknown = 5.0; // degrees
+    const auto limit = execution.environment.control.number(ControlQuestion::vertical_limit);
+    if (!limit && angle > rounding && angle <= most_unknown)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{}: the tool is within {:.2g} degrees of {}, and whether it "
+                                      "counts as parallel is not known: state parameter \"12322\" "
+                                      "under [control]",
+                                      written(*entry.word), angle, "XYZ"[axis]),
+                          entry.word->span);
+    if (angle <= std::max(limit.value_or(0.0), rounding)) {
+        core::Mat3 axes(0.0);
+        for (int i = 0; i < 3; ++i) axes[i][(axis + 1 + i) % 3] = 1.0;
+        return axes;
+    }
+    const core::Vec3 along_x = glm::normalize(x);
+    return core::Mat3(along_x, glm::cross(tool, along_x), tool);
+}
+
+/// The direction of the tool in work coordinates.
+core::Result<core::Vec3> tool_in_work(const Execution& execution, const Word& code) {
+    const Offsets& offsets = execution.modal().offsets;
+    const core::Machine& machine = *offsets.machine;
+    FEELER_TRY(const AxisValues values, values_now(execution, code.span, written(code)));
+    const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation[2];
+    const core::Mat3 table = core::machine_from_link(machine, machine.table, values).rotation;
+    const core::Mat3 work = turned_about(2, offsets.work.rotation_deg);
+    core::Mat3 table_from_axes;
+    for (int axis = 0; axis < 3; ++axis)
+        table_from_axes[axis] =
+            table_from_work(offsets, work[axis]) - table_from_work(offsets, core::Vec3(0.0));
+    return glm::transpose(table_from_axes) * glm::transpose(table) * tool;
+}
+
+/// G68.3.
+core::Result<void> set_plane_of_tool(Execution& execution, const CodeWord& entry) {
+    ModalState& modal = execution.modal();
+    const Statement& statement = execution.statement;
+    if (!modal.offsets.machine)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{}: the direction of the tool is not known: describe the "
+                                      "rotary axes as [[machine.axis]] in the set-up",
+                                      written(*entry.word)),
+                          entry.word->span);
+    if (modal.transforms.tilt)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{}: another tilted plane is on: program G69 before it",
+                                      written(*entry.word)),
+                          entry.word->span);
+    const std::string_view letters = "XYZ";
+    const auto stated = std::count_if(letters.begin(), letters.end(), [&](char letter) {
+        return statement.word(letter) != nullptr;
+    });
+    if (stated != 0 && stated != 3)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("{} needs all of X, Y and Z, or none of them for the present "
+                                      "position",
+                                      written(*entry.word)),
+                          entry.word->span);
+    TiltedPlane plane{.origin = point_of(execution)};
+    if (stated == 0) {
+        Offsets on_work = modal.offsets;
+        on_work.tilted_plane = true;
+        const Position tip =
+            program_from_machine(on_work, machine_from_program(modal.offsets, modal.position));
+        core::Vec3 position(0.0);
+        for (size_t axis = 0; axis < 3; ++axis) {
+            if (!tip[axis])
+                return core::fail(ErrorCode::missing_value,
+                                  fmt::format("{}: the {} position is unknown: state the origin "
+                                              "with X, Y and Z",
+                                              written(*entry.word), axis_letters[axis]),
+                                  entry.word->span);
+            position[static_cast<int>(axis)] = *tip[axis];
+        }
+        plane.origin = modal.offsets.frame.linear * position + modal.offsets.frame.shift;
+    }
+    FEELER_TRY(const core::Vec3 tool, tool_in_work(execution, *entry.word));
+    FEELER_TRY(plane.axes, axes_by_tool(execution, entry, tool));
+    if (const Word* word = statement.word('R')) plane.axes *= turned_about(2, word->value);
+    modal.transforms.tilt = plane;
     return {};
 }
 
 } // namespace
 
 core::Result<void> set_tilted_plane(Execution& execution) {
+    const CodeWord& entry = *execution.statement.of(ModalGroup::rotation);
+    if (entry.code->number == g_code(68, 3)) return set_plane_of_tool(execution, entry);
+    if (entry.code->number == g_code(68, 4) && !execution.modal().transforms.tilt)
+        return core::fail(ErrorCode::invalid_value,
+                          fmt::format("{} adds to a tilted plane, but none is set: program G68.2 "
+                                      "first",
+                                      written(*entry.word)),
+                          entry.word->span);
     const Word* form = is_feature_plane(execution) ? nullptr : execution.statement.word('P');
     if (form && (form->value == 2.0 || form->value == 3.0))
         return add_to_plane(execution, form->value == 2.0);
     TiltedPlane plane{.origin = point_of(execution)};
     FEELER_TRY(plane.axes, axes_of_plane(execution));
-    execution.modal().transforms.tilt = plane;
+    use_plane(execution, plane);
     return {};
 }
 
@@ -596,10 +730,11 @@ core::Result<void> check_dynamic_offset_is_off(const Execution& execution, const
 namespace {
 
 tl::unexpected<core::Error> fail_incomplete(const Execution& execution, const BegunPlane& begun) {
-    return core::fail(ErrorCode::invalid_value,
-                      fmt::format("G68.2 P{} is not complete: Q{} must come before this block",
-                                  begun.by_points ? 2 : 3, begun.next),
-                      {.line = execution.block.line, .column = 1});
+    return core::fail(
+        ErrorCode::invalid_value,
+        fmt::format("the tilted plane is not complete: {} must come before this block",
+                    name_of_next(begun)),
+        {.line = execution.block.line, .column = 1});
 }
 
 bool is_turn_to_plane(const CodeWord& entry) {

@@ -644,7 +644,8 @@ bool has_other_meanings(const Block& block) {
 /// Whether a block sets a tilted plane: its Q is a number of a block or an order, and its I, J and
 /// K are angles or a direction.
 bool sets_plane(const Block& block) {
-    return has_code(block, 'G', [](double code) { return code == 68.2 || code == 268.0; });
+    return has_code(block, 'G',
+                    [](double code) { return code == 68.2 || code == 68.4 || code == 268.0; });
 }
 
 } // namespace

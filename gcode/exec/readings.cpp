@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -120,8 +121,10 @@ OpenPremise premise_of(const ControlParameter& parameter, const Environment& env
     premise.id = {parameter.question};
     premise.reason = fmt::format("The set-up does not state {}", parameter.name);
     premise.cure = cure_of(parameter, environment);
+    std::set<double> answers; // several values may have the same
     for (const ParameterValue& value : parameter.is_open() ? values : values.first(1))
-        premise.readings.push_back(reading_of(parameter, value));
+        if (answers.insert(value.answer).second)
+            premise.readings.push_back(reading_of(parameter, value));
     return premise;
 }
 

@@ -58,7 +58,7 @@ void add(Digest& digest, const ProgramTransforms& transforms) {
     }
     digest.add(uint64_t{transforms.begun_plane.has_value()});
     if (const auto& begun = transforms.begun_plane) {
-        digest.add(number_of(2 * begun->next + int(begun->by_points)));
+        digest.add(number_of(4 * begun->next + 2 * int(begun->adds) + int(begun->by_points)));
         for (const core::Vec3& point : begun->points) add(digest, point);
     }
     digest.add(uint64_t{transforms.follows_vectors});

@@ -198,6 +198,8 @@ constexpr Code codes[] = {
     {g_code(67), macro, "", fanuc, {}},
     {g_code(68), rotation, "XYZRIJK", fanuc, {}},
     {g_code(68, 2), rotation, "XYZIJKPQR", fanuc, {}},
+    {g_code(68, 3), rotation, "XYZR", fanuc, {}},
+    {g_code(68, 4), rotation, "XYZIJKPQR", fanuc, {}},
     {g_code(69), rotation, "", fanuc, {}},
     {g_code(70), motion, "XYZQDEP", linuxcnc, {}},
     {g_code(70), action, "XYZIJL", haas, {}},

@@ -298,6 +298,12 @@ constexpr ParameterValue turning_of_axes[] = {
      "plane"},
     {0, false, "each rotary axis turns evenly to a programmed position", "axes"},
 };
+constexpr ParameterValue vertical_axes[] = {
+    {3, 3, "X of a plane of G68.3 is at right angles to Z"},
+    {1, 1, "X of a plane of G68.3 is at right angles to X"},
+    {2, 2, "X of a plane of G68.3 is at right angles to Y"},
+    {0, 3, "X of a plane of G68.3 is at right angles to the axis of the upright tool, Z"},
+};
 constexpr ParameterValue two_degrees[] = {{2, 2, "2 degrees"}};
 constexpr ParameterRange of_poles{0.0, 90.0, "degrees"};
 constexpr ParameterValue frames_at_traori[] = {
@@ -559,6 +565,17 @@ constexpr ControlParameter parameters[] = {
      "Fanuc B-63950EN, parameters of scaling",
      {},
      of_factors},
+    {vertical_axis, fanuc, "12321", "parameter 12321", vertical_axes, follow_all,
+     "Fanuc A-79976E, tilted working plane based on the tool axis direction"},
+    {vertical_limit,
+     fanuc,
+     "12322",
+     "parameter 12322",
+     {},
+     go_on,
+     "Fanuc A-79976E, tilted working plane based on the tool axis direction",
+     {},
+     of_poles},
     {rotation_adds, haas, "setting 73", "setting 73 (G68 Incremental Angle)", rotation_of_haas,
      follow_all, "Haas mill operator's manual 96-8000, settings"},
     {rotation_default,

@@ -60,6 +60,8 @@ enum class ControlQuestion : uint8_t {
     rotation_default, // of G68 without R, degrees
     scale_unit,       // of G51 without a decimal point
     scale_default,    // of G51 without a factor
+    vertical_axis,    // from which G68.3 computes X: 1 is X, 2 is Y and 3 is Z
+    vertical_limit,   // so near to this axis, the tool counts as parallel to it, degrees
     local_is_work,    // G52 is a work offset of its own
     change_moves,     // M6 moves the machine first, where no ini file says it
     scales_z,         // G51 scales Z, too

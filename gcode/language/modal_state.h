@@ -137,9 +137,11 @@ struct TiltedPlane {
     bool operator==(const TiltedPlane&) const = default;
 };
 
-/// G68.2 P2 and P3: what the blocks so far state of a plane, in work coordinates.
+/// G68.2 and G68.4 with P2 and P3: what the blocks so far state of a plane, in work coordinates or
+/// those of the plane that is on.
 struct BegunPlane {
     bool by_points = true;                 // P2: three points; otherwise P3: two directions
+    bool adds = false;                     // G68.4
     int next = 0;                          // the Q of the next block
     std::array<core::Vec3, 2> points = {}; // P2: the first two; P3: the origin, the X axis
 

@@ -55,6 +55,7 @@ values = { "#500" = 2.5 }
 "3410" = <0.0005>
 "5410" = 45
 "5411" = 2.5
+"12322" = 1.5
 [machine]
 corner_tolerance = <0.003>
 rapid_corner_tolerance = <0.007>

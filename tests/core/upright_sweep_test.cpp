@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/distance/upright_sweep.h"
+#include "core/distance/shape_outline.h"
 
 namespace core {
 namespace {
@@ -155,6 +155,58 @@ TEST(ShapeOutline, OfABentPathIsNoFartherFromABoxThanTheShape) {
     }
     EXPECT_GE(sharper, 15'000);
     EXPECT_GE(near_contact, 1'000);
+}
+
+/// A turn about a random direction, often about an axis of the frame by a multiple of 15 degrees.
+Mat3 random_turn(Dice& dice) {
+    const Vec3 angles(dice.position(180.0), dice.position(180.0), dice.position(180.0));
+    if (!dice.chance(3)) return rotation_xyz_deg(angles);
+    Vec3 one(0.0);
+    one[static_cast<int>(dice.length(2.4))] = 15.0 * std::round(angles.x / 15.0);
+    return rotation_xyz_deg(one);
+}
+
+/// A tilted piece of revolution, a ball, the sweep of one along a segment, or a box, at rest or on
+/// a straight way.
+ConvexShape tilted(Dice& dice) {
+    const UprightSweep s = dice.sweep();
+    ConvexShape piece = convex(s.element);
+    if (dice.chance(6)) piece = convex(dice.box());
+    if (dice.chance(6)) piece = convex_sphere(dice.length(2.0));
+    piece = posed(piece, Transform(random_turn(dice), Vec3(0.0)));
+    const Vec3 by = dice.chance(4) ? 20.0 * s.by : s.by;
+    return swept(piece, std::vector<Vec3>{s.from, s.from + by});
+}
+
+TEST(ShapeOutline, OfATiltedPieceIsNoFartherFromABoxThanThePiece) {
+    Dice dice;
+    int apart = 0, close = 0, loose = 0;
+    for (int i = 0; i < 100'000; ++i) {
+        const ConvexShape shape = tilted(dice);
+        Aabb box = dice.box();
+        if (dice.chance(3)) box.max.z = box.min.z + 50.0; // a column
+        const ShapeOutline around = outline(shape);
+        const double bound = distance_bound(around, box, infinity);
+        const Separation found = separation(shape, shape_of(box));
+        ASSERT_LE(bound, found.upper + 1e-9) << i;
+        ASSERT_LT(distance_bound(around, box, 0.5 * found.upper), found.upper + 1e-9) << i;
+        if (!around.tilted || found.upper <= 0.0) continue;
+        ++apart;
+        close += bound >= 0.95 * found.upper;
+        loose += bound < 0.5 * found.upper;
+    }
+    EXPECT_GE(apart, 30'000);
+    EXPECT_GE(close, apart * 9 / 10) << "so good that the exact distance is seldom asked for";
+    EXPECT_LE(loose, apart / 20);
+}
+
+TEST(ShapeOutline, OfATiltedBoxIsCutByItsFaces) {
+    // A bar along the diagonal of X and Y: its own box is far larger.
+    const ConvexShape bar = posed(convex(Aabb{{-20, -1, -1}, {20, 1, 1}}),
+                                  Transform(rotation_xyz_deg({0, 0, 45}), Vec3(0.0)));
+    const ShapeOutline around = outline(swept(bar, std::vector<Vec3>{Vec3(0.0), Vec3(0, 0, 1)}));
+    const double bound = distance_bound(around, {{10, -10, 0}, {10, -10, 0}}, infinity);
+    EXPECT_NEAR(bound, std::sqrt(200.0) - 1.0, 1e-9);
 }
 
 TEST(Separation, EndsOnceItIsBelowWhatIsEnough) {

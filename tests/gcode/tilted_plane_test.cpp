@@ -158,6 +158,19 @@ TEST(TiltedPlane, AShiftOrARotationAboutZLeavesTheToolUpright) {
     expect_machine_at("G68.2 X0 Y0 Z0 I90 J0 K0\nG0 X1 Y2 Z3", -2, 1, 3, false);
 }
 
+TEST(TiltedPlane, G684AddsToThePlaneThatIsOn) {
+    // The plane's Y is the work's Z, its Z is the work's -Y; then X of the new one is Y of the old.
+    expect_machine_at("G68.2 X10 Y20 Z30 J90\nG68.4 X1 Y2 Z3 I90\nG0 X4 Y5 Z6", 6, 11, 36, true);
+    expect_machine_at("G68.2 J90\nG68.4 J-90\nG0 X1 Y2 Z3", 1, 2, 3, false);
+    expect_machine_at("G68.2 X10 Y20 Z30 J90\nG68.4 P2 Q1 X1 Y2 Z3\nG68.4 P2 Q2 X1 Y3 Z3\n"
+                      "G68.4 P2 Q3 X0 Y2 Z3\nG0 X4 Y5 Z6",
+                      6, 11, 36, true);
+    expect_machine_at("G68.2 J90\nG68.4 J90\nG69\nG0 X1 Y2 Z3", 1, 2, 3, false);
+    EXPECT_THAT(error_of("G68.4 I90"), HasSubstr("program G68.2 first"));
+    EXPECT_THAT(error_of("G68.2 J90\nG68.4 P2 Q1 X1\nG68.2 P2 Q2 X2"),
+                HasSubstr("G68.4 P2 Q2 must come next"));
+}
+
 TEST(TiltedPlane, IsLeftWithG69) {
     expect_machine_at("G68.2 X10 Y20 Z30 I0 J90 K0\nG69\nG0 X1 Y2 Z3", 1, 2, 3, false);
     EXPECT_THAT(error_of("G53.1"), HasSubstr("program G68.2 first"));

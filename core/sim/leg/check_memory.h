@@ -14,7 +14,7 @@
 
 namespace core {
 
-struct FlutePart;
+struct TurningPart;
 
 /// The order of pairs in reports and in the memory of a check: by fixture, the stock first.
 inline bool is_before(const Pair& a, const Pair& b) {
@@ -47,8 +47,9 @@ struct CheckMemory {
     using ToolState = std::pair<ToolNumber, bool>;
     /// Prepared cutters, by tool, part of the flutes (0: the whole) and path error.
     std::map<std::tuple<ToolState, size_t, double>, std::shared_ptr<const Cutter>> cutters;
-    /// The parts in which flutes cut while they turn.
-    std::map<ToolState, std::shared_ptr<const std::vector<FlutePart>>> flute_parts;
+    /// The parts in which flutes cut, and a shank or holder is measured, while they turn.
+    using TurningParts = std::shared_ptr<const std::vector<TurningPart>>;
+    std::map<std::pair<ToolState, PartKind>, TurningParts> turning_parts;
     /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's
     /// frame. Without them a rapid within such a cut would be a false alarm.
     std::map<size_t, SweepLog> cuts;

@@ -125,6 +125,10 @@ void FixtureCheck::check_pair(const Leg& leg, double start, size_t fixture, cons
     const Pair pair = pair_of(body, fixture);
     TrackedPair& known = bounds_.tracked_pair(pairs, pair);
     if (bounds_.can_skip(known, least_, bounds_.travel())) return;
+    if (bounds_.travel() == infinity) {
+        const double own = context_.travel_against_fixture(body, fixture, leg);
+        if (bounds_.can_skip(known, least_, bounds_.travel(leg, own))) return;
+    }
     measure_pair(leg, start, fixture, body, known);
     if (known.found()) least_ = std::min(least_, known.margin());
 }

@@ -6,7 +6,7 @@
 #include "core/dbm/cut_ahead.h"
 #include "core/distance/stock_distance.h"
 #include "core/motion/path.h"
-#include "core/sim/leg/flute_parts.h"
+#include "core/sim/leg/turning_parts.h"
 #include "core/sim/setup.h"
 
 namespace core {
@@ -18,11 +18,6 @@ double rounded_up(double error) {
     double step = 1e-5;
     while (step < error) step *= 1.25;
     return step;
-}
-
-/// Of a tool with two assemblies, only one knows the other.
-CheckMemory::ToolState state_of(const ToolAssembly& tool) {
-    return {tool.description.number, tool.oriented != nullptr};
 }
 
 /// The box of a fixture in the stock's frame; empty if it moves relative to the stock.
@@ -78,17 +73,17 @@ const RevolvedProfile& FluteCut::cutting_profile() const {
 std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg, size_t part,
                                                    const RevolvedProfile& profile) {
     const double error = (leg.turns ? rounded_up(leg.error) : leg.error) + context_.setup.cut_error;
-    auto& cutter = context_.memory.cutters[{state_of(context_.tool), part, error}];
+    auto& cutter = context_.memory.cutters[{context_.tool_state(), part, error}];
     if (cutter) return cutter;
     Cutter made = make_cutter(profile, error);
     if (part == 0) made.flutes = context_.tool.parts[0].profile;
     return cutter = std::make_shared<const Cutter>(std::move(made));
 }
 
-const std::vector<FlutePart>& FluteCut::parts() {
-    auto& parts = context_.memory.flute_parts[state_of(context_.tool)];
+const std::vector<TurningPart>& FluteCut::parts() {
+    auto& parts = context_.memory.turning_parts[{context_.tool_state(), PartKind::flutes}];
     if (!parts)
-        parts = std::make_shared<const std::vector<FlutePart>>(
+        parts = std::make_shared<const std::vector<TurningPart>>(
             flute_parts(cutting_profile(), context_.bodies[0].mover, context_.setup.mesh_size));
     return *parts;
 }
@@ -106,7 +101,7 @@ double FluteCut::along(const Leg& leg, CutModel& stock) {
 }
 
 double FluteCut::along(const Leg& leg, size_t part, CutModel& stock) {
-    const FlutePart& flutes = parts()[part];
+    const TurningPart& flutes = parts()[part];
     const RelativeLeg way = context_.against_stock(flutes.mover, leg);
     if (!way.turns || way.reducible_error() <= context_.finest_error(context_.bodies[0], way))
         return cut_with(sweep_on(way, cutter_for(way, part + 1, flutes.profile)), stock);

@@ -7,7 +7,7 @@
 
 namespace core {
 
-struct FlutePart;
+struct TurningPart;
 
 /// Cuts the stock with the flutes along legs, and records the cuts through expendable fixtures.
 /// Refers to the context.
@@ -47,7 +47,7 @@ private:
                                              const RevolvedProfile& profile);
     CutterSweep sweep_on(const RelativeLeg& way);
     CutterSweep sweep_on(const RelativeLeg& way, std::shared_ptr<const Cutter> cutter) const;
-    const std::vector<FlutePart>& parts();
+    const std::vector<TurningPart>& parts();
     /// Cuts with one part.
     double along(const Leg& leg, size_t part, CutModel& stock);
     double cut_with(const CutterSweep& sweep, CutModel& stock);

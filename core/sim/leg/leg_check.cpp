@@ -48,9 +48,8 @@ double LegCheck::travel_of(const Pair& pair, const Leg& leg) const {
     if (!leg.straight) return infinity;
     for (const MovingBody& body : context_.bodies)
         if (body.kind == pair.part && body.carried == pair.carried)
-            return (pair.fixture ? context_.against_fixture(body, *pair.fixture, leg)
-                                 : context_.against_stock(body, leg))
-                .travel;
+            return pair.fixture ? context_.travel_against_fixture(body, *pair.fixture, leg)
+                                : context_.against_stock(body, leg).travel;
     return infinity;
 }
 

@@ -3,13 +3,18 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/motion/path.h"
+#include "core/sim/leg/turning_parts.h"
 #include "core/sim/setup.h"
 
 namespace core {
 
 Pair pair_of(const MovingBody& body, std::optional<size_t> fixture) {
     return {body.kind, fixture, body.carried};
+}
+
+CheckMemory::ToolState LegContext::tool_state() const {
+    // Of a tool with two assemblies, only one knows the other.
+    return {tool.description.number, tool.oriented != nullptr};
 }
 
 const MovingBody& LegContext::body_of(const Pair& pair) const {
@@ -40,28 +45,72 @@ RelativeLeg LegContext::against_fixture(const MovingBody& body, size_t fixture,
     return relative;
 }
 
+namespace {
+
+/// Whether all that a relative leg depends on is the same.
+bool is_same(const Leg& a, const Leg& b) {
+    return a.positions == b.positions && a.path_error == b.path_error
+           && a.turn_error == b.turn_error && a.lasting_error == b.lasting_error
+           && a.straight == b.straight;
+}
+
+void keep(Leg& known, const Leg& leg) {
+    known.positions = leg.positions;
+    known.path_error = leg.path_error;
+    known.turn_error = leg.turn_error;
+    known.lasting_error = leg.lasting_error;
+    known.straight = leg.straight;
+}
+
+} // namespace
+
+double LegContext::travel_against_fixture(const MovingBody& body, size_t fixture,
+                                          const Leg& leg) const {
+    constexpr size_t links = axis_count + 1;
+    auto& [known, travels] = last_travels;
+    if (travels.empty() || !is_same(known, leg)) {
+        travels.assign(bodies.size() * links, -1.0);
+        keep(known, leg);
+    }
+    const LinkId link = setup.fixtures[fixture].mount.link;
+    const size_t place = link == LinkId::base ? axis_count : static_cast<size_t>(link);
+    double& travel = travels[static_cast<size_t>(&body - bodies.data()) * links + place];
+    if (travel < 0.0) travel = relative_leg(setup.machine, {link, {}}, body.mover, leg).travel;
+    return travel;
+}
+
 RelativeLeg LegContext::against_stock(const Mover& mover, const Leg& leg) const {
     RelativeLeg relative = relative_leg(setup.machine, setup.stock_mount, mover, leg);
     if (leg.path_error < infinity) relative.lasting_error += leg.path_error - leg.lasting_error;
     return relative;
 }
 
-const RelativeLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
+const std::vector<TurningPart>& LegContext::parts_of(const MovingBody& body) const {
+    auto& parts = memory.turning_parts[{tool_state(), body.kind}];
+    if (!parts)
+        parts = std::make_shared<const std::vector<TurningPart>>(
+            slender_parts(*body.profile, body.mover));
+    return *parts;
+}
+
+const BodyLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg) const {
     last_legs.resize(bodies.size() + 1);
     // Bodies that are not in the list, such as a shrunk part, share the last place.
     size_t place = 0;
     while (place < bodies.size() && &bodies[place] != &body) ++place;
     auto& [known, relative] = last_legs[place];
-    const bool same = place < bodies.size() && known.positions == leg.positions
-                      && known.path_error == leg.path_error && known.turn_error == leg.turn_error
-                      && known.lasting_error == leg.lasting_error && known.straight == leg.straight;
-    if (same) return relative;
-    relative = against_stock(body.mover, leg);
-    known.positions = leg.positions;
-    known.path_error = leg.path_error;
-    known.turn_error = leg.turn_error;
-    known.lasting_error = leg.lasting_error;
-    known.straight = leg.straight;
+    if (place < bodies.size() && is_same(known, leg)) return relative;
+    relative = {against_stock(body.mover, leg)};
+    keep(known, leg);
+    const bool is_divided = place < bodies.size() && relative.turns && relative.error < infinity
+                            && body.profile && body.kind != PartKind::flutes
+                            && relative.reducible_error() > finest_error(body, relative);
+    if (!is_divided) return relative;
+    for (const TurningPart& part : parts_of(body)) {
+        relative.parts.push_back({&part.profile, against_stock(part.mover, leg)});
+        if (part.mover.overlap > 0.0) relative.overlap = part.mover.overlap;
+    }
+    if (relative.shape_error() >= relative.error) relative.parts.clear();
     return relative;
 }
 
@@ -74,13 +123,29 @@ double LegContext::finest_error(const MovingBody& body, const RelativeLeg& relat
     return std::max(own, 0.2 * relative.lasting_error);
 }
 
+namespace {
+
+/// Whether an error is small enough beside a lower bound.
+bool is_sharp_by(double error, double finest, double lower) {
+    return error <= std::max(finest, sharp_fraction * lower);
+}
+
+} // namespace
+
 bool LegContext::is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const {
-    return relative.reducible_error()
-           <= std::max(finest_error(body, relative), sharp_fraction * lower);
+    return is_sharp_by(relative.reducible_error(), finest_error(body, relative), lower);
+}
+
+bool LegContext::is_sharp(const MovingBody& body, const BodyLeg& relative, double lower) const {
+    return is_sharp_by(relative.reducible_shape_error(), finest_error(body, relative), lower);
 }
 
 bool LegContext::is_too_vague(const RelativeLeg& relative) const {
     return relative.turns && relative.reducible_error() > sharp_fraction * setup.search_limit;
+}
+
+bool LegContext::is_too_vague(const BodyLeg& relative) const {
+    return relative.turns && relative.reducible_shape_error() > sharp_fraction * setup.search_limit;
 }
 
 namespace {
@@ -91,8 +156,9 @@ bool turns_too_far(const LegContext& context, const Leg& leg, const Asked& is_as
     if (!context.setup.machine.has_rotary() || leg.positions.size() != 2) return false;
     return std::any_of(context.bodies.begin(), context.bodies.end(), [&](const MovingBody& body) {
         if (body.body || !is_asked(body)) return false;
-        const RelativeLeg& relative = context.against_stock(body, leg);
-        return relative.turns && relative.reducible_error() > context.finest_error(body, relative);
+        const BodyLeg& relative = context.against_stock(body, leg);
+        return relative.turns
+               && relative.reducible_shape_error() > context.finest_error(body, relative);
     });
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/ids.h"
 #include "core/motion/kinematics.h"
+#include "core/motion/path.h"
 #include "core/sim/block_result.h"
 #include "core/sim/leg/check_memory.h"
 #include "core/sim/moving_body.h"
@@ -38,7 +39,12 @@ struct LegContext {
     CutReplay* replay = nullptr; // makes the cuts of the stock; null: they are not prepared
     unsigned threads = 1;        // for a large cut
     /// The last leg of each body against the stock, which is asked for several times.
-    mutable std::vector<std::pair<Leg, RelativeLeg>> last_legs = {};
+    mutable std::vector<std::pair<Leg, BodyLeg>> last_legs = {};
+    /// How far each body gets against each link on the leg that was last asked for; negative if not
+    /// computed yet.
+    mutable std::pair<Leg, std::vector<double>> last_travels = {};
+
+    CheckMemory::ToolState tool_state() const;
 
     /// The moving body of a pair.
     const MovingBody& body_of(const Pair& pair) const;
@@ -50,12 +56,19 @@ struct LegContext {
     /// The leg of a body in the frame of a fixture, with the fixture's play.
     RelativeLeg against_fixture(const MovingBody& body, size_t fixture, const Leg& leg) const;
 
+    /// How far any point of a body gets against a fixture, mm: the `travel` of against_fixture. All
+    /// fixtures on one link share it, so it costs little.
+    double travel_against_fixture(const MovingBody& body, size_t fixture, const Leg& leg) const;
+
     /// The leg of anything that is mounted in the stock's frame. The error of its path counts as
     /// one that lasts: shorter parts of a leg keep it.
     RelativeLeg against_stock(const Mover& mover, const Leg& leg) const;
 
     /// The leg of a body in the stock's frame. Valid until that of another leg is asked for.
-    const RelativeLeg& against_stock(const MovingBody& body, const Leg& leg) const;
+    const BodyLeg& against_stock(const MovingBody& body, const Leg& leg) const;
+
+    /// The parts of a shank or holder.
+    const std::vector<TurningPart>& parts_of(const MovingBody& body) const;
 
     /// Error of a turning body that is small enough for any clearance, mm; more if the error that
     /// stays is much greater.
@@ -63,9 +76,11 @@ struct LegContext {
 
     /// Whether the error of a leg is small enough for a body with this lower bound.
     bool is_sharp(const MovingBody& body, const RelativeLeg& relative, double lower) const;
+    bool is_sharp(const MovingBody& body, const BodyLeg& relative, double lower) const;
 
     /// Whether the error of a leg is too large for any clearance within the search limit.
     bool is_too_vague(const RelativeLeg& relative) const;
+    bool is_too_vague(const BodyLeg& relative) const;
 
     /// Whether the flutes turn so far on a leg that they must cut or be checked in halves.
     bool flutes_turn_too_far(const Leg& leg) const;

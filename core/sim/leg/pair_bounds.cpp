@@ -103,10 +103,20 @@ bool is_far(TrackedPair& known, double apart, double search_limit) {
     return true;
 }
 
-Separation widened(Separation found, const RelativeLeg& leg) {
-    found.lower = std::max(0.0, found.lower - leg.error);
-    found.upper += leg.error;
+namespace {
+
+Separation widened(Separation found, double error) {
+    found.lower = std::max(0.0, found.lower - error);
+    found.upper += error;
     return found;
+}
+
+} // namespace
+
+Separation widened(Separation found, const RelativeLeg& leg) { return widened(found, leg.error); }
+
+Separation widened(Separation found, const BodyLeg& leg) {
+    return widened(found, leg.shape_error());
 }
 
 RevolvedProfile certain_sweep(const RevolvedProfile& part, const RelativeLeg& leg) {

@@ -87,6 +87,8 @@ bool is_far(TrackedPair& known, double apart, double search_limit);
 
 /// Clearance on the real path, from that on a leg: its bounds widened by the leg's error.
 Separation widened(Separation found, const RelativeLeg& leg);
+/// The same for the shapes of a body that may be in parts.
+Separation widened(Separation found, const BodyLeg& leg);
 
 /// The part shrunk by the leg's error: the real part certainly sweeps everything that this one
 /// sweeps. Deviations do not count: bodies collide that overlap as they are in the set-up. Empty if
@@ -122,6 +124,12 @@ public:
     double travel(const RelativeLeg& part) const {
         const bool moves = part.turns || part.positions.size() == 2; // not: rests on the way
         return travel_ == infinity && goes_on_ && moves ? part.travel : travel_;
+    }
+
+    /// The same for the whole leg, on which the body moves by `own`.
+    double travel(const Leg& leg, double own) const {
+        const bool moves = leg.positions.size() == 2;
+        return travel_ == infinity && goes_on_ && moves ? own : travel_;
     }
 
     /// The entry of a pair; a new entry starts with the bound from the last block.

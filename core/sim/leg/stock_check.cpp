@@ -112,7 +112,7 @@ void StockCheck::check_late(const MovingBody& body, const Leg& leg, double start
     if (bounds_.can_skip(known, pairs)) return;
     // The stock before the cut is no longer available. It was the remaining stock plus what the
     // flutes removed on the leg.
-    const RelativeLeg relative = context_.against_stock(body, leg);
+    const BodyLeg relative = context_.against_stock(body, leg);
     const RelativeLeg flutes = context_.against_stock(context_.bodies[0], leg);
     const double limit = std::min(context_.setup.search_limit, known.upper);
     StockObservation seen;
@@ -146,10 +146,10 @@ StockObservation StockCheck::observe_after(const BodyCheck& check, const Leg& le
     const double limit = std::min(context_.setup.search_limit, check.nearest);
     after.plain = Separation{.lower = after.plain.lower};
     if (after.plain.lower >= limit) return after;
-    const RelativeLeg relative = context_.against_stock(check.body, leg);
+    const BodyLeg relative = context_.against_stock(check.body, leg);
     // Nothing has come nearer. If the nearest material is still there, the bound is as before.
     const double before =
-        check.before.whole ? check.before.plain.upper - relative.error : -infinity;
+        check.before.whole ? check.before.plain.upper - relative.shape_error() : -infinity;
     const StockGoal goal{.limit = limit,
                          .bound = StockBound::upper,
                          .enough = std::max(after.plain.lower + resolution, before),
@@ -199,7 +199,7 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
     std::vector<PairClearance> seen;
     for (const MovingBody& body : context_.bodies) {
         if (body.body || (only_flutes_ && body.kind != PartKind::flutes)) continue;
-        const RelativeLeg relative = context_.against_stock(body, leg);
+        const BodyLeg relative = context_.against_stock(body, leg);
         const double apart = distance(bounds(body, relative), stock.outer_box);
         if (context_.is_too_vague(relative) && apart < context_.setup.search_limit) return false;
         if (body.kind == PartKind::flutes && context_.use == FluteUse::cutting) {
@@ -215,7 +215,8 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
             if (pair.pair == pair_of(body)) known = &pair;
         const double nearest = known ? known->upper : infinity;
         StockObservation observation{.travel = relative.travel};
-        const double limit = std::min(context_.setup.search_limit, nearest) + relative.error;
+        const double limit =
+            std::min(context_.setup.search_limit, nearest) + relative.shape_error();
         observation.plain =
             widened(probe_.to_stock(body, relative, stock, {.limit = limit}), relative);
         const double lower = observation.plain.lower;
@@ -237,7 +238,7 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
     if (is_enough(context_.setup, pairs)) return;
     TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(body));
     if (stays_undecided(known, leg)) return;
-    const RelativeLeg relative = context_.against_stock(body, leg);
+    const BodyLeg relative = context_.against_stock(body, leg);
     if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) return;
     if (stays_away(known, leg, relative)) return;
     const double apart = distance(bounds(body, relative), stock.outer_box);
@@ -266,7 +267,7 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
 bool StockCheck::is_clear_before_cut(const MovingBody& body, const Leg& leg, double start,
                                      const CutModel& stock, TrackedPair& known,
                                      std::vector<ClearPiece>& pieces) {
-    const RelativeLeg relative = context_.against_stock(body, leg);
+    const BodyLeg relative = context_.against_stock(body, leg);
     if (stays_away(known, leg, relative)) return true;
     const double apart = distance(bounds(body, relative), stock.outer_box);
     if (is_far(known, apart, context_.setup.search_limit)) return true;
@@ -285,7 +286,7 @@ bool StockCheck::is_clear_before_cut(const MovingBody& body, const Leg& leg, dou
         if (seen.plain.upper < now.allowance.distance) return false;
     }
     if (!relative.turns
-        || relative.reducible_error() <= 2.0 * context_.finest_error(body, relative))
+        || relative.reducible_shape_error() <= 2.0 * context_.finest_error(body, relative))
         return false;
     return is_clear_before_cut(body, stretch(leg, 0.0, 0.5), start, stock, known, pieces)
            && is_clear_before_cut(body, stretch(leg, 0.5, 1.0), start, stock, known, pieces);
@@ -298,7 +299,7 @@ double StockCheck::cut_turning(const Leg& leg, double start, CutModel& stock, Tr
         if (body->kind == PartKind::flutes || body->body) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
         if (stays_undecided(known, leg)) continue;
-        const RelativeLeg relative = context_.against_stock(*body, leg);
+        const BodyLeg relative = context_.against_stock(*body, leg);
         if (bounds_.can_skip(known, pairs, bounds_.travel(relative))) continue;
         const TrackedPair before = known;
         std::vector<ClearPiece> found;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/dbm/covered_path.h"
-#include "core/distance/upright_sweep.h"
+#include "core/distance/shape_outline.h"
 #include "core/motion/path.h"
 #include "core/sim/setup.h"
 
@@ -25,15 +25,24 @@ void StockProbe::keep_squares(const CutModel& stock) {
     if (!kept_ || &kept_->model() != &stock) kept_.emplace(stock);
 }
 
-Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
-                                const CutModel& stock, StockGoal goal, double shrink) {
+Separation StockProbe::to_stock(const MovingBody& body, const BodyLeg& leg, const CutModel& stock,
+                                StockGoal goal, double shrink) {
+    if (shrink > 0.0 && !leg.can_shrink(*body.profile, shrink)) {
+        // As a whole, with a larger error.
+        const double more = leg.error - leg.shape_error();
+        goal.limit += more;
+        goal.threshold += more;
+        BodyLeg whole = leg;
+        whole.parts.clear();
+        Separation found = to_stock(body, whole, stock, goal, shrink);
+        found.lower = std::max(0.0, found.lower - more);
+        found.upper += more;
+        return found;
+    }
     // Most machine bodies are far away and have many triangles.
     if (body.body && distance(bounds(body, leg), stock.outer_box) >= goal.limit)
         return {.lower = goal.limit};
-    const std::vector<ConvexShape> shapes =
-        !body.profile  ? shapes_of(*body.body, leg)
-        : shrink > 0.0 ? shapes_of(shrunk_around(*body.profile, shrink), leg)
-                       : shapes_of(*body.profile, leg);
+    const std::vector<ConvexShape> shapes = shapes_of(body, leg, shrink);
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
@@ -54,8 +63,8 @@ Separation StockProbe::to_stock(const MovingBody& body, const RelativeLeg& leg,
 StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, const CutModel& stock,
                                      double nearest) {
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
-    const RelativeLeg relative = context_.against_stock(body, leg);
-    const double error = relative.error;
+    const BodyLeg relative = context_.against_stock(body, leg);
+    const double error = relative.shape_error();
     const double limit =
         std::min(context_.setup.search_limit, nearest) + (relative.turns ? error : 0.0);
     StockObservation seen{.travel = relative.travel};
@@ -90,7 +99,7 @@ StockObservation StockProbe::observe(const MovingBody& body, const Leg& leg, con
 
 StockObservation StockProbe::observe_lower(const MovingBody& body, const Leg& leg,
                                            const CutModel& stock, double nearest) {
-    const RelativeLeg relative = context_.against_stock(body, leg);
+    const BodyLeg& relative = context_.against_stock(body, leg);
     if (relative.turns) return observe(body, leg, stock, nearest);
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
     const double limit = std::min(context_.setup.search_limit, nearest);
@@ -152,7 +161,7 @@ void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body
     const bool is_clear_of_contact = body.profile && seen.shrunk.lower > 0.0;
     if (is_clear_of_contact && allowance_of(context_.setup, pair_of(body)).distance <= resolution) {
         // Lower bounds are known, and the shrunk body overlaps nothing.
-        const RelativeLeg& relative = context_.against_stock(body, still);
+        const BodyLeg& relative = context_.against_stock(body, still);
         const double limit = std::min(context_.setup.search_limit, nearest);
         here.plain =
             widened(to_stock(body, relative, stock, {.limit = limit, .bound = StockBound::upper}),
@@ -169,8 +178,9 @@ void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body
 }
 
 void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                           const RelativeLeg& relative, const CutModel& stock, double nearest) {
-    const bool near = seen.plain.lower <= relative.error, overlaps = seen.plain.upper == 0.0;
+                           const BodyLeg& relative, const CutModel& stock, double nearest) {
+    const bool near = seen.plain.lower <= relative.shape_error(),
+               overlaps = seen.plain.upper == 0.0;
     const bool overlaps_shrunk = seen.shrunk.upper == 0.0;
     seen.plain = widened(seen.plain, relative);
     seen.shrunk = widened(seen.shrunk, relative);
@@ -216,7 +226,7 @@ PairClearance StockProbe::clearance(const MovingBody& body, const Leg& leg, doub
 }
 
 bool StockProbe::is_clear(const MovingBody& body, const Leg& leg, const CutModel& stock) {
-    const RelativeLeg relative = context_.against_stock(body, leg);
+    const BodyLeg& relative = context_.against_stock(body, leg);
     if (relative.turns) return false;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
     // Where a square of the finest side is too near, the answer is known.
@@ -245,7 +255,7 @@ double StockProbe::distance_to_box(const MovingBody& body, const RelativeLeg& le
 
 bool StockProbe::have_room(const Leg& leg, const CutModel& stock, double room) {
     if (context_.tool.parts.empty() || !leg.straight) return false;
-    const RelativeLeg way = context_.against_stock(context_.bodies[0], leg);
+    const BodyLeg& way = context_.against_stock(context_.bodies[0], leg);
     if (way.error >= room) return false;
     const double needed = room + way.error;
     const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
@@ -274,7 +284,7 @@ double StockProbe::earliest(const Leg& leg, const PairClearance& near, double di
             found = pair.fixture
                         ? distance_over(moved, body, context_.setup.fixtures[*pair.fixture].body,
                                         limit + resolution, context_.statistics.shape_tests)
-                        : to_stock(body, moved, stock,
+                        : to_stock(body, {moved}, stock,
                                    {.limit = limit + resolution,
                                     .bound = StockBound::upper,
                                     .enough = limit,

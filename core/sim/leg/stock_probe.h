@@ -40,9 +40,9 @@ public:
     StockObservation observe_lower(const MovingBody& body, const Leg& leg, const CutModel& stock,
                                    double nearest);
 
-    /// Distance to the stock on a leg, without the leg's error. The body is shrunk by `shrink`
-    /// first.
-    Separation to_stock(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
+    /// Distance to the stock on a leg, without the error of the body's shapes. The body is shrunk
+    /// by `shrink` first.
+    Separation to_stock(const MovingBody& body, const BodyLeg& leg, const CutModel& stock,
                         StockGoal goal, double shrink = 0.0);
 
     /// Lower bound of the distance between a machine body and a box over a leg.
@@ -86,7 +86,7 @@ private:
     /// Adds the error of the leg. An overlap is kept only if it exists at a position that the body
     /// really takes.
     void add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                   const RelativeLeg& relative, const CutModel& stock, double nearest);
+                   const BodyLeg& relative, const CutModel& stock, double nearest);
     /// Whether the flutes move only where they have cut before (runs_in_own_cut).
     bool retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                   const Allowance& allowance) const;

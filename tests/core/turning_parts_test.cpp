@@ -7,7 +7,7 @@
 
 #include "core/motion/path.h"
 #include "core/sim/leg/flute_cut.h"
-#include "core/sim/leg/flute_parts.h"
+#include "core/sim/leg/turning_parts.h"
 #include "core/sim/setup.h"
 #include "tests/support/machines.h"
 #include "tests/support/profile_oracle.h"
@@ -54,14 +54,14 @@ Vec3 surface_point(const ProfileElement& e, std::mt19937& rng) {
     return inward * (e.r0 + s * (e.r1 - e.r0)) * out + Vec3(0, 0, e.z0 + s * (e.z1 - e.z0));
 }
 
-TEST(FluteParts, StayWithinTheFlutesAndLeaveNoGaps) {
+TEST(TurningParts, StayWithinTheFlutesAndLeaveNoGaps) {
     std::mt19937 rng(2811);
     const Machine machine = test_support::trunnion(Vec3(0.0), Vec3(0.0));
     size_t divided = 0;
     for (const RevolvedProfile& flutes : tools()) {
-        const std::vector<FlutePart> parts = flute_parts(flutes, mover_of(flutes, machine), 0.5);
+        const std::vector<TurningPart> parts = flute_parts(flutes, mover_of(flutes, machine), 0.5);
         divided += parts.size() > 3;
-        for (const FlutePart& part : parts)
+        for (const TurningPart& part : parts)
             for (const ProfileElement& e : part.profile.elements)
                 for (int k = 0; k < 200; ++k)
                     EXPECT_LE(outside(flutes, surface_point(e, rng)), 1e-9);
@@ -73,7 +73,7 @@ TEST(FluteParts, StayWithinTheFlutesAndLeaveNoGaps) {
                 if (inner.empty()) continue;
                 const Vec3 p = surface_point(inner.elements[0], rng);
                 double least = infinity;
-                for (const FlutePart& part : parts)
+                for (const TurningPart& part : parts)
                     least = std::min(least, outside(shrunk_within(part.profile, slimmer), p));
                 EXPECT_LE(least, 1e-9);
             }
@@ -95,7 +95,7 @@ Leg random_leg(const Machine& machine, double turn, std::mt19937& rng) {
 
 /// For points of the slimmer part: it is where the flutes are. For points of the flutes: a wider
 /// part is where they are.
-TEST(FluteParts, KeepTheirBoundsWhileTheAxesTurn) {
+TEST(TurningParts, KeepTheirBoundsWhileTheAxesTurn) {
     std::mt19937 rng(1281);
     std::uniform_real_distribution<double> fraction(0.0, 1.0);
     const std::vector<Machine> machines = {test_support::trunnion({10, 20, -60}, {-5, 12, -40}),
@@ -110,13 +110,13 @@ TEST(FluteParts, KeepTheirBoundsWhileTheAxesTurn) {
             const Leg leg = random_leg(machine, std::pow(10.0, -1.5 + 2.5 * fraction(rng)), rng);
             const Mount target{machine.table, {}};
             struct Moved {
-                FlutePart part;
+                TurningPart part;
                 RelativeLeg way;
                 RevolvedProfile within, around;
             };
             std::vector<Moved> parts;
             const double error = relative_leg(machine, target, whole, leg).error;
-            for (FlutePart& part : flute_parts(flutes, whole, k % 2 ? 0.1 : 0.5)) {
+            for (TurningPart& part : flute_parts(flutes, whole, k % 2 ? 0.1 : 0.5)) {
                 RelativeLeg way = relative_leg(machine, target, part.mover, leg);
                 if (!(way.error < infinity)) continue;
                 sharper += way.error < 0.5 * error, ++legs;
@@ -159,6 +159,75 @@ TEST(FluteParts, KeepTheirBoundsWhileTheAxesTurn) {
     EXPECT_GT(static_cast<double>(sharper), 0.3 * static_cast<double>(legs));
     EXPECT_LT(nearest_inside, 0.2) << "the test comes near the bounds";
     EXPECT_LT(nearest_outside, 0.3);
+}
+
+/// Shanks and holders: slender, stepped, widening, and flat ones that cannot be divided.
+std::vector<RevolvedProfile> shanks() {
+    return {{{{0, 2, 60, 2, 0}}},
+            {{{10, 1, 30, 1, 0}, {30, 3, 70, 3, 0}}},
+            {{{10, 2, 50, 6, 0}}},
+            {{{20, 8, 44, 8, 0}, {44, 16, 60, 20, 0}, {60, 24, 70, 24, 0}}},
+            {{{20, 8, 22, 20, 0}, {22, 20, 24, 8, 0}}},
+            {{{5, 3, 5, 3, 2}, {5, 5, 40, 5, 0}}}};
+}
+
+TEST(TurningParts, OfAShankContainItAndStayWithinTheirErrorOfIt) {
+    std::mt19937 rng(77);
+    std::uniform_real_distribution<double> fraction(0.0, 1.0);
+    const std::vector<Machine> machines = {test_support::trunnion({10, 20, -60}, {-5, 12, -40}),
+                                           test_support::head_and_table({3, 0, 50}, {40, -30, -50}),
+                                           test_support::fork_head({1, 2, 60})};
+    const std::vector<bool> no_fixtures;
+    Statistics statistics;
+    size_t divided = 0, sharper = 0;
+    double nearest = infinity;
+    for (const RevolvedProfile& shank : shanks()) {
+        for (int k = 0; k < 60; ++k) {
+            core::Setup setup;
+            setup.machine = machines[static_cast<size_t>(k) % machines.size()];
+            setup.stock_mount = {setup.machine.table, {}};
+            ToolAssembly tool;
+            tool.parts = {{PartKind::shank, shank}};
+            tool.length = 80.0;
+            CheckMemory memory;
+            const LegContext context{
+                setup,       tool,   FluteUse::cutting, BlockIndex{0},
+                no_fixtures, memory, statistics,        moving_bodies(setup, tool)};
+            const MovingBody& body = context.bodies[0];
+            const Leg leg =
+                random_leg(setup.machine, std::pow(10.0, -1.5 + 2.0 * fraction(rng)), rng);
+            const BodyLeg& way = context.against_stock(body, leg);
+            if (way.parts.empty()) continue;
+            ++divided;
+            sharper += way.shape_error() < 0.5 * way.error;
+            const std::vector<ConvexShape> shapes = shapes_of(body, way);
+            const double error = way.shape_error();
+            for (int sample = 0; sample < 40; ++sample) {
+                const double t = sample < 2 ? sample : fraction(rng);
+                const AxisValues at = stretch(leg, 0.0, t).positions[1];
+                const Transform pose =
+                    target_from_mover(setup.machine, setup.stock_mount, body.mover.mount, at);
+                // A point of the shank is near one of the shapes.
+                const auto& elements = shank.elements;
+                const Vec3 p = pose * surface_point(elements[rng() % elements.size()], rng);
+                double off = infinity;
+                for (const ConvexShape& shape : shapes)
+                    off = std::min(off, separation(shape, convex_segment(p, p)).lower);
+                ASSERT_LE(off, error + 1e-9);
+                nearest = std::min(nearest, 1.0 - off / error);
+                // A point of a shape at that time is near the shank.
+                const BodyLeg::Part& part = way.parts[rng() % way.parts.size()];
+                const auto& own = part.profile->elements;
+                const Vec3 q = part.leg.positions[0]
+                               + t * (part.leg.positions[1] - part.leg.positions[0])
+                               + part.leg.orientation * surface_point(own[rng() % own.size()], rng);
+                ASSERT_LE(outside(shank, pose.inverse() * q), part.leg.error + 1e-9);
+            }
+        }
+    }
+    EXPECT_GE(divided, 100U);
+    EXPECT_GE(sharper, divided / 2);
+    EXPECT_LT(nearest, 0.4) << "the test comes near the bound";
 }
 
 struct Bench {

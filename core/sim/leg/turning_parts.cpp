@@ -1,4 +1,4 @@
-#include "core/sim/leg/flute_parts.h"
+#include "core/sim/leg/turning_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ double arm_at(const Outward& p, const Outward& from, const Outward& to) {
     return passes_right_angle ? p.length() : std::max(arm(from), arm(to));
 }
 
-/// Flutes between two heights. The ends within the flutes are open: they are covered by the next
+/// A body between two heights. The ends within the body are open: they are covered by the next
 /// part.
 struct Slice {
     RevolvedProfile profile;
@@ -80,7 +80,7 @@ double reach_from(const RevolvedProfile& profile, double centre) {
     return most;
 }
 
-FlutePart part_of(const Slice& slice, double overlap, const Mover& whole) {
+TurningPart part_of(const Slice& slice, double overlap, const Mover& whole) {
     const Aabb box = bounds(slice.profile);
     std::vector<double> centres = {box.center().z};
     for (const ProfileElement& e : slice.profile.elements)
@@ -89,7 +89,7 @@ FlutePart part_of(const Slice& slice, double overlap, const Mover& whole) {
         *std::min_element(centres.begin(), centres.end(), [&](double a, double b) {
             return greatest_arm(slice, a) < greatest_arm(slice, b);
         });
-    FlutePart part{slice.profile, whole};
+    TurningPart part{slice.profile, whole};
     part.mover.centre = Vec3(0.0, 0.0, centre);
     part.mover.reach = reach_from(slice.profile, centre) + slice.profile.deviation;
     part.mover.arm = greatest_arm(slice, centre) + slice.profile.deviation;
@@ -137,24 +137,37 @@ std::vector<Slice> slices_of(const RevolvedProfile& convex, double height, doubl
     return slices;
 }
 
-} // namespace
-
-std::vector<FlutePart> flute_parts(const RevolvedProfile& flutes, const Mover& mover, double cell) {
-    // Together, two parts overlap by more than the diagonal of a cell.
-    const double least = std::clamp(0.8 * bounds(flutes).max.x, 0.5, 5.0);
-    const double overlap = std::max(0.1 * least, 0.8 * cell);
-    const double height = std::max(least, 4.0 * overlap);
+/// The slices of a profile about `height` high, convex ones of a profile that is not.
+std::vector<TurningPart> parts_of(const RevolvedProfile& body, const Mover& mover, double height,
+                                  double overlap) {
     std::vector<RevolvedProfile> convex;
-    if (is_convex(flutes))
-        convex.push_back(flutes);
+    if (is_convex(body))
+        convex.push_back(body);
     else
-        for (const ProfileElement& element : flutes.elements)
-            convex.push_back({{element}, flutes.form_error, flutes.deviation});
-    std::vector<FlutePart> parts;
+        for (const ProfileElement& element : body.elements)
+            convex.push_back({{element}, body.form_error, body.deviation});
+    std::vector<TurningPart> parts;
     for (const RevolvedProfile& profile : convex)
         for (const Slice& slice : slices_of(profile, height, overlap))
             parts.push_back(part_of(slice, overlap, mover));
     return parts;
+}
+
+} // namespace
+
+std::vector<TurningPart> flute_parts(const RevolvedProfile& flutes, const Mover& mover,
+                                     double cell) {
+    // Together, two parts overlap by more than the diagonal of a cell.
+    const double least = std::clamp(0.8 * bounds(flutes).max.x, 0.5, 5.0);
+    const double overlap = std::max(0.1 * least, 0.8 * cell);
+    return parts_of(flutes, mover, std::max(least, 4.0 * overlap), overlap);
+}
+
+std::vector<TurningPart> slender_parts(const RevolvedProfile& body, const Mover& mover) {
+    constexpr double most = 8.0;
+    const Aabb box = bounds(body);
+    const double height = std::max(1.6 * box.max.x, box.size().z / most);
+    return parts_of(body, mover, height, 0.1 * height);
 }
 
 } // namespace core
