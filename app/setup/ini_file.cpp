@@ -355,8 +355,16 @@ std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& e
     if (!environment.kinematics || !environment.kinematics->machine) return {};
     const core::Machine& known = *environment.kinematics->machine;
     const std::string& module = environment.kinematics->module;
+    const auto take_length_axis = [&] {
+        if (!known.length_axis || machine.axes[*known.length_axis].present) return;
+        machine.axes[*known.length_axis] = known.axes[*known.length_axis];
+        machine.length_axis = known.length_axis;
+    };
     if (machine.has_rotary()) {
-        if (are_same(machine, known)) return {};
+        if (are_same(machine, known)) {
+            take_length_axis();
+            return {};
+        }
         return fmt::format("the rotary axes of the set-up are not where {} of the ini file has "
                            "them: the control is assumed to know those of the set-up",
                            module);
@@ -373,6 +381,7 @@ std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& e
     }
     if (is_turned(known.table)) machine.table = known.table;
     if (is_turned(known.spindle)) machine.spindle = known.spindle;
+    take_length_axis();
     return {};
 }
 

@@ -101,6 +101,10 @@ core::Machine head_on_head(Pins& pin) {
     Chain chain;
     chain.add('C', Side::tool, {0.0, 0.0, 1.0}, Vec3(0.0));
     chain.add('B', Side::tool, {0.0, sense, 0.0}, {0.0, 0.0, pin("pivot-length")});
+    // W has no motor: the other axes move the tip along the tool instead.
+    const size_t w = core::axis_letters.find('W');
+    chain.machine.axes[w] = {.direction = {0.0, 0.0, 1.0}, .present = true, .side = Side::tool};
+    chain.machine.length_axis = w;
     return chain.machine;
 }
 

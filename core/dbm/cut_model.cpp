@@ -196,7 +196,7 @@ bool comes_to(const LoggedSweep& logged, const Square& square, const Interval& h
 
 constexpr Interval any_height{-infinity, infinity};
 
-bool comes_to(const LoggedSweep& logged, const TiltedBox* box, const Square& square,
+bool comes_to(const LoggedSweep& logged, const TiltedPrism* box, const Square& square,
               const Interval& heights) {
     return comes_to(logged, square, heights) && (!box || box->comes_to(square, heights));
 }
@@ -221,7 +221,7 @@ IntervalList clipped(IntervalList all, const Interval& heights) {
 
 } // namespace
 
-TiltedBox::TiltedBox(const CutterSweep& sweep) {
+TiltedPrism::TiltedPrism(const CutterSweep& sweep) {
     const Vec3& axis = sweep.orientation[2];
     const double level = std::sqrt(axis.x * axis.x + axis.y * axis.y);
     const Vec3 across = level > 0.0 ? Vec3(-axis.y, axis.x, 0.0) / level : Vec3(1.0, 0.0, 0.0);
@@ -237,7 +237,7 @@ TiltedBox::TiltedBox(const CutterSweep& sweep) {
     }
 }
 
-bool TiltedBox::comes_to(const Square& square, const Interval& heights) const {
+bool TiltedPrism::comes_to(const Square& square, const Interval& heights) const {
     constexpr double slack = 1e-6; // mm, far above the rounding errors of this test
     constexpr double far = 1e9;    // mm, beyond every height
     const Vec3 low(square.x0, square.y0, std::max(heights.lower, -far));
@@ -298,7 +298,7 @@ SquareCuts::SquareCuts(const CutModel& model, const CellSweeps& near, const Squa
 void SquareCuts::add(const CellSweeps& near, size_t first) {
     for (size_t i = first; i < near.size(); ++i) {
         const LoggedSweep& sweep = near[i].logged;
-        const TiltedBox* const box = near[i].box ? &*near[i].box : nullptr;
+        const TiltedPrism* const box = near[i].box ? &*near[i].box : nullptr;
         if (comes_to(sweep, box, square_, heights_))
             for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
                 cuts_.push_back({&sweep, box, &piece, {}, {}});
@@ -382,7 +382,7 @@ void SquareCuts::subtract_from_column(IntervalList& column, int number, size_t f
         const Interval left = hull(column);
         if (!comes_to(*cuts_[i].sweep, cuts_[i].box, part, left)) continue;
         // Most moves of a tilted tool pass where the material is gone already.
-        const TiltedBox* const box = cuts_[i].box;
+        const TiltedPrism* const box = cuts_[i].box;
         const auto is_met = [&](const Interval& matter) { return box->comes_to(part, matter); };
         if (box && column.size() > 1 && std::none_of(column.begin(), column.end(), is_met))
             continue;
@@ -406,9 +406,9 @@ void SquareCuts::subtract_from_line(IntervalList& line, size_t first) const {
     }
 }
 
-KeptSquare::KeptSquare(SquareCuts cuts, const CellSweeps& near, size_t& kept)
-    : cuts_(std::move(cuts)), near_(&near), seen_(near.size()), kept_(&kept) {
-    *kept_ += 1 + cuts_.cuts_.size();
+KeptSquare::KeptSquare(SquareCuts cuts, const CellSweeps& near, KeptBudget& budget)
+    : cuts_(std::move(cuts)), near_(&near), seen_(near.size()), budget_(&budget) {
+    budget_->used += 1 + cuts_.cuts_.size();
 }
 
 void KeptSquare::catch_up() {
@@ -416,7 +416,7 @@ void KeptSquare::catch_up() {
     const size_t known = cuts_.cuts_.size();
     cuts_.add(*near_, seen_);
     seen_ = near_->size();
-    *kept_ += cuts_.cuts_.size() - known;
+    budget_->used += cuts_.cuts_.size() - known;
     if (line_) cuts_.subtract_from_line(*line_, known);
     for (int quarter = 0; quarter < 4; ++quarter)
         if (auto& column = columns_[static_cast<size_t>(quarter)])
@@ -436,20 +436,13 @@ const IntervalList& KeptSquare::column(int quarter) {
     return *column;
 }
 
-namespace {
-
-/// Squares, moves and pieces of moves in squares that may be kept, some 300 bytes each.
-constexpr size_t most_kept = 40'000;
-
-} // namespace
-
 KeptSquare* KeptSquare::within(int quarter) {
     catch_up();
     std::unique_ptr<KeptSquare>& part = quarters_[static_cast<size_t>(quarter)];
-    if (!part && *kept_ > most_kept) return nullptr;
+    if (!part && budget_->is_spent()) return nullptr;
     if (!part)
         part = std::make_unique<KeptSquare>(cuts_.within(quarter, hull(column(quarter))), *near_,
-                                            *kept_);
+                                            *budget_);
     return part.get();
 }
 
@@ -460,17 +453,22 @@ SquareCuts KeptSquare::loose_within(int quarter, const Interval& heights) {
 
 KeptSquare* KeptSquares::of_cell(int i, int j) {
     if (model_->is_on_trial) return nullptr;
+    if (budget_.used > 2 * budget_.most) {
+        cells_.clear();
+        pool_.clear();
+        budget_.used = 0;
+    }
     const auto known = cells_.find({i, j});
-    if (known == cells_.end() && kept_ > most_kept) return nullptr;
+    if (known == cells_.end() && budget_.is_spent()) return nullptr;
     Cell& cell =
         known != cells_.end() ? known->second : cells_.try_emplace({i, j}, &pool_).first->second;
     const size_t pooled = pool_.size();
     cell.sweeps.add(*model_, i, j, std::exchange(cell.logged, model_->log.size()));
-    kept_ += pool_.size() - pooled;
+    budget_.used += pool_.size() - pooled;
     if (!cell.square) {
         const Interval heights = hull(model_->columns.line(i, j));
         cell.square.emplace(SquareCuts(*model_, cell.sweeps, cell_square(*model_, i, j), heights),
-                            cell.sweeps, kept_);
+                            cell.sweeps, budget_);
     }
     return &*cell.square;
 }

@@ -68,9 +68,9 @@ struct LoggedSweep {
 
 /// A prism with eight sides around everything that a tilted cutter may remove on one move. It
 /// stands along the tool axis, so a line along Z that passes beside the cutter mostly misses it.
-class TiltedBox {
+class TiltedPrism {
 public:
-    explicit TiltedBox(const CutterSweep& sweep);
+    explicit TiltedPrism(const CutterSweep& sweep);
 
     /// Whether the box may come to a square between two heights.
     bool comes_to(const Square& square, const Interval& heights) const;
@@ -250,7 +250,7 @@ Square cell_square(const CutModel& model, int i, int j);
 /// A logged move near some cells.
 struct NearSweep {
     LoggedSweep logged;
-    std::optional<TiltedBox> box; // none if the cutter is upright
+    std::optional<TiltedPrism> box; // none if the cutter is upright
 };
 
 /// Logged moves by their index, shared by the cells that they come near.
@@ -308,7 +308,7 @@ private:
     /// through the corners of the quarters, by X and then Y; computed on demand.
     struct PieceCut {
         const LoggedSweep* sweep;
-        const TiltedBox* box; // null: the cutter is upright
+        const TiltedPrism* box; // null: the cutter is upright
         const Cutter::Piece* piece;
         std::array<std::optional<Interval>, 9> at;
         std::bitset<9> is_known;
@@ -334,13 +334,21 @@ private:
     std::vector<PieceCut> cuts_;
 };
 
+/// How much may be kept: squares, moves, and pieces of moves in squares, some 300 bytes each.
+struct KeptBudget {
+    size_t most;
+    size_t used = 0;
+
+    bool is_spent() const { return used > most; }
+};
+
 /// As SquareCuts between all heights, with all answers kept. Moves that come near the cell later
 /// are taken into account when the square is asked next.
 class KeptSquare {
 public:
     /// `near`: the moves near the cell, all of which are in `cuts`; more may be added to its end.
-    /// `kept`: counts the squares and the pieces of moves in them. Both must outlive this.
-    KeptSquare(SquareCuts cuts, const CellSweeps& near, size_t& kept);
+    /// Both `near` and `budget` must outlive this.
+    KeptSquare(SquareCuts cuts, const CellSweeps& near, KeptBudget& budget);
 
     const Square& square() const { return cuts_.square(); }
     const IntervalList& line_at_centre();
@@ -358,7 +366,7 @@ private:
     SquareCuts cuts_;
     const CellSweeps* near_;
     size_t seen_; // moves of `near_` that `cuts_` knows
-    size_t* kept_;
+    KeptBudget* budget_;
     std::optional<IntervalList> line_;
     std::array<std::optional<IntervalList>, 4> columns_;
     std::array<std::unique_ptr<KeptSquare>, 4> quarters_;
@@ -368,14 +376,21 @@ private:
 /// it. Not for several threads.
 class KeptSquares {
 public:
+    static constexpr size_t usual_budget = 40'000;
+
     /// The model must outlive this; it may be cut, but cuts must not be taken back between two
-    /// calls.
-    explicit KeptSquares(const CutModel& model) : model_(&model) {}
+    /// calls. When `most` is kept, no new squares are; those that are kept grow with later cuts,
+    /// and all are dropped at twice as much.
+    explicit KeptSquares(const CutModel& model, size_t most = usual_budget)
+        : model_(&model), budget_{most} {}
     KeptSquares(const KeptSquares&) = delete;
     KeptSquares& operator=(const KeptSquares&) = delete;
 
-    /// Null if the last cut may be taken back, or if so much is kept that no more cells are.
+    /// Null if the last cut may be taken back, or if so much is kept that no more cells are. Valid
+    /// until the next call.
     KeptSquare* of_cell(int i, int j);
+
+    size_t used() const { return budget_.used; }
 
     const CutModel& model() const { return *model_; }
 
@@ -391,7 +406,7 @@ private:
     const CutModel* model_;
     SweepPool pool_;
     std::map<std::pair<int, int>, Cell> cells_;
-    size_t kept_ = 0; // squares, moves and pieces of moves in squares, some 300 bytes each
+    KeptBudget budget_;
 };
 
 /// The heights at which the part `square` of cell (i, j) may contain material, recomputed from the

@@ -50,16 +50,25 @@ struct Machine {
     std::optional<double> rapid_corner_tolerance; // between rapids
     LinkId spindle = link_of(2);                  // carries the tool
     LinkId table = LinkId::base;                  // carries the work
+    // An axis that moves nothing by itself: while the control follows the tip, it takes the tool to
+    // be longer by its value. W of LinuxCNC's 5axiskins.
+    std::optional<size_t> length_axis;
     std::vector<MachineBody> bodies;
 
     bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }
+
+    /// The length of the tool from which the control computes the position of the tip.
+    double controlled_length(double tool_length, const AxisValues& values) const {
+        return length_axis ? tool_length + values[*length_axis] : tool_length;
+    }
 
     /// Position of the gauge line relative to the work from the linear axes alone. Frame: the
     /// machine's.
     Vec3 linear_position(const AxisValues& values) const {
         Vec3 p(0.0);
         for (size_t i = 0; i < axis_count; ++i)
-            if (axes[i].present && !is_rotary(i)) p += values[i] * axes[i].direction;
+            if (axes[i].present && !is_rotary(i) && i != length_axis)
+                p += values[i] * axes[i].direction;
         return p;
     }
     AxisPosition home() const {

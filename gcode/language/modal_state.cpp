@@ -83,9 +83,10 @@ void reach_from_work(const Offsets& offsets, Position& position) {
     const auto values = known_values(offsets, position);
     std::optional<AxisValues> reached;
     if (values)
-        reached = core::reach_tip(
-            *offsets.machine, *values,
-            table_from_work(offsets, {(*values)[0], (*values)[1], (*values)[2]}), offsets.tool[2]);
+        reached =
+            core::reach_tip(*offsets.machine, *values,
+                            table_from_work(offsets, {(*values)[0], (*values)[1], (*values)[2]}),
+                            offsets.machine->controlled_length(offsets.tool[2], *values));
     if (!reached) return forget_linear(position);
     for (size_t axis = 0; axis < 3; ++axis) position[axis] = (*reached)[axis];
 }
@@ -94,8 +95,9 @@ void reach_from_work(const Offsets& offsets, Position& position) {
 void put_in_work(const Offsets& offsets, Position& position) {
     const auto values = known_values(offsets, position);
     if (!values) return forget_linear(position);
-    const core::Vec3 tip = machine_from_table(offsets)
-                           * core::tip_position(*offsets.machine, *values, offsets.tool[2]);
+    const double length = offsets.machine->controlled_length(offsets.tool[2], *values);
+    const core::Vec3 tip =
+        machine_from_table(offsets) * core::tip_position(*offsets.machine, *values, length);
     for (size_t axis = 0; axis < 3; ++axis)
         position[axis] = glm::dot(tip, offsets.machine->axes[axis].direction);
 }

@@ -158,7 +158,9 @@ struct Visitor {
             from[axis] = motion.from[axis].value_or(0.0);
             to[axis] = motion.to[axis].value_or(0.0);
         }
-        const double length = offsets.tool[2];
+        // While the controlled length changes, no rotary axis turns: the path is straight.
+        const double length = offsets.machine->controlled_length(offsets.tool[2], to);
+        if (length != offsets.machine->controlled_length(offsets.tool[2], from)) return;
         motion.tip = core::TipPath{core::tip_position(*offsets.machine, from, length),
                                    core::tip_position(*offsets.machine, to, length), length};
     }

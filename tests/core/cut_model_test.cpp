@@ -293,15 +293,45 @@ TEST(CutModel, KeptSquaresFollowLaterCuts) {
     }
 }
 
-/// A box that misses a square says that no line through it meets the cutter.
-TEST(CutModel, BoxesOfTiltedCuttersMissOnlyWhatTheyDoNotSweep) {
+TEST(CutModel, KeptSquaresStayWithinTwiceTheirBudget) {
+    std::mt19937 rng(72);
+    const CutBox box = random_tilted_cut_box(rng, 40, 0.0);
+    CutModel model = box.uncut(spacing);
+    constexpr size_t most = 300;
+    KeptSquares kept(model, most);
+    size_t refused = 0, dropped = 0, before = 0, greatest = 0;
+    for (size_t i = 0; i < box.cuts.size(); ++i) {
+        TrialCut trial(model, box.sweep(i));
+        trial.keep();
+        for (int j = 0; j < model.columns.v_count(); ++j)
+            for (int u = 0; u < model.columns.u_count(); ++u) {
+                if (KeptSquare* const square = kept.of_cell(u, j))
+                    EXPECT_EQ(square->line_at_centre(),
+                              fresh_line(model, u, j,
+                                         0.5 * (square->square().x0 + square->square().x1),
+                                         0.5 * (square->square().y0 + square->square().y1)));
+                else
+                    ++refused;
+                dropped += kept.used() < before;
+                before = kept.used();
+                greatest = std::max(greatest, before);
+            }
+    }
+    EXPECT_GT(refused, 0U);
+    EXPECT_GT(dropped, 0U);
+    EXPECT_GT(greatest, most);
+    EXPECT_LT(greatest, 2 * most + box.cuts.size()); // one square may grow by all cuts at once
+}
+
+/// A prism that misses a square says that no line through it meets the cutter.
+TEST(CutModel, PrismsOfTiltedCuttersMissOnlyWhatTheyDoNotSweep) {
     std::mt19937 rng(69);
     int missed = 0, met = 0;
     for (int k = 0; k < 60; ++k) {
         const CutModel model = random_tilted_cut_box(rng, 1, k % 2 ? 0.1 : 0.0).model(spacing);
         if (model.log.size() == 0) continue; // the cut misses the box
         const LoggedSweep logged = model.log[0];
-        const TiltedBox box(logged.sweep);
+        const TiltedPrism box(logged.sweep);
         for (int i = 0; i < 300; ++i) {
             const Vec3 p = random_point(model.outer_box, rng);
             const Interval heights{p.z, p.z + 0.5};

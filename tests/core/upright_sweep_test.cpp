@@ -200,7 +200,7 @@ TEST(ShapeOutline, OfATiltedPieceIsNoFartherFromABoxThanThePiece) {
     EXPECT_LE(loose, apart / 20);
 }
 
-TEST(ShapeOutline, OfATiltedBoxIsCutByItsFaces) {
+TEST(ShapeOutline, OfATiltedPrismIsCutByItsFaces) {
     // A bar along the diagonal of X and Y: its own box is far larger.
     const ConvexShape bar = posed(convex(Aabb{{-20, -1, -1}, {20, 1, 1}}),
                                   Transform(rotation_xyz_deg({0, 0, 45}), Vec3(0.0)));

@@ -4,7 +4,6 @@
 
 #include "core/dbm/covered_path.h"
 #include "core/dbm/cut_ahead.h"
-#include "core/distance/stock_distance.h"
 #include "core/motion/path.h"
 #include "core/sim/leg/turning_parts.h"
 #include "core/sim/setup.h"
@@ -117,15 +116,8 @@ double FluteCut::cut_with(const CutterSweep& sweep, CutModel& stock) {
 }
 
 bool FluteCut::is_away(const RevolvedProfile& profile, const RelativeLeg& way,
-                       const CutModel& stock) {
-    const double needed = way.error + context_.setup.cut_error + resolution;
-    const bool has_columns = stock.columns.u_count() > 0;
-    if (!has_columns || !(needed < context_.setup.search_limit)) return false;
-    const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
-    const StockSeparation found = separation(shapes_of(profile, way), stock, goal);
-    context_.statistics.box_tests += found.box_tests;
-    context_.statistics.shape_tests += found.shape_tests;
-    return found.separation.lower >= needed;
+                       const CutModel& stock) const {
+    return context_.stays_apart(profile, way, stock, context_.setup.cut_error + resolution);
 }
 
 std::unique_ptr<TrialCut> FluteCut::try_along(const Leg& leg, CutModel& stock) {

@@ -52,7 +52,8 @@ private:
     double along(const Leg& leg, size_t part, CutModel& stock);
     double cut_with(const CutterSweep& sweep, CutModel& stock);
     /// Whether a profile certainly stays away from the stock on a leg.
-    bool is_away(const RevolvedProfile& profile, const RelativeLeg& way, const CutModel& stock);
+    bool is_away(const RevolvedProfile& profile, const RelativeLeg& way,
+                 const CutModel& stock) const;
 
     const LegContext& context_;
 };

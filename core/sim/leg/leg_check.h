@@ -197,9 +197,12 @@ public:
     /// which that is least, mm; negative: it stays outside.
     double reach_into_raw_stock(const Pair& pair, const Leg& leg, const CutModel& stock) const;
 
-    /// Whether the flutes stay at least `room` away from the stock: StockProbe::have_room.
-    bool flutes_have_room(const Leg& leg, const CutModel& stock, double room) {
-        return probe_.have_room(leg, stock, room);
+    /// Whether the flutes stay at least `room` away from the stock, as far as bounds show.
+    bool flutes_have_room(const Leg& leg, const CutModel& stock, double room) const {
+        if (context_.tool.parts.empty() || !leg.straight) return false;
+        const MovingBody& flutes = context_.bodies[0];
+        const RelativeLeg& way = context_.against_stock(flutes, leg);
+        return way.error < room && context_.stays_apart(*flutes.profile, way, stock, room);
     }
 
     /// StockProbe::earliest.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/dbm/cut_model.h"
+#include "core/distance/stock_distance.h"
 #include "core/sim/leg/turning_parts.h"
 #include "core/sim/setup.h"
 
@@ -112,6 +114,18 @@ const BodyLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg)
     }
     if (relative.shape_error() >= relative.error) relative.parts.clear();
     return relative;
+}
+
+bool LegContext::stays_apart(const RevolvedProfile& profile, const RelativeLeg& leg,
+                             const CutModel& stock, double by) const {
+    const double needed = by + leg.error;
+    const bool has_columns = stock.columns.u_count() > 0;
+    if (!has_columns || !(needed < setup.search_limit)) return false;
+    const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
+    const StockSeparation found = separation(shapes_of(profile, leg), stock, goal);
+    statistics.box_tests += found.box_tests;
+    statistics.shape_tests += found.shape_tests;
+    return found.separation.lower >= needed;
 }
 
 double LegContext::finest_error(const MovingBody& body, const RelativeLeg& relative) const {

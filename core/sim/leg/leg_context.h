@@ -13,6 +13,7 @@
 namespace core {
 
 class CutReplay;
+struct CutModel;
 struct Setup;
 
 /// Whether material that the flutes meet is cut or is a collision.
@@ -69,6 +70,10 @@ struct LegContext {
 
     /// The parts of a shank or holder.
     const std::vector<TurningPart>& parts_of(const MovingBody& body) const;
+
+    /// Whether a profile stays at least `by` away from the stock on a leg, as far as bounds show.
+    bool stays_apart(const RevolvedProfile& profile, const RelativeLeg& leg, const CutModel& stock,
+                     double by) const;
 
     /// Error of a turning body that is small enough for any clearance, mm; more if the error that
     /// stays is much greater.

@@ -204,10 +204,8 @@ bool StockCheck::is_clear_by_bound(const Leg& leg, double start, const CutModel&
         if (context_.is_too_vague(relative) && apart < context_.setup.search_limit) return false;
         if (body.kind == PartKind::flutes && context_.use == FluteUse::cutting) {
             // They need no clearance: it is enough that they cut nothing.
-            const double apart_by = relative.error + resolution;
-            const StockGoal goal{
-                .limit = apart_by, .bound = StockBound::lower, .coarse_below = apart_by};
-            if (probe_.to_stock(body, relative, stock, goal).lower < apart_by) return false;
+            const double room = context_.setup.cut_error + resolution;
+            if (!context_.stays_apart(*body.profile, relative, stock, room)) return false;
             continue;
         }
         const PairClearance* known = nullptr;

@@ -253,15 +253,6 @@ double StockProbe::distance_to_box(const MovingBody& body, const RelativeLeg& le
     return lower - leg.error;
 }
 
-bool StockProbe::have_room(const Leg& leg, const CutModel& stock, double room) {
-    if (context_.tool.parts.empty() || !leg.straight) return false;
-    const BodyLeg& way = context_.against_stock(context_.bodies[0], leg);
-    if (way.error >= room) return false;
-    const double needed = room + way.error;
-    const StockGoal goal{.limit = needed, .bound = StockBound::lower, .coarse_below = needed};
-    return to_stock(context_.bodies[0], way, stock, goal).lower >= needed;
-}
-
 double StockProbe::earliest(const Leg& leg, const PairClearance& near, double distance,
                             const CutModel& stock, std::optional<double> seen) {
     if (!leg.straight || leg.positions.size() < 2) return 0.0;

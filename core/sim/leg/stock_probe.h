@@ -48,10 +48,6 @@ public:
     /// Lower bound of the distance between a machine body and a box over a leg.
     double distance_to_box(const MovingBody& body, const RelativeLeg& leg, const Aabb& box);
 
-    /// Whether the flutes stay at least `room` away from the stock over a leg, as far as bounds
-    /// show.
-    bool have_room(const Leg& leg, const CutModel& stock, double room);
-
     /// Clearance of a body from the stock: lower bound before the cut, upper bound after it. Times
     /// are counted from `start`, seconds.
     PairClearance clearance(const MovingBody& body, const Leg& leg, double start,
