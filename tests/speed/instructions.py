@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the instructions of ten runs of feeler with valgrind, and compares them with the expected figures.
+"""Counts the instructions of eleven runs of feeler with valgrind, and compares them with the expected figures.
 
 usage: instructions.py FEELER SHIM [--update] [SCENE ...]
 
@@ -115,6 +115,62 @@ def start_of_tilted_faces():
                      + ["G0 Z30.", "G49", "G53 G0 Z0", "M30", "%", ""])
 
 
+def turning():
+    """A ball end mill that leans 10 degrees goes round a dome, while A tilts it and C turns it in each block."""
+    radius, ball, lean, pitch, chord = 50.0, 3.0, 10.0, 0.3, 0.25
+    polar, azimuth = math.degrees(math.asin(0.6)), 0.0
+
+    def block(code, lift):
+        def direction(angle):
+            a, b = math.radians(angle), math.radians(azimuth)
+            return (math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a))
+        tool = direction(polar + lean)
+        tip = [(radius + ball) * n + (lift - ball) * t for n, t in zip(direction(polar), tool)]
+        return (f"{code} X{tip[0]:.4f} Y{tip[1]:.4f} Z{tip[2] - 30.0:.4f} A{-(polar + lean):.4f} "
+                f"C{-90.0 - azimuth:.4f} F900\n")
+
+    lines = ["G21 G90 G17 G54 G64 P0.02\nT1 M6\nG43 H1\nM428\nS9000 M3\nG0 A-46.87 C-90\n", block("G0", 12.0), block("G1", 0.0)]
+    for _ in range(1500):
+        step = math.degrees(chord / (radius * math.sin(math.radians(polar))))
+        azimuth += step
+        polar -= math.degrees(pitch / radius) * step / 360.0
+        lines.append(block("G1", 0.0))
+    return "".join(lines) + block("G0", 12.0) + "M2\n"
+
+
+TURNING = f"""mesh_size = 0.5
+[program]
+dialect = "linuxcnc"
+start = {{ X = 0, Y = 0, Z = 120, A = 0, C = 0 }}
+tool_at_start = 0
+[control]
+M428 = "TCP"
+[machine]
+file = "{ASSETS}/machines/xyzac.toml"
+[offsets]
+G54 = {{ X = 0, Y = 0, Z = 0 }}
+[stock]
+cylinder = {{ radius = 31, height = 16 }}
+at = [0, 0, 5]
+frame = "G54"
+[[fixture]]
+name = "block"
+box = [[-36, -36, 0], [36, 36, 3]]
+frame = "G54"
+[[tool]]
+number = 1
+shape = "ball"
+diameter = 6
+flute_length = 12
+shank_diameter = 5
+stick_out = 25
+holder = {{ preset = "ISO20-ER11", length = 45 }}
+[[length_offset]]
+number = 1
+length = 70
+"""
+
+
 def scenes():
     """Name, program, and set-up or the arguments of the run."""
     def setup(tool, mesh_size, top=0):
@@ -130,6 +186,7 @@ def scenes():
         ("holes", holes(), setup(DRILL, 0.5)),
         ("pocket", pocket(), setup(FLAT, 0.3)),
         ("tilted", start_of_tilted_faces(), tilted),
+        ("turning", turning(), TURNING),
         ("trace", many_lines(), ["trace", "{program}", "--dialect", "linuxcnc"]),
         ("distance", "", ["distance", "sphere:20", "box:30,20,10", "--move", "45.3,12.1,7.7", "--rotate", "17,29,41",
                           "--mesh-size", "0.5"]),
