@@ -876,6 +876,15 @@ void turn_about_tip(Execution& execution, const AxisValues& to, double below,
     use(kept);
 }
 
+core::Result<double> angle_to_plane(const Execution& execution, core::SourceSpan where,
+                                    const std::string& what) {
+    const Offsets& offsets = execution.modal().offsets;
+    FEELER_TRY(const AxisValues values, values_now(execution, where, what));
+    const core::Vec3 tool = core::tool_frame(*offsets.machine, values)[2];
+    const core::Vec3 plane = in_table(offsets, core::Vec3(0.0, 0.0, 1.0));
+    return core::atan2(glm::length(glm::cross(tool, plane)), glm::dot(tool, plane));
+}
+
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
                                       const std::string& what, int sign, bool may_be_other) {
     const Offsets& offsets = execution.modal().offsets;

@@ -61,6 +61,11 @@ Position turned_in_place(const Offsets& offsets, const Position& program, const 
 void turn_about_tip(Execution& execution, const AxisValues& to, double below,
                     const std::function<void(const Position&)>& go);
 
+/// The angle between the tool and Z of the program coordinates, radians, with the rotary axes where
+/// they are.
+core::Result<double> angle_to_plane(const Execution& execution, core::SourceSpan where,
+                                    const std::string& what);
+
 /// The machine axis values at which the tool is along Z of the program coordinates; linear axes as
 /// they are. `sign` is that of the tilting axis (core::tilting_axis), 0 if any will do: then the
 /// least rotation counts, and a note says so if there are several solutions. Only with a machine.

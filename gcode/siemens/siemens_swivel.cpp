@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/following.h"
@@ -152,6 +153,21 @@ core::Result<void> turn_to_plane(Execution& execution, const Swivel& swivel,
     return {};
 }
 
+/// With direction 0 the control only computes the plane, for rotary axes that are in its position
+/// already. Others would move the coordinates in a way that only the control knows.
+core::Result<void> check_tool_is_in_plane(const Execution& execution, core::SourceSpan where) {
+    constexpr double rounding = 5e-5; // radians, of programmed angles
+    FEELER_TRY(const double off, angle_to_plane(execution, where, "CYCLE800"));
+    if (off <= rounding) return {};
+    return core::fail(
+        ErrorCode::unsupported,
+        fmt::format("CYCLE800 with direction 0 does not turn the rotary axes, and the "
+                    "tool is {:.3g} degrees from the plane: turn them to the plane "
+                    "before it, or give the direction -1 or 1",
+                    off * core::degrees_per_radian),
+        where);
+}
+
 } // namespace
 
 core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
@@ -188,16 +204,11 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
     const bool is_level = plane.linear == core::Mat3(1.0);
     const bool has_machine = execution.modal().offsets.machine != nullptr;
     const bool turns = swivel.given > 0 && swivel.direction != 0;
-    if (!turns && !is_level && has_machine)
-        return core::fail(
-            ErrorCode::unsupported,
-            "CYCLE800 that leaves the rotary axes to the program (direction 0) is not "
-            "supported yet: give the direction -1 or 1",
-            use.span);
     if (turns && has_machine)
         if (auto done = check_free_axis(execution, plane.linear, use.span, "CYCLE800", true); !done)
             return done;
     use_swivelled_plane(execution, plane, !is_level);
+    if (!turns && !is_level && has_machine) return check_tool_is_in_plane(execution, use.span);
     if (!turns) return {};
     if (has_machine) return turn_to_plane(execution, swivel, use.span);
     execution.modal().following.rotary_unknown = !is_level;

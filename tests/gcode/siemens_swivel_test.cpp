@@ -100,6 +100,29 @@ TEST(SiemensSwivel, ChoosesTheSideAndGoesBack) {
     EXPECT_LT(glm::distance(tip_at_end(back, machine), datum + Vec3(1, 2, 3)), 1e-9);
 }
 
+TEST(SiemensSwivel, WithDirectionZeroTakesRotaryAxesThatAreInThePlane) {
+    for (const core::Machine& machine : {trunnion(), fork_head()}) {
+        const std::string swivel = "CYCLE800(0,\"T\",0,57,3,4,5,25,15,40,1,2,3,{},100,1)\n";
+        const std::string move = "G0 X20 Y-15 Z33\n";
+        const Driven turned = driven_siemens(
+            "G0 X1 Y2 Z300\n" + fmt::format(fmt::runtime(swivel), -1) + move, machine);
+        const core::AxisValues there = values_of(turned.motions.back().to);
+        const std::string axes = machine.axes[3].present
+                                     ? fmt::format("G0 A{:.3f} C{:.3f}\n", there[3], there[5])
+                                     : fmt::format("G0 B{:.3f} C{:.3f}\n", there[4], there[5]);
+        const Driven found = driven_siemens(
+            "G0 X1 Y2 Z300\n" + axes + fmt::format(fmt::runtime(swivel), 0) + move, machine);
+        EXPECT_LT(glm::distance(tip_at_end(found, machine), tip_at_end(turned, machine)), 1e-9);
+        EXPECT_EQ(found.motions.size(), 3u); // the cycle moves nothing
+        for (const core::PathCertainty path : found.paths) EXPECT_EQ(path, core::PathCertainty{});
+        const Ran ran = run_text("T1 M6 D1\nG17 G90 G54 G710\nG0 A0 B0 C10\n"
+                                     + fmt::format(fmt::runtime(swivel), 0) + "M30\n",
+                                 environment_of(machine, DialectId::siemens));
+        ASSERT_TRUE(ran.run.error);
+        EXPECT_THAT(ran.run.error->message, HasSubstr("before it"));
+    }
+}
+
 TEST(SiemensSwivel, OfNoSwivelDataIsOff) {
     const core::Machine machine = trunnion();
     for (const char* name : {"\"0\"", " \"0\"", "\"0\" "}) {
