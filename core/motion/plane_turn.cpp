@@ -144,12 +144,12 @@ std::optional<PlaneTurn> turn_in_plane(const Machine& machine, const AxisValues&
         count = std::clamp(static_cast<int>(turned / std::sqrt(0.5 * max_error * close)) + 1, 1,
                            most_pieces);
     }
-    for (; count <= most_pieces; count *= 2) {
+    for (;; count = std::min(2 * count, most_pieces)) {
         auto turn = turn_in_parts(whole, count);
         const double allowed = count < many_pieces ? max_error : std::max(max_error, largest_error);
         if (turn && turn->error <= allowed) return turn;
+        if (count == most_pieces) return std::nullopt;
     }
-    return std::nullopt;
 }
 
 } // namespace core

@@ -391,7 +391,9 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     const bool follows = may_follow(before) || may_follow(modal);
     const bool tilts = tilts_without_machine(before) || tilts_without_machine(modal);
     if (!follows && !tilts && following.unknown_axes == 0 && !following.rotary_unknown) return;
-    // G53.1 has turned the work to unknown angles, until a block programs two rotary axes.
+    // G53.1 has turned the work to unknown angles, until a block programs two rotary axes. That one
+    // still comes from there.
+    const bool begins_unknown = before.following.rotary_unknown;
     following.rotary_unknown = (following.rotary_unknown && !places_rotary_axes(execution))
                                || (tilts && turns_to_plane(execution));
     const bool turned = is_turned_within(execution, before);
@@ -399,7 +401,8 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     if ((switches && turned) || (tilts && !tilts_without_machine(modal)))
         following.unknown_axes = all_linear;
     if (!moves(execution)) return;
-    if ((follows && turned) || tilts || following.unknown_axes != 0 || following.rotary_unknown) {
+    if ((follows && turned) || tilts || following.unknown_axes != 0 || begins_unknown
+        || following.rotary_unknown) {
         execution.result.path = core::PathCertainty::unknown;
         report(execution);
     }

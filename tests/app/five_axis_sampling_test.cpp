@@ -1760,7 +1760,13 @@ void run_case(const Case& one, Tally& tally) {
         }
         const Path& path = *line.path;
         const std::string kind = control + " " + path.kind;
-        if (block.verdict == "undecided") {
+        // Where the way of the axes is not known, no pair is said to be clear.
+        const bool is_measured =
+            block.verdict != "undecided"
+            && (block.verdict == "clear"
+                || std::any_of(block.pairs.begin(), block.pairs.end(),
+                               [](const PairLine& pair) { return pair.verdict == "clear"; }));
+        if (!is_measured) {
             ++tally.undecided[kind];
             ++tally.skipped;
             continue;

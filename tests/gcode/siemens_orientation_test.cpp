@@ -170,6 +170,21 @@ TEST(SiemensOrientation, NearAPoleIsNotKnown) {
               PathCertainty::doubtful);
 }
 
+TEST(SiemensOrientation, ComesOutOfAnUnknownPositionByAnUnknownWay) {
+    // Through the pole: which of two positions the axes then have is not known.
+    const Driven found = driven_siemens("TRAORI\nG0 X=0 Y=0 Z=50 A=1 C=10\n"
+                                        "G1 A3=-0.02 B3=0.3 C3=0.95 F500\nG0 X=5\n"
+                                        "TRAFOOF\nG54\nG0 X=0 Y=0 Z=80 A=20 C=30\nG0 A=25\n",
+                                        trunnion());
+    ASSERT_EQ(found.paths.size(), 5u);
+    EXPECT_EQ(found.paths[0], PathCertainty::known);
+    EXPECT_GT(found.paths[1], PathCertainty::known);
+    EXPECT_GT(found.paths[2], PathCertainty::known);
+    EXPECT_EQ(found.paths[3], PathCertainty::unknown)
+        << "both axes are programmed, but from where?";
+    EXPECT_EQ(found.paths[4], PathCertainty::known);
+}
+
 TEST(SiemensOrientation, CodesChooseHowTheToolTurns) {
     const auto count = [](const std::string& codes, int by_code) {
         Environment environment = siemens_on(trunnion());

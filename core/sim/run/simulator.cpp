@@ -45,8 +45,12 @@ BlockResult run_block(const Setup& setup, const BlockEvents& block, SimulatorSta
         run.conclude(*block.judgement);
     else
         run.conclude();
-    if (block.path != PathCertainty::known && run.result.motion != BlockMotion::none)
+    if (block.path != PathCertainty::known && run.result.motion != BlockMotion::none) {
+        // The bodies may have moved otherwise.
         run.result.verdict = std::max(run.result.verdict, Verdict::undecided);
+        for (TrackedPair& pair : run.pairs)
+            pair.verdict = std::max(pair.verdict, Verdict::undecided);
+    }
     run.result.pairs.assign(run.pairs.begin(), run.pairs.end());
     state.time += run.result.duration;
     return std::move(run.result);
