@@ -332,6 +332,31 @@ bool take_above_zero(std::optional<double>& value, std::optional<double> stated,
 
 namespace {
 
+/// Takes W of 5axiskins, or forgets one of the set-up that does not move the tip along the tool as
+/// the module has it. Returns what to report.
+std::string take_length_axis(core::Machine& machine, const core::Machine& known,
+                             const gcode::Environment& environment) {
+    if (!known.length_axis) return {};
+    const size_t w = *known.length_axis;
+    core::MachineAxis& own = machine.axes[w];
+    if (!own.present) {
+        if (environment.control.answer(gcode::ControlQuestion::w_has_no_motor) != true) return {};
+        own = known.axes[w];
+        machine.length_axis = w;
+        return {};
+    }
+    // A quill: the tip is farther from the pivot by W.
+    const bool is_quill = own.side == core::Side::tool && machine.spindle == core::link_of(w)
+                          && own.carrier == core::link_of(core::axis_letters.find('B'))
+                          && glm::distance(own.direction, core::Vec3(0.0, 0.0, -1.0)) < 1e-9;
+    if (is_quill) return {};
+    own.present = false;
+    return fmt::format(
+        "W of the set-up does not move the tool as {} has it, so blocks that move it "
+        "are refused: a quill has direction [0, 0, -1] and parent B",
+        environment.kinematics->module);
+}
+
 /// Whether two machines put the tool and the work the same way.
 bool are_same(const core::Machine& a, const core::Machine& b) {
     constexpr double slack = 1e-6; // mm
@@ -355,16 +380,9 @@ std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& e
     if (!environment.kinematics || !environment.kinematics->machine) return {};
     const core::Machine& known = *environment.kinematics->machine;
     const std::string& module = environment.kinematics->module;
-    const auto take_length_axis = [&] {
-        if (!known.length_axis || machine.axes[*known.length_axis].present) return;
-        machine.axes[*known.length_axis] = known.axes[*known.length_axis];
-        machine.length_axis = known.length_axis;
-    };
+    const std::string about_w = take_length_axis(machine, known, environment);
     if (machine.has_rotary()) {
-        if (are_same(machine, known)) {
-            take_length_axis();
-            return {};
-        }
+        if (are_same(machine, known)) return about_w;
         return fmt::format("the rotary axes of the set-up are not where {} of the ini file has "
                            "them: the control is assumed to know those of the set-up",
                            module);
@@ -381,15 +399,14 @@ std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& e
     }
     if (is_turned(known.table)) machine.table = known.table;
     if (is_turned(known.spindle)) machine.spindle = known.spindle;
-    take_length_axis();
-    return {};
+    return about_w;
 }
 
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
                              bool with_positions) {
     const std::string rotary = take_rotary_axes(machine, environment);
     const bool has_tip = environment.kinematics.has_value();
-    std::string taken, without_position;
+    std::string taken, without_position, not_described;
     size_t joint = 0;
     for (size_t i = 0; i < core::axis_count; ++i) {
         if (has_tip) {
@@ -400,7 +417,8 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
         const bool named = AxisNumbers(environment, i, core::axis_count).is_there();
         core::MachineAxis& axis = machine.axes[i];
         if (!axis.present) {
-            if (named) without_position += core::axis_letters[i];
+            if (named)
+                (core::is_rotary(i) ? without_position : not_described) += core::axis_letters[i];
             joint += named ? 1 : 0;
             continue;
         }
@@ -422,6 +440,13 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
         note += fmt::format("{}the ini file has axis {} but not the position of its rotation axis: "
                             "add it as [[machine.axis]] if the program moves it",
                             note.empty() ? "" : "; ", without_position);
+    if (not_described.empty()) return note;
+    note += fmt::format("{}the ini file has axis {}, which the set-up does not describe: add it as "
+                        "[[machine.axis]] if the program moves it",
+                        note.empty() ? "" : "; ", not_described);
+    if (has_tip && environment.kinematics->machine && environment.kinematics->machine->length_axis)
+        note += ", or state \"5axiskins W\" = \"no motor\" under [control] if the other axes move "
+                "the tip along the tool instead";
     return note;
 }
 

@@ -196,7 +196,8 @@ void add_arc(Path& path, const Motion& motion, const AxisValues& from, const Axi
 
 /// Whether a rotary axis changes the direction of a linear one.
 bool turns_linear_axes(const Machine& machine) {
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (is_rotary(i) || !machine.axes[i].present) continue;
         LinkId link = machine.axes[i].carrier;
         while (link != LinkId::base) {
             const MachineAxis& by = machine.axes[static_cast<size_t>(link)];

@@ -148,8 +148,13 @@ std::vector<ConvexShape> shapes_of(const MovingBody& body, const BodyLeg& leg, d
     };
     if (leg.parts.empty()) return moved(*body.profile, leg);
     std::vector<ConvexShape> shapes;
-    for (const BodyLeg::Part& part : leg.parts)
-        for (const ConvexShape& shape : moved(*part.profile, part.leg)) shapes.push_back(shape);
+    const auto add = [&](const std::vector<ConvexShape>& some) {
+        shapes.insert(shapes.end(), some.begin(), some.end());
+    };
+    if (shrink > 0.0 && shrink == leg.shrink && !leg.shrunk_parts.empty())
+        for (const BodyLeg::Part& part : leg.shrunk_parts) add(shapes_of(*part.profile, part.leg));
+    else
+        for (const BodyLeg::Part& part : leg.parts) add(moved(*part.profile, part.leg));
     return shapes;
 }
 

@@ -31,17 +31,23 @@ struct BodyLeg : RelativeLeg {
         RelativeLeg leg;
     };
     std::vector<Part> parts = {};
+    /// The parts of the body shrunk by `shrink`, unless its own parts can be shrunk: between parts
+    /// of a body that is not convex, gaps would open.
+    std::vector<Part> shrunk_parts = {};
+    double shrink = 0.0;
     double overlap = 0.0; // of neighbouring parts, mm
 
-    /// Whether the parts may be shrunk instead of the body: no gaps open between them.
+    /// Whether shapes_of(body, leg, by) is within `shape_error` of the body shrunk by that.
     bool can_shrink(const RevolvedProfile& profile, double by) const {
-        return parts.empty() || (is_convex(profile) && by <= 0.25 * overlap);
+        return parts.empty() || (!shrunk_parts.empty() && by == shrink)
+               || (is_convex(profile) && by <= 0.25 * overlap);
     }
 
     /// How far the body may be from shapes_of(body, leg), mm: at most `error`.
     double shape_error() const {
         double most = parts.empty() ? error : 0.0;
         for (const Part& part : parts) most = std::max(most, part.leg.error);
+        for (const Part& part : shrunk_parts) most = std::max(most, part.leg.error);
         return most;
     }
     /// The part of it that shorter legs reduce, mm.

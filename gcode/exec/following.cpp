@@ -339,6 +339,34 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
              : "Turn the rotary axes in a block of their own, or let each turn evenly."});
 }
 
+/// While the control follows the tip, an axis such as W of LinuxCNC's 5axiskins moves the tip along
+/// the tool, which is a straight line only if the tool does not turn.
+void check_length_axis(Execution& execution, const ModalState& before) {
+    const Offsets& offsets = execution.modal().offsets;
+    if (!offsets.machine || !offsets.machine->length_axis || !offsets.follows_tip) return;
+    const size_t axis = *offsets.machine->length_axis;
+    Position here = before.position;
+    for (const CanonicalCommand& command : execution.result.commands) {
+        const auto* rapid = std::get_if<StraightTraverse>(&command);
+        const auto* feed = std::get_if<StraightFeed>(&command);
+        const auto* arc = std::get_if<ArcFeed>(&command);
+        if (!rapid && !feed && !arc) continue;
+        const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
+        if (here[axis] != end[axis] && turns_between(here, end)) {
+            execution.result.path = core::PathCertainty::unknown;
+            execution.result.warnings.push_back(
+                {Severity::warning, place_of(execution),
+                 fmt::format("{} and a rotary axis move at once while the control follows the tip, "
+                             "which is not followed yet: this block is not checked",
+                             axis_letters[axis]),
+                 core::rule_id("undecided"),
+                 fmt::format("Move {} in a block of its own.", axis_letters[axis])});
+            return;
+        }
+        here = end;
+    }
+}
+
 } // namespace
 
 void lose_positions(Execution& execution, core::SourceSpan where, std::string why,
@@ -377,6 +405,7 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     Following& following = modal.following;
     check_turns(execution, before);
     check_turns_in_plane(execution, before);
+    check_length_axis(execution, before);
     if (following.awaits_sync && moves(execution)) {
         following.awaits_sync = false;
         execution.result.path = core::PathCertainty::unknown;

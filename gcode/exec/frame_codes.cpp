@@ -604,18 +604,30 @@ core::Result<core::Mat3> axes_by_tool(Execution& execution, const CodeWord& entr
     core::Vec3 vertical(0.0);
     vertical[axis] = 1.0;
     const core::Vec3 x = glm::cross(vertical, tool);
-    const double angle =
-        core::degrees_per_radian * core::atan2(glm::length(x), std::abs(glm::dot(vertical, tool)));
+    const double angle = // 0 to 180
+        core::degrees_per_radian * core::atan2(glm::length(x), glm::dot(vertical, tool));
     constexpr double rounding = 1e-7, most_unknown = 5.0; // degrees
-    const auto limit = execution.environment.control.number(ControlQuestion::vertical_limit);
-    if (!limit && angle > rounding && angle <= most_unknown)
+    if (angle >= 180.0 - rounding)
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: the tool points against {}, and the manual of the control "
+                        "does not say where X of the plane is then",
+                        written(*entry.word), "XYZ"[axis]),
+            entry.word->span);
+    constexpr ControlQuestion question = ControlQuestion::vertical_limit;
+    if (!execution.environment.control.number(question) && angle > rounding
+        && angle <= most_unknown)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("{}: the tool is within {:.2g} degrees of {}, and whether it "
                                       "counts as parallel is not known: state parameter \"12322\" "
                                       "under [control]",
                                       written(*entry.word), angle, "XYZ"[axis]),
                           entry.word->span);
-    if (angle <= std::max(limit.value_or(0.0), rounding)) {
+    double limit = 0.0;
+    if (angle > rounding)
+        limit = number_for(execution.state, execution.environment, question, execution.block.line);
+    if (limit == 0.0) limit = 1.0; // as the manual has it
+    if (angle <= limit) {
         core::Mat3 axes(0.0);
         for (int i = 0; i < 3; ++i) axes[i][(axis + 1 + i) % 3] = 1.0;
         return axes;

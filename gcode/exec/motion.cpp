@@ -267,23 +267,6 @@ void leave_linear_axes(const Execution& execution, Position& target) {
     }
 }
 
-/// While the control follows the tip, an axis such as W of LinuxCNC's 5axiskins moves the tip along
-/// the tool, on a straight line only if the tool does not turn.
-core::Result<void> check_length_axis(const Execution& execution, const Position& target) {
-    const ModalState& modal = execution.modal();
-    const Offsets& offsets = modal.offsets;
-    if (!offsets.machine || !offsets.follows_tip || !offsets.machine->length_axis) return {};
-    const size_t axis = *offsets.machine->length_axis;
-    if (target[axis] == modal.position[axis] || !turns_between(modal.position, target)) return {};
-    const Word& mover = moving_word(execution);
-    return core::fail(
-        ErrorCode::unsupported,
-        fmt::format("{} and a rotary axis in one block, while the control follows the "
-                    "tip, are not supported yet: program them in two blocks",
-                    axis_letters[axis]),
-        mover.span);
-}
-
 } // namespace
 
 core::Result<Position> target_of(const Execution& execution) {
@@ -335,8 +318,6 @@ core::Result<Position> target_of(const Execution& execution) {
         return tl::unexpected(std::move(placed).error());
     if (const auto axis = axis_left_out_of_rotation(execution))
         target[*axis] = (*modal.transforms.before_rotation)[*axis];
-    if (auto checked = check_length_axis(execution, target); !checked)
-        return tl::unexpected(std::move(checked).error());
     return within_reach(execution, target);
 }
 

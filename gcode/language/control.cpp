@@ -304,6 +304,12 @@ constexpr ParameterValue vertical_axes[] = {
     {2, 2, "X of a plane of G68.3 is at right angles to Y"},
     {0, 3, "X of a plane of G68.3 is at right angles to the axis of the upright tool, Z"},
 };
+constexpr ParameterValue motor_of_w[] = {
+    {1, true, "the other axes move the tip along the tool by W", "no motor"},
+};
+constexpr ParameterValue one_degree[] = {
+    {1, 1, "1 degree"},
+};
 constexpr ParameterValue two_degrees[] = {{2, 2, "2 degrees"}};
 constexpr ParameterRange of_poles{0.0, 90.0, "degrees"};
 constexpr ParameterValue frames_at_traori[] = {
@@ -571,8 +577,8 @@ constexpr ControlParameter parameters[] = {
      fanuc,
      "12322",
      "parameter 12322",
-     {},
-     go_on,
+     one_degree,
+     assume,
      "Fanuc A-79976E, tilted working plane based on the tool axis direction",
      {},
      of_poles},
@@ -678,6 +684,8 @@ constexpr ControlParameter parameters[] = {
      "Program a position less than half a turn away, or an incremental angle."},
     {m428_follows_tip, linuxcnc, "M428", "what M428 and M429 switch to", meanings_of_m428,
      follow_all, "LinuxCNC 2.9, switchable kinematics; the remaps of its sample machines"},
+    {w_has_no_motor, linuxcnc, "5axiskins W", "whether W of 5axiskins has a motor", motor_of_w,
+     go_on, "LinuxCNC, src/emc/kinematics/5axiskins.c; the readme of its sample bridgemill"},
     {one_way_is_modal, fanuc, "5431#0", "parameter 5431#0 (MDL)", one_way, assume,
      "Fanuc B-63950EN, parameters of single direction positioning"},
 };

@@ -75,6 +75,7 @@ enum class ControlQuestion : uint8_t {
     half_turn_is_negative, // the short way of half a turn is the negative direction
     m428_follows_tip,   // LinuxCNC without its ini file: M428 switches to tool centre point control
                         // and M429 back; otherwise the other way round
+    w_has_no_motor,     // of 5axiskins: W moves the tip along the tool; otherwise it is a quill
     increment_is_finer, // the least increment is 0.0001 mm instead of 0.001 mm
     increment_is_coarser, // it is 0.01 mm
     corner_tolerance,     // how far corners are rounded unless the program states it, mm

@@ -158,7 +158,8 @@ struct Visitor {
             from[axis] = motion.from[axis].value_or(0.0);
             to[axis] = motion.to[axis].value_or(0.0);
         }
-        // While the controlled length changes, no rotary axis turns: the path is straight.
+        // While the controlled length changes, the path is straight if no rotary axis turns; with
+        // one, it is not measured (gcode/exec/following.cpp).
         const double length = offsets.machine->controlled_length(offsets.tool[2], to);
         if (length != offsets.machine->controlled_length(offsets.tool[2], from)) return;
         motion.tip = core::TipPath{core::tip_position(*offsets.machine, from, length),

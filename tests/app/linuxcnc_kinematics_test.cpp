@@ -187,7 +187,7 @@ TEST(LinuxcncKinematics, MoveTheAxesAsLinuxcncDoes) {
                 std::string some;
                 for (const char axis : axes)
                     if (any(0.0, 1.0) < 0.6) some += axis;
-                // W lengthens the tool only while it does not turn.
+                // Else the block is not measured.
                 if (control.follows_tip && some.find_first_of("ABC") != some.npos)
                     std::erase(some, 'W');
                 return some.empty() ? std::string("X") : some;
@@ -266,6 +266,29 @@ TEST(LinuxcncKinematics, MoveTheAxesAsLinuxcncDoes) {
                     << example.module << " motion " << i << " axis " << axis << "\n"
                     << program;
     }
+}
+
+/// W moves the tip on a line that is straight only if the tool does not turn meanwhile.
+TEST(LinuxcncKinematics, DoNotMeasureWTogetherWithARotaryAxis) {
+    gcode::Environment environment = gcode::known_environment(gcode::DialectId::linuxcnc);
+    environment.machine = machine_of(examples()[3]);
+    environment.tool_lengths[core::ToolNumber(1)] = 60.0;
+    environment.kinematics.emplace().types = {gcode::SwitchableKinematics::Type::tip,
+                                              gcode::SwitchableKinematics::Type::axes};
+    const auto last = [&](const std::string& lines) {
+        return gcode::driven("G21 G90 G94 F500\nT1 M6\nG43 H1\nG0 X0 Y0 Z20 B30 W0\nG0 W3\n"
+                                 + lines,
+                             environment)
+            .paths.back();
+    };
+    using core::PathCertainty;
+    EXPECT_EQ(last("G0 W5\n"), PathCertainty::known);
+    EXPECT_EQ(last("G1 W5 X3\n"), PathCertainty::known);
+    EXPECT_EQ(last("G0 B20\n"), PathCertainty::known);
+    EXPECT_EQ(last("G53 G0 C180\n"), PathCertainty::known);
+    for (const char* block : {"G0 W5 B20\n", "G1 W5 C1\n", "G53 G0 C180 W5\n", "G28\n"})
+        EXPECT_EQ(last(block), PathCertainty::unknown) << block;
+    EXPECT_EQ(last("G0 W5 B20\nG0 X5\n"), PathCertainty::known) << "its end is known";
 }
 
 /// Without the ini file, M428 has two readings on a machine with rotary axes.

@@ -60,7 +60,7 @@ TEST(ToolPlane, HasItsZAlongTheToolAndItsXAtRightAnglesToTheVerticalAxis) {
         const double first = tilt(random), c = turn(random), spin = i % 4 ? 0.0 : turn(random);
         const Vec3 origin(mm(random), mm(random), mm(random)), at(mm(random), mm(random), 5.0);
         const Environment environment =
-            fanuc_with(is_table ? trunnion() : fork_head(), vertical + 1, 0.0);
+            fanuc_with(is_table ? trunnion() : fork_head(), vertical + 1, 1.0);
         const std::string words = fmt::format("G68.3 X{:.4f} Y{:.4f} Z{:.4f} R{:.4f}\n", origin.x,
                                               origin.y, origin.z, spin);
         const std::string rotary =
@@ -90,7 +90,7 @@ TEST(ToolPlane, HasItsZAlongTheToolAndItsXAtRightAnglesToTheVerticalAxis) {
 
 TEST(ToolPlane, BeginsWhereTheTipIsUnlessItsOriginIsStated) {
     for (const core::Machine& machine : {trunnion(), fork_head()}) {
-        const Environment environment = fanuc_with(machine, 3, 0.0);
+        const Environment environment = fanuc_with(machine, 3, 1.0);
         const std::string turn = machine.axes[3].present ? "G0 A30. C40.\n" : "G0 B30. C40.\n";
         const std::string there = "G0 X20. Y-10. Z40.\n" + turn;
         const Vec3 before = tip_of(there, environment);
@@ -117,6 +117,10 @@ TEST(ToolPlane, OfAToolAlongTheVerticalAxisHasTheAxesOfTheWork) {
     expect(moved(2, {}, "B90. C90.", "X1. Y2. Z3."), {2, 3, 1});
     // Within the limit, the tool counts as parallel.
     expect(moved(3, 1.0, "B.5 C0", "X1. Y2. Z3."), {1, 2, 3});
+    expect(moved(3, 0.0, "B.9 C0", "X1. Y2. Z3."), {1, 2, 3}); // 0 means 1 degree
+    // Against the axis, X has no direction.
+    EXPECT_THAT(refusal_of("G0 B-90. C0\nG68.3 X0 Y0 Z0\n", fanuc_with(fork_head(), 1, 1.0)),
+                HasSubstr("against X"));
     const Environment open = fanuc_with(fork_head(), 3);
     EXPECT_THAT(refusal_of("G0 B.5\nG68.3 X0 Y0 Z0\n", open), HasSubstr("12322"));
 }

@@ -47,9 +47,10 @@ struct CheckMemory {
     using ToolState = std::pair<ToolNumber, bool>;
     /// Prepared cutters, by tool, part of the flutes (0: the whole) and path error.
     std::map<std::tuple<ToolState, size_t, double>, std::shared_ptr<const Cutter>> cutters;
-    /// The parts in which flutes cut, and a shank or holder is measured, while they turn.
+    /// The parts in which flutes cut, and a shank or holder is measured, while they turn; by what
+    /// they are shrunk first. Valid for one set-up.
     using TurningParts = std::shared_ptr<const std::vector<TurningPart>>;
-    std::map<std::pair<ToolState, PartKind>, TurningParts> turning_parts;
+    std::map<std::tuple<ToolState, PartKind, double>, TurningParts> turning_parts;
     /// Feed sweeps of flutes through expendable fixtures, by the fixture's index, in the stock's
     /// frame. Without them a rapid within such a cut would be a false alarm.
     std::map<size_t, SweepLog> cuts;

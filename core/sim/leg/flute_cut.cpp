@@ -80,7 +80,7 @@ std::shared_ptr<const Cutter> FluteCut::cutter_for(const RelativeLeg& leg, size_
 }
 
 const std::vector<TurningPart>& FluteCut::parts() {
-    auto& parts = context_.memory.turning_parts[{context_.tool_state(), PartKind::flutes}];
+    auto& parts = context_.memory.turning_parts[{context_.tool_state(), PartKind::flutes, 0.0}];
     if (!parts)
         parts = std::make_shared<const std::vector<TurningPart>>(
             flute_parts(cutting_profile(), context_.bodies[0].mover, context_.setup.mesh_size));

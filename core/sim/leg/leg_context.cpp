@@ -87,11 +87,12 @@ RelativeLeg LegContext::against_stock(const Mover& mover, const Leg& leg) const 
     return relative;
 }
 
-const std::vector<TurningPart>& LegContext::parts_of(const MovingBody& body) const {
-    auto& parts = memory.turning_parts[{tool_state(), body.kind}];
+const std::vector<TurningPart>& LegContext::parts_of(const MovingBody& body, double shrink) const {
+    auto& parts = memory.turning_parts[{tool_state(), body.kind, shrink}];
     if (!parts)
         parts = std::make_shared<const std::vector<TurningPart>>(
-            slender_parts(*body.profile, body.mover));
+            shrink > 0.0 ? slender_parts(shrunk_around(*body.profile, shrink), body.mover)
+                         : slender_parts(*body.profile, body.mover));
     return *parts;
 }
 
@@ -108,11 +109,24 @@ const BodyLeg& LegContext::against_stock(const MovingBody& body, const Leg& leg)
                             && body.profile && body.kind != PartKind::flutes
                             && relative.reducible_error() > finest_error(body, relative);
     if (!is_divided) return relative;
-    for (const TurningPart& part : parts_of(body)) {
-        relative.parts.push_back({&part.profile, against_stock(part.mover, leg)});
-        if (part.mover.overlap > 0.0) relative.overlap = part.mover.overlap;
+    const auto add = [&](std::vector<BodyLeg::Part>& legs, double shrink) {
+        for (const TurningPart& part : parts_of(body, shrink)) {
+            legs.push_back({&part.profile, against_stock(part.mover, leg)});
+            if (part.mover.overlap > 0.0) relative.overlap = part.mover.overlap;
+        }
+    };
+    add(relative.parts, 0.0);
+    // Contact is told from overlap by the body shrunk a little.
+    const Allowance allowance = allowance_of(setup, pair_of(body));
+    const double shrink = contact_shrink(allowance, *body.profile);
+    if (allowance.distance <= resolution && !relative.can_shrink(*body.profile, shrink)) {
+        relative.shrink = shrink;
+        add(relative.shrunk_parts, shrink);
     }
-    if (relative.shape_error() >= relative.error) relative.parts.clear();
+    if (relative.shape_error() >= relative.error) {
+        relative.parts.clear();
+        relative.shrunk_parts.clear();
+    }
     return relative;
 }
 

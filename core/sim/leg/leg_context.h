@@ -68,8 +68,8 @@ struct LegContext {
     /// The leg of a body in the stock's frame. Valid until that of another leg is asked for.
     const BodyLeg& against_stock(const MovingBody& body, const Leg& leg) const;
 
-    /// The parts of a shank or holder.
-    const std::vector<TurningPart>& parts_of(const MovingBody& body) const;
+    /// The parts of a shank or holder, which is shrunk by `shrink` first.
+    const std::vector<TurningPart>& parts_of(const MovingBody& body, double shrink = 0.0) const;
 
     /// Whether a profile stays at least `by` away from the stock on a leg, as far as bounds show.
     bool stays_apart(const RevolvedProfile& profile, const RelativeLeg& leg, const CutModel& stock,

@@ -1,6 +1,7 @@
 #include "core/sim/leg/stock_probe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/dbm/covered_path.h"
 #include "core/distance/shape_outline.h"
@@ -153,28 +154,42 @@ PairClearance StockProbe::certain_clearance(const MovingBody& body, const Leg& l
     return worst;
 }
 
-void StockProbe::observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                                  const CutModel& stock, double nearest) {
+void StockProbe::observe_on_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                                const BodyLeg& relative, const CutModel& stock, double nearest) {
     // The body is certainly at this position at one moment.
     const Leg still = still_half_way(leg);
     StockObservation here;
+    double time = 0.5;
     const bool is_clear_of_contact = body.profile && seen.shrunk.lower > 0.0;
     if (is_clear_of_contact && allowance_of(context_.setup, pair_of(body)).distance <= resolution) {
         // Lower bounds are known, and the shrunk body overlaps nothing.
-        const BodyLeg& relative = context_.against_stock(body, still);
+        const BodyLeg& at_rest = context_.against_stock(body, still);
         const double limit = std::min(context_.setup.search_limit, nearest);
-        here.plain =
-            widened(to_stock(body, relative, stock, {.limit = limit, .bound = StockBound::upper}),
-                    relative);
+        here.plain = widened(
+            to_stock(body, at_rest, stock, {.limit = limit, .bound = StockBound::upper}), at_rest);
     } else {
         here = observe(body, still, stock, nearest);
+        // Legs of bodies in parts are longer: an overlap may be elsewhere.
+        constexpr double most = 8.0;
+        const double places =
+            relative.parts.empty()
+                ? 0.0
+                : std::min(most, std::ceil(relative.error / relative.shape_error()));
+        for (double i = 0.5; i < places && here.shrunk.upper > 0.0; ++i) {
+            Leg other = stretch(leg, i / places, i / places);
+            other.positions.resize(1);
+            const StockObservation there = observe(body, other, stock, nearest);
+            if (there.shrunk.upper > 0.0) continue;
+            here = there;
+            time = i / places;
+        }
     }
     seen.shrunk.upper = here.shrunk.upper;
     if (here.plain.upper >= seen.plain.upper) return;
     const double lower = seen.plain.lower;
     seen.plain = here.plain;
     seen.plain.lower = std::min(lower, here.plain.upper);
-    seen.plain.time_a = 0.5;
+    seen.plain.time_a = time;
 }
 
 void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,
@@ -186,7 +201,7 @@ void StockProbe::add_error(StockObservation& seen, const MovingBody& body, const
     seen.shrunk = widened(seen.shrunk, relative);
     const bool has_way = leg.positions.size() > 1;
     if ((relative.turns || !body.profile) && near && has_way)
-        observe_half_way(seen, body, leg, stock, nearest);
+        observe_on_way(seen, body, leg, relative, stock, nearest);
     if (!overlaps) return;
     if (relative.error_without_deviation() <= 0.0) {
         seen.plain.upper = 0.0;

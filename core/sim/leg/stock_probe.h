@@ -75,10 +75,10 @@ public:
 private:
     /// Lower bound below which upper bounds use all lines: StockGoal::exact_within.
     double exact_within(const Allowance& allowance) const;
-    /// Measures at the body's position half way along the leg, which gives a witness that certainly
-    /// exists.
-    void observe_half_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
-                          const CutModel& stock, double nearest);
+    /// Measures at the body's position half way along the leg, and for a body in parts at other
+    /// positions if it overlaps nothing there: this gives a witness that certainly exists.
+    void observe_on_way(StockObservation& seen, const MovingBody& body, const Leg& leg,
+                        const BodyLeg& relative, const CutModel& stock, double nearest);
     /// Adds the error of the leg. An overlap is kept only if it exists at a position that the body
     /// really takes.
     void add_error(StockObservation& seen, const MovingBody& body, const Leg& leg,
