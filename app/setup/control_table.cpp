@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -191,6 +192,18 @@ void read_key(TableReader& table, const char* key, StatedControl& control) {
                                            : fmt::format("did you mean \"{}\"?", meant)));
 }
 
+/// W of LinuxCNC's 5axiskins, if the set-up has no axis of that name. It is at 0 at the start.
+void take_length_axis(gcode::Environment& environment, core::Machine& machine) {
+    if (!environment.kinematics || !environment.kinematics->machine) return;
+    const core::Machine& known = *environment.kinematics->machine;
+    if (!known.length_axis || machine.axes[*known.length_axis].present) return;
+    machine.length_axis = known.length_axis;
+    machine.axes[*known.length_axis] = known.axes[*known.length_axis];
+    std::optional<double>& start = environment.start[*known.length_axis];
+    start = start.value_or(0.0);
+    if (environment.machine) environment.machine = std::make_shared<const core::Machine>(machine);
+}
+
 void answer(const ControlParameter& parameter, double number, gcode::Environment& environment,
             core::Machine& machine) {
     const double answer = *parameter.answer_of(number);
@@ -205,6 +218,8 @@ void answer(const ControlParameter& parameter, double number, gcode::Environment
         environment.counts_smallest_steps = answer == 0.0;
     if (parameter.question == gcode::ControlQuestion::rapids_are_straight)
         machine.rapid = answer != 0.0 ? core::RapidStyle::straight : core::RapidStyle::dogleg;
+    if (parameter.question == gcode::ControlQuestion::w_has_no_motor)
+        take_length_axis(environment, machine);
 }
 
 /// Coordinates of the linear axes are in the unit of LinuxCNC's machine; elsewhere in mm.

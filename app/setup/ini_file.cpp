@@ -332,19 +332,14 @@ bool take_above_zero(std::optional<double>& value, std::optional<double> stated,
 
 namespace {
 
-/// Takes W of 5axiskins, or forgets one of the set-up that does not move the tip along the tool as
-/// the module has it. Returns what to report.
-std::string take_length_axis(core::Machine& machine, const core::Machine& known,
-                             const gcode::Environment& environment) {
+/// Forgets W of the set-up if it does not move the tip along the tool as 5axiskins has it. Returns
+/// what to report.
+std::string check_quill(core::Machine& machine, const core::Machine& known,
+                        const gcode::Environment& environment) {
     if (!known.length_axis) return {};
     const size_t w = *known.length_axis;
     core::MachineAxis& own = machine.axes[w];
-    if (!own.present) {
-        if (environment.control.answer(gcode::ControlQuestion::w_has_no_motor) != true) return {};
-        own = known.axes[w];
-        machine.length_axis = w;
-        return {};
-    }
+    if (!own.present) return {};
     // A quill: the tip is farther from the pivot by W.
     const bool is_quill = own.side == core::Side::tool && machine.spindle == core::link_of(w)
                           && own.carrier == core::link_of(core::axis_letters.find('B'))
@@ -380,7 +375,7 @@ std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& e
     if (!environment.kinematics || !environment.kinematics->machine) return {};
     const core::Machine& known = *environment.kinematics->machine;
     const std::string& module = environment.kinematics->module;
-    const std::string about_w = take_length_axis(machine, known, environment);
+    const std::string about_w = check_quill(machine, known, environment);
     if (machine.has_rotary()) {
         if (are_same(machine, known)) return about_w;
         return fmt::format("the rotary axes of the set-up are not where {} of the ini file has "

@@ -121,6 +121,39 @@ TEST(FollowingAxes, TheIniFileOfLinuxcncSaysWhatM428Does) {
     EXPECT_EQ(check_with_ini(0).verdict, "collision");
 }
 
+/// LinuxCNC's bridge mill: W moves the tip along the tool only where the set-up says so.
+Checked check_bridge_mill(const std::string& stated, const std::string& blocks) {
+    const test_support::ScopedFolder folder;
+    std::ofstream(folder / "mill.ini")
+        << "[KINS]\nKINEMATICS = 5axiskins\n[TRAJ]\nCOORDINATES = XYZBCW\nLINEAR_UNITS = mm\n"
+           "[AXIS_W]\nMIN_LIMIT = -100\n[HAL]\n"
+           "HALCMD = loadusr -W 5axisgui pivot_len=200\nHALCMD = loadrt sum2 names=pivotsum\n"
+           "HALCMD = net a <= 5axisgui.pivot_len\nHALCMD = net a => pivotsum.in0\n"
+           "HALCMD = net b <= motion.tooloffset.z\nHALCMD = net b => pivotsum.in1\n"
+           "HALCMD = net c <= pivotsum.out\nHALCMD = net c => 5axiskins.pivot-length\n";
+    return check(SetupWriter()
+                     .without_machine()
+                     .offsets("G54 = { X = 0, Y = 0, Z = 0 }")
+                     .program("start = { X = 0, Y = 0, Z = 400 }\n" + stated)
+                     .stock("box = [[-20, -20, -40], [20, 20, 0]]"),
+                 text("G0 G43 H1 Z200\nX0 Y0\nZ5\n" + blocks), {"--ini", folder / "mill.ini"});
+}
+
+TEST(FollowingAxes, WMovesTheTipAlongTheToolAsStated) {
+    const std::string stated = "[control]\n\"5axiskins W\" = \"no motor\"\n";
+    const Checked up = check_bridge_mill(stated, "W3\nW0\nZ200");
+    EXPECT_EQ(up.errors(), "");
+    for (const BlockLine& block : up.blocks)
+        if (block.text == "W3") {
+            EXPECT_NEAR(block.pair("flutes stock").lower, 5.0, 0.1);
+        }
+    EXPECT_EQ(check_bridge_mill(stated, "W-9\nW0\nZ200").verdict, "collision") << "4 mm deep";
+    // A quill would keep the tip where it is.
+    const Checked open = check_bridge_mill("", "W3\nW0\nZ200");
+    EXPECT_EQ(open.status, 2);
+    EXPECT_NE(open.err.find("axis W"), std::string::npos) << open.err;
+}
+
 TEST(FollowingAxes, WhatAnUndecidedBlockCutsStaysInTheStock) {
     const Checked checked = check_siemens(
         cube(),
