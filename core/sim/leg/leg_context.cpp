@@ -144,9 +144,11 @@ bool LegContext::stays_apart(const RevolvedProfile& profile, const RelativeLeg& 
 
 double LegContext::finest_error(const MovingBody& body, const RelativeLeg& relative) const {
     const double cut = std::clamp(setup.mesh_size / 50.0, 0.002, 0.01);
-    const double own = body.kind == PartKind::flutes  ? cut
-                       : body.kind == PartKind::shank ? 2.0 * cut
-                                                      : 10.0 * cut;
+    // A body that may touch is decided by less than its usual clearance.
+    const bool may_touch = allowance_of(setup, pair_of(body)).distance <= resolution;
+    const double own = body.kind == PartKind::flutes               ? cut
+                       : body.kind == PartKind::shank || may_touch ? 2.0 * cut
+                                                                   : 10.0 * cut;
     // Much less than what stays makes no difference.
     return std::max(own, 0.2 * relative.lasting_error);
 }

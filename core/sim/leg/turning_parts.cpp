@@ -164,6 +164,7 @@ std::vector<TurningPart> flute_parts(const RevolvedProfile& flutes, const Mover&
 }
 
 std::vector<TurningPart> slender_parts(const RevolvedProfile& body, const Mover& mover) {
+    if (body.empty()) return {};
     constexpr double most = 8.0;
     const Aabb box = bounds(body);
     const double height = std::max(1.6 * box.max.x, box.size().z / most);
