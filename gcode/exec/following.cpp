@@ -292,6 +292,28 @@ void check_turns(Execution& execution, const ModalState& before) {
     }
 }
 
+/// A move of a block, in program coordinates.
+struct ProgramMove {
+    Position from, to;
+    bool is_arc;
+};
+
+/// The moves of a block, in order.
+std::vector<ProgramMove> moves_of(const Execution& execution, const ModalState& before) {
+    std::vector<ProgramMove> moves;
+    Position here = before.position;
+    for (const CanonicalCommand& command : execution.result.commands) {
+        const auto* rapid = std::get_if<StraightTraverse>(&command);
+        const auto* feed = std::get_if<StraightFeed>(&command);
+        const auto* arc = std::get_if<ArcFeed>(&command);
+        if (!rapid && !feed && !arc) continue;
+        const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
+        moves.push_back({here, end, arc != nullptr});
+        here = end;
+    }
+    return moves;
+}
+
 /// Whether a move that turns the tool in a plane goes the way that is assumed.
 bool is_certain_turn(Execution& execution, const AxisValues& from, const AxisValues& to) {
     const auto turn =
@@ -310,18 +332,11 @@ void check_turns_in_plane(Execution& execution, const ModalState& before) {
     const auto at = [&](const Position& program) {
         return values_or_zero(machine_from_program(modal.offsets, program));
     };
-    Position here = before.position;
     bool is_certain = true;
-    for (const CanonicalCommand& command : execution.result.commands) {
-        const auto* rapid = std::get_if<StraightTraverse>(&command);
-        const auto* feed = std::get_if<StraightFeed>(&command);
-        const auto* arc = std::get_if<ArcFeed>(&command);
-        if (!rapid && !feed && !arc) continue;
-        const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
-        if (turns_between(here, end))
-            is_certain = is_certain && !arc && is_certain_turn(execution, at(here), at(end));
-        here = end;
-    }
+    for (const ProgramMove& move : moves_of(execution, before))
+        if (turns_between(move.from, move.to))
+            is_certain = is_certain && !move.is_arc
+                         && is_certain_turn(execution, at(move.from), at(move.to));
     if (is_certain) return;
     // Two positions of the rotary axes point the tool there, and the way decides which.
     if (tool_direction(execution)) modal.following.rotary_unknown = true;
@@ -345,26 +360,20 @@ void check_length_axis(Execution& execution, const ModalState& before) {
     const Offsets& offsets = execution.modal().offsets;
     if (!offsets.machine || !offsets.machine->length_axis || !offsets.follows_tip) return;
     const size_t axis = *offsets.machine->length_axis;
-    Position here = before.position;
-    for (const CanonicalCommand& command : execution.result.commands) {
-        const auto* rapid = std::get_if<StraightTraverse>(&command);
-        const auto* feed = std::get_if<StraightFeed>(&command);
-        const auto* arc = std::get_if<ArcFeed>(&command);
-        if (!rapid && !feed && !arc) continue;
-        const Position& end = rapid ? rapid->end : feed ? feed->end : arc->end;
-        if (here[axis] != end[axis] && turns_between(here, end)) {
-            execution.result.path = core::PathCertainty::unknown;
-            execution.result.warnings.push_back(
-                {Severity::warning, place_of(execution),
-                 fmt::format("{} and a rotary axis move at once while the control follows the tip, "
-                             "which is not followed yet: this block is not checked",
-                             axis_letters[axis]),
-                 core::rule_id("undecided"),
-                 fmt::format("Move {} in a block of its own.", axis_letters[axis])});
-            return;
-        }
-        here = end;
-    }
+    const std::vector<ProgramMove> moves = moves_of(execution, before);
+    const bool is_met = std::any_of(moves.begin(), moves.end(), [&](const ProgramMove& move) {
+        return move.from[axis] != move.to[axis] && turns_between(move.from, move.to);
+    });
+    if (!is_met) return;
+    execution.result.path = core::PathCertainty::unknown;
+    execution.result.warnings.push_back(
+        {Severity::warning, place_of(execution),
+         fmt::format(
+             "{} and a rotary axis move at once while the control follows the tip, which is "
+             "not followed yet: this block is not checked",
+             axis_letters[axis]),
+         core::rule_id("undecided"),
+         fmt::format("Move {} in a block of its own.", axis_letters[axis])});
 }
 
 } // namespace
