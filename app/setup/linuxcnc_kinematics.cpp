@@ -101,7 +101,8 @@ core::Machine head_on_head(Pins& pin) {
     Chain chain;
     chain.add('C', Side::tool, {0.0, 0.0, 1.0}, Vec3(0.0));
     chain.add('B', Side::tool, {0.0, sense, 0.0}, {0.0, 0.0, pin("pivot-length")});
-    // W has no motor: the other axes move the tip along the tool instead.
+    // Only if the set-up says that W has no motor, so that the other axes move the tip along the
+    // tool instead (control_table.cpp).
     const size_t w = core::axis_letters.find('W');
     chain.machine.axes[w] = {.direction = {0.0, 0.0, 1.0}, .present = true, .side = Side::tool};
     chain.machine.length_axis = w;

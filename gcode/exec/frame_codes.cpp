@@ -639,16 +639,13 @@ core::Result<core::Mat3> axes_by_tool(Execution& execution, const CodeWord& entr
 /// The direction of the tool in work coordinates.
 core::Result<core::Vec3> tool_in_work(const Execution& execution, const Word& code) {
     const Offsets& offsets = execution.modal().offsets;
-    const core::Machine& machine = *offsets.machine;
     FEELER_TRY(const AxisValues values, values_now(execution, code.span, written(code)));
-    const core::Vec3 tool = core::machine_from_link(machine, machine.spindle, values).rotation[2];
-    const core::Mat3 table = core::machine_from_link(machine, machine.table, values).rotation;
     const core::Mat3 work = turned_about(2, offsets.work.rotation_deg);
     core::Mat3 table_from_axes;
     for (int axis = 0; axis < 3; ++axis)
         table_from_axes[axis] =
             table_from_work(offsets, work[axis]) - table_from_work(offsets, core::Vec3(0.0));
-    return glm::transpose(table_from_axes) * glm::transpose(table) * tool;
+    return glm::transpose(table_from_axes) * core::tool_frame(*offsets.machine, values)[2];
 }
 
 /// G68.3.

@@ -154,6 +154,32 @@ TEST(FollowingAxes, WMovesTheTipAlongTheToolAsStated) {
     EXPECT_NE(open.err.find("axis W"), std::string::npos) << open.err;
 }
 
+/// The axes of a bridge mill whose W is a quill if it moves the spindle towards the tip.
+std::string with_quill(const std::string& direction) {
+    return "[[machine.axis]]\nname = \"C\"\nside = \"tool\"\ndirection = [0, 0, 1]\npoint = [0, 0, "
+           "0]\n"
+           "[[machine.axis]]\nname = \"B\"\nside = \"tool\"\ndirection = [0, -1, 0]\npoint = [0, "
+           "0, 200]\n"
+           "[[machine.axis]]\nname = \"W\"\nside = \"tool\"\nparent = \"B\"\ndirection = "
+           + direction + "\n";
+}
+
+TEST(FollowingAxes, AQuillKeepsTheTipWhereItIs) {
+    const std::string quill = with_quill("[0, 0, -1]");
+    const Checked down = check_bridge_mill(quill, "W-9\nW0\nZ200");
+    EXPECT_EQ(down.errors(), "") << down.err;
+    for (const BlockLine& block : down.blocks)
+        if (block.text == "W-9") {
+            EXPECT_NEAR(block.pair("flutes stock").lower, 5.0, 0.1);
+        }
+    EXPECT_EQ(check_bridge_mill(quill, "B10\nB0\nZ200").verdict, "undecided")
+        << "an axis that changes its direction";
+    // One that does not move the tip as the control takes it to is not believed.
+    const Checked other = check_bridge_mill(with_quill("[0, 0, 1]"), "W-9\nW0\nZ200");
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("axis W"), std::string::npos) << other.err;
+}
+
 TEST(FollowingAxes, WhatAnUndecidedBlockCutsStaysInTheStock) {
     const Checked checked = check_siemens(
         cube(),

@@ -254,6 +254,23 @@ TEST(PlaneTurn, TurnsInPlaceAtAPole) {
     }
 }
 
+/// Four degrees from a pole, 2,900 parts are too few, and twice as many would be too many.
+TEST(PlaneTurn, IsDividedUpToTheLimitBeforeItIsGivenUp) {
+    Machine machine;
+    machine.axes[4] = {
+        .direction = {0, 1, 0}, .present = true, .side = Side::tool, .carrier = link_of(2)};
+    machine.axes[3] = {
+        .direction = {1, 0, 0}, .present = true, .side = Side::tool, .carrier = link_of(4)};
+    machine.spindle = link_of(3);
+    AxisValues from{}, to{};
+    from[3] = -85.8367, from[4] = -4.0142;
+    to[3] = 70.7344, to[4] = -82.5715;
+    const auto turn = turn_in_plane(machine, from, to, turn_error);
+    ASSERT_TRUE(turn);
+    EXPECT_EQ(turn->positions.size(), 4096u);
+    EXPECT_LE(turn->error, 1e-3);
+}
+
 TEST(PlaneTurn, HasNoWayThroughAPoleThatIsNotAtAnEnd) {
     const Machine machine = trunnion({0, 0, -500}, {0, 0, -480});
     AxisValues from{}, to{};
