@@ -285,11 +285,15 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     }
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
-    if (cutting) at.corners.note_cut(at.called, motion.arc.has_value());
+    static const core::ToolAssembly nothing;
+    const double off_by_axes =
+        core::axis_tolerance_error(*setup_, at.tool ? *at.tool : nothing, path);
+    if (cutting) at.corners.note_cut(at.called, motion.arc.has_value(), off_by_axes);
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
         rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
+    at.off_motion += off_by_axes;
     at.follows = follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
     at.corners.last.kind = motion.kind;
     for (const core::Leg& leg : path.legs) {

@@ -21,6 +21,7 @@
 #include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
 #include "core/base/text.h"
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/clearance.h"
 #include "gcode/language/canonical.h"
@@ -79,6 +80,20 @@ void read_range(TableReader& table, core::MachineAxis& axis, Measure measure) {
         table.refuse("acceleration", "must be above 0");
 }
 
+/// How far the axis of rotation may be from where it is stated.
+void read_tolerances(TableReader& table, core::MachineAxis& axis) {
+    constexpr double most_mm = 5.0, most_degrees = 5.0; // more is a mistake
+    const auto value = [&](const char* key, Measure measure, double most, const char* unit) {
+        const auto read = table.number(key, measure);
+        if (read && !(*read >= 0.0 && *read <= most))
+            table.refuse(key, fmt::format("must be from 0 to {:g} {}", most, unit));
+        return read.value_or(0.0);
+    };
+    axis.point_tolerance = value("point_tolerance", Measure::length, most_mm, "mm");
+    axis.direction_tolerance = value("direction_tolerance", Measure::angle, most_degrees, "degrees")
+                               / core::degrees_per_radian;
+}
+
 void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
     const auto name = table.word("name", {"X", "Y", "Z", "A", "B", "C", "U", "V", "W"});
     if (!name) return table.need("name");
@@ -100,6 +115,7 @@ void read_axis(TableReader& table, core::Machine& machine, AxisList& list) {
     if (rotary) {
         axis.point = table.vector("point", Measure::length).value_or(core::Vec3(0.0));
         axis.shortest_way = table.boolean("shortest_way").value_or(false);
+        read_tolerances(table, axis);
     }
     read_range(table, axis, measure_along(index));
     machine.axes[index] = axis;

@@ -447,6 +447,89 @@ RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Move
     return relative;
 }
 
+namespace {
+
+/// The greatest of 2 |sin(angle / 2)| between two angles, degrees.
+double greatest_chord(double from_deg, double to_deg) {
+    const double low = std::min(from_deg, to_deg), high = std::max(from_deg, to_deg);
+    // At odd multiples of 180 degrees it is 2.
+    if (std::floor((high - 180.0) / 360.0) != std::floor((low - 180.0) / 360.0)) return 2.0;
+    const auto at = [](double angle) { return 2.0 * std::abs(sin_cos_deg(0.5 * angle).sin); };
+    return std::max(at(low), at(high));
+}
+
+/// The bound on a piece of a leg: `posture` is at its first position, and each axis is between
+/// `low` and `high` on it.
+double axis_tolerance_on_piece(const Machine& machine, const std::vector<size_t>& axes,
+                               const Mover& mover, const Posture& posture, const AxisValues& low,
+                               const AxisValues& high) {
+    const Vec3 centre =
+        posture.of_link(mover.mount.link) * (mover.mount.link_from_body * mover.centre);
+    double turn = 0.0, travel = 0.0, farthest = 0.0;
+    for (const size_t i : axes) {
+        const double by = high[i] - low[i];
+        (is_rotary(i) ? turn : travel) += is_rotary(i) ? by / degrees_per_radian : by;
+        if (!is_rotary(i)) continue;
+        const Vec3 point = posture.of_link(machine.axes[i].carrier) * machine.axes[i].point;
+        farthest = std::max(farthest, glm::distance(centre, point) + mover.reach);
+    }
+    const double distance = (farthest + travel) * core::exp(turn);
+    double error = 0.0, slope = 0.0;
+    for (const size_t i : axes) {
+        const MachineAxis& axis = machine.axes[i];
+        if (!is_rotary(i)) continue;
+        const double chord = greatest_chord(low[i], high[i]);
+        error += chord * (axis.point_tolerance + axis.direction_tolerance * distance);
+        slope += chord * axis.direction_tolerance;
+    }
+    return slope < 0.5 ? 1.001 * error / (1.0 - slope) : infinity;
+}
+
+} // namespace
+
+double axis_tolerance_error(const Machine& machine, LinkId target, const Mover& mover,
+                            const Leg& leg) {
+    const std::vector<size_t> axes = axes_between(machine, target, mover.mount.link);
+    const auto is_uncertain = [&](size_t i) {
+        return is_rotary(i)
+               && (machine.axes[i].point_tolerance > 0.0
+                   || machine.axes[i].direction_tolerance > 0.0);
+    };
+    if (std::none_of(axes.begin(), axes.end(), is_uncertain)) return 0.0;
+    constexpr double longest_turn = 0.1; // radians, of a piece of a straight leg
+    const bool is_straight = leg.straight && leg.positions.size() == 2;
+    const double turn =
+        is_straight ? turn_of(machine, leg.positions.front(), leg.positions.back()) : 0.0;
+    const int pieces =
+        std::max(1, static_cast<int>(std::min(1000.0, std::ceil(turn / longest_turn))));
+    const auto at = [&](int piece) {
+        const double part = static_cast<double>(piece) / pieces;
+        AxisValues values = leg.positions.front();
+        if (is_straight)
+            for (size_t i = 0; i < axis_count; ++i)
+                values[i] += part * (leg.positions.back()[i] - values[i]);
+        return values;
+    };
+    double error = 0.0;
+    for (int piece = 0; piece < pieces; ++piece) {
+        const AxisValues first = at(piece);
+        AxisValues low = first, high = first;
+        const auto extend = [&](const AxisValues& values) {
+            for (size_t i = 0; i < axis_count; ++i) {
+                low[i] = std::min(low[i], values[i]);
+                high[i] = std::max(high[i], values[i]);
+            }
+        };
+        if (is_straight)
+            extend(at(piece + 1));
+        else
+            for (const AxisValues& position : leg.positions) extend(position);
+        error = std::max(error, axis_tolerance_on_piece(machine, axes, mover,
+                                                        Posture(machine, first), low, high));
+    }
+    return error;
+}
+
 std::vector<AxisValues> ways_to_point_tool(const Machine& machine, const AxisValues& values,
                                            const Vec3& tool_axis) {
     const Vec3 wanted = glm::normalize(tool_axis);
@@ -505,6 +588,11 @@ std::optional<size_t> tilting_axis(const Machine& machine) {
     const std::vector<size_t> head = rotary_chain(machine, machine.spindle);
     const auto found = std::find_if(head.rbegin(), head.rend(), tilts);
     return found == head.rend() ? std::nullopt : std::optional(*found);
+}
+
+std::optional<size_t> axis_next_to_work(const Machine& machine) {
+    const std::vector<size_t> chain = rotary_chain(machine, machine.table);
+    return chain.empty() ? std::nullopt : std::optional(chain.back());
 }
 
 Mat3 tool_frame(const Machine& machine, const AxisValues& values) {

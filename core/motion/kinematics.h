@@ -94,6 +94,14 @@ void add_play_as_error(RelativeLeg& leg, const Play& play);
 RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Mover& mover,
                          const Leg& leg);
 
+/// A bound of how far a body may be, relative to a target, from where the machine has it as stated,
+/// anywhere on a leg, because its axes of rotation are only known with tolerances. mm. 0 while
+/// these axes are at 0.
+///
+/// Proof:   core/sim/README.md, "Axes of rotation with tolerances".
+double axis_tolerance_error(const Machine& machine, LinkId target, const Mover& mover,
+                            const Leg& leg);
+
 /// The rotary axis values that point the tool in a direction.
 ///
 /// Frame:   `tool_axis`, from the tip up, is in the frame of the table link.
@@ -111,6 +119,9 @@ std::vector<AxisValues> ways_to_point_tool(const Machine& machine, const AxisVal
 /// nearest to the base, or else that of the spindle which is nearest to the tool. Empty if no axis
 /// does.
 std::optional<size_t> tilting_axis(const Machine& machine);
+
+/// The rotary axis that carries the table directly; empty if none does.
+std::optional<size_t> axis_next_to_work(const Machine& machine);
 
 /// The axes of the tool, as columns, in the frame of the table link: X and Y are those of the
 /// machine, turned with the head.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,9 @@ struct MachineAxis {
     Vec3 point = Vec3(0.0);        // rotary: a point on the axis of rotation
     LinkId carrier = LinkId::base; // the link that carries this axis
     bool shortest_way = false;     // rotary: takes the shorter direction to an angle
+    // How far the axis of rotation may be from where it is stated.
+    double point_tolerance = 0.0;     // of `point`, mm
+    double direction_tolerance = 0.0; // of `direction`, radians
 };
 
 /// A solid part of the machine. Frame: the machine's with all axes at 0.
@@ -55,6 +59,12 @@ struct Machine {
     std::optional<size_t> length_axis;
     std::vector<MachineBody> bodies;
 
+    /// Whether an axis of rotation is only known with a tolerance.
+    bool has_axis_tolerances() const {
+        return std::any_of(axes.begin(), axes.end(), [](const MachineAxis& axis) {
+            return axis.point_tolerance > 0.0 || axis.direction_tolerance > 0.0;
+        });
+    }
     bool has_rotary() const { return axes[3].present || axes[4].present || axes[5].present; }
 
     /// The length of the tool from which the control computes the position of the tip.

@@ -156,13 +156,13 @@ struct RoundedCorners {
     /// Deviation of a feed.
     double of_feed(bool is_arc) const { return is_arc ? by_arc : by; }
 
-    /// Records a cutting feed.
-    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {
-        if (by == 0.0) return;
+    /// Records a cutting feed, which deviates by `by_axes` besides its corners.
+    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc, double by_axes) {
+        if (by + by_axes == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
         mode_of_cuts = std::max(mode_of_cuts, by);
-        of_cuts = std::max(of_cuts, of_feed(is_arc));
+        of_cuts = std::max(of_cuts, of_feed(is_arc) + by_axes);
     }
 };
 

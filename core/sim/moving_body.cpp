@@ -3,6 +3,7 @@
 #include "core/base/math.h"
 #include "core/distance/shape_outline.h"
 #include "core/motion/machine.h"
+#include "core/motion/path.h"
 #include "core/sim/setup.h"
 
 namespace core {
@@ -90,6 +91,20 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
         if (moves_against_work(setup.machine, setup.machine.bodies[i]))
             bodies.push_back(moving_machine_body(setup, tool, i));
     return bodies;
+}
+
+double axis_tolerance_error(const Setup& setup, const ToolAssembly& tool, const Path& path) {
+    if (!setup.machine.has_axis_tolerances()) return 0.0;
+    std::vector<LinkId> targets = {setup.stock_mount.link};
+    for (const Fixture& fixture : setup.fixtures)
+        if (std::find(targets.begin(), targets.end(), fixture.mount.link) == targets.end())
+            targets.push_back(fixture.mount.link);
+    double most = 0.0;
+    for (const MovingBody& body : moving_bodies(setup, tool))
+        for (const LinkId target : targets)
+            for (const Leg& leg : path.legs)
+                most = std::max(most, axis_tolerance_error(setup.machine, target, body.mover, leg));
+    return most;
 }
 
 RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const MovingBody& body,

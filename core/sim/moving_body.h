@@ -11,6 +11,7 @@
 namespace core {
 
 struct Fixture;
+struct Path;
 struct Setup;
 
 /// A body on the spindle side that is checked against the work: a part of the tool, or a machine
@@ -57,6 +58,10 @@ struct BodyLeg : RelativeLeg {
 /// All moving bodies whose place is known; first the parts of the tool, from the flutes up. The
 /// result refers to the set-up and the tool.
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
+
+/// A bound of how far any body is from where it is measured on a path, because axes of rotation of
+/// the machine are only known with tolerances, mm; see axis_tolerance_error.
+double axis_tolerance_error(const Setup& setup, const ToolAssembly& tool, const Path& path);
 
 /// The leg as seen from a fixture, without its play, or from the stock. The deviation of a fixture
 /// counts as an error of the leg; that of the stock is in its tolerance.

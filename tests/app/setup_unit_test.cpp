@@ -83,6 +83,8 @@ max = <2>
 name = "A"
 direction = [1, 0, 0]
 point = [<1>, <2>, <-3>]
+point_tolerance = <0.004>
+direction_tolerance = 0.01
 min = -120
 max = 120
 home = 10
@@ -250,6 +252,7 @@ public:
             add("axis", axis.min, axis.max, axis.home, axis.rapid, axis.acceleration);
             add_point("direction", axis.direction);
             add_point("point", axis.point);
+            add("tolerance", axis.point_tolerance, axis.direction_tolerance);
         }
         for (const core::MachineBody& body : setup.machine.bodies)
             add_box(body.name, core::bounds(body.body));
@@ -425,6 +428,7 @@ const std::set<std::string> other_keys = {
     "side",
     "parent",
     "direction",
+    "direction_tolerance",
     "shortest_way",
     "axis",
     // a rapid of [machine] is a word

@@ -297,5 +297,82 @@ TEST(AxisRange, OfATipPathHoldsWhatTheAxesDoOnTheWay) {
     EXPECT_NEAR(range.min[2], 50.0 + 100.0 * std::cos(40 * radian), 1e-9);
 }
 
+Vec3 random_direction(std::mt19937& rng) {
+    std::normal_distribution<double> part;
+    return glm::normalize(Vec3(part(rng), part(rng), part(rng)));
+}
+
+/// No point of a body is farther from where the stated machine has it than the bound, which is not
+/// many times too large either.
+TEST(AxisTolerances, BoundTheDisplacementOfEveryPoint) {
+    std::mt19937 rng(28);
+    std::uniform_real_distribution<double> unit(0.0, 1.0), mm(-80.0, 80.0), change(-40.0, 40.0);
+    double sum = 0.0;
+    int count = 0;
+    for (int i = 0; i < 3000; ++i) {
+        Machine machine = machines()[static_cast<size_t>(i) % 3];
+        Machine real = machine;
+        for (size_t axis = 3; axis < 6; ++axis) {
+            if (!machine.axes[axis].present) continue;
+            MachineAxis &stated = machine.axes[axis], &true_one = real.axes[axis];
+            stated.point_tolerance = i % 5 == 0 ? 0.0 : 0.2 * unit(rng);
+            stated.direction_tolerance = i % 7 == 0 ? 0.0 : 0.01 * unit(rng);
+            true_one.point += stated.point_tolerance * random_direction(rng);
+            // Turned away by the tolerance.
+            const Vec3 aside = glm::normalize(glm::cross(stated.direction, random_direction(rng)));
+            const double angle = stated.direction_tolerance;
+            true_one.direction = std::cos(angle) * stated.direction + std::sin(angle) * aside;
+        }
+        Mover mover{.mount = {machine.spindle, {}},
+                    .centre = Vec3(mm(rng), mm(rng), mm(rng)),
+                    .reach = 1.0 + std::abs(mm(rng))};
+        AxisValues from = random_values(rng), to = from;
+        if (i % 11 == 0)
+            for (size_t axis = 3; axis < 6; ++axis) from[axis] = to[axis] = 0.0;
+        if (i % 3 != 0)
+            for (double& value : to) value += change(rng);
+        if (i % 13 == 0) to[5] += 400.0;
+        Leg leg;
+        leg.positions = {from, to};
+        leg.straight = i % 4 != 0;
+        const double bound = axis_tolerance_error(machine, machine.table, mover, leg);
+        double most = 0.0;
+        for (int k = 0; k < 200; ++k) {
+            AxisValues at = from;
+            const double whole = unit(rng);
+            for (size_t axis = 0; axis < axis_count;
+                 ++axis) // anywhere in the hull, if not straight
+                at[axis] += (leg.straight ? whole : unit(rng)) * (to[axis] - from[axis]);
+            const Vec3 point = mover.centre + mover.reach * random_direction(rng);
+            const Vec3 here =
+                target_from_mover(machine, {machine.table, {}}, mover.mount, at) * point;
+            const Vec3 there =
+                target_from_mover(real, {machine.table, {}}, mover.mount, at) * point;
+            most = std::max(most, glm::distance(here, there));
+        }
+        ASSERT_LE(most, bound + 1e-9) << i;
+        if (most > 0.01 && leg.straight) sum += bound / most, ++count;
+    }
+    EXPECT_GT(count, 1000);
+    EXPECT_LT(sum / count, 6.0) << "the bound is of the right size";
+}
+
+TEST(AxisTolerances, DoNotCountWhileTheAxesAreAtZeroOrNotBetweenTheBodies) {
+    Machine machine = head_and_table({3, 0, 150}, {40, -30, -500});
+    Leg leg;
+    leg.positions = {AxisValues{}};
+    const Mover mover{.mount = {machine.spindle, {}}, .centre = {10, 0, 0}, .reach = 5.0};
+    for (MachineAxis& axis : machine.axes)
+        if (axis.present) axis.point_tolerance = 0.1;
+    EXPECT_EQ(axis_tolerance_error(machine, machine.table, mover, leg), 0.0);
+    leg.positions[0][5] = 90.0; // the table: 0.1 at each end of a quarter turn
+    EXPECT_NEAR(axis_tolerance_error(machine, machine.table, mover, leg), 0.1 * std::sqrt(2.0),
+                1e-3);
+    EXPECT_EQ(axis_tolerance_error(machine, LinkId::base, mover, leg), 0.0)
+        << "the base does not turn with the table";
+    leg.positions[0][5] = 180.0;
+    EXPECT_NEAR(axis_tolerance_error(machine, machine.table, mover, leg), 0.2, 1e-3);
+}
+
 } // namespace
 } // namespace core

@@ -186,8 +186,9 @@ void BlockRun::execute_motion(const Motion& motion) {
     const bool is_bar = tool() && tool()->oriented;
     if (motion.from != state.position || !is_certain || is_bar) forget_bounds();
     if (motion.from != state.position) state.corners.last = {};
+    note_axis_tolerances(path);
     round_corners(motion, path);
-    state.memory.off_path = off_path + state.corners.of_cuts;
+    state.memory.off_path = off_path + off_by_axes + state.corners.of_cuts;
     doubt_assumed_start(motion);
     state.position = motion.to;
     if (!tool()) move_without_tool(motion, path);

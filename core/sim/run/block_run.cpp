@@ -274,7 +274,8 @@ Finding BlockRun::finding_about(const PairClearance& pair, const PairStudy& stud
 
 bool BlockRun::only_touches_raw_stock(const PairClearance& pair) {
     if (pair.pair.fixture || !tool()) return false;
-    const double room = contact_depth(pair.allowance) - std::max(off_path, off_path_rapids);
+    const double room =
+        contact_depth(pair.allowance) - std::max(off_path, off_path_rapids) - off_by_axes;
     LegCheck check = leg_check(FluteUse::not_cutting);
     return std::all_of(legs.begin(), legs.end(), [&](const TimedLeg& timed) {
         return check.reach_into_raw_stock(pair.pair, timed.leg, state.stock) <= room;
@@ -291,7 +292,7 @@ void BlockRun::conclude() {
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
         const bool is_doubtful = pair.verdict == Verdict::clear && state.corners.of_cuts > 0.0;
-        widen(pair, off_path, off_path_rapids, state.corners,
+        widen(pair, off_path + off_by_axes, off_path_rapids + off_by_axes, state.corners,
               follows || (is_doubtful && only_touches_raw_stock(pair)));
         widen_by_stock(pair, setup.stock.deviation);
     }

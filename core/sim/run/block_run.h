@@ -37,6 +37,7 @@ struct BlockRun {
     bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
     double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
     double off_path_rapids = 0.0; // likewise of its rapids
+    double off_by_axes = 0.0;     // of all its motions by the tolerances of axes of rotation, mm
     size_t moves_before = state.stock.log.size(); // that cut the stock before the block
     RoundedCorners corners_before = state.corners;
 
@@ -155,6 +156,9 @@ struct BlockRun {
     void forget_bounds();
     /// `before`: how far the machine may be from the start of the motion.
     void check_limits(const Motion& motion, const AxisSpread& before);
+    /// How far the bodies may be from where they are measured on a path, because axes of rotation
+    /// are only known with tolerances.
+    void note_axis_tolerances(const Path& path);
     void round_corners(const Motion& motion, const Path& path);
     /// The legs of a motion from everywhere where the machine may be; advances `state.spread`.
     Path take_path(const Motion& motion);

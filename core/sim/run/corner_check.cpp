@@ -11,7 +11,7 @@ namespace {
 /// The check of the region of a corner: its hull, and the programmed path within it.
 struct CornerCheck {
     TrackedPairs anywhere, along;
-    double deviation; // of the rounded path from the programmed one
+    double deviation; // of the bodies from the programmed path
     double of_cuts;   // deviation of the cuts in the stock
 
     const TrackedPair* on_the_path(const Pair& pair) const {
@@ -39,6 +39,15 @@ struct CornerCheck {
 
 } // namespace
 
+void BlockRun::note_axis_tolerances(const Path& path) {
+    static const ToolAssembly nothing;
+    const double off = axis_tolerance_error(setup, tool() ? *tool() : nothing, path);
+    if (off == 0.0) return;
+    off_by_axes = std::max(off_by_axes, off);
+    state.assumptions.insert("the axes of rotation are where the set-up states them to within its "
+                             "tolerances; clearances include these");
+}
+
 void BlockRun::round_corners(const Motion& motion, const Path& path) {
     RoundedCorners& corners = state.corners;
     const bool rapid = motion.kind == MotionKind::rapid;
@@ -54,9 +63,11 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
         return;
     }
     const double by = corners.of_feed(motion.arc.has_value());
-    if (by == 0.0 || !tool()) return;
+    if (by + off_by_axes == 0.0 || !tool()) return;
+    if (use(motion) == FluteUse::cutting)
+        corners.note_cut(state.tool, motion.arc.has_value(), off_by_axes);
+    if (by == 0.0) return;
     off_path = std::max(off_path, by);
-    if (use(motion) == FluteUse::cutting) corners.note_cut(state.tool, motion.arc.has_value());
     state.assumptions.insert(fmt::format(
         "{} may deviate by up to {:g} mm from the programmed path while the control rounds "
         "corners; clearances include this",
@@ -96,11 +107,11 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const double deviation = bends && limit.distance < infinity ? limit.distance : most;
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
-    memory.off_path = deviation + state.corners.of_cuts;
+    memory.off_path = deviation + off_by_axes + state.corners.of_cuts;
     CutModel stock = state.stock; // a collision in the region must not cut the run's stock
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
-    CornerCheck corner{.deviation = deviation, .of_cuts = state.corners.of_cuts};
+    CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_cuts};
     region->hull.begin = region->hull.end = 0.0;
     leg_check(FluteUse::not_cutting, memory)
         .run(region->hull, result.duration, stock, corner.anywhere);
