@@ -12,6 +12,12 @@
 
 namespace gcode {
 
+/// The direction of the tool that a block programs, from the tip up. Program coordinates.
+struct ToolDirection {
+    core::Vec3 direction = core::Vec3(0.0);
+    const Word* word = nullptr; // one of its words
+};
+
 /// A block being executed: its words, the state it changes and its commands. Each of the functions
 /// below is a step: it executes its words, or does nothing.
 struct Execution {
@@ -23,6 +29,8 @@ struct Execution {
     InterpreterState& state;
     BlockCommands& result;
     uint32_t column = 1; // of the word being executed
+    // By angles, where the block has them. Words for rotary axes are then no positions.
+    std::optional<ToolDirection> tool_by_angles{};
 
     ModalState& modal() { return state.modal; }
     const ModalState& modal() const { return state.modal; }

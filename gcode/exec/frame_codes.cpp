@@ -294,6 +294,22 @@ core::Result<void> change_transforms(Execution& execution, const CodeWord& entry
     }
 }
 
+/// G54.4, workpiece setting error compensation: P0 cancels it. Other numbers shift and turn the
+/// coordinates by values that the operator has measured.
+core::Result<void> check_setting_error(const Execution& execution) {
+    for (const CodeWord& entry : execution.statement.codes()) {
+        if (entry.code->number != g_code(54, 4)) continue;
+        const Word* word = execution.statement.word('P');
+        if (word && word->value == 0.0) continue;
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: compensation of the error of a clamped workpiece is not "
+                                      "supported yet, only G54.4 P0, which cancels it",
+                                      written(*entry.word)),
+                          entry.word->span);
+    }
+    return {};
+}
+
 } // namespace
 
 void use_transforms(Execution& execution, const ProgramTransforms& transforms) {
@@ -317,6 +333,7 @@ core::Result<void> set_frame(Execution& execution) {
         if (auto changed = change_transforms(execution, *entry); !changed) return changed;
         use_transforms(execution, execution.modal().transforms);
     }
+    if (auto done = check_setting_error(execution); !done) return done;
     return turn_tool_to_plane(execution);
 }
 
@@ -376,6 +393,12 @@ bool is_feature_plane(const Execution& execution) {
     return entry && entry->code->number == g_code(268);
 }
 
+tl::unexpected<core::Error> refuse_plane(const Execution& execution, const std::string& why) {
+    const Word& code = *execution.statement.of(ModalGroup::rotation)->word;
+    return core::fail(ErrorCode::invalid_value, fmt::format("{}: {}", written(code), why),
+                      code.span);
+}
+
 core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
     const Word* word = execution.statement.word('P');
     int form = 0;
@@ -392,12 +415,12 @@ core::Result<core::Mat3> axes_of_plane(const Execution& execution) {
         return by_roll_pitch_yaw(execution);
     }
     if (form == 1) return by_roll_pitch_yaw(execution);
-    if (form != 0)
-        return core::fail(ErrorCode::unsupported,
-                          fmt::format("{}: planes defined by projected angles are not supported "
-                                      "yet: use Euler angles, G68.2 X Y Z I J K",
-                                      written(*word)),
-                          word->span);
+    if (form == 4) {
+        // I turns X about Y, J turns Y about X, and K turns the plane about its Z.
+        const auto plane = plane_by_projections(angles[0], angles[1]);
+        if (!plane) return refuse_plane(execution, "the projected angles define no plane");
+        return *plane * turned_about(2, angles[2]);
+    }
     // About Z, then about the new X, then about the new Z.
     return turned_about(2, angles[0]) * turned_about(0, angles[1]) * turned_about(2, angles[2]);
 }
@@ -421,13 +444,6 @@ core::Result<AxisValues> values_now(const Execution& execution, core::SourceSpan
     return values;
 }
 
-/// A direction of the program coordinates in the frame of the table.
-core::Vec3 in_table(const Offsets& offsets, const core::Vec3& direction) {
-    const core::Vec3 in_work =
-        turned_about(2, offsets.work.rotation_deg) * (offsets.frame.linear * direction);
-    return table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
-}
-
 tl::unexpected<core::Error> fail_to_tilt(const std::string& what, core::SourceSpan where) {
     return core::fail(
         ErrorCode::invalid_value,
@@ -449,7 +465,7 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
     FEELER_TRY(const AxisValues values,
                values_now(execution, word.span, words_at(execution, word)));
     const auto ways =
-        core::ways_to_point_tool(*offsets.machine, values, in_table(offsets, direction));
+        core::ways_to_point_tool(*offsets.machine, values, direction_in_table(offsets, direction));
     if (ways.empty()) return fail_to_tilt(words_at(execution, word), word.span);
     // A tool that turns in a plane gets to the position on its way, which may not be the nearest.
     const bool in_plane = execution.modal().turns_in_plane && offsets.follows_tip;
@@ -461,10 +477,25 @@ core::Result<AxisValues> pointed(const Execution& execution, const Word& word,
     return found == ways.end() ? ways.front() : *found;
 }
 
+/// The sign of the tilting axis that P of G53.1 and G53.6 chooses; 0: any will do.
+core::Result<int> sign_of_turn(Execution& execution) {
+    const Word* word = execution.statement.word('P');
+    if (!word) return 0;
+    FEELER_TRY(const int choice, whole_number(*word, 0, 2));
+    if (choice == 0 || !execution.modal().offsets.machine) return 0;
+    const bool is_positive = answer_to(execution.state, execution.environment,
+                                       ControlQuestion::p1_is_positive, execution.block.line)
+                             == (choice == 1);
+    return is_positive ? 1 : -1;
+}
+
 /// `about_tip`: the tip stays where it is on the work; otherwise the linear axes stay.
 core::Result<void> turn_rotary_axes(Execution& execution, const Word& word, bool about_tip) {
     const ModalState& modal = execution.modal();
-    FEELER_TRY(const AxisValues values, pointed(execution, word, core::Vec3(0.0, 0.0, 1.0)));
+    FEELER_TRY(const int sign, sign_of_turn(execution));
+    FEELER_TRY(const AxisValues values,
+               sign != 0 ? axes_along_z(execution, word.span, written(word), sign)
+                         : pointed(execution, word, core::Vec3(0.0, 0.0, 1.0)));
     if (about_tip)
         turn_about_tip(execution, values, 0.0,
                        [&](const Position& end) { execution.traverse(end); });
@@ -480,12 +511,6 @@ core::Vec3 point_of(const Execution& execution) {
         if (const Word* word = execution.statement.word(axis_letters[static_cast<size_t>(axis)]))
             point[axis] = length_of(execution, *word);
     return point;
-}
-
-tl::unexpected<core::Error> refuse_plane(const Execution& execution, const std::string& why) {
-    const Word& code = *execution.statement.of(ModalGroup::rotation)->word;
-    return core::fail(ErrorCode::invalid_value, fmt::format("{}: {}", written(code), why),
-                      code.span);
 }
 
 /// G68.4: a plane in the coordinates of the one that is on.
@@ -636,18 +661,6 @@ core::Result<core::Mat3> axes_by_tool(Execution& execution, const CodeWord& entr
     return core::Mat3(along_x, glm::cross(tool, along_x), tool);
 }
 
-/// The direction of the tool in work coordinates.
-core::Result<core::Vec3> tool_in_work(const Execution& execution, const Word& code) {
-    const Offsets& offsets = execution.modal().offsets;
-    FEELER_TRY(const AxisValues values, values_now(execution, code.span, written(code)));
-    const core::Mat3 work = turned_about(2, offsets.work.rotation_deg);
-    core::Mat3 table_from_axes;
-    for (int axis = 0; axis < 3; ++axis)
-        table_from_axes[axis] =
-            table_from_work(offsets, work[axis]) - table_from_work(offsets, core::Vec3(0.0));
-    return glm::transpose(table_from_axes) * core::tool_frame(*offsets.machine, values)[2];
-}
-
 /// G68.3.
 core::Result<void> set_plane_of_tool(Execution& execution, const CodeWord& entry) {
     ModalState& modal = execution.modal();
@@ -691,8 +704,9 @@ core::Result<void> set_plane_of_tool(Execution& execution, const CodeWord& entry
         }
         plane.origin = modal.offsets.frame.linear * position + modal.offsets.frame.shift;
     }
-    FEELER_TRY(const core::Vec3 tool, tool_in_work(execution, *entry.word));
-    FEELER_TRY(plane.axes, axes_by_tool(execution, entry, tool));
+    FEELER_TRY(const core::Mat3 tool,
+               tool_axes_in_work(execution, entry.word->span, written(*entry.word)));
+    FEELER_TRY(plane.axes, axes_by_tool(execution, entry, tool[2]));
     if (const Word* word = statement.word('R')) plane.axes *= turned_about(2, word->value);
     modal.transforms.tilt = plane;
     return {};
@@ -763,7 +777,6 @@ core::Result<void> turn_tool_to_plane(Execution& execution) {
         if (!is_turn_to_plane(entry)) continue;
         const std::string name = written(*entry.word);
         constexpr std::pair<char, std::string_view> refused[] = {
-            {'P', "choosing a position of the rotary axes"},
             {'R', "turning about another point than the tip"},
             {'H', "changing the tool length with the turn"}};
         for (const auto& [letter, what] : refused)
@@ -866,6 +879,24 @@ Position turned_in_place(const Offsets& offsets, const Position& program, const 
     return program_from_machine(offsets, machine);
 }
 
+core::Result<core::Mat3> tool_axes_in_work(const Execution& execution, core::SourceSpan where,
+                                           const std::string& what) {
+    const Offsets& offsets = execution.modal().offsets;
+    FEELER_TRY(const AxisValues values, values_now(execution, where, what));
+    const core::Mat3 work = turned_about(2, offsets.work.rotation_deg);
+    core::Mat3 table_from_axes;
+    for (int axis = 0; axis < 3; ++axis)
+        table_from_axes[axis] =
+            table_from_work(offsets, work[axis]) - table_from_work(offsets, core::Vec3(0.0));
+    return glm::transpose(table_from_axes) * core::tool_frame(*offsets.machine, values);
+}
+
+core::Vec3 direction_in_table(const Offsets& offsets, const core::Vec3& direction) {
+    const core::Vec3 in_work =
+        turned_about(2, offsets.work.rotation_deg) * (offsets.frame.linear * direction);
+    return table_from_work(offsets, in_work) - table_from_work(offsets, core::Vec3(0.0));
+}
+
 void turn_about_tip(Execution& execution, const AxisValues& to, double below,
                     const std::function<void(const Position&)>& go) {
     const Offsets kept = execution.modal().offsets;
@@ -890,8 +921,17 @@ core::Result<double> angle_to_plane(const Execution& execution, core::SourceSpan
     const Offsets& offsets = execution.modal().offsets;
     FEELER_TRY(const AxisValues values, values_now(execution, where, what));
     const core::Vec3 tool = core::tool_frame(*offsets.machine, values)[2];
-    const core::Vec3 plane = in_table(offsets, core::Vec3(0.0, 0.0, 1.0));
+    const core::Vec3 plane = direction_in_table(offsets, core::Vec3(0.0, 0.0, 1.0));
     return core::atan2(glm::length(glm::cross(tool, plane)), glm::dot(tool, plane));
+}
+
+std::optional<core::Mat3> plane_by_projections(double about_y, double about_x) {
+    const core::Vec3 x = turned_about(1, about_y)[0], y = turned_about(0, about_x)[1];
+    const core::Vec3 normal = glm::cross(x, y);
+    constexpr double least_sine = 1e-3; // below, rounded angles decide the direction
+    if (!(glm::length(normal) > least_sine)) return std::nullopt;
+    const core::Vec3 z = glm::normalize(normal);
+    return core::Mat3(x, glm::cross(z, x), z);
 }
 
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
@@ -900,7 +940,7 @@ core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan whe
     FEELER_TRY(const AxisValues values, values_now(execution, where, what));
     const auto tilt = core::tilting_axis(*offsets.machine);
     auto ways = core::ways_to_point_tool(*offsets.machine, values,
-                                         in_table(offsets, core::Vec3(0.0, 0.0, 1.0)));
+                                         direction_in_table(offsets, core::Vec3(0.0, 0.0, 1.0)));
     // An axis without limits may stand whole turns away from the position that is meant.
     const auto is_other = [&](const AxisValues& way) {
         if (!tilt) return false;
@@ -962,6 +1002,7 @@ std::optional<ToolDirection> tool_direction(const Execution& execution) {
     const ModalState& modal = execution.modal();
     if (modal.transforms.follows_vectors) return vector_words(execution.block, "IJK");
     if (!modal.offsets.follows_tip && !modal.following.may_be_on) return std::nullopt;
+    if (execution.tool_by_angles) return execution.tool_by_angles;
     const auto tool = vector_words(execution.block, direction_letters);
     return tool ? tool : vector_words(execution.block, normal_letters);
 }

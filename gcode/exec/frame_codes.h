@@ -56,6 +56,16 @@ double rotary_offset(const Offsets& offsets, size_t axis);
 Position turned_in_place(const Offsets& offsets, const Position& program, const AxisValues& to);
 Position turned_in_place(const Offsets& offsets, const Position& program, const Position& to);
 
+/// The axes of the tool, as columns, in work coordinates: X and Y are those of the machine, turned
+/// with the head. Only with a machine.
+///
+/// Errors: `what`, the words of the statement, that the position of a rotary axis is unknown.
+core::Result<core::Mat3> tool_axes_in_work(const Execution& execution, core::SourceSpan where,
+                                           const std::string& what);
+
+/// A direction of the program coordinates in the frame of the table.
+core::Vec3 direction_in_table(const Offsets& offsets, const core::Vec3& direction);
+
 /// Turns the rotary axes to machine values by one motion, which `go` makes to a program position,
 /// while a point on the axis of the tool stays on the work: that `below` the tip, mm.
 void turn_about_tip(Execution& execution, const AxisValues& to, double below,
@@ -76,6 +86,10 @@ core::Result<double> angle_to_plane(const Execution& execution, core::SourceSpan
 core::Result<AxisValues> axes_along_z(Execution& execution, core::SourceSpan where,
                                       const std::string& what, int sign, bool may_be_other = false);
 
+/// A plane by two projected angles: X of the coordinates turns about Y, and Y about X, and both
+/// then lie in the plane; its X is the first of them. Empty if they are parallel. Degrees.
+std::optional<core::Mat3> plane_by_projections(double about_y, double about_x);
+
 /// Controls differ in what they do with an axis that turns the work about the tool when a plane is
 /// level. Errors: unsupported if such an axis is away from 0, or (`also_turned`) the plane is
 /// turned about the tool.
@@ -83,15 +97,9 @@ core::Result<void> check_free_axis(const Execution& execution, const core::Mat3&
                                    core::SourceSpan where, const std::string& what,
                                    bool also_turned);
 
-/// The direction of the tool that a block programs, from the tip up. Program coordinates.
-struct ToolDirection {
-    core::Vec3 direction = core::Vec3(0.0);
-    const Word* word = nullptr; // one of its words
-};
-
-/// The letters of the words for the direction of the tool (A3, B3, C3; TX, TY, TZ) and for the
-/// normal of a surface (NX, NY, NZ).
-constexpr std::string_view direction_letters = "tuv", normal_letters = "lmn";
+/// The letters of the words for the direction of the tool (A3, B3, C3; TX, TY, TZ), for the
+/// normal of a surface (NX, NY, NZ) and for angles of the direction (A2, B2, C2).
+constexpr std::string_view direction_letters = "tuv", normal_letters = "lmn", angle_letters = "wxy";
 
 /// The vector whose components are words with these letters. Words that are left out are 0. Empty
 /// if the block has none of them.
@@ -101,8 +109,8 @@ std::optional<ToolDirection> vector_words(const Block& block, std::string_view l
 bool turns_tool(const ToolDirection& tool);
 
 /// I, J and K under G43.5; A3, B3 and C3 of Siemens, and TX, TY and TZ of Heidenhain, or else NX,
-/// NY and NZ, under tool centre point control. Words that are left out are 0. Empty if the block
-/// has none of them.
+/// NY and NZ, or angles, under tool centre point control. Words that are left out are 0. Empty if
+/// the block has none of them.
 std::optional<ToolDirection> tool_direction(const Execution& execution);
 
 /// Sets the rotary axes of a target from the direction of the tool.

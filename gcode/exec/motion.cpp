@@ -298,6 +298,7 @@ core::Result<Position> target_of(const Execution& execution) {
         if (!(execution.statement.letters & letter_bit(axis_letters[axis]))) continue;
         const Word* word = execution.statement.word(axis_letters[axis]);
         if (polar && (axis == plane.first || axis == plane.second)) continue;
+        if (execution.tool_by_angles && is_rotary(axis)) continue;
         const double value = axis_value(execution, axis, *word);
         const bool absolute = !is_incremental(execution, *word);
         if (word->is_unknown)

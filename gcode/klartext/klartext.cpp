@@ -52,6 +52,9 @@ void use_tip_control(Execution& execution, const CodeWord& entry) {
     if (on && !is_followed && was_followed) switch_tip_control(execution, false);
     if (is_followed && switch_tip_control(execution, on)) {
         execution.modal().turns_in_plane = on && klartext_of(execution.block).turns_in_plane;
+        const bool by_angles = on && klartext_of(execution.block).by_space_angles;
+        if (klartext_of(execution.state).by_space_angles != by_angles)
+            writable_klartext(execution.state).by_space_angles = by_angles;
         return;
     }
     const core::SourceSpan where = entry.word->span;
@@ -91,6 +94,59 @@ core::Result<void> check_vectors(Execution& execution) {
                        "TX, TY and TZ are ignored, because neither M128 nor FUNCTION TCPM is on");
     if (!tool) return {};
     if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
+    return {};
+}
+
+bool is_motion(CommandKind kind) {
+    switch (kind) {
+    case straight:
+    case straight_polar:
+    case arc:
+    case arc_polar:
+    case arc_of_radius:
+    case tangent_arc:
+    case tangent_polar:
+        return true;
+    default:
+        return false;
+    }
+}
+
+/// AXIS SPAT: the direction of the tool from the angles in space of the block.
+///
+/// Source: HEIDENHAIN TNC 640, user's manual Klartext programming, FUNCTION TCPM: with AXIS SPAT,
+///         all three angles must be programmed. As SPA, SPB and SPC of PLANE SPATIAL.
+core::Result<void> take_space_angles(Execution& execution) {
+    const CommandKind kind = klartext_of(execution.block).kind;
+    if (!klartext_of(execution.state).by_space_angles || !is_motion(kind)) return {};
+    core::Vec3 angles(0.0);
+    const Word* first = nullptr;
+    int count = 0;
+    for (int i = 0; i < 3; ++i) {
+        const Word* word = execution.statement.word("ABC"[i]);
+        if (!word) continue;
+        if (is_incremental(execution, *word))
+            return refuse_statement(execution,
+                                    "incremental angles under AXIS SPAT are not supported "
+                                    "yet: program A, B and C as absolute angles");
+        if (!first) first = word;
+        angles[i] = word->value;
+        ++count;
+    }
+    if (!first) return {};
+    if (count != 3)
+        return refuse_statement(execution, "under AXIS SPAT the direction of the tool needs all "
+                                           "three of A, B and C");
+    if (kind != straight)
+        return refuse_statement(execution, "turning the tool under AXIS SPAT is only supported "
+                                           "with L");
+    if (in_machine_coordinates(execution))
+        return refuse_statement(execution, "M91 with angles under AXIS SPAT is not supported: "
+                                           "program M129 before it");
+    execution.tool_by_angles = ToolDirection{spatial_rotation(angles)[2], first};
+    ModalState& modal = execution.modal();
+    if (!modal.offsets.machine)
+        modal.following.rotary_unknown = turns_tool(*execution.tool_by_angles);
     return {};
 }
 
@@ -177,21 +233,6 @@ core::Result<void> run_statement(Execution& execution) {
     }
 }
 
-bool is_motion(CommandKind kind) {
-    switch (kind) {
-    case straight:
-    case straight_polar:
-    case arc:
-    case arc_polar:
-    case arc_of_radius:
-    case tangent_arc:
-    case tangent_polar:
-        return true;
-    default:
-        return false;
-    }
-}
-
 /// M99 calls the cycle once; M89 calls it after each motion from its block on, until M99 or another
 /// cycle.
 core::Result<void> call_cycle(Execution& execution) {
@@ -225,6 +266,7 @@ core::Result<void> run_klartext_block(Execution& execution) {
     if (in_machine_coordinates(execution) && is_motion(command.kind) && command.kind != straight)
         return refuse_statement(execution, "M91 is only supported with L");
     if (auto done = check_vectors(execution); !done) return done;
+    if (auto done = take_space_angles(execution); !done) return done;
     if (auto done = run_statement(execution); !done) return done;
     if (is_motion(command.kind)) check_machine_move(execution, command.span);
     const bool calls = command.calls_cycle || command.calls_from_here
@@ -478,8 +520,8 @@ void add(Digest& digest, const KlartextState& klartext) {
     }
     add(digest, klartext.cycle);
     digest.add(number_of(int(klartext.calls_after_motions) + 2 * int(klartext.looks_ahead)
-                         + 16 * int(klartext.has_deltas) + 4 * int(klartext.turns_short_way)
-                         + 8 * int(klartext.has_moved)));
+                         + 16 * int(klartext.has_deltas) + 32 * int(klartext.by_space_angles)
+                         + 4 * int(klartext.turns_short_way) + 8 * int(klartext.has_moved)));
     digest.add(klartext.call_feed);
     digest.add(klartext.datum);
     add(digest, klartext.transforms);

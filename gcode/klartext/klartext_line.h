@@ -58,6 +58,7 @@ struct KlartextLine {
     bool calls_from_here = false;  // M89: after every motion
     bool turns_otherwise = false;  // FUNCTION TCPM: rotary axes are not programmed as positions
     bool turns_in_plane = false;   // PATHCTRL VECTOR
+    bool by_space_angles = false;  // AXIS SPAT: A, B and C are angles in space
     bool has_normal = false;       // LN
     bool has_corner_delta = false; // DR2 of TOOL CALL is not 0
 };

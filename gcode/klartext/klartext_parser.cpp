@@ -192,14 +192,27 @@ bool read_path_control(KlartextReader& reader) {
     return reader.command.turns_in_plane || reader.accept("AXIS");
 }
 
-/// The words after FUNCTION TCPM. False if they select what is not modelled: rotary words that are
-/// angles in space, another point than the tip.
+/// AXIS POS or SPAT; the first has been read.
+bool read_axis_meaning(KlartextReader& reader) {
+    reader.command.by_space_angles = reader.accept("SPAT");
+    return reader.command.by_space_angles || reader.accept("POS");
+}
+
+/// REFPNT TIP-TIP, which is the default; the first has been read. The other points are the centre
+/// of the radius of the tool.
+bool read_reference_points(KlartextReader& reader) {
+    return reader.accept("TIP") && reader.lexer.accept('-') && reader.accept("TIP");
+}
+
+/// The words after FUNCTION TCPM. False if they select what is not modelled: another point than the
+/// tip.
 bool reads_as_tip_control(KlartextReader& reader) {
     bool is_same = true;
     while (reader.next() != '\0') {
         const bool is_known = reader.accept("F") ? reader.accept("TCP") || reader.accept("CONT")
-                              : reader.accept("AXIS")
-                                  ? reader.accept("POS")
+                              : reader.accept("AXIS") ? read_axis_meaning(reader)
+                              : reader.accept("REFPNT")
+                                  ? read_reference_points(reader)
                                   : reader.accept("PATHCTRL") && read_path_control(reader);
         if (is_known) continue;
         is_same = false;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/math.h"
+#include "core/base/units.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "gcode/exec/following.h"
@@ -90,6 +92,53 @@ bool states_positions(const KlartextLine& command) {
            && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset);
 }
 
+/// Whether TABLE ROT turns the table here, because the plane is level and so is not tilted by it.
+bool turns_table(const Execution& execution) {
+    const KlartextLine& command = klartext_of(execution.block);
+    const core::Mat3& plane = klartext_of(execution.state).transforms.plane;
+    return command.turns_table && !states_positions(command)
+           && glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) < rounding;
+}
+
+/// TABLE ROT: the axis of the table which is nearest to the work and parallel to the tool, if there
+/// is one, turns X of the plane to X of the machine.
+///
+/// Source: HEIDENHAIN TNC7, user's manual, "Transformation types": COORD ROT and TABLE ROT differ
+///         only in a free rotary axis.
+core::Result<void> turn_table(const Execution& execution, AxisValues& values) {
+    const Offsets& offsets = execution.modal().offsets;
+    const core::Machine& machine = *offsets.machine;
+    const auto axis = core::axis_next_to_work(machine);
+    if (!axis || std::abs(machine.axes[*axis].direction.z) < 1.0 - rounding) return {};
+    const core::Vec3 x(1.0, 0.0, 0.0);
+    const auto off = [&](double angle) { // between X of the plane and X of the machine
+        AxisValues turned = values;
+        turned[*axis] = angle;
+        return glm::distance(core::machine_from_link(machine, machine.table, turned).rotation
+                                 * direction_in_table(offsets, x),
+                             x);
+    };
+    const core::Vec3 there = direction_in_table(offsets, x);
+    double angle = core::degrees_per_radian * core::atan2(there.y, there.x);
+    if (off(-angle) < off(angle)) angle = -angle;
+    if (glm::determinant(offsets.frame.linear) < 0.0 || off(angle) > 1e-9)
+        return refuse_statement(execution, "TABLE ROT of a level plane is not supported yet for "
+                                           "this machine or after a mirror image: use COORD ROT");
+    const core::MachineAxis& own = machine.axes[*axis];
+    angle += 360.0 * core::round((values[*axis] - angle) / 360.0);
+    for (const double turns : {0.0, -360.0, 360.0}) {
+        const double end = angle + turns;
+        if (end < own.min.value_or(end) - rounding || end > own.max.value_or(end) + rounding)
+            continue;
+        values[*axis] = end;
+        return {};
+    }
+    return refuse_statement(execution,
+                            fmt::format("TABLE ROT: axis {} cannot turn to {:.6g} degrees within "
+                                        "its limits",
+                                        axis_letters[*axis], angle));
+}
+
 /// Where the rotary axes have to be for the plane that is on; linear axes as they are.
 core::Result<AxisValues> axes_for_plane(Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
@@ -105,7 +154,12 @@ core::Result<AxisValues> axes_for_plane(Execution& execution) {
         }
         return values;
     }
-    return axes_along_z(execution, command.span, words_of(execution), command.solution);
+    FEELER_TRY(AxisValues values,
+               axes_along_z(execution, command.span, words_of(execution), command.solution));
+    if (turns_table(execution))
+        if (auto done = turn_table(execution, values); !done)
+            return tl::unexpected(std::move(done).error());
+    return values;
 }
 
 /// MB: along the tool, before the rotary axes turn. To the limit of Z if that is known.
@@ -139,17 +193,6 @@ void go(Execution& execution, const Position& end) {
         execution.feed(end, *feed);
 }
 
-/// Pure rotations about the tool turn the coordinates, not the table.
-core::Result<void> check_table_rotation(const Execution& execution) {
-    const core::Mat3& plane = klartext_of(execution.state).transforms.plane;
-    const bool is_level = glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) < rounding;
-    const bool turns = glm::distance(plane[0], core::Vec3(1.0, 0.0, 0.0)) > rounding;
-    if (klartext_of(execution.block).turns_table && is_level && turns)
-        return refuse_statement(execution, "TABLE ROT of a plane that is only turned about the "
-                                           "tool is not supported yet: use COORD ROT");
-    return {};
-}
-
 /// Whether the positions of the rotary axes for the plane are certain.
 core::Result<void> check_positions(const Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
@@ -162,7 +205,7 @@ core::Result<void> check_positions(const Execution& execution) {
     if (states_positions(command)) return {};
     const auto& order = klartext_of(execution.state).transforms.order;
     const bool is_on = std::find(order.begin(), order.end(), Transforms::Kind::tilt) != order.end();
-    if (!is_on) return {};
+    if (!is_on || turns_table(execution)) return {};
     return check_free_axis(execution, klartext_of(execution.state).transforms.plane, command.span,
                            words_of(execution), false);
 }
@@ -195,7 +238,6 @@ core::Result<void> set_plane(Execution& execution) {
     retract(execution);
     if (auto done = use_plane(execution, is_on ? std::optional(axes) : std::nullopt); !done)
         return done;
-    if (auto done = check_table_rotation(execution); !done) return done;
     const bool stays = command.plane_move == PlaneMove::stay;
     if (!execution.modal().offsets.machine) {
         if (!stays) execution.modal().following.rotary_unknown = is_on;

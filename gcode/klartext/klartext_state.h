@@ -83,6 +83,7 @@ struct KlartextState {
     Transforms transforms;
     bool has_deltas = false;      // DL or DR of TOOL CALL are not 0
     bool turns_short_way = false; // M126
+    bool by_space_angles = false; // AXIS SPAT: A, B and C are angles in space
     bool looks_ahead = false; // searching the motion after a corner; corners are ignored meanwhile
 
     bool operator==(const KlartextState&) const = default;

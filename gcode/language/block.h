@@ -25,7 +25,8 @@ constexpr bool is_absolute(Addressing addressing) {
 struct Word {
     char letter = '\0'; // upper case; '@' and '^' for polar coordinates, 'r' and 'c' for `,R` and
                         // `,C`, 'a' for `,A`, 'i' to 'k' for I1 to K1, 'l' to 'n' for the normal of
-                        // a surface, 't' to 'v' for the direction of the tool
+                        // a surface, 't' to 'v' for the direction of the tool, 'w' to 'y' for the
+                        // angles of its direction
     double value = 0.0;
     core::SourceSpan span{};
     bool has_point = false;  // X5. rather than X5; also set for computed values

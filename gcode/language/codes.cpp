@@ -173,6 +173,7 @@ constexpr Code codes[] = {
     {g_code(53, 6), other, "HPR", fanuc, {}},
     {g_code(54), work_offset, "", every | siemens, {}},
     {g_code(54, 1), work_offset, "P", fanuc, {}},
+    {g_code(54, 4), other, "P", fanuc & ~haas, {}},
     {g_code(55), work_offset, "", every | siemens, {}},
     {g_code(56), work_offset, "", every | siemens, {}},
     {g_code(57), work_offset, "", every | siemens, {}},

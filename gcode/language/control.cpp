@@ -251,6 +251,10 @@ constexpr ParameterValue meanings_of_m428[] = {
     {1, true, "M428 switches to tool centre point control, and M429 back", "TCP"},
     {0, false, "M428 switches tool centre point control off, and M429 on", "identity"},
 };
+constexpr ParameterValue signs_of_p1[] = {
+    {1, true, "G53.1 P1 tilts in the positive direction, and P2 in the negative one", "positive"},
+    {0, false, "G53.1 P1 tilts in the negative direction, and P2 in the positive one", "negative"},
+};
 constexpr ParameterRange of_blocks{3.0, 8.0, "blocks"};
 
 constexpr std::string_view program_g90 = "Program G90 before the first move.";
@@ -258,6 +262,22 @@ constexpr std::string_view program_g90 = "Program G90 before the first move.";
 constexpr ParameterValue siemens_length_change[] = {
     {0, false, "Z stays until it is programmed"},
     {1, true, "a block with G43, G44, G49 or H and no Z moves Z by the change of the offset"},
+};
+constexpr ParameterValue meanings_of_angle_codes[] = {
+    {1, true, "ORIEULER and ORIRPY say what A2, B2 and C2 are"},
+    {0, false, "MD21100 says what A2, B2 and C2 are"},
+};
+constexpr ParameterValue kinds_of_angles[] = {
+    {1, true, "A2, B2 and C2 are Euler angles"},
+    {0, false, "A2, B2 and C2 are RPY angles"},
+};
+constexpr ParameterValue axes_of_tool_frame[] = {
+    {2001, static_cast<double>(ToolFrameAxes::x_in_zx), "X of TOROT stays in the old ZX plane"},
+    {2002, static_cast<double>(ToolFrameAxes::y_in_yz), "Y of TOROT stays in the old YZ plane"},
+    {2000, static_cast<double>(ToolFrameAxes::between),
+     "X of TOROT is as far from the old ZX plane as Y is from the old YZ plane"},
+    {0, static_cast<double>(ToolFrameAxes::of_machine),
+     "X and Y of TOROT are those of the machine (MD21110 is 0)"},
 };
 constexpr ParameterValue machine_coordinates[] = {
     {0, true, "G53, G153 and SUPA move the tip of the tool to machine coordinates"},
@@ -359,6 +379,14 @@ constexpr ControlParameter parameters[] = {
     {axes_turn_in_plane, siemens, "ORIWKS",
      "how the tool turns to positions of rotary axes under ORIWKS and ORIVECT", turning_of_axes,
      follow_all, "SINUMERIK 840D sl, Programming Manual Job Planning, ORIWKS and ORIMKS"},
+    {angles_by_code, siemens, "MD21102", "MD21102 (ORI_DEF_WITH_G_CODE)", meanings_of_angle_codes,
+     follow_all,
+     "SINUMERIK 840D sl, Programming Manual Job Planning, orientation angles (A2, B2, C2)"},
+    {angles_are_euler, siemens, "MD21100", "MD21100 (ORIENTATION_IS_EULER)", kinds_of_angles,
+     follow_all,
+     "SINUMERIK 840D sl, Programming Manual Job Planning, orientation angles (A2, B2, C2)"},
+    {tool_frame_axes, siemens, "SD42980", "SD42980 (TOFRAME_MODE)", axes_of_tool_frame, follow_all,
+     "SINUMERIK 840D sl, Function Manual Basic Functions, K2: frame rotation in tool direction"},
     {pole_limit,
      siemens,
      "MD24530",
@@ -582,6 +610,8 @@ constexpr ControlParameter parameters[] = {
      "Fanuc A-79976E, tilted working plane based on the tool axis direction",
      {},
      of_poles},
+    {p1_is_positive, fanuc, "G53.1 P1", "the direction that P1 and P2 of G53.1 choose", signs_of_p1,
+     follow_all, "Fanuc B-64484EN-2, tilted working plane: tool axis direction control"},
     {rotation_adds, haas, "setting 73", "setting 73 (G68 Incremental Angle)", rotation_of_haas,
      follow_all, "Haas mill operator's manual 96-8000, settings"},
     {rotation_default,

@@ -75,6 +75,8 @@ enum class ControlQuestion : uint8_t {
     half_turn_is_negative, // the short way of half a turn is the negative direction
     m428_follows_tip,   // LinuxCNC without its ini file: M428 switches to tool centre point control
                         // and M429 back; otherwise the other way round
+    p1_is_positive,     // P1 of G53.1 tilts in the positive direction and P2 in the negative one;
+                        // otherwise the other way round
     w_has_no_motor,     // of 5axiskins: W moves the tip along the tool; otherwise it is a quill
     increment_is_finer, // the least increment is 0.0001 mm instead of 0.001 mm
     increment_is_coarser, // it is 0.01 mm
@@ -93,9 +95,20 @@ enum class ControlQuestion : uint8_t {
     orientation_by_code,   // ORIAXES and ORIVECT choose how the tool turns; otherwise ORIMKS and
                            // ORIWKS
     axes_turn_in_plane,    // positions of rotary axes turn the tool in a plane where vectors do
+    angles_by_code,        // ORIEULER and ORIRPY choose the meaning of A2, B2 and C2
+    angles_are_euler,      // if not: they are Euler angles, otherwise RPY angles
+    tool_frame_axes,       // how TOROT turns X and Y about the tool (ToolFrameAxes)
     pole_limit,            // so near to a pole, the tool may turn otherwise, degrees
     frame_survives_traori, // TRAORI and TRAFOOF keep the work offset
     corner_limit,          // of G451: a larger change of direction has an arc, degrees
+};
+
+/// How the frame of TOROT is turned about the tool.
+enum class ToolFrameAxes : uint8_t {
+    of_machine, // X and Y of the machine, turned with the head and as seen from the table
+    x_in_zx,    // X stays in the old ZX plane
+    y_in_yz,    // Y stays in the old YZ plane
+    between,    // half-way between these two
 };
 
 /// What each number of a table of tool offsets holds.

@@ -99,9 +99,17 @@ core::Result<void> note_keywords(Execution& execution) {
         case orient_in_machine:
         case orient_in_work:
         case other_orientation:
+        case orient_along_path:
+        case euler_angles:
+        case rpy_angles:
+        case other_angles:
         case smooth_orientation:
         case plain_orientation:
             choose_orientation(execution, use.keyword->action);
+            break;
+        case tool_frame:
+        case tool_frame_off:
+            if (auto done = use_tool_frame(execution, use); !done) return done;
             break;
         case orient_spindle:
             turn_siemens_spindle(execution, 5);
@@ -789,7 +797,9 @@ void add(Digest& digest, const SiemensState& siemens) {
     digest.add(uint64_t{siemens.swivels});
     digest.add(siemens.swivel_data);
     digest.add(uint64_t(8 * siemens.smooths_turning + 4 * siemens.turns_by_axes
-                        + 2 * siemens.turns_in_machine + siemens.turns_otherwise));
+                        + 2 * siemens.turns_in_machine + siemens.turns_otherwise
+                        + 16 * siemens.turns_along_path + 32 * siemens.turns_to_path
+                        + 64 * siemens.turns_with_tool + 128 * int(siemens.angles)));
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row) digest.add(siemens.swivel.linear[column][row]);
     for (int axis = 0; axis < 3; ++axis) digest.add(siemens.swivel.shift[axis]);

@@ -35,6 +35,8 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use);
 void use_swivelled_plane(Execution& execution, const ProgramFrame& plane, bool is_on);
 /// TRAORI and TRAFOOF.
 core::Result<void> switch_orientation(Execution& execution, const SiemensKeywordUse& use);
+/// TOROT and TOROTOF.
+core::Result<void> use_tool_frame(Execution& execution, const SiemensKeywordUse& use);
 /// ORIAXES, ORIVECT, ORIMKS, ORIWKS and the like.
 void choose_orientation(Execution& execution, SiemensAction action);
 /// Decides before a move how the tool turns, and checks the words for its direction.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "gcode/exec/frame_codes.h"
 #include "gcode/siemens/siemens.h"
 
 namespace gcode {
@@ -14,7 +15,8 @@ using enum SiemensAction;
 bool is_frame(SiemensAction action) { return action >= shift && action <= add_mirror; }
 
 bool is_additive(SiemensAction action) {
-    return action == add_shift || action == add_turn || action == add_scale || action == add_mirror;
+    return action == add_shift || action == add_turn || action == add_space_turn
+           || action == add_scale || action == add_mirror;
 }
 
 core::Mat3 rotation_of_words(const Execution& execution) {
@@ -28,10 +30,44 @@ core::Mat3 rotation_of_words(const Execution& execution) {
     return turn;
 }
 
+/// ROTS and AROTS: the plane of two angles in space, or a turn by one.
+///
+/// Source: SINUMERIK 840D sl, Function Manual Basic Functions, K2: Y turns X about Y to where the
+///         plane meets ZX, X turns Y about X likewise; X and Y leave X in the old ZX plane, Z and X
+///         leave Z in the old YZ plane, and Y and Z leave Y in the old XY plane.
+core::Result<core::Mat3> rotation_in_space(const Execution& execution, core::SourceSpan where) {
+    std::array<const Word*, 3> words{};
+    int count = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        words[axis] = execution.statement.word(axis_letters[axis]);
+        count += words[axis] ? 1 : 0;
+    }
+    if (count == 3)
+        return core::fail(ErrorCode::syntax, "ROTS and AROTS take two angles, or RPL", where);
+    if (count < 2) return rotation_of_words(execution);
+    // The plane of the first and second axis in cyclic order; the third is its normal.
+    const int normal = !words[2] ? 2 : !words[1] ? 1 : 0;
+    const int first = (normal + 1) % 3, second = (normal + 2) % 3;
+    const auto plane = plane_by_projections(words[static_cast<size_t>(second)]->value,
+                                            words[static_cast<size_t>(first)]->value);
+    if (!plane)
+        return core::fail(ErrorCode::invalid_value, "the angles in space define no plane", where);
+    core::Mat3 rotation(0.0);
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row)
+            rotation[(first + column) % 3][(first + row) % 3] = (*plane)[column][row];
+    return rotation;
+}
+
 /// The transformation of one statement; for TRANS also along the axes other than X, Y and Z.
-core::Result<ProgramFrame> step_of(const Execution& execution, SiemensAction action,
+core::Result<ProgramFrame> step_of(const Execution& execution, const SiemensKeywordUse& use,
                                    AxisValues& others) {
+    const SiemensAction action = use.keyword->action;
     ProgramFrame step;
+    if (action == space_turn || action == add_space_turn) {
+        FEELER_TRY(step.linear, rotation_in_space(execution, use.span));
+        return step;
+    }
     if (action == turn || action == add_turn) {
         step.linear = rotation_of_words(execution);
         return step;
@@ -116,7 +152,7 @@ core::Result<void> change_siemens_frame(Execution& execution) {
         const bool adds = is_additive(action);
         AxisValues others = adds ? execution.modal().offsets.local : AxisValues{};
         others[0] = others[1] = others[2] = 0.0;
-        FEELER_TRY(const ProgramFrame step, step_of(execution, action, others));
+        FEELER_TRY(const ProgramFrame step, step_of(execution, use, others));
         ProgramFrame frame = adds ? siemens_of(execution.state).frame : ProgramFrame{};
         frame.shift += frame.linear * step.shift;
         frame.linear = frame.linear * step.linear;

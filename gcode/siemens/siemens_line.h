@@ -20,6 +20,8 @@ enum class SiemensAction : uint8_t {
     address,
     noted_address,   // the value has no effect on positions
     refused_address, // not supported
+    normal_vector,   // A4 to C5: of the surface
+    angle_to_path,   // LEAD, TILT, THETA
     orient_spindle,  // SPOS=90
     fixed_point,     // FP= of G75
     tolerance,       // ADIS, ADISPOS and CTOL
@@ -39,6 +41,12 @@ enum class SiemensAction : uint8_t {
     orient_in_machine,  // ORIMKS
     orient_in_work,     // ORIWKS
     other_orientation,  // ORICONCCW and the like
+    orient_along_path,  // ORIPATH
+    euler_angles,       // ORIEULER
+    rpy_angles,         // ORIRPY
+    other_angles,       // ORIRPY2, ORIVIRT1
+    tool_frame,         // TOROT
+    tool_frame_off,     // TOROTOF
     smooth_orientation, // ORISON
     plain_orientation,  // ORISOF
     other_approach,     // KONT
@@ -50,6 +58,8 @@ enum class SiemensAction : uint8_t {
     add_shift,
     turn,
     add_turn,
+    space_turn,     // ROTS
+    add_space_turn, // AROTS
     scale,
     add_scale,
     mirror,

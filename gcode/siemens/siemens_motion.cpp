@@ -344,6 +344,8 @@ bool changes_frame(SiemensAction action) {
     case SiemensAction::add_shift:
     case SiemensAction::turn:
     case SiemensAction::add_turn:
+    case SiemensAction::space_turn:
+    case SiemensAction::add_space_turn:
     case SiemensAction::scale:
     case SiemensAction::add_scale:
     case SiemensAction::mirror:
@@ -380,6 +382,8 @@ core::Result<void> make_motion(Execution& execution) {
     const bool circles = is_arc(modal.motion);
     const bool moves =
         statement.has_axis_word() || vector_words(execution.block, direction_letters)
+        || vector_words(execution.block, angle_letters)
+        || use_of(execution, SiemensAction::angle_to_path)
         || (circles && (statement.word('I') || statement.word('J') || statement.word('K')));
     if (!moves) return {};
     if (!modal.motion) modal.motion = MotionCode::straight; // default: G1 is active at the start

@@ -78,15 +78,75 @@ void doubt_block(Execution& execution, bool SiemensState::*said, std::string why
         {Severity::warning, where, std::move(why), core::rule_id("undecided"), std::move(cure)});
 }
 
+/// Whether A2, B2 and C2 are Euler angles; otherwise they are RPY angles.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Job Planning, orientation angles: with MD21102 the
+///         codes ORIEULER (the default) and ORIRPY choose, otherwise MD21100.
+core::Result<bool> are_euler_angles(Execution& execution, core::SourceSpan where) {
+    const SiemensAngles said = siemens_of(execution.state).angles;
+    const auto& stated = execution.environment.control.answer(ControlQuestion::angles_by_code);
+    const bool by_code = said == SiemensAngles::not_said
+                             ? stated.value_or(false)
+                             : answer(execution, ControlQuestion::angles_by_code);
+    if (!by_code) return answer(execution, ControlQuestion::angles_are_euler);
+    if (said == SiemensAngles::other)
+        return core::fail(
+            ErrorCode::unsupported,
+            "A2, B2 and C2 under ORIRPY2, ORIVIRT1 or ORIVIRT2 are not supported yet: "
+            "program the direction of the tool as A3= B3= C3=",
+            where);
+    return said != SiemensAngles::rpy;
+}
+
+/// The direction of the tool from A2, B2 and C2.
+///
+/// Source: SINUMERIK 840D sl, Programming Manual Job Planning, orientation angles. Euler: Z is
+/// turned
+///         about Z by A2 and about the new X by B2. RPY: about Z by C2, the new Y by B2 and the new
+///         X by A2.
+core::Result<void> take_angles(Execution& execution) {
+    const auto words = vector_words(execution.block, angle_letters);
+    if (!words) return {};
+    const core::Vec3& angles = words->direction;
+    const core::Vec3 by_euler = (turned_about(2, angles[0]) * turned_about(0, angles[1]))[2];
+    const core::Vec3 by_rpy =
+        (turned_about(2, angles[2]) * turned_about(1, angles[1]) * turned_about(0, angles[0]))[2];
+    constexpr double same = 1e-12;
+    bool is_euler = true;
+    if (glm::distance(by_euler, by_rpy) > same) {
+        FEELER_TRY(is_euler, are_euler_angles(execution, words->word->span));
+    }
+    const auto has = [&](char letter) {
+        const auto& all = execution.block.words;
+        return std::any_of(all.begin(), all.end(),
+                           [&](const Word& word) { return word.letter == letter; });
+    };
+    const bool is_complete =
+        has(angle_letters[0]) && has(angle_letters[1]) && (is_euler || has(angle_letters[2]));
+    if (!is_complete)
+        return core::fail(ErrorCode::missing_value,
+                          fmt::format("the direction of the tool needs {} in one block",
+                                      is_euler ? "both A2 and B2" : "all of A2, B2 and C2"),
+                          words->word->span);
+    execution.tool_by_angles = ToolDirection{is_euler ? by_euler : by_rpy, words->word};
+    return {};
+}
+
 core::Result<void> check_direction_words(Execution& execution) {
-    const auto words = vector_words(execution.block, direction_letters);
+    auto words = vector_words(execution.block, direction_letters);
+    if (words && execution.tool_by_angles)
+        return core::fail(ErrorCode::syntax,
+                          "a direction of the tool by A2, B2 and C2 and by A3, B3 and C3 in one "
+                          "block",
+                          words->word->span);
+    if (execution.tool_by_angles) words = execution.tool_by_angles;
     if (!words) return {};
     ModalState& modal = execution.modal();
     const auto tool = tool_direction(execution);
     if (!tool)
         return core::fail(ErrorCode::invalid_value,
-                          "A3, B3 and C3 turn the tool only while TRAORI is on: program TRAORI "
-                          "before them",
+                          "A2 to C3 turn the tool only while TRAORI is on: program TRAORI before "
+                          "them",
                           words->word->span);
     if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
     const core::Mat3& frame = modal.offsets.frame.linear;
@@ -97,9 +157,9 @@ core::Result<void> check_direction_words(Execution& execution) {
         is_rotation = is_rotation && std::abs(glm::length(frame[axis]) - 1.0) < rounding;
     const char* const why =
         siemens_of(execution.state).turns_in_machine && is_turned
-            ? "A3, B3 and C3 under ORIMKS while a frame turns the coordinates are not supported "
+            ? "A2 to C3 under ORIMKS while a frame turns the coordinates are not supported "
               "yet: program ORIWKS"
-        : !is_rotation ? "A3, B3 and C3 under SCALE or MIRROR are not supported yet: program the "
+        : !is_rotation ? "A2 to C3 under SCALE or MIRROR are not supported yet: program the "
                          "rotary axes"
                        : nullptr;
     if (why) return core::fail(ErrorCode::unsupported, why, tool->word->span);
@@ -120,6 +180,13 @@ core::Result<void> switch_orientation(Execution& execution, const SiemensKeyword
                           use.span);
     execution.column = use.span.column;
     const bool is_followed = on ? is_plain(execution) : was_followed;
+    if (siemens_of(execution.state).turns_with_tool)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{} while TOROT is on is not supported yet: program TOROTOF "
+                                      "before it",
+                                      use.keyword->name),
+                          use.span);
+    writable_siemens(execution.state).turns_to_path = false;
     if (on && !is_followed && was_followed) switch_tip_control(execution, false);
     if (!is_followed || !switch_tip_control(execution, on)) {
         switch_following(execution, use.span, use.keyword->name,
@@ -141,16 +208,103 @@ void choose_orientation(Execution& execution, SiemensAction action) {
     case SiemensAction::plain_orientation:
         siemens.smooths_turning = action == SiemensAction::smooth_orientation;
         break;
+    case SiemensAction::euler_angles:
+    case SiemensAction::rpy_angles:
+    case SiemensAction::other_angles:
+        siemens.angles = action == SiemensAction::euler_angles ? SiemensAngles::euler
+                         : action == SiemensAction::rpy_angles ? SiemensAngles::rpy
+                                                               : SiemensAngles::other;
+        break;
     default:
         siemens.turns_by_axes = action == SiemensAction::orient_axes;
         siemens.turns_otherwise = action == SiemensAction::other_orientation;
+        siemens.turns_along_path = action == SiemensAction::orient_along_path;
     }
 }
 
+namespace {
+
+/// The axes of the frame of TOROT, in work coordinates.
+core::Result<core::Mat3> axes_of_tool_frame(Execution& execution, const SiemensKeywordUse& use) {
+    FEELER_TRY(const core::Mat3 tool,
+               tool_axes_in_work(execution, use.span, std::string(use.keyword->name)));
+    const core::Vec3 z = tool[2], x_axis(1.0, 0.0, 0.0), y_axis(0.0, 1.0, 0.0);
+    constexpr double least = 1e-9;
+    const auto axes = static_cast<ToolFrameAxes>(number_for(execution.state, execution.environment,
+                                                            ControlQuestion::tool_frame_axes,
+                                                            execution.block.line));
+    const core::Vec3 in_zx = glm::cross(y_axis, z), in_yz = glm::cross(z, x_axis);
+    const bool is_defined = axes == ToolFrameAxes::x_in_zx   ? glm::length(in_zx) > least
+                            : axes == ToolFrameAxes::y_in_yz ? glm::length(in_yz) > least
+                            : axes == ToolFrameAxes::between ? z.z > least - 1.0
+                                                             : true;
+    if (!is_defined)
+        return core::fail(ErrorCode::unsupported,
+                          fmt::format("{}: the tool lies so that the directions of X and Y are not "
+                                      "defined",
+                                      use.keyword->name),
+                          use.span);
+    core::Vec3 x = tool[0];
+    if (axes == ToolFrameAxes::x_in_zx) x = glm::normalize(in_zx);
+    if (axes == ToolFrameAxes::y_in_yz) x = glm::cross(glm::normalize(in_yz), z);
+    if (axes == ToolFrameAxes::between) // the least rotation from the old axes
+        x = core::Vec3(1.0 - z.x * z.x / (1.0 + z.z), -z.x * z.y / (1.0 + z.z), -z.x);
+    return core::Mat3(x, glm::cross(z, x), z);
+}
+
+} // namespace
+
+/// Source: SINUMERIK 840D sl, Programming Manual Fundamentals, frame generation according to tool
+///         orientation; Function Manual Basic Functions, K2: frame rotation in tool direction. The
+///         frame acts before that of the program.
+core::Result<void> use_tool_frame(Execution& execution, const SiemensKeywordUse& use) {
+    const SiemensState& siemens = siemens_of(execution.state);
+    const bool on = use.keyword->action == SiemensAction::tool_frame;
+    execution.column = use.span.column;
+    if (!on) {
+        if (!siemens.turns_with_tool) return {};
+        writable_siemens(execution.state).turns_with_tool = false;
+        use_swivelled_plane(execution, {}, false);
+        return {};
+    }
+    const Offsets& offsets = execution.modal().offsets;
+    const bool is_other_on =
+        siemens.frame != ProgramFrame{} || (siemens.swivels && !siemens.turns_with_tool);
+    const char* const why =
+        !offsets.machine || !offsets.follows_tip
+            ? "only supported while TRAORI is on, on a machine with described rotary axes"
+        : is_other_on ? "not supported yet while CYCLE800, TRANS, ROT, SCALE or MIRROR is on"
+        : axis_with_rotary_offset(offsets)
+            ? "not supported yet while a rotary axis has a work offset"
+        : execution.modal().compensation != Side::none ? "only supported after G40"
+                                                       : nullptr;
+    if (why)
+        return core::fail(ErrorCode::unsupported, fmt::format("{}: {}", use.keyword->name, why),
+                          use.span);
+    FEELER_TRY(const core::Mat3 axes, axes_of_tool_frame(execution, use));
+    writable_siemens(execution.state).turns_with_tool = true;
+    use_swivelled_plane(execution, {.linear = axes}, true);
+    return {};
+}
+
 core::Result<void> prepare_orientation(Execution& execution) {
+    if (auto done = take_angles(execution); !done) return done;
     if (auto done = check_direction_words(execution); !done) return done;
     ModalState& modal = execution.modal();
     modal.turns_in_plane = false;
+    if (use_of(execution, SiemensAction::angle_to_path))
+        writable_siemens(execution.state).turns_to_path = true;
+    const bool follows_path =
+        siemens_of(execution.state).turns_along_path || siemens_of(execution.state).turns_to_path;
+    if (follows_path && (modal.offsets.follows_tip || modal.following.may_be_on)) {
+        modal.following.rotary_unknown = true;
+        doubt_block(execution, &SiemensState::said_path,
+                    "the tool follows the direction of the path and the normal of the surface here "
+                    "(ORIPATH, LEAD, TILT), which is not modelled. This block and later ones are "
+                    "not proven clear until TRAFOOF, and until two rotary axes have been "
+                    "programmed by their positions after it",
+                    "Program the direction of the tool as A3= B3= C3=, with ORIVECT or ORIAXES.");
+    }
     if (!modal.offsets.follows_tip) return {};
     const bool turns = tool_direction(execution) || programs_rotary_axes(execution);
     if (in_machine_coordinates(execution) && is_work_turned(modal)) {
@@ -175,10 +329,10 @@ core::Result<void> prepare_orientation(Execution& execution) {
             "G40 before this block",
             moving_word(execution).span);
     const SiemensState& siemens = siemens_of(execution.state);
-    if (siemens.turns_otherwise || siemens.smooths_turning)
+    if (siemens.turns_otherwise || siemens.turns_along_path || siemens.smooths_turning)
         doubt_block(
             execution, &SiemensState::said_turning,
-            "the way in which the tool turns here (ORICONCW, ORICONCCW, ORIPATH, ORICURVE, "
+            "the way in which the tool turns here (ORICONCW, ORICONCCW, ORICURVE, "
             "ORISON) is not modelled: this block and others like it are measured with rotary "
             "axes that turn evenly, and are not proven clear",
             "Program ORIVECT or ORIAXES, and ORISOF.");

@@ -127,6 +127,7 @@ private:
         const SiemensKeyword* keyword = siemens_keyword(name);
         if (keyword && keyword->action == SiemensAction::address)
             return address(keyword->text.front(), begin);
+        if (keyword) return use(*keyword, begin);
         const bool first = name.size() == 2 && name[1] == '1';
         const bool is_machine_axis = first && (letter >= 'X' && letter <= 'Z');
         const bool is_master = first && (letter == 'S' || letter == 'M' || letter == 'T');
@@ -146,14 +147,8 @@ private:
                 return tl::unexpected(std::move(skipped).error());
             return {};
         }
-        const bool vector = (letter >= 'A' && letter <= 'C') && name.size() == 2;
-        return reader_.refuse(
-            fmt::format("'{}=': {}", name,
-                        vector ? "orientation by angles and by normal vectors is not "
-                                 "supported yet: program the direction of the "
-                                 "tool as A3= B3= C3=, or the rotary axes"
-                               : "there is no such axis or address here"),
-            begin, ErrorCode::unsupported);
+        return reader_.refuse(fmt::format("'{}=': there is no such axis or address here", name),
+                              begin, ErrorCode::unsupported);
     }
 
     /// G74 and G75 take machine axes.
@@ -389,6 +384,8 @@ core::Result<void> SiemensParser::use(const SiemensKeyword& keyword, size_t begi
     case address:
         return SiemensParser::address(keyword.text.front(), begin);
     case noted_address:
+    case normal_vector:
+    case angle_to_path:
     case orient_spindle:
         if (auto value = read_value(begin); !value) return tl::unexpected(std::move(value).error());
         break;

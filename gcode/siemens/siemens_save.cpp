@@ -72,6 +72,8 @@ void restore_modes_of_call(InterpreterState& state, const Frame& frame) {
     siemens.turns_in_machine = before.turns_in_machine;
     siemens.turns_otherwise = before.turns_otherwise;
     siemens.smooths_turning = before.smooths_turning;
+    siemens.turns_along_path = before.turns_along_path;
+    siemens.angles = before.angles;
     if (changes_path) set_corner_tolerances(siemens, modal);
 }
 

@@ -45,6 +45,9 @@ struct SiemensDrilling {
 /// Which word changes the tool, MD22550.
 enum class SiemensToolChange : uint8_t { not_known_yet, with_t, with_m6 };
 
+/// What A2, B2 and C2 are, as a code of the program says.
+enum class SiemensAngles : uint8_t { not_said, euler, rpy, other };
+
 /// The state of a native Siemens control between two blocks besides the modes.
 struct SiemensState {
     std::array<double, 2> pole{};               // G110 to G112; program coordinates in the plane
@@ -70,7 +73,11 @@ struct SiemensState {
     bool turns_in_machine = false;                    // ORIMKS
     bool turns_otherwise = false;                     // ORICONCCW and the like
     bool smooths_turning = false;                     // ORISON
-    bool said_turning = false, said_rotary_offset = false; // reported
+    bool turns_along_path = false;                    // ORIPATH
+    bool turns_to_path = false;                       // LEAD or TILT has been programmed
+    SiemensAngles angles{};                           // ORIEULER, ORIRPY
+    bool turns_with_tool = false;                     // `swivel` is that of TOROT
+    bool said_turning = false, said_rotary_offset = false, said_path = false; // reported
     bool compresses = false; // COMPON, COMPCURV, COMPCAD: joins short moves
 
     bool operator==(const SiemensState&) const = default;

@@ -51,23 +51,52 @@ Swivel swivel_of(const Execution& execution, const std::vector<std::optional<dou
     return swivel;
 }
 
+/// The axis of an angle by the mode, 1 to 3; 0: none.
+int axis_of_angle(const Swivel& swivel, int angle) { return (swivel.mode >> (2 * angle)) & 3; }
+
+/// By projection angles about X and Y, and a turn in the plane.
+///
+/// Source: SINUMERIK 828D, Operating Manual Turning 01/2015, 9.6: with the angles XY or YX, X of
+/// the
+///         plane stays in the old ZX plane. Function Manual Basic Functions, K2: their signs.
+core::Result<core::Mat3> projected_rotation(const Swivel& swivel, core::SourceSpan where) {
+    const int first = axis_of_angle(swivel, 0), second = axis_of_angle(swivel, 1);
+    const bool is_known =
+        first + second == 3 && first != 0 && second != 0 && axis_of_angle(swivel, 2) == 3;
+    if (!is_known)
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("CYCLE800: projection angles are only supported about X and Y, "
+                        "with a third one about Z, not in mode {}",
+                        swivel.mode),
+            where);
+    const double about_x = swivel.angles[first == 1 ? 0 : 1];
+    const double about_y = swivel.angles[first == 1 ? 1 : 0];
+    const auto plane = plane_by_projections(about_y, about_x);
+    if (!plane)
+        return core::fail(ErrorCode::invalid_value,
+                          "CYCLE800: the projection angles define no plane", where);
+    return *plane * turned_about(2, swivel.angles[2]);
+}
+
 /// The rotation of the plane.
 ///
 /// Source: SINUMERIK 840D sl, Programming Manual Job Planning, CYCLE800: _MODE. Bits 7 and 6: how
 ///         the angles are given; axis by axis, two bits for each axis, in the order of rotation.
 core::Result<core::Mat3> rotation_of(const Swivel& swivel, core::SourceSpan where) {
     const int form = (swivel.mode >> 6) & 3;
+    if (form == 2) return projected_rotation(swivel, where);
     if (form == 1) // solid angle: about Z, then about the new Y
         return turned_about(2, swivel.angles[0]) * turned_about(1, swivel.angles[1]);
     if (form != 0)
         return core::fail(ErrorCode::unsupported,
-                          fmt::format("CYCLE800: mode {} (by {}) is not supported yet: give the "
-                                      "angles axis by axis, mode 57",
-                                      swivel.mode, form == 2 ? "projection angles" : "rotary axes"),
+                          fmt::format("CYCLE800: mode {} (by rotary axes) is not supported yet: "
+                                      "give the angles axis by axis, mode 57",
+                                      swivel.mode),
                           where);
     core::Mat3 rotation(1.0);
     for (int i = 0; i < 3; ++i)
-        if (const int axis = (swivel.mode >> (2 * i)) & 3; axis != 0)
+        if (const int axis = axis_of_angle(swivel, i); axis != 0)
             rotation = rotation * turned_about(axis - 1, swivel.angles[i]);
         else if (swivel.angles[i] != 0.0)
             return core::fail(
@@ -187,6 +216,11 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
         return core::fail(ErrorCode::unsupported,
                           "CYCLE800 between G41 or G42 and G40 is not supported yet: cancel "
                           "cutter radius compensation first",
+                          use.span);
+    if (siemens_of(execution.state).turns_with_tool)
+        return core::fail(ErrorCode::unsupported,
+                          "CYCLE800 while TOROT is on is not supported yet: program TOROTOF before "
+                          "it",
                           use.span);
     execution.column = use.span.column;
     const bool deletes = !swivel.adds();

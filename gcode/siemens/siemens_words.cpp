@@ -29,10 +29,15 @@ bool is_used(const Execution& execution, const Word& word) {
     const bool straight = is_straight(code);
     switch (word.letter) {
     case 'Q':
-        return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn);
+        return use_of(execution, SiemensAction::turn) || use_of(execution, SiemensAction::add_turn)
+               || use_of(execution, SiemensAction::space_turn)
+               || use_of(execution, SiemensAction::add_space_turn);
     case 't': // A3, B3, C3
     case 'u':
     case 'v':
+    case 'w': // A2, B2, C2
+    case 'x':
+    case 'y':
         return true;
     case 'i':
     case 'j':
@@ -124,24 +129,28 @@ core::Result<void> set_siemens_speed(Execution& execution) {
     return others ? core::Result<void>{} : set_speed(execution);
 }
 
-/// The plane of CYCLE800 does not turn with an axis that the program turns afterwards.
+/// The plane of CYCLE800 or TOROT does not turn with an axis that the program turns afterwards.
 core::Result<void> check_swivelled_axes(const Execution& execution) {
     const Offsets& offsets = execution.modal().offsets;
     if (!siemens_of(execution.state).swivels || !offsets.machine) return {};
+    const bool is_torot = siemens_of(execution.state).turns_with_tool;
+    const char* const plane = is_torot ? "TOROT" : "CYCLE800";
+    const char* const cancel = is_torot ? "TOROTOF" : "CYCLE800()";
     for (size_t axis = 3; axis < 6; ++axis)
         if (const Word* word = execution.statement.word(axis_letters[axis]);
             word && offsets.machine->axes[axis].present)
             return core::fail(
                 ErrorCode::unsupported,
-                fmt::format("{}: turning a rotary axis while a plane of CYCLE800 is on "
-                            "is not supported yet: turn it with the cycle, or program "
-                            "CYCLE800() before it",
-                            written(*word)),
+                fmt::format("{}: turning a rotary axis while a plane of {} is on is not supported "
+                            "yet: program {} before it",
+                            written(*word), plane, cancel),
                 word->span);
-    if (vector_words(execution.block, direction_letters))
+    if (vector_words(execution.block, direction_letters)
+        || vector_words(execution.block, angle_letters))
         return core::fail(ErrorCode::unsupported,
-                          "A3, B3 and C3 while a plane of CYCLE800 is on are not supported yet: "
-                          "program CYCLE800() before them",
+                          fmt::format("turning the tool while a plane of {} is on is not supported "
+                                      "yet: program {} before it",
+                                      plane, cancel),
                           {.line = execution.block.line, .column = 1});
     return {};
 }

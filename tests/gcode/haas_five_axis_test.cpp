@@ -111,7 +111,7 @@ TEST(FanucFiveAxis, G536TurnsAboutTheTip) {
     EXPECT_LT(glm::distance(turn.tip->from, turn.tip->to), 1e-9);
     const Driven other = driven(begin + plane + "G53.1\n", fanuc);
     for (size_t axis = 3; axis < 6; ++axis) EXPECT_EQ(turn.to[axis], other.motions.back().to[axis]);
-    for (const std::string word : {"H2", "R10.", "P1"})
+    for (const std::string word : {"H2", "R10."})
         EXPECT_THAT(refused(plane + "G53.6 " + word + "\n", fanuc),
                     HasSubstr("program G53.6 without"));
 }

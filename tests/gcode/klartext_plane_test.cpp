@@ -228,6 +228,45 @@ TEST(KlartextPlane, OfCycle19DoesNotSayWhereTheRotaryAxesAre) {
     EXPECT_EQ(bare.paths[3], core::PathCertainty{});
 }
 
+TEST(KlartextPlane, TableRotTurnsTheTableUnderALevelPlane) {
+    const core::Machine machine = trunnion();
+    for (const double angle : {35.0, -120.0, 180.0}) {
+        const Driven found = driven_klartext(
+            fmt::format("L X+5 Y-8 Z+60 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC{:+} TURN FMAX TABLE "
+                        "ROT\nL X+20 Y-15 Z+33 R0 FMAX\nL X+30 FMAX\n",
+                        angle),
+            machine);
+        const auto at = [&](size_t from_end) {
+            return values_of(found.motions[found.motions.size() - 1 - from_end].to);
+        };
+        EXPECT_LT(glm::distance(core::tip_position(machine, at(1), tool_length),
+                                datum + about_z({20, -15, 33}, angle)),
+                  1e-6);
+        // X of the plane is X of the machine now.
+        EXPECT_NEAR(at(0)[0] - at(1)[0], 10.0, 1e-9);
+        EXPECT_NEAR(at(0)[1] - at(1)[1], 0.0, 1e-9);
+    }
+    // The table stays with COORD ROT, and that of a head that turns stays anyway.
+    EXPECT_EQ(values_of(driven_klartext("PLANE SPATIAL SPA+0 SPB+0 SPC+35 TURN FMAX COORD ROT\n"
+                                        "L X+20 Y-15 Z+33 R0 FMAX\n",
+                                        machine)
+                            .motions.back()
+                            .to)[5],
+              0.0);
+    const core::Machine head = fork_head();
+    const Driven found = driven_klartext(
+        "PLANE SPATIAL SPA+0 SPB+0 SPC+35 TURN FMAX TABLE ROT\nL X+20 Y-15 Z+33 R0 FMAX\n", head);
+    EXPECT_EQ(values_of(found.motions.back().to)[5], 0.0);
+    EXPECT_LT(
+        glm::distance(core::tip_position(head, values_of(found.motions.back().to), tool_length),
+                      datum + about_z({20, -15, 33}, 35)),
+        1e-6);
+    // A tilted plane is reached in the same way by both.
+    const std::string tilted = "PLANE SPATIAL SPA+20 SPB+10 SPC+35 TURN FMAX SEQ+ ";
+    expect_same_motions(driven_klartext(tilted + "TABLE ROT\nL X+2 R0 FMAX\n", machine),
+                        driven_klartext(tilted + "COORD ROT\nL X+2 R0 FMAX\n", machine));
+}
+
 TEST(KlartextPlane, RefusesWhatCannotBe) {
     const auto error_of = [](const std::string& words) {
         const Ran ran = run_text(klartext_program("TOOL CALL 1 Z S5000\nPLANE " + words + "\n"),

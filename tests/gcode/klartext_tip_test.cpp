@@ -84,7 +84,8 @@ TEST(KlartextTip, FunctionTcpmIsFollowedIfItActsLikeM128) {
     };
     EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS"), core::PathCertainty{});
     EXPECT_EQ(path("F CONT AXIS POS PATHCTRL AXIS"), core::PathCertainty{});
-    EXPECT_EQ(path("F TCP AXIS SPAT PATHCTRL AXIS"), core::PathCertainty::unknown);
+    EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-TIP"), core::PathCertainty::known);
+    EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-CENTER"), core::PathCertainty::unknown);
     EXPECT_EQ(path("F TCP AXIS POS PATHCTRL VECTOR"), core::PathCertainty{});
     EXPECT_EQ(path("F TCP AXIS POS PATHCTRL AXIS REFPNT CENTER-CENTER"),
               core::PathCertainty::unknown);
@@ -138,6 +139,60 @@ TEST(KlartextTip, LnTurnsTheToolToItsVector) {
         EXPECT_LT(glm::distance(core::tip_position(machine, to, tool_length), target.tip + datum),
                   1e-4);
     }
+}
+
+/// The direction is Z turned about X by A, then about Y by B, then about Z by C.
+TEST(KlartextTip, AxisSpatTurnsTheToolByAnglesInSpace) {
+    std::mt19937 random(20261129);
+    std::uniform_real_distribution<double> place(-60.0, 60.0), angle(-70.0, 70.0);
+    for (const core::Machine& machine : {trunnion(), fork_head()})
+        for (const std::string way : {"AXIS", "VECTOR"}) {
+            const std::string mode = " PATHCTRL " + way + "\n";
+            std::string angles = "FUNCTION TCPM F TCP AXIS SPAT" + mode;
+            std::string vectors = "FUNCTION TCPM F TCP AXIS POS" + mode;
+            for (int i = 0; i < 100; ++i) {
+                const double a = angle(random), b = angle(random), c = angle(random);
+                const Vec3 d = about_z(about_y(about_x({0, 0, 1}, a), b), c);
+                const std::string at = fmt::format(" X{:+.4f} Y{:+.4f} Z{:+.4f}", place(random),
+                                                   place(random), place(random));
+                angles +=
+                    "L" + at + fmt::format(" A{:+.12f} B{:+.12f} C{:+.12f} R0 F900\n", a, b, c);
+                vectors +=
+                    "LN" + at
+                    + fmt::format(" NX+0 NY+0 NZ+1 TX{:+.15f} TY{:+.15f} TZ{:+.15f} R0 F900\n", d.x,
+                                  d.y, d.z);
+            }
+            const Driven found = driven_klartext(angles, machine);
+            EXPECT_GE(found.motions.size(), 100u);
+            const Driven other = driven_klartext(vectors, machine);
+            ASSERT_EQ(found.motions.size(), other.motions.size());
+            for (size_t i = 0; i < found.motions.size(); ++i)
+                for (size_t axis = 0; axis < 6; ++axis)
+                    ASSERT_NEAR(found.motions[i].to[axis].value_or(0.0),
+                                other.motions[i].to[axis].value_or(0.0), 1e-6);
+            EXPECT_EQ(found.paths, other.paths);
+        }
+}
+
+TEST(KlartextTip, AxisSpatNeedsAllAngles) {
+    const auto refusal = [](const std::string& lines) {
+        const Ran ran = run_text(
+            klartext_program("TOOL CALL 1 Z S5000\nFUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n"
+                             + lines),
+            environment_of(trunnion(), DialectId::heidenhain));
+        return ran.run.error ? ran.run.error->message : std::string();
+    };
+    EXPECT_EQ(refusal("L X+1 A+10 B+0 C+20 R0 FMAX\nL X+2 FMAX\n"), "");
+    EXPECT_THAT(refusal("L X+1 A+10 C+20 R0 FMAX\n"), HasSubstr("all three"));
+    EXPECT_THAT(refusal("L IA+10 B+0 C+0 R0 FMAX\n"), HasSubstr("incremental"));
+    EXPECT_THAT(refusal("L Z+0 A+10 B+0 C+0 R0 FMAX M91\n"), HasSubstr("M129"));
+    EXPECT_EQ(refusal("M128\nL A+10 R0 FMAX\n"), "") << "M128 is with AXIS POS";
+    // A position near the one that is taken would not be a step of a rotary axis.
+    const Driven bare =
+        driven(klartext_program("TOOL CALL 1 Z S5000\nFUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n"
+                                "L X+1 A+10 B+0 C+0 R0 FMAX\n"),
+               known_environment(DialectId::heidenhain));
+    EXPECT_EQ(bare.paths.back(), core::PathCertainty::unknown);
 }
 
 TEST(KlartextTip, LnTurnsTheToolToItsNormalUnderM128) {

@@ -202,6 +202,113 @@ TEST(SiemensOrientation, CodesChooseHowTheToolTurns) {
     EXPECT_EQ(count("ORIMKS ORIAXES", 0), 2u);
 }
 
+/// A2, B2 and C2 turn the tool as the vector does that the manual's rotations give.
+TEST(SiemensOrientation, ByAnglesIsAsByTheirVector) {
+    std::mt19937 random(1129);
+    std::uniform_real_distribution<double> place(-60.0, 60.0), angle(-70.0, 70.0);
+    for (const bool is_euler : {true, false})
+        for (const int by_code : {1, 0}) {
+            const core::Machine machine = by_code ? trunnion() : fork_head();
+            std::string angles = "TRAORI\n", vectors = "TRAORI\n";
+            if (by_code) angles += is_euler ? "ORIEULER\n" : "ORIRPY\n";
+            if (!by_code) angles += is_euler ? "ORIRPY\n" : "ORIEULER\n"; // has no meaning
+            for (int i = 0; i < 60; ++i) {
+                const double a = angle(random), b = angle(random), c = angle(random);
+                const Vec3 z(0, 0, 1);
+                const Vec3 d =
+                    is_euler ? about_z(about_x(z, b), a) : about_z(about_y(about_x(z, a), b), c);
+                const std::string where = at({place(random), place(random), place(random)});
+                angles +=
+                    "G1" + where + fmt::format(" A2={:.12f} B2={:.12f} C2={:.12f} F900\n", a, b, c);
+                vectors += "G1" + where
+                           + fmt::format(" A3={:.15f} B3={:.15f} C3={:.15f} F900\n", d.x, d.y, d.z);
+            }
+            Environment environment = siemens_on(machine);
+            environment.control.answers[ControlQuestion::angles_by_code] = by_code;
+            environment.control.answers[ControlQuestion::angles_are_euler] =
+                by_code ? !is_euler : is_euler;
+            const std::string start = "G71 G90 G94 G17 G54\nT1 D1\nM6\n";
+            const Driven found = driven(start + angles, environment);
+            const Driven other = driven(start + vectors, environment);
+            ASSERT_GE(found.motions.size(), 60u);
+            ASSERT_EQ(found.motions.size(), other.motions.size());
+            for (size_t i = 0; i < found.motions.size(); ++i)
+                for (size_t axis = 0; axis < 6; ++axis)
+                    ASSERT_NEAR(found.motions[i].to[axis].value_or(0.0),
+                                other.motions[i].to[axis].value_or(0.0), 1e-6);
+            EXPECT_EQ(found.paths, other.paths);
+        }
+}
+
+TEST(SiemensOrientation, AngleToThePathIsUndecided) {
+    const auto paths = [](const std::string& lines) {
+        return driven_siemens("TRAORI\nG0 X=0 Y=0 Z=50 A=20 C=10\n" + lines, trunnion()).paths;
+    };
+    for (const std::string code : {"ORIPATH\nG1 X=10 F500\n", "G1 X=10 LEAD=5 TILT=2 F500\n",
+                                   "ORIPATH\nG1 X=10 A5=0 B5=0.1 C5=1 F500\n"}) {
+        const auto found =
+            paths(code + "G1 X=20\nTRAFOOF\nG54\nG0 Z=90\nG0 A=0 C=0\nG0 X=1 Y=1 Z=80\nG0 Z=85\n");
+        ASSERT_EQ(found.size(), 7u) << code;
+        for (size_t i = 1; i < 5; ++i) EXPECT_GT(found[i], PathCertainty::known) << code << i;
+        EXPECT_EQ(found.back(), PathCertainty::known) << code;
+    }
+    EXPECT_EQ(paths("G1 X=10 A5=0 B5=0.1 C5=1 F500\n").back(), PathCertainty::known)
+        << "normals alone have no effect";
+}
+
+/// Z of TOROT is along the tool, and X as SD42980 says; coordinates are those of the work.
+TEST(SiemensOrientation, TorotTurnsTheCoordinatesToTheTool) {
+    const double kinds[] = {static_cast<double>(ToolFrameAxes::x_in_zx),
+                            static_cast<double>(ToolFrameAxes::y_in_yz),
+                            static_cast<double>(ToolFrameAxes::between),
+                            static_cast<double>(ToolFrameAxes::of_machine)};
+    for (const core::Machine& machine : {trunnion(), fork_head()})
+        for (const double kind : kinds) {
+            Environment environment = siemens_on(machine);
+            environment.control.answers[ControlQuestion::tool_frame_axes] = kind;
+            environment.control.answers[ControlQuestion::increment_has_offset] = 0;
+            const std::string words =
+                machine.spindle == core::link_of(4) ? "B=25 C=40" : "A=25 C=40";
+            const auto tip = [&](const std::string& lines) {
+                const Driven found =
+                    driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\nG0 X=3 Y=4 Z=50 " + words + "\n"
+                               + lines,
+                           environment);
+                for (const PathCertainty path : found.paths) EXPECT_EQ(path, PathCertainty{});
+                return core::tip_position(machine, values_of(found.motions.back().to), tool_length)
+                       - datum;
+            };
+            const Vec3 before = tip("");
+            EXPECT_LT(glm::distance(before, Vec3(3, 4, 50)), 1e-9);
+            const Vec3 zero = tip("TOROT\nG0 X=0 Y=0 Z=0\n");
+            EXPECT_LT(glm::length(zero), 1e-9) << "the origin stays";
+            const Vec3 x = tip("TOROT\nG0 X=1 Y=0 Z=0\n"), y = tip("TOROTZ\nG0 X=0 Y=1 Z=0\n"),
+                       z = tip("TOROT\nG0 X=0 Y=0 Z=1\n");
+            core::AxisValues turned{};
+            turned[machine.spindle == core::link_of(4) ? 4 : 3] = 25.0, turned[5] = 40.0;
+            const core::Mat3 tool = core::tool_frame(machine, turned);
+            EXPECT_LT(glm::distance(z, tool[2]), 1e-9);
+            EXPECT_LT(glm::distance(glm::cross(x, y), z), 1e-9);
+            const auto is = [&](ToolFrameAxes some) { return kind == static_cast<double>(some); };
+            if (is(ToolFrameAxes::x_in_zx)) {
+                EXPECT_NEAR(x.y, 0.0, 1e-9);
+                EXPECT_GT(x.x, 0.0);
+            } else if (is(ToolFrameAxes::y_in_yz)) {
+                EXPECT_NEAR(y.x, 0.0, 1e-9);
+                EXPECT_GT(y.y, 0.0);
+            } else if (is(ToolFrameAxes::between)) {
+                EXPECT_NEAR(x.y, y.x, 1e-9);
+                EXPECT_GT(x.x, 0.0);
+            } else {
+                EXPECT_LT(glm::distance(x, tool[0]), 1e-9);
+            }
+            // The usual way out, along the tool.
+            EXPECT_LT(glm::distance(tip("TOROT\nG91 G0 Z=100\n"), before + 100.0 * tool[2]), 1e-9);
+            EXPECT_LT(glm::distance(tip("TOROT\nG0 X=1\nTOROTOF\nG0 X=1 Y=2 Z=3\n"), Vec3(1, 2, 3)),
+                      1e-9);
+        }
+}
+
 TEST(SiemensOrientation, SmoothingEndsWithOrisofAlone) {
     const auto path = [](const std::string& codes) {
         return driven_siemens("TRAORI\n" + codes + "\nG0 A=40\nG0 A3=0.5 B3=0.3 C3=0.8\n",
@@ -278,7 +385,15 @@ TEST(SiemensOrientation, IsNotFollowedWhereNobodyKnowsWhatTheAxesDo) {
     };
     EXPECT_THAT(refused("G0 A3=0 B3=0 C3=1\n"), HasSubstr("program TRAORI before"));
     EXPECT_THAT(refused("TRAORI\nG0 A3=0 B3=0 C3=0\n"), HasSubstr("no tool direction"));
-    EXPECT_THAT(refused("TRAORI\nG0 A2=0 B2=0 C2=0\n"), HasSubstr("A3= B3= C3="));
+    EXPECT_THAT(refused("G0 A2=0 B2=10\n"), HasSubstr("program TRAORI before"));
+    EXPECT_THAT(refused("TRAORI\nG0 A2=10\n"), HasSubstr("both A2 and B2"));
+    EXPECT_THAT(refused("TRAORI\nORIRPY\nG0 A2=10 B2=10\n"), HasSubstr("all of A2, B2 and C2"));
+    EXPECT_THAT(refused("TRAORI\nORIRPY2\nG0 A2=10 B2=10 C2=10\n"), HasSubstr("A3= B3= C3="));
+    EXPECT_THAT(refused("TRAORI\nG0 A2=10 B2=10 A3=1\n"), HasSubstr("in one block"));
+    EXPECT_THAT(refused("TOROT\n"), HasSubstr("while TRAORI is on"));
+    EXPECT_THAT(refused("TRAORI\nTRANS X5\nTOROT\n"), HasSubstr("TRANS"));
+    EXPECT_THAT(refused("TRAORI\nG0 A=20\nTOROT\nG0 A=30\n"), HasSubstr("TOROTOF"));
+    EXPECT_THAT(refused("TRAORI\nG0 A=20\nTOROT\nTRAFOOF\n"), HasSubstr("TOROTOF"));
     EXPECT_THAT(refused("G41 G1 X5 F100\nTRAORI\n"), HasSubstr("G40"));
     EXPECT_THAT(refused("TRAORI\nG41 G1 X5 F100\nX20 A=10\n"), HasSubstr("G40"));
     EXPECT_THAT(refused("TRAORI\nSCALE X2\nG0 A3=0.5 B3=0 C3=0.5\n"), HasSubstr("SCALE"));

@@ -84,6 +84,70 @@ TEST(SiemensSwivel, BySolidAngleAndAddedToAnother) {
               1e-9);
 }
 
+/// X of the plane stays in the ZX plane, turned about Y; Y turned about X lies in the plane, too.
+TEST(SiemensSwivel, ByProjectionAngles) {
+    std::mt19937 random(185);
+    std::uniform_real_distribution<double> angle(-60.0, 60.0);
+    for (int i = 0; i < 300; ++i) {
+        const double a = angle(random), b = angle(random), turn = angle(random);
+        const bool x_first = i % 2;
+        const core::Machine machine = i % 4 < 2 ? trunnion() : fork_head();
+        const Vec3 along = about_y({1, 0, 0}, b), other = about_x({0, 1, 0}, a);
+        const Vec3 z = glm::normalize(glm::cross(along, other)), across = glm::cross(z, along);
+        const double c = std::cos(turn * M_PI / 180.0), s = std::sin(turn * M_PI / 180.0);
+        const Vec3 x = c * along + s * across, y = c * across - s * along;
+        const Driven found = driven_siemens(
+            fmt::format("CYCLE800(0,\"T\",0,{},0,0,0,{:.12f},{:.12f},{:.12f},0,0,0,-1,100,1)\n"
+                        "G0 X20 Y-15 Z33\n",
+                        x_first ? 185 : 182, x_first ? a : b, x_first ? b : a, turn),
+            machine);
+        ASSERT_LT(glm::distance(tip_at_end(found, machine), datum + 20.0 * x - 15.0 * y + 33.0 * z),
+                  1e-6);
+        // ROTS makes the same plane, which AROT turns.
+        const Driven frame = driven_siemens(
+            fmt::format("ROTS X={:.12f} Y={:.12f}\nAROT Z={:.12f}\nG0 X20 Y-15 Z33\n", a, b, turn),
+            core::Machine());
+        ASSERT_LT(glm::distance(Vec3(*frame.motions.back().to[0], *frame.motions.back().to[1],
+                                     *frame.motions.back().to[2]),
+                                datum + 20.0 * x - 15.0 * y + (33.0 + 0.0) * z
+                                    + Vec3(0.0, 0.0, tool_length)),
+                  1e-6);
+    }
+}
+
+TEST(SiemensSwivel, RotsLeavesAnAxisOfThePlaneInAPlaneOfTheWork) {
+    const auto axes = [](const std::string& words) {
+        std::array<Vec3, 3> found;
+        for (int axis = 0; axis < 3; ++axis) {
+            const Driven run =
+                driven_siemens(words
+                                   + fmt::format("\nG0 X{} Y{} Z{}\n", int(axis == 0),
+                                                 int(axis == 1), int(axis == 2)),
+                               core::Machine());
+            const auto& to = run.motions.back().to;
+            found[static_cast<size_t>(axis)] =
+                Vec3(*to[0], *to[1], *to[2]) - datum - Vec3(0.0, 0.0, tool_length);
+        }
+        return found;
+    };
+    const auto xy = axes("ROTS X=20 Y=30"), zx = axes("ROTS Z=20 X=30"),
+               yz = axes("ROTS Y=20 Z=30");
+    EXPECT_LT(glm::distance(xy[0], about_y({1, 0, 0}, 30)), 1e-9);
+    EXPECT_NEAR(glm::dot(xy[2], about_x({0, 1, 0}, 20)), 0.0, 1e-9);
+    EXPECT_LT(glm::distance(zx[2], about_x({0, 0, 1}, 30)), 1e-9);
+    EXPECT_NEAR(glm::dot(zx[1], about_z({1, 0, 0}, 20)), 0.0, 1e-9);
+    EXPECT_LT(glm::distance(yz[1], about_z({0, 1, 0}, 30)), 1e-9);
+    EXPECT_NEAR(glm::dot(yz[0], about_y({0, 0, 1}, 20)), 0.0, 1e-9);
+    const auto one = axes("ROTS Y=25");
+    EXPECT_LT(glm::distance(one[0], about_y({1, 0, 0}, 25)), 1e-9);
+    const auto added = axes("ROT Z=40\nAROTS X=20 Y=30");
+    EXPECT_LT(glm::distance(added[0], about_z(about_y({1, 0, 0}, 30), 40)), 1e-9);
+    const Ran three =
+        run_text("G710\nROTS X1 Y2 Z3\n", environment_of(core::Machine(), DialectId::siemens));
+    ASSERT_TRUE(three.run.error);
+    EXPECT_THAT(three.run.error->message, HasSubstr("two angles"));
+}
+
 TEST(SiemensSwivel, ChoosesTheSideAndGoesBack) {
     const core::Machine machine = trunnion();
     for (const int direction : {-1, 1}) {
@@ -280,15 +344,17 @@ TEST(SiemensSwivel, RefusesWhatTheMachineDecides) {
                                  environment_of(trunnion(), DialectId::siemens));
         return ran.run.error ? ran.run.error->message : "";
     };
-    EXPECT_THAT(error_of_cycle("0,\"T\",0,128,0,0,0,30,0,0,0,0,0,-1,100,1"),
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,173,0,0,0,30,0,0,0,0,0,-1,100,1"),
                 HasSubstr("projection angles"));
+    EXPECT_THAT(error_of_cycle("0,\"T\",0,185,0,0,0,90,90,0,0,0,0,-1,100,1"),
+                HasSubstr("define no plane"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,192,0,0,0,30,0,0,0,0,0,-1,100,1"),
                 HasSubstr("rotary axes"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,0,0,25,0,0,0,-1,100,1"),
                 HasSubstr("level plane"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,0,100,1"), HasSubstr("direction"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nG0 A10\nCYCLE800("),
-                HasSubstr("turn it with the cycle"));
+                HasSubstr("program CYCLE800() before it"));
     EXPECT_THAT(error_of_cycle("0,\"T\",0,57,0,0,0,30,0,0,0,0,0,-1,100,1)\nTRANS X5\n"
                                "CYCLE800(0,\"T\",1,57,0,0,0,30,0,0,0,0,0,-1,100,1"),
                 HasSubstr("adds a plane"));

@@ -60,8 +60,8 @@ TEST(SiemensWords, NamesWhatItCannotRead) {
     EXPECT_THAT(siemens_error("FOO=1\n"),
                 HasSubstr("'foo': this variable is not defined in this program"));
     EXPECT_THAT(siemens_error("G0 X1\n(comment)\n"), HasSubstr("comments start with ';'"));
-    EXPECT_THAT(siemens_error("G1 A3=1 F1\n"), HasSubstr("1:4: A3, B3 and C3 turn the tool"));
-    EXPECT_THAT(siemens_error("G1 A5=1 F1\n"), HasSubstr("1:4: 'A5=': orientation by angles"));
+    EXPECT_THAT(siemens_error("G1 A3=1 F1\n"), HasSubstr("1:4: A2 to C3 turn the tool"));
+    EXPECT_THAT(siemens_error("G1 A8=1 F1\n"), HasSubstr("1:4: 'A8=': there is no such axis"));
     EXPECT_THAT(siemens_error("G0 X10 R5\n"),
                 HasSubstr("1:8: 'R5' alone has no effect: set the parameter with '='"));
     EXPECT_THAT(siemens_error("G1 X1 F1 E5\n"), HasSubstr("1:10: 'E'"));

@@ -72,6 +72,22 @@ TEST(TiltedPlane, HasTwoStatedDirections) {
     expect_machine_at("G68.2 P3 Q1 I1 J0 K.001\nG68.2 P3 Q2 I0 J0 K1\nG0 X1 Y2 Z3", 1, 2, 3, false);
 }
 
+TEST(TiltedPlane, HasTwoProjectedAngles) {
+    // One angle tilts about one axis; K turns about the new Z.
+    expect_machine_at("G68.2 P4 X10 Y20 Z30 I90 J0 K0\nG0 X1 Y2 Z3", 13, 22, 29, true);
+    expect_machine_at("G68.2 P4 X10 Y20 Z30 I0 J90 K0\nG0 X1 Y2 Z3", 11, 17, 32, true);
+    expect_machine_at("G68.2 P4 I0 J90 K90\nG0 X1 Y2 Z3", -2, -3, 1, true);
+    // Both: X of the plane is (cos 30, 0, -sin 30), and (0, cos 50, sin 50) lies in it.
+    const double x = std::cos(M_PI / 6.0), z = -0.5, c = std::cos(M_PI / 3.6),
+                 s = std::sin(M_PI / 3.6);
+    const core::Vec3 along(x, 0.0, z), other(0.0, c, s);
+    const core::Vec3 normal = glm::normalize(glm::cross(along, other));
+    const core::Vec3 across = glm::cross(normal, along);
+    const core::Vec3 there = along + 2.0 * across + 3.0 * normal;
+    EXPECT_NEAR(glm::dot(other, normal), 0.0, 1e-12);
+    expect_machine_at("G68.2 P4 I30 J50\nG0 X1 Y2 Z3", there.x, there.y, there.z, true);
+}
+
 TEST(TiltedPlane, ThroughRandomPointsIsTheSameAsByAngles) {
     std::mt19937 random(682);
     std::uniform_real_distribution<double> angle(-80.0, 80.0), place(-50.0, 50.0);
@@ -149,7 +165,7 @@ TEST(TiltedPlane, RefusesAnIncompletePlane) {
     EXPECT_THAT(error_of("G68.2 P2 Q1 X2 I5"), HasSubstr("not supported yet in this block"));
     EXPECT_THAT(error_of("G68.2 P3 Q1 I1\nG68.2 P3 Q2 I.1 K1"), HasSubstr("perpendicular"));
     EXPECT_THAT(error_of("G68.2 P3 Q1\nG68.2 P3 Q2 K1"), HasSubstr("no length"));
-    EXPECT_THAT(error_of("G68.2 P4 I20"), HasSubstr("projected angles"));
+    EXPECT_THAT(error_of("G68.2 P4 I90 J90"), HasSubstr("define no plane"));
     EXPECT_THAT(error_of("G68.2 X0 Y0 Z0 I20 A5"), HasSubstr("in a block of its own"));
 }
 
@@ -169,6 +185,12 @@ TEST(TiltedPlane, G684AddsToThePlaneThatIsOn) {
     EXPECT_THAT(error_of("G68.4 I90"), HasSubstr("program G68.2 first"));
     EXPECT_THAT(error_of("G68.2 J90\nG68.4 P2 Q1 X1\nG68.2 P2 Q2 X2"),
                 HasSubstr("G68.4 P2 Q2 must come next"));
+}
+
+TEST(TiltedPlane, G544IsOnlyCancelled) {
+    EXPECT_EQ(error_of("G54.4 P0\nG0 X1"), "");
+    EXPECT_THAT(error_of("G54.4 P1"), HasSubstr("G54.4 P0"));
+    EXPECT_THAT(error_of("G54.4"), HasSubstr("G54.4 P0"));
 }
 
 TEST(TiltedPlane, IsLeftWithG69) {

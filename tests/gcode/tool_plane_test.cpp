@@ -125,6 +125,28 @@ TEST(ToolPlane, OfAToolAlongTheVerticalAxisHasTheAxesOfTheWork) {
     EXPECT_THAT(refusal_of("G0 B.5\nG68.3 X0 Y0 Z0\n", open), HasSubstr("12322"));
 }
 
+TEST(TurnToPlane, ChoosesTheDirectionOfP) {
+    const auto tilt = [](const std::string& words, std::optional<double> p1_is_positive) {
+        Environment environment = environment_of(trunnion(), DialectId::fanuc);
+        if (p1_is_positive)
+            environment.control.answers[ControlQuestion::p1_is_positive] = *p1_is_positive;
+        const Driven found =
+            driven(length_on + "G68.2 X0 Y0 Z0 I20 J30 K10\n" + words + "\n", environment);
+        return values_of(found.motions.back().to)[3];
+    };
+    for (const std::string code : {"G53.1", "G53.6"}) {
+        EXPECT_NEAR(tilt(code + " P1", 1), 30.0, 1e-9);
+        EXPECT_NEAR(tilt(code + " P2", 1), -30.0, 1e-9);
+        EXPECT_NEAR(tilt(code + " P1", 0), -30.0, 1e-9);
+        EXPECT_NEAR(tilt(code + " P2", 0), 30.0, 1e-9);
+        EXPECT_NEAR(tilt(code + " P1", {}), 30.0, 1e-9) << "the first value is assumed";
+        EXPECT_NEAR(std::abs(tilt(code + " P0", {})), 30.0, 1e-9);
+    }
+    EXPECT_THAT(refusal_of("G68.2 X0 Y0 Z0 I20 J30 K10\nG53.1 P3\n",
+                           environment_of(trunnion(), DialectId::fanuc)),
+                HasSubstr("from 0 to 2"));
+}
+
 TEST(ToolPlane, ToldWhatIsMissing) {
     const Environment known = fanuc_with(fork_head(), 3);
     EXPECT_THAT(refusal_of("G0 B30.\nG68.3 X1.\n", known), HasSubstr("all of X, Y and Z"));
