@@ -350,9 +350,13 @@ const std::optional<Interval>& SquareCuts::segment(PieceCut& cut, int column, in
 
 std::optional<Interval> SquareCuts::covered(PieceCut& cut, int number, const Interval& left) const {
     const CutterSweep& sweep = cut.sweep->sweep;
-    // The corner that is farthest from the move is the first to be missed.
-    const int right = sweep.from.x + sweep.to.x < 2.0 * x(1) ? 1 : 0;
-    const int back = sweep.from.y + sweep.to.y < 2.0 * y(1) ? 1 : 0;
+    // The corner that is farthest from the axis of the tool is the first to be missed.
+    Vec3 middle = 0.5 * (sweep.from + sweep.to);
+    const Vec3& axis = sweep.orientation[2];
+    if (cut.box && std::abs(axis.z) > 0.1)
+        middle += (0.5 * (left.lower + left.upper) - middle.z) / axis.z * axis;
+    const int right = middle.x < x(1) ? 1 : 0;
+    const int back = middle.y < y(1) ? 1 : 0;
     Interval common{-infinity, infinity};
     for (const int i : {right, 1 - right})
         for (const int j : {back, 1 - back}) {
@@ -378,7 +382,8 @@ IntervalList SquareCuts::column(int number) {
 
 void SquareCuts::subtract_from_column(IntervalList& column, int number, size_t first) {
     const Square part = quarter(number);
-    for (size_t i = first; i < cuts_.size() && !column.empty(); ++i) {
+    // The last moves are the ones nearest to a tool that still cuts, and leave little to the others.
+    for (size_t i = cuts_.size(); i-- > first && !column.empty();) {
         const Interval left = hull(column);
         if (!comes_to(*cuts_[i].sweep, cuts_[i].box, part, left)) continue;
         // Most moves of a tilted tool pass where the material is gone already.
@@ -398,9 +403,9 @@ IntervalList SquareCuts::line_at_centre() const {
 
 void SquareCuts::subtract_from_line(IntervalList& line, size_t first) const {
     const double at_x = x(1), at_y = y(1);
-    for (size_t i = first; i < cuts_.size() && !line.empty(); ++i) {
+    for (size_t i = cuts_.size(); i-- > first && !line.empty();) {
         const PieceCut& cut = cuts_[i];
-        if (!comes_to(*cut.sweep, cut.box, {at_x, at_x, at_y, at_y}, heights_)) continue;
+        if (!comes_to(*cut.sweep, cut.box, {at_x, at_x, at_y, at_y}, hull(line))) continue;
         if (const auto gone = line_interval(cut.piece->around, cut.sweep->sweep, 2, at_x, at_y))
             line.subtract(*gone);
     }
