@@ -181,6 +181,7 @@ struct ReadingResult {
     std::vector<ReadingError> errors; // the first few
     size_t error_count = 0;
     std::optional<core::Error> stopped; // why this reading ended early
+    bool ends_early = false;            // it has so many errors that it was not followed to the end
     bool is_condition = false;          // of the program; otherwise a parameter of the control
     bool continues = false;             // it goes on where another reading had been stopped
     std::optional<ReadingError>

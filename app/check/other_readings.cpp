@@ -105,7 +105,9 @@ std::string consequence_of(const ReadingResult& result) {
         fmt::format("{} has an error ({}): {}",
                     first.line ? place_of(first.file, first.line) : "the program as a whole",
                     first.finding.rule, first.finding.message);
-    if (result.error_count > 1) text += fmt::format(" {} more follow.", result.error_count - 1);
+    if (result.error_count > 1)
+        text += fmt::format(" {}{} more follow.", result.ends_early ? "At least " : "",
+                            result.error_count - 1);
     return text;
 }
 
@@ -416,6 +418,8 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     std::vector<BentBlock> bent;
     std::set<FindingKey> errors;
     bool joins = false;
+    const bool may_end_early =
+        core::severity_of(check_.run.setup, core::rule_id("open-premise")) == core::Severity::error;
     size_t blocks = core::value_of(result.block);
     runner.after_reading = [&](const RunState& before, const gcode::InterpreterState& after) {
         joins = note(before, after, core::value_of(result.block));
@@ -441,18 +445,24 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
                 result.lowered = std::max(result.lowered, lowered_severity(finding));
             add_error(result, known, finding, done.checked.file, done.checked.line);
         }
+        // More errors would tell nobody more, unless only collisions are reported.
+        result.ends_early = may_end_early && result.error_count >= most_shown_errors;
+        if (result.ends_early) {
+            result.verdict = std::max(result.verdict, core::Verdict::undecided);
+            break;
+        }
         if (++blocks % 256 == 0 && !goes_on()) {
             result.stopped = core::Error{core::ErrorCode::io, {}, "stopped by the user", {}};
             result.verdict = std::max(result.verdict, core::Verdict::undecided);
             break;
         }
     }
-    if (!joins)
+    if (!joins && !result.ends_early)
         for (const core::Finding& finding : core::end_of_run(check_.run.setup, state.machine)) {
             if (finding.severity == core::Severity::error) errors.insert(key_of(finding, {}, 0));
             add_error(result, known, finding, {}, 0);
         }
-    if (!joins && !result.stopped && !result.continues)
+    if (!joins && !result.stopped && !result.continues && !result.ends_early)
         result.avoided = avoided_by(errors, result, record);
     // One finding about rapids is enough, but the verdict is that of the worst combination.
     for (const BentBlock& block : bent) worst_bent_ = std::max(worst_bent_, block.verdict);

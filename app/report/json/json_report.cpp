@@ -129,6 +129,7 @@ Json readings_json(const CheckRun& run) {
         json["effect"] = reading.effect;
         json["verdict"] = core::name_of(reading.verdict);
         json["error_count"] = reading.error_count;
+        if (reading.ends_early) json["ends_early"] = true;
         json["errors"] = Json::array();
         for (const ReadingError& error : reading.errors)
             json["errors"].push_back({{"line", error.line},
