@@ -253,6 +253,7 @@ void CoprocessorCheck::hold(const std::optional<core::ToolNumber>& tool, At& at)
 Result<void> CoprocessorCheck::query_standstill(At& at, PushedBlock& block) {
     const core::Path path = path_of({.from = at.position, .to = at.position}, setup_->machine, 0.0);
     if (path.legs.empty() || !path.legs[0].start_known) return {};
+    at.off_motion = std::max(at.off_motion, core::axis_tolerance_error(*setup_, at.tool, path));
     return query_leg({.positions = {path.legs[0].positions[0]}}, false, at, block);
 }
 
@@ -285,16 +286,18 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     }
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
-    static const core::ToolAssembly nothing;
-    const double off_by_axes =
-        core::axis_tolerance_error(*setup_, at.tool ? *at.tool : nothing, path);
+    const double off_by_axes = core::axis_tolerance_error(*setup_, at.tool, path);
+    const auto angles = core::constant_angles(motion);
+    if (cutting && setup_->machine.has_axis_tolerances()) at.corners.note_angles(angles);
     if (cutting) at.corners.note_cut(at.called, motion.arc.has_value(), off_by_axes);
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
         rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
     at.off_motion += off_by_axes;
-    at.follows = follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
+    at.follows =
+        off_by_axes == 0.0 && at.corners.displaces_alike(angles, off_by_axes)
+        && follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
     at.corners.last.kind = motion.kind;
     for (const core::Leg& leg : path.legs) {
         if (auto done = update_models(at); !done) return done;

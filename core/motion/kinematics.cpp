@@ -473,6 +473,8 @@ double axis_tolerance_on_piece(const Machine& machine, const std::vector<size_t>
         const Vec3 point = posture.of_link(machine.axes[i].carrier) * machine.axes[i].point;
         farthest = std::max(farthest, glm::distance(centre, point) + mover.reach);
     }
+    constexpr double most_turn = 10.0; // radians; more comes from slips, and would overflow
+    if (turn > most_turn) return infinity;
     const double distance = (farthest + travel) * core::exp(turn);
     double error = 0.0, slope = 0.0;
     for (const size_t i : axes) {

@@ -158,6 +158,15 @@ CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
 
 } // namespace
 
+std::optional<std::array<double, 3>> constant_angles(const Motion& motion) {
+    std::array<double, 3> angles{};
+    for (size_t i = 0; i < angles.size(); ++i) {
+        if (motion.from[i + 3] != motion.to[i + 3]) return std::nullopt;
+        angles[i] = motion.to[i + 3].value_or(0.0);
+    }
+    return angles;
+}
+
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
     corners.rapids = corners.mixed = {};

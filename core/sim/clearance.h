@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -152,9 +153,28 @@ struct RoundedCorners {
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
+    // The angles of the rotary axes at which stock was removed, if their axes are known with
+    // tolerances.
+    std::optional<std::array<double, 3>> angles_of_cuts;
+    bool at_several_angles = false;
 
     /// Deviation of a feed.
     double of_feed(bool is_arc) const { return is_arc ? by_arc : by; }
+
+    /// Records the angles of a motion that has cut; empty if they change. At the same angles, all
+    /// that a tool cuts is displaced alike.
+    void note_angles(const std::optional<std::array<double, 3>>& angles) {
+        at_several_angles =
+            at_several_angles || !angles || (angles_of_cuts && angles_of_cuts != angles);
+        angles_of_cuts = angles;
+    }
+
+    /// Whether the tolerances of axes of rotation displace a motion at these angles as they
+    /// displaced all cuts; it may be off by `by_axes` from where it is measured.
+    bool displaces_alike(const std::optional<std::array<double, 3>>& angles, double by_axes) const {
+        if (!angles_of_cuts && !at_several_angles) return by_axes == 0.0;
+        return !at_several_angles && angles && angles_of_cuts == angles;
+    }
 
     /// Records a cutting feed, which deviates by `by_axes` besides its corners.
     void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc, double by_axes) {
@@ -165,6 +185,9 @@ struct RoundedCorners {
         of_cuts = std::max(of_cuts, of_feed(is_arc) + by_axes);
     }
 };
+
+/// The angles of the rotary axes on a motion; empty if they change or are not known.
+std::optional<std::array<double, 3>> constant_angles(const Motion& motion);
 
 /// State before the first block, from the machine's corner tolerance.
 RoundedCorners corners_at_start(const Machine& machine);

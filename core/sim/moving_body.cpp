@@ -93,14 +93,15 @@ std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& to
     return bodies;
 }
 
-double axis_tolerance_error(const Setup& setup, const ToolAssembly& tool, const Path& path) {
+double axis_tolerance_error(const Setup& setup, const ToolAssembly* tool, const Path& path) {
     if (!setup.machine.has_axis_tolerances()) return 0.0;
+    static const ToolAssembly nothing;
     std::vector<LinkId> targets = {setup.stock_mount.link};
     for (const Fixture& fixture : setup.fixtures)
         if (std::find(targets.begin(), targets.end(), fixture.mount.link) == targets.end())
             targets.push_back(fixture.mount.link);
     double most = 0.0;
-    for (const MovingBody& body : moving_bodies(setup, tool))
+    for (const MovingBody& body : moving_bodies(setup, tool ? *tool : nothing))
         for (const LinkId target : targets)
             for (const Leg& leg : path.legs)
                 most = std::max(most, axis_tolerance_error(setup.machine, target, body.mover, leg));

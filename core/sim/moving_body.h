@@ -60,8 +60,8 @@ struct BodyLeg : RelativeLeg {
 std::vector<MovingBody> moving_bodies(const Setup& setup, const ToolAssembly& tool);
 
 /// A bound of how far any body is from where it is measured on a path, because axes of rotation of
-/// the machine are only known with tolerances, mm; see axis_tolerance_error.
-double axis_tolerance_error(const Setup& setup, const ToolAssembly& tool, const Path& path);
+/// the machine are only known with tolerances, mm; see axis_tolerance_error. No tool: null.
+double axis_tolerance_error(const Setup& setup, const ToolAssembly* tool, const Path& path);
 
 /// The leg as seen from a fixture, without its play, or from the stock. The deviation of a fixture
 /// counts as an error of the leg; that of the stock is in its tolerance.

@@ -299,5 +299,73 @@ TEST(CuttingEdge, ZeroCancelsTheLength) {
     EXPECT_EQ(checked.at_line(7).verdict, "collision");
 }
 
+/// The cube of above, of which the axis of A may be 0.1 mm from where it is stated, or is exactly
+/// there; with a second tool.
+SetupWriter cube_with(bool tolerance, const std::string& allowance) {
+    const std::string place = "side = \"table\"\npoint = [-350, -200, -440]\n";
+    return cube()
+        .root("mesh_size = 0.5\nallowance = " + allowance + "\n")
+        .machine(SetupWriter::mill()
+                 + SetupWriter::axis("A", place + (tolerance ? "point_tolerance = 0.1\n" : ""))
+                 + SetupWriter::axis("C", place))
+        .fixture("pin", "box = [[-2, -30, -22], [2, -20, -18]]")
+        .fixture("other", "box = [[-2, 20, -22], [2, 30, -18]]")
+        .also("[[length_offset]]\nnumber = 2\nlength = 95.0")
+        .also_tool("number = 2\n"
+                   + test_support::flat_10.substr(test_support::flat_10.find("shape")));
+}
+
+TEST(AxisTolerances, AreInEveryClearanceWhileTheAxisIsTurned) {
+    const std::string blocks = "G0 X0 Y0 Z50\nA90\nT2\nM6\nA0";
+    const Checked exact = check_siemens(cube_with(false, "1"), blocks);
+    const Checked about = check_siemens(cube_with(true, "1"), blocks);
+    const auto lower = [](const Checked& checked, int line) {
+        return std::min(checked.at_line(line).pair("flutes pin").lower,
+                        checked.at_line(line).pair("flutes other").lower);
+    };
+    EXPECT_EQ(exact.verdict, "clear");
+    EXPECT_EQ(about.verdict, "clear");
+    EXPECT_EQ(lower(exact, 5), lower(about, 5)) << "A is at 0";
+    // Turned by 90 degrees, the work may be off by 0.1 times the square root of 2.
+    EXPECT_NEAR(lower(exact, 6) - lower(about, 6), 0.1414, 0.001);
+    // At 90 degrees, a pin is 40 mm below the tip. Only the exact machine keeps a little less, also
+    // where a tool is changed.
+    const std::string between = "39.9";
+    EXPECT_EQ(check_siemens(cube_with(false, between), blocks).errors(), "");
+    const Checked near = check_siemens(cube_with(true, between), blocks);
+    EXPECT_EQ(near.status, 1);
+    EXPECT_NE(near.at_line(6).verdict, "clear");
+    EXPECT_NE(near.errors().find("tool-change-unsafe"), std::string::npos) << near.errors();
+}
+
+TEST(AxisTolerances, CountForWhatMayTouchUnlessAllCutsWereMadeAtTheSameAngles) {
+    // The shank passes raw stock by less than the tolerance.
+    const auto beside = [](const std::string& tolerance, const std::string& blocks) {
+        return check(SetupWriter()
+                         .machine(SetupWriter::axis("A", "point = [0, 0, 0]\n" + tolerance))
+                         .program("dialect = \"fanuc\"\nstart = { X = 0, Y = 0, Z = 400, A = 0 }\n"
+                                  "no_decimal_point = \"units\"\n")
+                         .offsets("G54 = { X = 0, Y = 0, Z = 0 }")
+                         .lengths("[[length_offset]]\nnumber = 1\nlength = 60.0\n")
+                         .stock("box = [[-50, -50, -20], [50, 50, 20]]")
+                         .tool("number = 1\nshape = \"flat\"\ndiameter = 10\nflute_length = 10\n"
+                               "shank_diameter = 16\nstick_out = 60\n"),
+                     text("G43 H1 G0 X70 Y28.3 Z200\n" + blocks));
+    };
+    const std::string feed = "A90\nZ0\nG1 X-70 F500\nG0 Z200";
+    const std::string rise = "A90\nX0 Y70\nZ-130\nY28.3\nG0 Z200";
+    for (const std::string& blocks : {feed, rise}) {
+        EXPECT_EQ(beside("", blocks).verdict, "clear");
+        EXPECT_NE(beside("point_tolerance = 0.5\n", blocks).verdict, "clear") << blocks;
+    }
+    // A slot deeper than the flutes: the shank touches what the flutes have cut, and both are
+    // displaced alike. Not so if the work is turned in between.
+    const std::string slot = "G0 X-40 Y12 Z50\nA90\nZ-12\nG1 X40 F500\nZ-24\nX-40\nG0 Z50\n";
+    const std::string again = "A0\nG0 X-40 Y12\nZ-12\nG1 X40 F500\nZ-24\nX-40\nG0 Z50\n";
+    EXPECT_EQ(check_siemens(cube_with(false, "0.5"), slot + again).errors(), "");
+    EXPECT_EQ(check_siemens(cube_with(true, "0.5"), slot).errors(), "");
+    EXPECT_EQ(check_siemens(cube_with(true, "0.5"), slot + again).verdict, "undecided");
+}
+
 } // namespace
 } // namespace app_test

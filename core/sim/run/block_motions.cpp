@@ -191,6 +191,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     state.memory.off_path = off_path + off_by_axes + state.corners.of_cuts;
     doubt_assumed_start(motion);
     state.position = motion.to;
+    const size_t moves_logged = state.stock.log.size();
     if (!tool()) move_without_tool(motion, path);
     const bool is_lost = spindle_is_lost();
     if (is_lost) forget_bounds();
@@ -206,6 +207,9 @@ void BlockRun::execute_motion(const Motion& motion) {
         check_corner(motion, path);
         check_path(motion, path, !is_certain);
     }
+    const bool has_cut = state.stock.log.size() > moves_logged;
+    if (has_cut && setup.machine.has_axis_tolerances())
+        state.corners.note_angles(constant_angles(motion));
     if (!is_certain) forget_bounds();
     note_corner(state.corners, motion, path);
     if (motion.stops_at_contact || is_lost) state.corners.last = {};

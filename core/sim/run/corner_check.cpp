@@ -40,10 +40,9 @@ struct CornerCheck {
 } // namespace
 
 void BlockRun::note_axis_tolerances(const Path& path) {
-    static const ToolAssembly nothing;
-    const double off = axis_tolerance_error(setup, tool() ? *tool() : nothing, path);
-    if (off == 0.0) return;
+    const double off = axis_tolerance_error(setup, tool(), path);
     off_by_axes = std::max(off_by_axes, off);
+    if (off == 0.0) return;
     state.assumptions.insert("the axes of rotation are where the set-up states them to within its "
                              "tolerances; clearances include these");
 }
@@ -105,6 +104,7 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
     const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
     const double deviation = bends && limit.distance < infinity ? limit.distance : most;
+    note_axis_tolerances({.legs = {region->hull}});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
     memory.off_path = deviation + off_by_axes + state.corners.of_cuts;
