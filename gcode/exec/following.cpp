@@ -66,7 +66,7 @@ bool places(const Execution& execution, size_t axis) {
     const Word* word = execution.statement.word(axis_letters[axis]);
     const BlockCommands& result = execution.result;
     if (!word || (result.is_cycle && !result.goes_home)) return false;
-    if (execution.tool_by_angles && is_rotary(axis)) return false;
+    if ((execution.tool_by_angles || execution.turns_otherwise) && is_rotary(axis)) return false;
     if (result.goes_home) return true;
     const bool has_no_increments =
         in_machine_coordinates(execution) && execution.dialect.language == Language::words;
@@ -399,6 +399,12 @@ void lose_remapped(Execution& execution, const Word& word) {
     execution.result.path = core::PathCertainty::unknown;
 }
 
+void point_undescribed(ModalState& modal, const ToolDirection& tool) {
+    const core::Vec3& d = tool.direction;
+    modal.following.rotary_unknown = d.x != 0.0 || d.y != 0.0 || !(d.z > 0.0);
+    modal.following.is_pointed = true;
+}
+
 bool is_work_turned(const ModalState& modal) {
     return modal.following.rotary_unknown || is_turned(modal.offsets, modal.position);
 }
@@ -435,6 +441,16 @@ void mark_uncertain_motions(Execution& execution, const ModalState& before) {
     const bool begins_unknown = before.following.rotary_unknown;
     following.rotary_unknown = (following.rotary_unknown && !places_rotary_axes(execution))
                                || (tilts && turns_to_plane(execution));
+    if (places_rotary_axes(execution)) following.is_pointed = false;
+    const auto is_on = [](const ModalState& modes) {
+        return modes.offsets.follows_tip || modes.following.may_be_on;
+    };
+    if (is_on(before) && !is_on(modal)) {
+        following.rotary_unknown = following.rotary_unknown || following.is_pointed;
+        following.is_pointed = false;
+        // Only the tip was known, and only while the control followed it.
+        if (following.rotary_unknown) following.unknown_axes = all_linear;
+    }
     const bool turned = is_turned_within(execution, before);
     const bool switches = follows_without_machine(before) != follows_without_machine(modal);
     if ((switches && turned) || (tilts && !tilts_without_machine(modal)))

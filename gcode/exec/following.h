@@ -12,6 +12,7 @@ namespace gcode {
 struct Environment;
 struct Execution;
 struct ModalState;
+struct ToolDirection;
 
 /// Whether the position of an axis is not 0; a rotary axis at full turns counts as at 0.
 bool is_away_from_zero(size_t axis, double value);
@@ -55,6 +56,9 @@ void lose_remapped(Execution& execution, const Word& word);
 
 /// Whether a rotary axis is away from 0, or its position is unknown.
 bool is_work_turned(const ModalState& modal);
+
+/// Notes that a block programs the direction of the tool on a machine without described axes.
+void point_undescribed(ModalState& modal, const ToolDirection& tool);
 
 /// Marks the motions of a block that the machine may make differently: while the linear axes may
 /// follow rotary axes that are away from 0, and afterwards until X, Y and Z are programmed again.

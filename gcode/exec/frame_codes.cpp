@@ -984,10 +984,6 @@ core::Result<void> check_free_axis(const Execution& execution, const core::Mat3&
     return {};
 }
 
-bool turns_tool(const ToolDirection& tool) {
-    return tool.direction.x != 0.0 || tool.direction.y != 0.0 || !(tool.direction.z > 0.0);
-}
-
 std::optional<ToolDirection> vector_words(const Block& block, std::string_view letters) {
     ToolDirection found;
     for (const Word& word : block.words)

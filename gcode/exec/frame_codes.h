@@ -105,9 +105,6 @@ constexpr std::string_view direction_letters = "tuv", normal_letters = "lmn", an
 /// if the block has none of them.
 std::optional<ToolDirection> vector_words(const Block& block, std::string_view letters);
 
-/// Whether it is another direction than +Z.
-bool turns_tool(const ToolDirection& tool);
-
 /// I, J and K under G43.5; A3, B3 and C3 of Siemens, and TX, TY and TZ of Heidenhain, or else NX,
 /// NY and NZ, or angles, under tool centre point control. Words that are left out are 0. Empty if
 /// the block has none of them.

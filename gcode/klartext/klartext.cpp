@@ -48,13 +48,13 @@ const CodeWord* tip_control(const Execution& execution) {
 void use_tip_control(Execution& execution, const CodeWord& entry) {
     const bool on = entry.code->number == m_code(128);
     const bool was_followed = execution.modal().offsets.follows_tip;
+    const bool by_angles = on && klartext_of(execution.block).by_space_angles;
+    if (klartext_of(execution.state).by_space_angles != by_angles)
+        writable_klartext(execution.state).by_space_angles = by_angles;
     const bool is_followed = on ? !klartext_of(execution.block).turns_otherwise : was_followed;
     if (on && !is_followed && was_followed) switch_tip_control(execution, false);
     if (is_followed && switch_tip_control(execution, on)) {
         execution.modal().turns_in_plane = on && klartext_of(execution.block).turns_in_plane;
-        const bool by_angles = on && klartext_of(execution.block).by_space_angles;
-        if (klartext_of(execution.state).by_space_angles != by_angles)
-            writable_klartext(execution.state).by_space_angles = by_angles;
         return;
     }
     const core::SourceSpan where = entry.word->span;
@@ -93,7 +93,7 @@ core::Result<void> check_vectors(Execution& execution) {
         execution.warn(klartext_of(execution.block).span,
                        "TX, TY and TZ are ignored, because neither M128 nor FUNCTION TCPM is on");
     if (!tool) return {};
-    if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
+    if (!modal.offsets.machine) point_undescribed(modal, *tool);
     return {};
 }
 
@@ -140,13 +140,16 @@ core::Result<void> take_space_angles(Execution& execution) {
     if (kind != straight)
         return refuse_statement(execution, "turning the tool under AXIS SPAT is only supported "
                                            "with L");
+    if (glm::determinant(execution.modal().offsets.frame.linear) < 0.0)
+        return refuse_statement(execution, "angles under AXIS SPAT while a mirror image is on are "
+                                           "not supported yet: program LN with TX, TY and TZ");
     if (in_machine_coordinates(execution))
         return refuse_statement(execution, "M91 with angles under AXIS SPAT is not supported: "
                                            "program M129 before it");
     execution.tool_by_angles = ToolDirection{spatial_rotation(angles)[2], first};
     ModalState& modal = execution.modal();
-    if (!modal.offsets.machine)
-        modal.following.rotary_unknown = turns_tool(*execution.tool_by_angles);
+    if (!modal.offsets.follows_tip || !modal.offsets.machine)
+        point_undescribed(modal, *execution.tool_by_angles);
     return {};
 }
 

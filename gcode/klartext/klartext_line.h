@@ -56,7 +56,7 @@ struct KlartextLine {
     bool feed_of_call = false;     // Q206=FAUTO: the feed of TOOL CALL
     bool calls_at_point = false;   // CYCL CALL POS
     bool calls_from_here = false;  // M89: after every motion
-    bool turns_otherwise = false;  // FUNCTION TCPM: rotary axes are not programmed as positions
+    bool turns_otherwise = false;  // FUNCTION TCPM: with words that are not modelled
     bool turns_in_plane = false;   // PATHCTRL VECTOR
     bool by_space_angles = false;  // AXIS SPAT: A, B and C are angles in space
     bool has_normal = false;       // LN

@@ -92,28 +92,31 @@ bool states_positions(const KlartextLine& command) {
            && (command.plane == PlaneForm::axial || command.plane == PlaneForm::reset);
 }
 
-/// Whether TABLE ROT turns the table here, because the plane is level and so is not tilted by it.
-bool turns_table(const Execution& execution) {
+/// The axis that TABLE ROT turns: that of the table which is nearest to the work, if it is parallel
+/// to the tool, and the plane is level and so does not tilt it.
+std::optional<size_t> axis_of_table_rotation(const Execution& execution) {
     const KlartextLine& command = klartext_of(execution.block);
     const core::Mat3& plane = klartext_of(execution.state).transforms.plane;
-    return command.turns_table && !states_positions(command)
-           && glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) < rounding;
+    if (!command.turns_table || states_positions(command)
+        || glm::distance(plane[2], core::Vec3(0.0, 0.0, 1.0)) > rounding)
+        return std::nullopt;
+    const core::Machine& machine = *execution.modal().offsets.machine;
+    const auto axis = core::axis_next_to_work(machine);
+    const bool is_free = axis && std::abs(machine.axes[*axis].direction.z) > 1.0 - rounding;
+    return is_free ? axis : std::nullopt;
 }
 
-/// TABLE ROT: the axis of the table which is nearest to the work and parallel to the tool, if there
-/// is one, turns X of the plane to X of the machine.
+/// TABLE ROT: turns X of the plane to X of the machine.
 ///
 /// Source: HEIDENHAIN TNC7, user's manual, "Transformation types": COORD ROT and TABLE ROT differ
 ///         only in a free rotary axis.
-core::Result<void> turn_table(const Execution& execution, AxisValues& values) {
+core::Result<void> turn_table(const Execution& execution, size_t axis, AxisValues& values) {
     const Offsets& offsets = execution.modal().offsets;
     const core::Machine& machine = *offsets.machine;
-    const auto axis = core::axis_next_to_work(machine);
-    if (!axis || std::abs(machine.axes[*axis].direction.z) < 1.0 - rounding) return {};
     const core::Vec3 x(1.0, 0.0, 0.0);
     const auto off = [&](double angle) { // between X of the plane and X of the machine
         AxisValues turned = values;
-        turned[*axis] = angle;
+        turned[axis] = angle;
         return glm::distance(core::machine_from_link(machine, machine.table, turned).rotation
                                  * direction_in_table(offsets, x),
                              x);
@@ -124,19 +127,19 @@ core::Result<void> turn_table(const Execution& execution, AxisValues& values) {
     if (glm::determinant(offsets.frame.linear) < 0.0 || off(angle) > 1e-9)
         return refuse_statement(execution, "TABLE ROT of a level plane is not supported yet for "
                                            "this machine or after a mirror image: use COORD ROT");
-    const core::MachineAxis& own = machine.axes[*axis];
-    angle += 360.0 * core::round((values[*axis] - angle) / 360.0);
+    const core::MachineAxis& own = machine.axes[axis];
+    angle += 360.0 * core::round((values[axis] - angle) / 360.0);
     for (const double turns : {0.0, -360.0, 360.0}) {
         const double end = angle + turns;
         if (end < own.min.value_or(end) - rounding || end > own.max.value_or(end) + rounding)
             continue;
-        values[*axis] = end;
+        values[axis] = end;
         return {};
     }
     return refuse_statement(execution,
                             fmt::format("TABLE ROT: axis {} cannot turn to {:.6g} degrees within "
                                         "its limits",
-                                        axis_letters[*axis], angle));
+                                        axis_letters[axis], angle));
 }
 
 /// Where the rotary axes have to be for the plane that is on; linear axes as they are.
@@ -156,8 +159,8 @@ core::Result<AxisValues> axes_for_plane(Execution& execution) {
     }
     FEELER_TRY(AxisValues values,
                axes_along_z(execution, command.span, words_of(execution), command.solution));
-    if (turns_table(execution))
-        if (auto done = turn_table(execution, values); !done)
+    if (const auto axis = axis_of_table_rotation(execution))
+        if (auto done = turn_table(execution, *axis, values); !done)
             return tl::unexpected(std::move(done).error());
     return values;
 }
@@ -205,7 +208,7 @@ core::Result<void> check_positions(const Execution& execution) {
     if (states_positions(command)) return {};
     const auto& order = klartext_of(execution.state).transforms.order;
     const bool is_on = std::find(order.begin(), order.end(), Transforms::Kind::tilt) != order.end();
-    if (!is_on || turns_table(execution)) return {};
+    if (!is_on || axis_of_table_rotation(execution)) return {};
     return check_free_axis(execution, klartext_of(execution.state).transforms.plane, command.span,
                            words_of(execution), false);
 }

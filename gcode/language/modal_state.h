@@ -229,10 +229,13 @@ struct Following {
     bool is_unknown_code = false;
     bool is_said = false;        // reported for this code
     bool rotary_unknown = false; // G53.1 turned the work by unknown angles
-    bool said_turn = false;      // a rotary axis that turns the other way round was reported
-    bool said_pole = false;      // a turn that passes near to a pole was reported
-    bool awaits_sync = false;    // LinuxCNC: kinematics were switched, and no M66 came yet
-    uint8_t unknown_axes = 0;    // one bit for each of X, Y and Z whose position is unknown
+    // The direction of the tool has been programmed on a machine that is not described: when the
+    // control does not follow it any more, nobody knows where the axes are.
+    bool is_pointed = false;
+    bool said_turn = false;   // a rotary axis that turns the other way round was reported
+    bool said_pole = false;   // a turn that passes near to a pole was reported
+    bool awaits_sync = false; // LinuxCNC: kinematics were switched, and no M66 came yet
+    uint8_t unknown_axes = 0; // one bit for each of X, Y and Z whose position is unknown
 
     bool operator==(const Following&) const = default;
 };

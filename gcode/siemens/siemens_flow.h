@@ -26,6 +26,9 @@ core::Result<Frame> called_frame(const FlowStep& step);
 /// SAVE: what a call level restores at each return.
 void save_siemens_modes(const InterpreterState& state, Frame& frame);
 
+/// Whether a subprogram with SAVE is being run.
+bool is_within_save(const InterpreterState& state);
+
 /// Returns from a called program and emits the commands for the modes that this restores.
 void return_to_caller(InterpreterState& state, BlockCommands& result, uint32_t column);
 

@@ -42,8 +42,9 @@ core::Result<core::Mat3> rotation_in_space(const Execution& execution, core::Sou
         words[axis] = execution.statement.word(axis_letters[axis]);
         count += words[axis] ? 1 : 0;
     }
-    if (count == 3)
-        return core::fail(ErrorCode::syntax, "ROTS and AROTS take two angles, or RPL", where);
+    if (count == 3 || (count > 0 && execution.statement.word('Q')))
+        return core::fail(ErrorCode::syntax, "ROTS and AROTS take one or two angles, or RPL",
+                          where);
     if (count < 2) return rotation_of_words(execution);
     // The plane of the first and second axis in cyclic order; the third is its normal.
     const int normal = !words[2] ? 2 : !words[1] ? 1 : 0;
@@ -140,6 +141,12 @@ core::Result<void> change_siemens_frame(Execution& execution) {
             return core::fail(ErrorCode::unsupported,
                               fmt::format("{} between G41 or G42 and G40 is not supported yet: "
                                           "cancel cutter radius compensation first",
+                                          use.keyword->name),
+                              use.span);
+        if (siemens_of(execution.state).turns_with_tool)
+            return core::fail(ErrorCode::unsupported,
+                              fmt::format("{} while TOROT is on is not supported yet: program "
+                                          "TOROTOF before it",
                                           use.keyword->name),
                               use.span);
         if (execution.statement.of(ModalGroup::motion))

@@ -260,6 +260,7 @@ constexpr SiemensKeyword keywords[] = {
     {"OFFN", refused_address,
      "a contour allowance is not supported yet: use a D with a larger radius"},
     {"ORIAXES", orient_axes},
+    {"ORIAXPOS", other_angles},
     {"ORIC", note},
     {"ORICONCCW", other_orientation},
     {"ORICONCW", other_orientation},

@@ -121,8 +121,12 @@ core::Result<void> take_angles(Execution& execution) {
         return std::any_of(all.begin(), all.end(),
                            [&](const Word& word) { return word.letter == letter; });
     };
-    const bool is_complete =
-        has(angle_letters[0]) && has(angle_letters[1]) && (is_euler || has(angle_letters[2]));
+    // Where only this reading has RPY angles, the program means others.
+    const bool is_stated =
+        siemens_of(execution.state).angles == SiemensAngles::rpy
+        || execution.environment.control.answer(ControlQuestion::angles_are_euler);
+    const bool is_complete = has(angle_letters[0]) && has(angle_letters[1])
+                             && (is_euler || !is_stated || has(angle_letters[2]));
     if (!is_complete)
         return core::fail(ErrorCode::missing_value,
                           fmt::format("the direction of the tool needs {} in one block",
@@ -148,7 +152,12 @@ core::Result<void> check_direction_words(Execution& execution) {
                           "A2 to C3 turn the tool only while TRAORI is on: program TRAORI before "
                           "them",
                           words->word->span);
-    if (!modal.offsets.machine) modal.following.rotary_unknown = turns_tool(*tool);
+    if (!modal.offsets.machine) point_undescribed(modal, *tool);
+    if (modal.offsets.machine && programs_rotary_axes(execution))
+        return core::fail(ErrorCode::syntax,
+                          "a block cannot have both a direction of the tool and positions of "
+                          "rotary axes",
+                          tool->word->span);
     const core::Mat3& frame = modal.offsets.frame.linear;
     const bool is_turned = modal.offsets.work.rotation_deg != 0.0 || frame != core::Mat3(1.0);
     constexpr double rounding = 1e-9;
@@ -261,8 +270,13 @@ core::Result<void> use_tool_frame(Execution& execution, const SiemensKeywordUse&
     const SiemensState& siemens = siemens_of(execution.state);
     const bool on = use.keyword->action == SiemensAction::tool_frame;
     execution.column = use.span.column;
+    if (!on && !siemens.turns_with_tool) return {};
+    if (!on && is_within_save(execution.state))
+        return core::fail(
+            ErrorCode::unsupported,
+            fmt::format("{}: not supported yet in a subprogram with SAVE", use.keyword->name),
+            use.span);
     if (!on) {
-        if (!siemens.turns_with_tool) return {};
         writable_siemens(execution.state).turns_with_tool = false;
         use_swivelled_plane(execution, {}, false);
         return {};
@@ -274,6 +288,7 @@ core::Result<void> use_tool_frame(Execution& execution, const SiemensKeywordUse&
         !offsets.machine || !offsets.follows_tip
             ? "only supported while TRAORI is on, on a machine with described rotary axes"
         : is_other_on ? "not supported yet while CYCLE800, TRANS, ROT, SCALE or MIRROR is on"
+        : is_within_save(execution.state) ? "not supported yet in a subprogram with SAVE"
         : axis_with_rotary_offset(offsets)
             ? "not supported yet while a rotary axis has a work offset"
         : execution.modal().compensation != Side::none ? "only supported after G40"
@@ -297,7 +312,8 @@ core::Result<void> prepare_orientation(Execution& execution) {
     const bool follows_path =
         siemens_of(execution.state).turns_along_path || siemens_of(execution.state).turns_to_path;
     if (follows_path && (modal.offsets.follows_tip || modal.following.may_be_on)) {
-        modal.following.rotary_unknown = true;
+        modal.following.rotary_unknown = modal.following.is_said = true;
+        execution.turns_otherwise = true;
         doubt_block(execution, &SiemensState::said_path,
                     "the tool follows the direction of the path and the normal of the surface here "
                     "(ORIPATH, LEAD, TILT), which is not modelled. This block and later ones are "
@@ -329,7 +345,7 @@ core::Result<void> prepare_orientation(Execution& execution) {
             "G40 before this block",
             moving_word(execution).span);
     const SiemensState& siemens = siemens_of(execution.state);
-    if (siemens.turns_otherwise || siemens.turns_along_path || siemens.smooths_turning)
+    if (siemens.turns_otherwise || siemens.smooths_turning)
         doubt_block(
             execution, &SiemensState::said_turning,
             "the way in which the tool turns here (ORICONCW, ORICONCCW, ORICURVE, "

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "gcode/exec/flow.h"
 #include "gcode/exec/modes.h"
 #include "gcode/siemens/siemens.h"
@@ -83,6 +85,11 @@ void save_siemens_modes(const InterpreterState& state, Frame& frame) {
     frame.restore = restore_modes_of_call;
     frame.saved.write() = state.modal;
     frame.saved_language = state.language.now();
+}
+
+bool is_within_save(const InterpreterState& state) {
+    return std::any_of(state.frames.begin(), state.frames.end(),
+                       [](const Frame& frame) { return frame.restore != nullptr; });
 }
 
 void return_to_caller(InterpreterState& state, BlockCommands& result, uint32_t column) {

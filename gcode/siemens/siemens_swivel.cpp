@@ -222,6 +222,10 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "CYCLE800 while TOROT is on is not supported yet: program TOROTOF before "
                           "it",
                           use.span);
+    if (is_within_save(execution.state))
+        return core::fail(
+            ErrorCode::unsupported,
+            "CYCLE800 in a subprogram with SAVE is not supported yet: call it outside", use.span);
     execution.column = use.span.column;
     const bool deletes = !swivel.adds();
     if (!deletes && siemens_of(execution.state).frame != ProgramFrame{})

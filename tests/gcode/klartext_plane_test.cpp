@@ -261,6 +261,20 @@ TEST(KlartextPlane, TableRotTurnsTheTableUnderALevelPlane) {
         glm::distance(core::tip_position(head, values_of(found.motions.back().to), tool_length),
                       datum + about_z({20, -15, 33}, 35)),
         1e-6);
+    // Where C carries the tilting axis, TABLE ROT does nothing, and controls differ as with COORD
+    // ROT.
+    core::Machine other;
+    other.axes[5] = {.direction = {0, 0, 1}, .side = core::Side::table};
+    other.axes[3] = {
+        .direction = {1, 0, 0}, .side = core::Side::table, .carrier = core::link_of(5)};
+    other.table = core::link_of(3);
+    const Ran ran =
+        run_text(klartext_program(
+                     "TOOL CALL 1 Z S5000\nL C+50 R0 FMAX\nPLANE SPATIAL SPA+0 SPB+0 SPC+35 TURN "
+                     "FMAX TABLE ROT\n"),
+                 environment_of(other, DialectId::heidenhain));
+    ASSERT_TRUE(ran.run.error);
+    EXPECT_THAT(ran.run.error->message, HasSubstr("controls differ"));
     // A tilted plane is reached in the same way by both.
     const std::string tilted = "PLANE SPATIAL SPA+20 SPB+10 SPC+35 TURN FMAX SEQ+ ";
     expect_same_motions(driven_klartext(tilted + "TABLE ROT\nL X+2 R0 FMAX\n", machine),

@@ -174,6 +174,24 @@ TEST(KlartextTip, AxisSpatTurnsTheToolByAnglesInSpace) {
         }
 }
 
+TEST(KlartextTip, AxisSpatEndsWithTcpm) {
+    // Also if the last FUNCTION TCPM was not followed: A and C are positions again.
+    const Driven found =
+        driven_klartext("FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\nL X+1 A+10 B+0 C+20 R0 FMAX\n"
+                        "FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS REFPNT CENTER-CENTER\n"
+                        "FUNCTION RESET TCPM\nL A+30 FMAX\nL C+50 FMAX\n",
+                        trunnion());
+    EXPECT_NEAR(*found.motions.back().to[3], 30.0, 1e-9);
+    EXPECT_NEAR(*found.motions.back().to[5], 50.0, 1e-9);
+    // While it is on and not followed, they are angles.
+    const Driven other = driven_klartext(
+        "FUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS REFPNT CENTER-CENTER\n"
+        "L X+1 A+0 B+0 C+0 R0 FMAX\nFUNCTION RESET TCPM\nL X+5 Y+5 Z+50 FMAX\nL Z+40 FMAX\n",
+        trunnion());
+    EXPECT_EQ(other.paths.back(), core::PathCertainty::unknown)
+        << "where the axes stand is unknown";
+}
+
 TEST(KlartextTip, AxisSpatNeedsAllAngles) {
     const auto refusal = [](const std::string& lines) {
         const Ran ran = run_text(
@@ -187,7 +205,8 @@ TEST(KlartextTip, AxisSpatNeedsAllAngles) {
     EXPECT_THAT(refusal("L IA+10 B+0 C+0 R0 FMAX\n"), HasSubstr("incremental"));
     EXPECT_THAT(refusal("L Z+0 A+10 B+0 C+0 R0 FMAX M91\n"), HasSubstr("M129"));
     EXPECT_EQ(refusal("M128\nL A+10 R0 FMAX\n"), "") << "M128 is with AXIS POS";
-    // A position near the one that is taken would not be a step of a rotary axis.
+    EXPECT_THAT(refusal("CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X\nL A+10 B+0 C+20 R0 FMAX\n"),
+                HasSubstr("mirror image"));
     const Driven bare =
         driven(klartext_program("TOOL CALL 1 Z S5000\nFUNCTION TCPM F TCP AXIS SPAT PATHCTRL AXIS\n"
                                 "L X+1 A+10 B+0 C+0 R0 FMAX\n"),

@@ -240,6 +240,18 @@ TEST(SiemensOrientation, ByAnglesIsAsByTheirVector) {
         }
 }
 
+TEST(SiemensOrientation, C2IsOnlyMissedWhereAnglesAreSaidToBeRpy) {
+    Environment environment = siemens_on(trunnion());
+    const auto error = [&] {
+        const Ran ran =
+            run_text("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\nG0 A2=20 B2=10\n", environment);
+        return ran.run.error ? ran.run.error->message : std::string();
+    };
+    EXPECT_EQ(error(), "");
+    environment.control.answers[ControlQuestion::angles_are_euler] = 0;
+    EXPECT_THAT(error(), HasSubstr("all of A2, B2 and C2"));
+}
+
 TEST(SiemensOrientation, AngleToThePathIsUndecided) {
     const auto paths = [](const std::string& lines) {
         return driven_siemens("TRAORI\nG0 X=0 Y=0 Z=50 A=20 C=10\n" + lines, trunnion()).paths;
@@ -254,6 +266,28 @@ TEST(SiemensOrientation, AngleToThePathIsUndecided) {
     }
     EXPECT_EQ(paths("G1 X=10 A5=0 B5=0.1 C5=1 F500\n").back(), PathCertainty::known)
         << "normals alone have no effect";
+    // Where X and Y are after TRAFOOF depends on how the tool was turned, and words for rotary axes
+    // in a block in which it follows the path are no positions.
+    for (const std::string code : {"G1 X=46 Y=0 Z=60 LEAD=30 F500\nTRAFOOF\nG54\nG0 A=0 C=0\n",
+                                   "ORIPATH\nG1 X=10 A=0 C=0 LEAD=5 F500\nTRAFOOF\nG54\n",
+                                   "G1 A2=200 B2=2 F500\nTRAFOOF\nG54\nG0 A=0 C=0\n"})
+        EXPECT_GT(paths(code + "G0 Z=100\nG0 Z=90\n").back(), PathCertainty::known) << code;
+}
+
+TEST(SiemensOrientation, OfAnUndescribedMachineLeavesItsAxesUnknown) {
+    // An upright tool, but the table may have turned about it.
+    const auto last = [](const std::string& lines) {
+        return driven("G71 G90 G94 G17 G54\nT1 D1\nM6\nTRAORI\nG0 X=0 Y=0 Z=90\n" + lines,
+                      known_environment(DialectId::siemens))
+            .paths.back();
+    };
+    for (const std::string upright : {"G0 A2=0 B2=0 C2=0\n", "G0 A3=0 B3=0 C3=1\n"}) {
+        EXPECT_EQ(last(upright + "G0 X=10 Y=10 Z=80\n"), PathCertainty::known);
+        EXPECT_EQ(last(upright + "TRAFOOF\nG54\nG0 X=10 Y=10 Z=80\nG0 Z=70\n"),
+                  PathCertainty::unknown);
+        EXPECT_EQ(last(upright + "TRAFOOF\nG54\nG0 A=0 C=0\nG0 X=10 Y=10 Z=80\nG0 Z=70\n"),
+                  PathCertainty::known);
+    }
 }
 
 /// Z of TOROT is along the tool, and X as SD42980 says; coordinates are those of the work.
@@ -390,6 +424,10 @@ TEST(SiemensOrientation, IsNotFollowedWhereNobodyKnowsWhatTheAxesDo) {
     EXPECT_THAT(refused("TRAORI\nORIRPY\nG0 A2=10 B2=10\n"), HasSubstr("all of A2, B2 and C2"));
     EXPECT_THAT(refused("TRAORI\nORIRPY2\nG0 A2=10 B2=10 C2=10\n"), HasSubstr("A3= B3= C3="));
     EXPECT_THAT(refused("TRAORI\nG0 A2=10 B2=10 A3=1\n"), HasSubstr("in one block"));
+    EXPECT_THAT(refused("TRAORI\nG0 A2=10 B2=10 C=5\n"), HasSubstr("cannot have both"));
+    EXPECT_THAT(refused("TRAORI\nG0 A3=1 C3=1 A=5\n"), HasSubstr("cannot have both"));
+    EXPECT_THAT(refused("TRAORI\nORIAXPOS\nG0 A2=10 B2=10 C2=5\n"), HasSubstr("A3= B3= C3="));
+    EXPECT_THAT(refused("TRAORI\nG0 A=20\nTOROT\nTRANS X5\n"), HasSubstr("TOROTOF"));
     EXPECT_THAT(refused("TOROT\n"), HasSubstr("while TRAORI is on"));
     EXPECT_THAT(refused("TRAORI\nTRANS X5\nTOROT\n"), HasSubstr("TRANS"));
     EXPECT_THAT(refused("TRAORI\nG0 A=20\nTOROT\nG0 A=30\n"), HasSubstr("TOROTOF"));

@@ -107,11 +107,11 @@ TEST(SiemensSwivel, ByProjectionAngles) {
         const Driven frame = driven_siemens(
             fmt::format("ROTS X={:.12f} Y={:.12f}\nAROT Z={:.12f}\nG0 X20 Y-15 Z33\n", a, b, turn),
             core::Machine());
-        ASSERT_LT(glm::distance(Vec3(*frame.motions.back().to[0], *frame.motions.back().to[1],
-                                     *frame.motions.back().to[2]),
-                                datum + 20.0 * x - 15.0 * y + (33.0 + 0.0) * z
-                                    + Vec3(0.0, 0.0, tool_length)),
-                  1e-6);
+        ASSERT_LT(
+            glm::distance(Vec3(*frame.motions.back().to[0], *frame.motions.back().to[1],
+                               *frame.motions.back().to[2]),
+                          datum + 20.0 * x - 15.0 * y + 33.0 * z + Vec3(0.0, 0.0, tool_length)),
+            1e-6);
     }
 }
 
@@ -146,6 +146,10 @@ TEST(SiemensSwivel, RotsLeavesAnAxisOfThePlaneInAPlaneOfTheWork) {
         run_text("G710\nROTS X1 Y2 Z3\n", environment_of(core::Machine(), DialectId::siemens));
     ASSERT_TRUE(three.run.error);
     EXPECT_THAT(three.run.error->message, HasSubstr("two angles"));
+    const Ran more =
+        run_text("G710\nROTS X1 RPL=2\n", environment_of(core::Machine(), DialectId::siemens));
+    ASSERT_TRUE(more.run.error);
+    EXPECT_THAT(more.run.error->message, HasSubstr("or RPL"));
 }
 
 TEST(SiemensSwivel, ChoosesTheSideAndGoesBack) {
