@@ -228,10 +228,11 @@ struct CheckRecord {
 struct CheckReport {
     std::vector<core::Finding> combined_findings; // findings that were combined into another one
     core::Statistics statistics;
-    size_t points = 0;                                      // of the stock's model at the end
-    size_t lines = 0;                                       // scan lines
-    double cycle_time = 0.0;                                // of the program, seconds
-    std::shared_ptr<const core::CutModel> stock;            // the remaining stock
+    size_t points = 0;                           // of the stock's model at the end
+    size_t lines = 0;                            // scan lines
+    double cycle_time = 0.0;                     // of the program, seconds
+    std::shared_ptr<const core::CutModel> stock; // the remaining stock
+    double stock_error = 0.0; // how far its cuts may be off: corners, tolerances of axes, mm
     std::shared_ptr<const core::StockMesh> surface;         // of the remaining stock, if requested
     std::shared_ptr<const SavedStock> saved_stock;          // if the stock was written to a file
     std::shared_ptr<const core::PartComparison> comparison; // if the set-up has a part

@@ -117,6 +117,7 @@ void conclude(PreparedCheck& check, const core::SimulatorState& end,
     put_in_order(run.findings);
     report_not_judged(run, check.file.not_judged);
     run.stock = std::make_shared<const core::CutModel>(end.stock);
+    run.stock_error = end.corners.of_stock();
     if (!run.stopped && (needs_surface || run.setup.part))
         run.surface = std::make_shared<const core::StockMesh>(core::stock_mesh(*run.stock));
     check_part(run, run, run);
@@ -146,6 +147,13 @@ bool take(std::string_view& text, std::string_view word) {
 bool comes_of_a_collision(const CheckInput& input, const CheckRecord& record,
                           const core::Finding& finding) {
     if (finding.rule == core::rule_id("collision")) return true;
+    const auto collides = [&](const ReadingResult& reading) {
+        return reading.block == *finding.block
+               && (reading.verdict == core::Verdict::collision || reading.ends_early);
+    };
+    if (finding.rule == core::rule_id("open-premise")
+        && std::any_of(record.readings.begin(), record.readings.end(), collides))
+        return true;
     const core::BlockResult block = record.blocks[core::value_of(*finding.block)].result;
     return std::any_of(block.pairs.begin(), block.pairs.end(),
                        [&](const core::PairClearance& pair) {

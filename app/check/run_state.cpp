@@ -49,6 +49,8 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     digest.add(corners.by_arc);
     digest.add(corners.of_cuts);
     digest.add(corners.mode_of_cuts);
+    digest.add(corners.by_axes_of_cuts);
+    digest.add(uint64_t(corners.has_cut));
     add(digest, corners.rapids);
     add(digest, corners.mixed);
     digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);

@@ -74,8 +74,9 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
     return file;
 }
 
-StockFile stock_record_file(const core::CutModel& stock, const std::string& path) {
-    const core::StockRecord record = core::record_of(stock);
+StockFile stock_record_file(const core::CutModel& stock, double path_error,
+                            const std::string& path) {
+    const core::StockRecord record = core::record_of(stock, path_error);
     StockFile file;
     file.facts = {.file = path, .mesh_size = record.spacing, .moves = record.sweeps.size()};
     file.bytes = core::bytes_of(record);

@@ -45,6 +45,7 @@ core::Result<StockFile> stock_file(const core::StockMesh& surface, double mesh_s
                                    const std::string& path);
 
 /// The stock as a .feeler file, exact, for `[stock] model` of a later set-up.
-StockFile stock_record_file(const core::CutModel& stock, const std::string& path);
+StockFile stock_record_file(const core::CutModel& stock, double path_error,
+                            const std::string& path);
 
 } // namespace app

@@ -103,7 +103,7 @@ core::Result<void> save_results(const CheckOptions& options, CheckRun& run, cons
         FEELER_TRY(const MeshForm form, mesh_form(options.stock));
         FEELER_TRY(const StockFile file,
                    form == MeshForm::record
-                       ? stock_record_file(*run.stock, options.stock)
+                       ? stock_record_file(*run.stock, run.stock_error, options.stock)
                        : stock_file(*run.surface, run.setup.mesh_size, options.stock));
         if (auto written = write_output(options.stock, file.bytes, read); !written) return written;
         run.saved_stock = std::make_shared<const SavedStock>(file.facts);

@@ -287,16 +287,18 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
     const double off_by_axes = core::axis_tolerance_error(*setup_, at.tool, path);
-    const auto angles = core::constant_angles(motion);
-    if (cutting && setup_->machine.has_axis_tolerances()) at.corners.note_angles(angles);
-    if (cutting) at.corners.note_cut(at.called, motion.arc.has_value(), off_by_axes);
+    if (cutting) {
+        at.corners.note_cut(at.called, motion.arc.has_value());
+        at.corners.by_axes_of_cuts = std::max(at.corners.by_axes_of_cuts, off_by_axes);
+        at.corners.has_cut = true;
+    }
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
         rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
     at.off_motion += off_by_axes;
     at.follows =
-        off_by_axes == 0.0 && at.corners.displaces_alike(angles, off_by_axes)
+        off_by_axes + at.corners.by_axes_of_cuts == 0.0
         && follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
     at.corners.last.kind = motion.kind;
     for (const core::Leg& leg : path.legs) {

@@ -427,7 +427,11 @@ std::optional<LimitingPair> Enclosure::judge_legs(Run& run, size_t event,
         run.state.tool ? run.exact.tools.find(*run.state.tool) : run.exact.tools.end();
     if (tool == run.exact.tools.end() && run.exact.machine.bodies.empty()) return std::nullopt;
     core::CheckMemory memory;
-    memory.off_path = off_path + run.state.corners.of_cuts;
+    const core::BlockDeviation of{
+        off_path, off_path,
+        core::axis_tolerance_error(
+            run.exact, tool == run.exact.tools.end() ? nullptr : &tool->second, {.legs = legs})};
+    memory.off_path = off_path + of.by_axes + run.state.corners.of_stock();
     core::TrackedPairs pairs;
     core::LegCheck check(run.exact, tool == run.exact.tools.end() ? nothing : tool->second,
                          core::FluteUse::not_cutting,
@@ -439,7 +443,7 @@ std::optional<LimitingPair> Enclosure::judge_legs(Run& run, size_t event,
     std::vector<core::PairClearance> judged;
     for (core::TrackedPair& pair : pairs) {
         if (cuts && pair.pair == core::Pair{core::PartKind::flutes}) continue;
-        core::widen(pair, off_path, off_path, run.state.corners, false);
+        core::widen(pair, of, run.state.corners, false);
         judged.push_back(pair);
     }
     for (const core::PairClearance& pair : judged)

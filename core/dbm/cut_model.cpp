@@ -382,7 +382,8 @@ IntervalList SquareCuts::column(int number) {
 
 void SquareCuts::subtract_from_column(IntervalList& column, int number, size_t first) {
     const Square part = quarter(number);
-    // The last moves are the ones nearest to a tool that still cuts, and leave little to the others.
+    // The last moves are the ones nearest to a tool that still cuts, and leave little to the
+    // others.
     for (size_t i = cuts_.size(); i-- > first && !column.empty();) {
         const Interval left = hull(column);
         if (!comes_to(*cuts_[i].sweep, cuts_[i].box, part, left)) continue;

@@ -221,10 +221,20 @@ Result<Solid> moved(const Solid& solid, const Transform& by) {
 
 } // namespace
 
-StockRecord record_of(const CutModel& stock) {
+StockRecord record_of(const CutModel& stock, double path_error) {
     StockRecord record{stock.solid, stock.lines.grid.spacing, {}};
     record.sweeps.reserve(stock.log.size());
     for (size_t i = 0; i < stock.log.size(); ++i) record.sweeps.push_back(stock.log[i].sweep);
+    if (path_error == 0.0) return record;
+    std::map<std::shared_ptr<const Cutter>, std::shared_ptr<const Cutter>> uncertain;
+    for (CutterSweep& sweep : record.sweeps) {
+        if (sweep.block == earlier_block) continue; // its record has counted it
+        auto& cutter = uncertain[sweep.cutter];
+        if (!cutter)
+            cutter = std::make_shared<const Cutter>(
+                make_cutter(sweep.cutter->flutes, sweep.cutter->path_error + path_error));
+        sweep.cutter = cutter;
+    }
     return record;
 }
 

@@ -21,7 +21,9 @@ struct StockRecord {
 /// The block number of moves made by an earlier program.
 constexpr uint32_t earlier_block = 0xffffffff;
 
-StockRecord record_of(const CutModel& stock);
+/// `path_error`: how far the cutters may have been from the logged moves, besides what these count,
+/// mm. The stock of the record is uncertain by as much.
+StockRecord record_of(const CutModel& stock, double path_error = 0.0);
 
 /// The record as the bytes of a file: the text "feeler stock 1", then numbers in little-endian
 /// order.

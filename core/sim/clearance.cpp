@@ -158,15 +158,6 @@ CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
 
 } // namespace
 
-std::optional<std::array<double, 3>> constant_angles(const Motion& motion) {
-    std::array<double, 3> angles{};
-    for (size_t i = 0; i < angles.size(); ++i) {
-        if (motion.from[i + 3] != motion.to[i + 3]) return std::nullopt;
-        angles[i] = motion.to[i + 3].value_or(0.0);
-    }
-    return angles;
-}
-
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
     corners.rapids = corners.mixed = {};
@@ -217,7 +208,7 @@ void widen_by_stock(PairClearance& pair, double deviation) {
 }
 
 double path_deviation(const Pair& pair, double of_block, const RoundedCorners& corners) {
-    return of_block + (pair.fixture ? 0.0 : corners.of_cuts);
+    return of_block + (pair.fixture ? 0.0 : corners.of_stock());
 }
 
 bool rises(const Leg& leg) {
@@ -230,23 +221,27 @@ bool rises(const Leg& leg) {
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
                   bool is_rapid) {
     if (corners.by_several || (corners.tool && corners.tool != tool)) return false;
-    return rises || (!is_rapid && corners.by == corners.mode_of_cuts);
+    return corners.has_cut && (rises || (!is_rapid && corners.by == corners.mode_of_cuts));
 }
 
-void widen(PairClearance& pair, double of_block, double of_rapids, const RoundedCorners& corners,
-           bool follows_cuts) {
-    const double off = path_deviation(pair.pair, of_block, corners);
-    const double off_above = std::max(off, path_deviation(pair.pair, of_rapids, corners));
+void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,
+           bool follows_cuts, bool touches_raw_stock) {
+    const double off = path_deviation(pair.pair, of.of_feeds + of.by_axes, corners);
+    const double off_above =
+        std::max(off, path_deviation(pair.pair, of.of_rapids + of.by_axes, corners));
     if (off_above == 0.0) return;
     pair.lower = std::max(0.0, pair.lower - off);
     if (pair.verdict == Verdict::collision) return;
     pair.upper += off_above;
     if (pair.allowance.distance > resolution) {
         pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
-    } else if ((pair.pair.fixture || !follows_cuts) && pair.lower == 0.0
-               && off > contact_depth(pair.allowance)) {
-        pair.verdict = std::max(pair.verdict, Verdict::undecided);
+        return;
     }
+    if (pair.lower > 0.0 || touches_raw_stock) return;
+    const bool follows = follows_cuts && !pair.pair.fixture;
+    const double by_axes = of.by_axes + (pair.pair.fixture ? 0.0 : corners.by_axes_of_cuts);
+    if ((follows ? by_axes : off) > contact_depth(pair.allowance))
+        pair.verdict = std::max(pair.verdict, Verdict::undecided);
 }
 
 } // namespace core

@@ -153,41 +153,30 @@ struct RoundedCorners {
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
-    // The angles of the rotary axes at which stock was removed, if their axes are known with
-    // tolerances.
-    std::optional<std::array<double, 3>> angles_of_cuts;
-    bool at_several_angles = false;
+    double by_axes_of_cuts = 0.0;   // likewise of them by the tolerances of axes of rotation
+    bool has_cut = false;           // a feed has met the stock
 
     /// Deviation of a feed.
     double of_feed(bool is_arc) const { return is_arc ? by_arc : by; }
 
-    /// Records the angles of a motion that has cut; empty if they change. At the same angles, all
-    /// that a tool cuts is displaced alike.
-    void note_angles(const std::optional<std::array<double, 3>>& angles) {
-        at_several_angles =
-            at_several_angles || !angles || (angles_of_cuts && angles_of_cuts != angles);
-        angles_of_cuts = angles;
-    }
+    /// How far the surface of the cut stock may be from where it is measured.
+    double of_stock() const { return of_cuts + by_axes_of_cuts; }
 
-    /// Whether the tolerances of axes of rotation displace a motion at these angles as they
-    /// displaced all cuts; it may be off by `by_axes` from where it is measured.
-    bool displaces_alike(const std::optional<std::array<double, 3>>& angles, double by_axes) const {
-        if (!angles_of_cuts && !at_several_angles) return by_axes == 0.0;
-        return !at_several_angles && angles && angles_of_cuts == angles;
-    }
-
-    /// Records a cutting feed, which deviates by `by_axes` besides its corners.
-    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc, double by_axes) {
-        if (by + by_axes == 0.0) return;
+    /// Records a cutting feed.
+    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {
+        if (by == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
         mode_of_cuts = std::max(mode_of_cuts, by);
-        of_cuts = std::max(of_cuts, of_feed(is_arc) + by_axes);
+        of_cuts = std::max(of_cuts, of_feed(is_arc));
     }
 };
 
-/// The angles of the rotary axes on a motion; empty if they change or are not known.
-std::optional<std::array<double, 3>> constant_angles(const Motion& motion);
+/// How far the bodies may be from where they are measured in a block, mm.
+struct BlockDeviation {
+    double of_feeds = 0.0, of_rapids = 0.0; // because the control rounds corners
+    double by_axes = 0.0;                   // because axes of rotation are known with tolerances
+};
 
 /// State before the first block, from the machine's corner tolerance.
 RoundedCorners corners_at_start(const Machine& machine);
@@ -205,8 +194,8 @@ double path_deviation(const Pair& pair, double of_block, const RoundedCorners& c
 /// Whether a leg is straight and moves only upwards, or not at all.
 bool rises(const Leg& leg);
 
-/// Whether a motion stays within what its tool has cut, however corners were rounded: it deviates
-/// as its cuts did, or all of its legs go upwards out of them (`rises`).
+/// Whether a motion stays within what its tool has cut, however corners were rounded: it has cut,
+/// and deviates as its cuts did, or all of its legs go upwards out of them (`rises`).
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
                   bool is_rapid);
 
@@ -216,10 +205,14 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
 /// same tool deviates as its cuts did or leaves them upwards: it moves where it has cut. Otherwise
 /// it is kept if the material that may be left at a corner is less than the contact depth.
 ///
-/// `of_block`: possible deviation of the block's feeds, mm; 0 if it has none. `of_rapids`: that of
-/// its rapids, which only widens the upper bound: `lower` includes their corners.
-void widen(PairClearance& pair, double of_block, double of_rapids, const RoundedCorners& corners,
-           bool follows_cuts);
+/// Tolerances of axes displace the tool and its cuts differently, and not the raw stock: what they
+/// may press in is never clear.
+///
+/// `of`: deviations of the block's motions. That of rapids only widens the upper bound: `lower`
+/// includes their corners. `touches_raw_stock`: the pair at most touches the raw stock, even if it
+/// deviates, so that its verdict is kept.
+void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,
+           bool follows_cuts, bool touches_raw_stock = false);
 
 /// Widens the upper bound of a pair by the deviation of the stock's mesh; its tolerance is in the
 /// lower one already.

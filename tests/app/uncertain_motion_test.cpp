@@ -299,14 +299,12 @@ TEST(CuttingEdge, ZeroCancelsTheLength) {
     EXPECT_EQ(checked.at_line(7).verdict, "collision");
 }
 
-/// The cube of above, of which the axis of A may be 0.1 mm from where it is stated, or is exactly
-/// there; with a second tool.
-SetupWriter cube_with(bool tolerance, const std::string& allowance) {
+/// The cube of above with a tolerance of the axis of A, two pins and a second tool.
+SetupWriter cube_with(const std::string& tolerance, const std::string& allowance) {
     const std::string place = "side = \"table\"\npoint = [-350, -200, -440]\n";
     return cube()
         .root("mesh_size = 0.5\nallowance = " + allowance + "\n")
-        .machine(SetupWriter::mill()
-                 + SetupWriter::axis("A", place + (tolerance ? "point_tolerance = 0.1\n" : ""))
+        .machine(SetupWriter::mill() + SetupWriter::axis("A", place + tolerance)
                  + SetupWriter::axis("C", place))
         .fixture("pin", "box = [[-2, -30, -22], [2, -20, -18]]")
         .fixture("other", "box = [[-2, 20, -22], [2, 30, -18]]")
@@ -317,8 +315,8 @@ SetupWriter cube_with(bool tolerance, const std::string& allowance) {
 
 TEST(AxisTolerances, AreInEveryClearanceWhileTheAxisIsTurned) {
     const std::string blocks = "G0 X0 Y0 Z50\nA90\nT2\nM6\nA0";
-    const Checked exact = check_siemens(cube_with(false, "1"), blocks);
-    const Checked about = check_siemens(cube_with(true, "1"), blocks);
+    const Checked exact = check_siemens(cube_with("", "1"), blocks);
+    const Checked about = check_siemens(cube_with("point_tolerance = 0.1\n", "1"), blocks);
     const auto lower = [](const Checked& checked, int line) {
         return std::min(checked.at_line(line).pair("flutes pin").lower,
                         checked.at_line(line).pair("flutes other").lower);
@@ -331,14 +329,14 @@ TEST(AxisTolerances, AreInEveryClearanceWhileTheAxisIsTurned) {
     // At 90 degrees, a pin is 40 mm below the tip. Only the exact machine keeps a little less, also
     // where a tool is changed.
     const std::string between = "39.9";
-    EXPECT_EQ(check_siemens(cube_with(false, between), blocks).errors(), "");
-    const Checked near = check_siemens(cube_with(true, between), blocks);
+    EXPECT_EQ(check_siemens(cube_with("", between), blocks).errors(), "");
+    const Checked near = check_siemens(cube_with("point_tolerance = 0.1\n", between), blocks);
     EXPECT_EQ(near.status, 1);
     EXPECT_NE(near.at_line(6).verdict, "clear");
     EXPECT_NE(near.errors().find("tool-change-unsafe"), std::string::npos) << near.errors();
 }
 
-TEST(AxisTolerances, CountForWhatMayTouchUnlessAllCutsWereMadeAtTheSameAngles) {
+TEST(AxisTolerances, CountForWhatMayTouch) {
     // The shank passes raw stock by less than the tolerance.
     const auto beside = [](const std::string& tolerance, const std::string& blocks) {
         return check(SetupWriter()
@@ -358,13 +356,19 @@ TEST(AxisTolerances, CountForWhatMayTouchUnlessAllCutsWereMadeAtTheSameAngles) {
         EXPECT_EQ(beside("", blocks).verdict, "clear");
         EXPECT_NE(beside("point_tolerance = 0.5\n", blocks).verdict, "clear") << blocks;
     }
-    // A slot deeper than the flutes: the shank touches what the flutes have cut, and both are
-    // displaced alike. Not so if the work is turned in between.
-    const std::string slot = "G0 X-40 Y12 Z50\nA90\nZ-12\nG1 X40 F500\nZ-24\nX-40\nG0 Z50\n";
-    const std::string again = "A0\nG0 X-40 Y12\nZ-12\nG1 X40 F500\nZ-24\nX-40\nG0 Z50\n";
-    EXPECT_EQ(check_siemens(cube_with(false, "0.5"), slot + again).errors(), "");
-    EXPECT_EQ(check_siemens(cube_with(true, "0.5"), slot).errors(), "");
-    EXPECT_EQ(check_siemens(cube_with(true, "0.5"), slot + again).verdict, "undecided");
+    // Raw stock is not displaced with what the tool has cut elsewhere.
+    const std::string cut_first = "A90\nG0 X70 Y0\nZ45\nG1 X45 F500\nG0 Z200\nX70 Y28.3\n";
+    EXPECT_EQ(beside("", cut_first + feed).verdict, "clear");
+    EXPECT_NE(beside("point_tolerance = 0.5\n", cut_first + feed).verdict, "clear");
+    // A slot deeper than the flutes: the shank touches what the flutes have cut. That is contact as
+    // long as the tolerances are below its depth.
+    const auto slot = [](const std::string& tolerance) {
+        return check_siemens(cube_with(tolerance, "0.5"),
+                             "G0 X-40 Y12 Z50\nA90\nZ-12\nG1 X40 F500\nZ-24\nX-40\nG0 Z50\n");
+    };
+    EXPECT_EQ(slot("").errors(), "");
+    EXPECT_EQ(slot("point_tolerance = 0.001\n").errors(), "");
+    EXPECT_EQ(slot("point_tolerance = 0.1\n").verdict, "undecided");
 }
 
 } // namespace

@@ -38,6 +38,36 @@ TEST(StockRecord, GivesTheSameStockAgainAtAnyMeshSize) {
     }
 }
 
+/// The lower bound of an uncertain stock counts what its cutters may have left, even all of it.
+TEST(StockRecord, CountsHowFarItsCutsMayBeOff) {
+    std::mt19937 rng(6);
+    double more = 0.0;
+    for (int i = 0; i < 20; ++i) {
+        const CutBox world = random_cut_box(rng, 1 + i % 9, 0.0);
+        const CutModel exact = world.model(0.7);
+        const auto again = stock_record(bytes_of(record_of(exact, i % 4 == 3 ? 30.0 : 0.2)));
+        ASSERT_TRUE(again) << again.error().message;
+        const CutModel about = cut_again(*again, 0.7);
+        for (int x = 0; x < exact.columns.u_count(); ++x)
+            for (int y = 0; y < exact.columns.v_count(); ++y) {
+                const auto height = [](const auto& column) {
+                    double sum = 0.0;
+                    for (const Interval& matter : column) sum += matter.length();
+                    return sum;
+                };
+                const double before = height(exact.columns.line(x, y)),
+                             after = height(about.columns.line(x, y));
+                EXPECT_GE(after, before - 1e-9);
+                more += after - before;
+            }
+        // What an earlier program has counted is not counted again.
+        const StockRecord third = record_of(about, 0.5);
+        for (size_t k = 0; k < third.sweeps.size(); ++k)
+            EXPECT_EQ(third.sweeps[k].cutter->path_error, again->sweeps[k].cutter->path_error);
+    }
+    EXPECT_GT(more, 0.0);
+}
+
 TEST(StockRecord, KeepsCylindersMeshesAndTolerances) {
     const Solid round{SolidCylinder{{1, 2, 3}, 20.0, 50.0, 0}, 0.25};
     const auto again = stock_record(bytes_of({round, 0.5, {}}));

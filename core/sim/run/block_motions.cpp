@@ -135,8 +135,11 @@ bool BlockRun::is_clear_from_anywhere(const Motion& motion) {
     if (block.judgement || path.legs.empty()) return false;
     CutModel stock = state.stock;
     const CheckMemory memory = state.memory;
+    const BlockDeviation of{.by_axes = axis_tolerance_error(setup, tool(), path)};
+    state.memory.off_path = off_path + of.by_axes + state.corners.of_stock();
     TrackedPairs here;
     for (const Leg& leg : path.legs) leg_check(use(motion)).run(leg, result.duration, stock, here);
+    for (TrackedPair& pair : here) widen(pair, of, state.corners, false);
     state.memory = memory;
     const TrackedPair* worst = deciding_pair(here);
     return !worst || worst->verdict == Verdict::clear;
@@ -188,7 +191,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     if (motion.from != state.position) state.corners.last = {};
     note_axis_tolerances(path);
     round_corners(motion, path);
-    state.memory.off_path = off_path + off_by_axes + state.corners.of_cuts;
+    state.memory.off_path = off_path + off_by_axes + state.corners.of_stock();
     doubt_assumed_start(motion);
     state.position = motion.to;
     const size_t moves_logged = state.stock.log.size();
@@ -207,9 +210,7 @@ void BlockRun::execute_motion(const Motion& motion) {
         check_corner(motion, path);
         check_path(motion, path, !is_certain);
     }
-    const bool has_cut = state.stock.log.size() > moves_logged;
-    if (has_cut && setup.machine.has_axis_tolerances())
-        state.corners.note_angles(constant_angles(motion));
+    state.corners.has_cut = state.corners.has_cut || state.stock.log.size() > moves_logged;
     if (!is_certain) forget_bounds();
     note_corner(state.corners, motion, path);
     if (motion.stops_at_contact || is_lost) state.corners.last = {};

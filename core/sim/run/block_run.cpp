@@ -81,7 +81,7 @@ void BlockRun::check_tool_change() {
     TrackedPairs of_last_tool = std::exchange(pairs, {});
     check_rest(path);
     TrackedPairs there = std::exchange(pairs, std::move(of_last_tool));
-    for (TrackedPair& pair : there) widen(pair, off_by_axes, off_by_axes, state.corners, true);
+    for (TrackedPair& pair : there) widen(pair, {.by_axes = off_by_axes}, state.corners, true);
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;
@@ -287,19 +287,17 @@ void BlockRun::conclude() {
     pairs.sort();
     const bool rise = std::all_of(legs.begin(), legs.end(),
                                   [](const TimedLeg& timed) { return rises(timed.leg); });
-    const auto angles =
-        turns ? std::nullopt : constant_angles({.from = state.position, .to = state.position});
-    const bool is_displaced_alike = state.corners.displaces_alike(angles, off_by_axes);
     const bool follows =
-        is_displaced_alike
-        && follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
+        follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
+    const BlockDeviation of{off_path, off_path_rapids, off_by_axes};
     std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
         const bool is_doubtful =
-            pair.verdict == Verdict::clear && state.corners.of_cuts + off_by_axes > 0.0;
-        widen(pair, off_path + off_by_axes, off_path_rapids + off_by_axes, state.corners,
-              follows || (is_doubtful && only_touches_raw_stock(pair)));
+            pair.verdict == Verdict::clear && state.corners.of_stock() + off_by_axes > 0.0;
+        const bool is_kept = follows && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
+        widen(pair, of, state.corners, follows,
+              is_doubtful && !is_kept && only_touches_raw_stock(pair));
         widen_by_stock(pair, setup.stock.deviation);
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {

@@ -62,11 +62,12 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
         return;
     }
     const double by = corners.of_feed(motion.arc.has_value());
-    if (by + off_by_axes == 0.0 || !tool()) return;
-    if (use(motion) == FluteUse::cutting)
-        corners.note_cut(state.tool, motion.arc.has_value(), off_by_axes);
+    if (!tool()) return;
+    const bool cuts = use(motion) == FluteUse::cutting;
+    if (cuts) corners.by_axes_of_cuts = std::max(corners.by_axes_of_cuts, off_by_axes);
     if (by == 0.0) return;
     off_path = std::max(off_path, by);
+    if (cuts) corners.note_cut(state.tool, motion.arc.has_value());
     state.assumptions.insert(fmt::format(
         "{} may deviate by up to {:g} mm from the programmed path while the control rounds "
         "corners; clearances include this",
@@ -107,11 +108,11 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     note_axis_tolerances({.legs = {region->hull}});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
-    memory.off_path = deviation + off_by_axes + state.corners.of_cuts;
+    memory.off_path = deviation + off_by_axes + state.corners.of_stock();
     CutModel stock = state.stock; // a collision in the region must not cut the run's stock
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
-    CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_cuts};
+    CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_stock()};
     region->hull.begin = region->hull.end = 0.0;
     leg_check(FluteUse::not_cutting, memory)
         .run(region->hull, result.duration, stock, corner.anywhere);

@@ -160,7 +160,7 @@ void BlockRun::check_probing(const Motion& motion, const Path& path) {
 void BlockRun::check_rest(const Path& path) {
     const TrackedPairs before = pairs;
     note_axis_tolerances(path);
-    state.memory.off_path = off_path + off_by_axes + state.corners.of_cuts;
+    state.memory.off_path = off_path + off_by_axes + state.corners.of_stock();
     LegCheck check = leg_check(FluteUse::not_cutting);
     Leg here = path.legs[0];
     if (here.straight) {
