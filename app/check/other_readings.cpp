@@ -106,8 +106,8 @@ std::string consequence_of(const ReadingResult& result) {
                     first.line ? place_of(first.file, first.line) : "the program as a whole",
                     first.finding.rule, first.finding.message);
     if (result.error_count > 1)
-        text += fmt::format(" {}{} more follow.", result.ends_early ? "At least " : "",
-                            result.error_count - 1);
+        text += fmt::format(" {} more follow{}.", result.error_count - 1,
+                            result.ends_early ? "; what comes after them was not checked" : "");
     return text;
 }
 
@@ -420,6 +420,9 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
     bool joins = false;
     const bool may_end_early =
         core::severity_of(check_.run.setup, core::rule_id("open-premise")) == core::Severity::error;
+    const size_t forks_before = forks_.size();
+    const size_t stopped_before = stopped_.size();
+    const auto visited_before = visited_;
     size_t blocks = core::value_of(result.block);
     runner.after_reading = [&](const RunState& before, const gcode::InterpreterState& after) {
         joins = note(before, after, core::value_of(result.block));
@@ -445,12 +448,11 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
                 result.lowered = std::max(result.lowered, lowered_severity(finding));
             add_error(result, known, finding, done.checked.file, done.checked.line);
         }
-        // More errors would tell nobody more, unless only collisions are reported.
-        result.ends_early = may_end_early && result.error_count >= most_shown_errors;
-        if (result.ends_early) {
-            result.verdict = std::max(result.verdict, core::Verdict::undecided);
-            break;
-        }
+        // More errors would tell nobody more, unless a set-up reports only collisions.
+        const size_t enough =
+            result.verdict == core::Verdict::collision ? most_shown_errors : 10 * most_shown_errors;
+        result.ends_early = may_end_early && result.error_count >= enough;
+        if (result.ends_early) break;
         if (++blocks % 256 == 0 && !goes_on()) {
             result.stopped = core::Error{core::ErrorCode::io, {}, "stopped by the user", {}};
             result.verdict = std::max(result.verdict, core::Verdict::undecided);
@@ -464,6 +466,13 @@ ReadingResult OtherReadings::run(Fork fork, const CheckRecord& record,
         }
     if (!joins && !result.stopped && !result.continues && !result.ends_early)
         result.avoided = avoided_by(errors, result, record);
+    if (result.ends_early) { // what other readings rely on ends here, too
+        result.verdict = std::max(result.verdict, core::Verdict::undecided);
+        forks_.erase(forks_.begin() + static_cast<std::ptrdiff_t>(forks_before), forks_.end());
+        stopped_.erase(stopped_.begin() + static_cast<std::ptrdiff_t>(stopped_before),
+                       stopped_.end());
+        visited_ = visited_before;
+    }
     // One finding about rapids is enough, but the verdict is that of the worst combination.
     for (const BentBlock& block : bent) worst_bent_ = std::max(worst_bent_, block.verdict);
     if (!bent.empty() && bent_.empty()) bent_readings_.push_back(bent_reading(bent, &result));

@@ -36,6 +36,37 @@ TEST(Premises, AnOpenParameterMakesTheWorstReadingTheVerdict) {
     EXPECT_NE(finding.cure.find("\"5006#6\" = 1 or 0 under [control]"), std::string::npos);
 }
 
+TEST(Premises, AReadingWithManyErrorsIsNotFollowedToItsEnd) {
+    // If G91 is active at the start, X runs away beyond its limits.
+    std::string program = "G21 G17 G40 G49 G80 G94\nG54\nT1 M6\nG43 H1 G0 Z100.\nS1000 M3\n";
+    for (int i = 0; i < 250; ++i) program += i % 2 ? "G0 X20. Y50.\n" : "G0 X80. Y50.\n";
+    program += "M30\n";
+    const Checked cut_short = check(plate("fanuc"), program);
+    const std::string message = cut_short.finding("open-premise").message;
+    EXPECT_NE(message.find(" more follow; what comes after them was not checked."),
+              std::string::npos)
+        << message;
+    EXPECT_EQ(cut_short.verdict, "undecided");
+    // Where only collisions of other readings are reported, all of them are looked for.
+    const Checked whole =
+        check(plate("fanuc").also("[rules]\nopen-premise = \"warning\"\n"), program);
+    const std::string all = whole.finding("open-premise").message;
+    EXPECT_EQ(all.find("not checked"), std::string::npos) << all;
+    EXPECT_NE(all.find(" more follow."), std::string::npos) << all;
+}
+
+TEST(Premises, ACommentAllowsNoReadingThatCollides) {
+    const std::string program =
+        head
+        + std::string("G0 X50. Y50.\nG0 Z50.\nIF [#500 EQ 1] GOTO 10 (feeler: allow "
+                      "open-premise)\nGOTO 20\nN10 G0 Z-5.\nN20 G0 Z100.\nM30\n");
+    const SetupWriter setup = plate("fanuc").also("[rules]\nallow_comments = true\n");
+    const Checked checked = check(setup, program);
+    EXPECT_EQ(checked.verdict, "collision");
+    EXPECT_NE(checked.errors().find("open-premise"), std::string::npos) << checked.errors();
+    EXPECT_EQ(checked.status, 1);
+}
+
 TEST(Premises, AStatedParameterDecides) {
     EXPECT_EQ(errors_with(lone_g49(), "[control]\n\"5006#6\" = 1\n"), "");
     const std::string moves = errors_with(lone_g49(), "[control]\n\"5006#6\" = 0\n");
