@@ -31,8 +31,8 @@ struct Execution {
     uint32_t column = 1; // of the word being executed
     // By angles, where the block has them. Words for rotary axes are then no positions.
     std::optional<ToolDirection> tool_by_angles{};
-    // The tool turns in a way that is not modelled, and so the words do not count either.
-    bool turns_otherwise = false;
+    // The block turns the tool in a way that is not modelled, and so the words do not count either.
+    bool loses_rotary_axes = false;
 
     ModalState& modal() { return state.modal; }
     const ModalState& modal() const { return state.modal; }

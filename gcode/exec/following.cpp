@@ -66,7 +66,7 @@ bool places(const Execution& execution, size_t axis) {
     const Word* word = execution.statement.word(axis_letters[axis]);
     const BlockCommands& result = execution.result;
     if (!word || (result.is_cycle && !result.goes_home)) return false;
-    if ((execution.tool_by_angles || execution.turns_otherwise) && is_rotary(axis)) return false;
+    if ((execution.tool_by_angles || execution.loses_rotary_axes) && is_rotary(axis)) return false;
     if (result.goes_home) return true;
     const bool has_no_increments =
         in_machine_coordinates(execution) && execution.dialect.language == Language::words;

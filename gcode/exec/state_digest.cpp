@@ -151,7 +151,7 @@ void add(Digest& digest, const ModalState& modal) {
     add_all(digest, modal.direction);
     digest.add(number_of(int(modal.following.may_be_on) + 2 * modal.following.unknown_axes
                          + 1024 * int(modal.following.rotary_unknown)
-                         + 4096 * int(modal.following.is_pointed)
+                         + 8192 * int(modal.following.is_pointed)
                          + 2048 * int(modal.following.awaits_sync)
                          + 4096 * int(modal.turns_in_plane) + 16 * modal.doubt));
     digest.add(number_of(modal.kinematics));

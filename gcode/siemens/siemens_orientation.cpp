@@ -313,7 +313,7 @@ core::Result<void> prepare_orientation(Execution& execution) {
         siemens_of(execution.state).turns_along_path || siemens_of(execution.state).turns_to_path;
     if (follows_path && (modal.offsets.follows_tip || modal.following.may_be_on)) {
         modal.following.rotary_unknown = modal.following.is_said = true;
-        execution.turns_otherwise = true;
+        execution.loses_rotary_axes = true;
         doubt_block(execution, &SiemensState::said_path,
                     "the tool follows the direction of the path and the normal of the surface here "
                     "(ORIPATH, LEAD, TILT), which is not modelled. This block and later ones are "

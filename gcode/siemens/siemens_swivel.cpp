@@ -222,7 +222,8 @@ core::Result<void> swivel(Execution& execution, const SiemensKeywordUse& use) {
                           "CYCLE800 while TOROT is on is not supported yet: program TOROTOF before "
                           "it",
                           use.span);
-    if (is_within_save(execution.state))
+    const bool changes_plane = swivel.given > 0 || siemens_of(execution.state).swivels;
+    if (changes_plane && is_within_save(execution.state))
         return core::fail(
             ErrorCode::unsupported,
             "CYCLE800 in a subprogram with SAVE is not supported yet: call it outside", use.span);
