@@ -83,7 +83,8 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     else
         for (const ProfileElement& element : flutes.elements)
             convex.push_back(RevolvedProfile{{element}});
-    Cutter cutter{.flutes = flutes, .path_error = path_error, .pieces = {}, .body = {}};
+    Cutter cutter{
+        .cutting = flutes, .flutes = flutes, .path_error = path_error, .pieces = {}, .body = {}};
     for (const RevolvedProfile& piece : convex) {
         if (path_error == 0.0)
             cutter.pieces.push_back({piece, piece});

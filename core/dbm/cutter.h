@@ -49,7 +49,8 @@ struct Cutter {
 
         bool operator==(const Piece&) const = default;
     };
-    RevolvedProfile flutes;
+    RevolvedProfile cutting; // of which the pieces are
+    RevolvedProfile flutes;  // the same, or larger where they may cut less than they look like
     double path_error = 0.0;
     std::vector<Piece> pieces;
     Aabb body; // of everything it may cut when upright, relative to the tip

@@ -109,8 +109,8 @@ Solid get_solid(Reader& in) {
 
 void put_cutter(ByteWriter& out, const Cutter& cutter) {
     out.put(cutter.path_error);
-    out.put(uint64_t{cutter.flutes.elements.size()});
-    for (const ProfileElement& e : cutter.flutes.elements)
+    out.put(uint64_t{cutter.cutting.elements.size()});
+    for (const ProfileElement& e : cutter.cutting.elements)
         for (const double value : {e.z0, e.r0, e.z1, e.r1, e.margin}) out.put(value);
 }
 
@@ -232,7 +232,7 @@ StockRecord record_of(const CutModel& stock, double path_error) {
         auto& cutter = uncertain[sweep.cutter];
         if (!cutter)
             cutter = std::make_shared<const Cutter>(
-                make_cutter(sweep.cutter->flutes, sweep.cutter->path_error + path_error));
+                make_cutter(sweep.cutter->cutting, sweep.cutter->path_error + path_error));
         sweep.cutter = cutter;
     }
     return record;

@@ -38,6 +38,20 @@ TEST(StockRecord, GivesTheSameStockAgainAtAnyMeshSize) {
     }
 }
 
+TEST(StockRecord, KeepsWhatACutterIsCertainToCut) {
+    // Flutes of 10 mm that are only certain to cut 9 mm.
+    const RevolvedProfile full{{{0.0, 5.0, 20.0, 5.0, 0.0}}}, certain{{{0.0, 4.5, 20.0, 4.5, 0.0}}};
+    Cutter cutter = make_cutter(certain, 0.0);
+    cutter.flutes = full;
+    CutModel model = *make_cut_model({SolidBox{{{0, 0, 0}, {40, 40, 10}}}}, 0.7);
+    cut(model, {.cutter = std::make_shared<const Cutter>(cutter),
+                .from = {-10, 20, 4},
+                .to = {50, 20, 4}});
+    const auto again = stock_record(bytes_of(record_of(model)));
+    ASSERT_TRUE(again);
+    EXPECT_TRUE(same_stock(cut_again(*again, 0.7), model));
+}
+
 /// The lower bound of an uncertain stock counts what its cutters may have left, even all of it.
 TEST(StockRecord, CountsHowFarItsCutsMayBeOff) {
     std::mt19937 rng(6);
