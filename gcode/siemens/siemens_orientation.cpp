@@ -92,7 +92,7 @@ core::Result<bool> are_euler_angles(Execution& execution, core::SourceSpan where
     if (said == SiemensAngles::other)
         return core::fail(
             ErrorCode::unsupported,
-            "A2, B2 and C2 under ORIRPY2, ORIVIRT1 or ORIVIRT2 are not supported yet: "
+            "A2, B2 and C2 under ORIRPY2, ORIAXPOS, ORIVIRT1 or ORIVIRT2 are not supported yet: "
             "program the direction of the tool as A3= B3= C3=",
             where);
     return said != SiemensAngles::rpy;
@@ -101,9 +101,8 @@ core::Result<bool> are_euler_angles(Execution& execution, core::SourceSpan where
 /// The direction of the tool from A2, B2 and C2.
 ///
 /// Source: SINUMERIK 840D sl, Programming Manual Job Planning, orientation angles. Euler: Z is
-/// turned
-///         about Z by A2 and about the new X by B2. RPY: about Z by C2, the new Y by B2 and the new
-///         X by A2.
+///         turned about Z by A2 and about the new X by B2. RPY: about Z by C2, the new Y by B2 and
+///         the new X by A2.
 core::Result<void> take_angles(Execution& execution) {
     const auto words = vector_words(execution.block, angle_letters);
     if (!words) return {};

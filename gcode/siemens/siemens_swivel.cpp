@@ -57,8 +57,7 @@ int axis_of_angle(const Swivel& swivel, int angle) { return (swivel.mode >> (2 *
 /// By projection angles about X and Y, and a turn in the plane.
 ///
 /// Source: SINUMERIK 828D, Operating Manual Turning 01/2015, 9.6: with the angles XY or YX, X of
-/// the
-///         plane stays in the old ZX plane. Function Manual Basic Functions, K2: their signs.
+///         the plane stays in the old ZX plane. Function Manual Basic Functions, K2: their signs.
 core::Result<core::Mat3> projected_rotation(const Swivel& swivel, core::SourceSpan where) {
     const int first = axis_of_angle(swivel, 0), second = axis_of_angle(swivel, 1);
     const bool is_known =

@@ -92,6 +92,16 @@ inline void expect_same_motions(const Driven& a, const Driven& b) {
     EXPECT_EQ(a.paths, b.paths);
 }
 
+/// Motions to the same positions but for the rounding of programmed directions.
+inline void expect_same_ends(const Driven& a, const Driven& b) {
+    ASSERT_EQ(a.motions.size(), b.motions.size());
+    for (size_t i = 0; i < a.motions.size(); ++i)
+        for (size_t axis = 0; axis < 6; ++axis)
+            ASSERT_NEAR(a.motions[i].to[axis].value_or(0.0), b.motions[i].to[axis].value_or(0.0),
+                        1e-6);
+    EXPECT_EQ(a.paths, b.paths);
+}
+
 /// The same motions, all with a path of the tip and all certain.
 inline void expect_same_tip_paths(const Driven& a, const Driven& b, size_t count) {
     EXPECT_EQ(a.motions.size(), count);
