@@ -82,7 +82,7 @@ void expect_in_plane(const core::Machine& machine, const KnownPlane& plane,
 
 TEST(KlartextPlane, IsWhereTheManualPutsIt) {
     Planes planes(20261127);
-    for (int i = 0; i < 250; ++i)
+    for (int i = 0; i < 1000; ++i)
         for (const auto make :
              {&Planes::spatial, &Planes::euler, &Planes::vector, &Planes::points}) {
             const KnownPlane plane = (planes.*make)();
