@@ -336,6 +336,19 @@ TEST(AxisTolerances, AreInEveryClearanceWhileTheAxisIsTurned) {
     EXPECT_NE(near.errors().find("tool-change-unsafe"), std::string::npos) << near.errors();
 }
 
+TEST(AxisTolerances, CountInTheCoprocessor) {
+    const std::string program = "G710 G90 G17 G54\nT1\nM6\nD1 S6000 M3\nG0 X0 Y0 Z80\nA90\nZ50\n"
+                                "M30\n";
+    const auto at_pin = [&](const std::string& tolerance) {
+        return check(cube_with(tolerance, "39.9"), program,
+                     {"--dialect", "siemens", "--engine", "coprocessor"})
+            .at_line(7)
+            .verdict;
+    };
+    EXPECT_EQ(at_pin(""), "clear") << "40 mm above the pin";
+    EXPECT_NE(at_pin("point_tolerance = 0.1\n"), "clear");
+}
+
 TEST(AxisTolerances, CountForWhatMayTouch) {
     // The shank passes raw stock by less than the tolerance.
     const auto beside = [](const std::string& tolerance, const std::string& blocks) {
