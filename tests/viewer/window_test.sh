@@ -56,10 +56,21 @@ expect 'G goes to a line' 'line 30 '
 press ctrl+f
 frames
 xdotool type 'violation'
-picture 06-filter
+still 06-filter
 press ctrl+a BackSpace
 press Escape
 picture 06-filter-cleared
+press g
+frames
+xdotool type 30
+kill -STOP "$view" # so that Enter, Ctrl+F and what is typed then arrive at once
+xdotool key --window 0 --clearmodifiers Return
+xdotool key --window 0 --clearmodifiers ctrl+f
+xdotool type 'violation'
+kill -CONT "$view"
+shows 06-filter-fast 'what is typed right after Ctrl+F goes into the filter' same 06-filter 06-filter-fast
+press ctrl+a BackSpace
+press Escape
 
 xdotool mousemove 1198 810 click 1
 expect 'a click on the timeline goes to its block' 'block 38 of 45, collision'

@@ -208,8 +208,9 @@ struct ViewModel {
     std::set<size_t> bookmarks;
     std::vector<FindingNote> notes;            // of all programs
     std::optional<StretchIndex> selected = {}; // in the list of findings
-    bool shows_findings = false, note_wants_focus = false;
-    bool shows_setup = false; // in place of lines and findings
+    bool shows_findings = false;
+    bool note_wants_focus = false; // until the field of the comment has the keyboard
+    bool shows_setup = false;      // in place of lines and findings
     Settings settings;
     TimelineRange range;
     bool follows_timeline = true; // shows the whole program while it grows
@@ -227,7 +228,7 @@ struct ViewModel {
     std::optional<uint64_t> walking; // number of the walk whose end is awaited
     bool wants_interrupt = false;    // of walks that are no longer awaited
     bool list_follows = true;        // the list scrolls to the cursor in the next frame
-    bool filter_wants_focus = false;
+    bool filter_wants_focus = false; // until the field of the filter has the keyboard
 
     // requests to the worker
     std::optional<ShowRequest> wanted;

@@ -107,8 +107,9 @@ void FindingsPanel::draw_note(Frame& frame, const StretchIndex& which) {
         typed_ = note_at(model, which);
     }
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - frame.px(10));
-    if (std::exchange(model.note_wants_focus, false)) ImGui::SetKeyboardFocusHere();
+    if (model.note_wants_focus) ImGui::SetKeyboardFocusHere();
     ImGui::InputTextWithHint("##note", "Comment on this finding (R)", &typed_);
+    if (ImGui::IsItemActive()) model.note_wants_focus = false;
     if (ImGui::IsItemDeactivatedAfterEdit()) write_note_at(model, which, typed_);
 }
 

@@ -170,10 +170,10 @@ void ProgramPanel::draw_head(Frame& frame, const Area& area) {
 
     ImGui::SetNextItemWidth(area.width - frame.px(24));
     if (model.filter_wants_focus) ImGui::SetKeyboardFocusHere();
-    model.filter_wants_focus = false;
     const std::string hint = std::string(frame.fonts.icon(Icon::search))
                              + "  Filter: text, T3, clearance < 1 \xE2\x80\xA6";
     if (ImGui::InputTextWithHint("##filter", hint.c_str(), &model.filter_text)) apply_filter(model);
+    if (ImGui::IsItemActive()) model.filter_wants_focus = false;
     draw_filter_note(frame);
 }
 

@@ -69,7 +69,8 @@ bool moves_focus(int code) {
 /// A key that is pressed and released between two frames gets one frame for each event. A modifier
 /// released after a key press still counts as down in the frame of that press. A key
 /// such as Tab needs two more frames to move to another field: characters wait until then, or the
-/// sign of a number that is typed fast would be lost.
+/// sign of a number that is typed fast would be lost. A field that a command asks for, such as the
+/// filter, may need more: a dialog that closes takes the keyboard back first.
 class KeyQueue {
 public:
     /// Adds an event of a key with this GLFW code.
@@ -80,8 +81,13 @@ public:
     bool has_characters() const;
     /// Whether the focus is about to move. A key that may be meant as a character must then wait.
     bool moves_now() const;
-    /// The focus is about to move: what is typed now waits until it has.
-    void expect_move();
+    /// A field is to get the focus: what is typed now waits until it has it, for half a second of
+    /// frames at most.
+    void await_field();
+    /// That field has the focus.
+    void field_has_focus();
+    /// Whether what is typed waits now.
+    bool is_waiting() const { return frames_to_wait_ > 0; }
     /// Adds the command of a key with modifiers, to be taken after the frames of all that waits.
     void add_command(int code, int modifiers);
     /// The command that is due before the next frame, as code and modifiers.
@@ -100,6 +106,7 @@ private:
     };
     bool may_feed(const std::set<int>& changed, bool has_press, bool has_character) const;
 
+    static constexpr int frames_of_a_move = 2;
     std::deque<Event> events_;
     int frames_to_wait_ = 0;
 };
@@ -119,6 +126,11 @@ static_assert(key::left == GLFW_KEY_LEFT && key::function(12) == GLFW_KEY_F12
               && key::left_control == GLFW_KEY_LEFT_CONTROL && key::right_alt == GLFW_KEY_RIGHT_ALT
               && mod::shift == GLFW_MOD_SHIFT && mod::control == GLFW_MOD_CONTROL
               && mod::alt == GLFW_MOD_ALT);
+
+/// Whether a command has asked for a field that does not have the keyboard yet.
+bool awaits_field(const ViewModel& model) {
+    return model.filter_wants_focus || model.note_wants_focus;
+}
 
 /// Interval between checks of the files, and longest sleep of the window, seconds.
 constexpr double watch_interval = 0.4;
@@ -205,6 +217,7 @@ private:
     void close();
     void remember_geometry();
     void set_title();
+    void follow_focus(ViewModel& model);
     double wanted_scale() const;
 
     const WindowJob& job_;
@@ -475,7 +488,9 @@ void Window::press(int code, int modifiers) {
     log_.key(code);
     damage();
     const bool may_be_typed = code < key::escape && (modifiers & mod::control) == 0;
-    if (keys_.has_characters() || (may_be_typed && keys_.moves_now()))
+    // In a dialog, keys before this one may still wait for a frame, such as Enter, which closes it.
+    const bool has_dialog = shown_model().popup != Popup::none;
+    if (keys_.has_characters() || has_dialog || (may_be_typed && keys_.moves_now()))
         keys_.add_command(code, modifiers);
     else
         perform_key(code, modifiers);
@@ -510,7 +525,7 @@ void Window::perform_key(int code, int modifiers) {
         model.popup == Popup::none && model.workspace.has_keys && moves && (is_plain || moves_text);
     if ((popup_keeps || panel_keeps) && !closes) return;
     perform(model, *command, glfwGetTime());
-    if (model.filter_wants_focus) keys_.expect_move();
+    if (awaits_field(model)) keys_.await_field();
 }
 
 void Window::set_title() {
@@ -570,6 +585,13 @@ void Window::update() {
     if (shown_model().workspace.commits_typed) damage();
 }
 
+/// After a frame in which a field was to get the keyboard.
+void Window::follow_focus(ViewModel& model) {
+    if (!awaits_field(model)) return keys_.field_has_focus();
+    damage();
+    if (!keys_.is_waiting()) model.filter_wants_focus = model.note_wants_focus = false;
+}
+
 void Window::draw() {
     log_.begin_frame();
     rebuild_fonts();
@@ -582,7 +604,9 @@ void Window::draw() {
         ImGui::GetIO().NavInputs[ImGuiNavInput_Activate] = 1.0F;
     ImGui::NewFrame();
     ViewModel& model = shown_model();
+    const bool was_awaited = awaits_field(model);
     tab().layout.draw(model, fonts_, glfwGetTime());
+    if (was_awaited) follow_focus(model);
     set_title();
     ImGui::Render();
     int width = 0, height = 0;
@@ -769,10 +793,9 @@ bool KeyQueue::moves_now() const {
               });
 }
 
-void KeyQueue::expect_move() {
-    constexpr int frames_of_a_request = 6; // a dialog may have to give back the keyboard first
-    frames_to_wait_ = frames_of_a_request;
-}
+void KeyQueue::await_field() { frames_to_wait_ = 30; }
+
+void KeyQueue::field_has_focus() { frames_to_wait_ = std::min(frames_to_wait_, frames_of_a_move); }
 
 void KeyQueue::add_command(int code, int modifiers) {
     events_.push_back({.code = code, .is_command = true, .modifiers = modifiers});
@@ -797,7 +820,6 @@ bool KeyQueue::may_feed(const std::set<int>& changed, bool has_press, bool has_c
 }
 
 bool KeyQueue::feed(ImGuiIO& io) {
-    constexpr int frames_of_a_move = 2;
     std::set<int> changed;
     bool has_press = false, has_character = false;
     if (frames_to_wait_ > 0) --frames_to_wait_;
